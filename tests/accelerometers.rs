@@ -1,9 +1,10 @@
 //! Accelerometers at points of a spacecraft: against an oracle of whole kinematics, and against the place that the motion comes to.
 
-use flexsc_core::metrics::{Gather, Value};
+use flexsc_core::Scenario;
+use flexsc_core::metrics::Value;
 use flexsc_core::record::{Column, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
 
+use crate::traces::{column, flown, traced};
 use crate::util::SCENARIOS;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/accelerometer.csv");
@@ -35,11 +36,8 @@ to = 2.0
 period = 0.5
 ";
 
-fn flown(text: &str) -> (Trace, Scenario) {
-    let scenario = Scenario::parse("accelerometers.toml", text).unwrap_or_else(|error| panic!("{error}"));
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    (trace, scenario)
+fn run(text: &str) -> Trace {
+    traced(&Scenario::parse("accelerometers.toml", text).unwrap_or_else(|error| panic!("{error}")))
 }
 
 /// What the accelerometer at this place among the sensors measured at each of its samples.
@@ -66,7 +64,7 @@ fn measured(trace: &Trace, sensor: u64) -> Vec<Vec<f64>> {
 /// the slider's millimetres: 5e-7 m/s² after 12 s.
 #[test]
 fn a_pushed_hub_with_a_slider_is_felt_as_by_newton() {
-    let (trace, _) = flown(HUB_AND_MASS);
+    let trace = run(HUB_AND_MASS);
     let (bench, slider) = (measured(&trace, 1), measured(&trace, 2));
     assert_eq!(bench.len(), 27);
     let mut rows = csv::Reader::from_path(GOLDEN).expect("golden");
@@ -94,11 +92,9 @@ fn what_is_felt_is_how_the_place_accelerates() {
         )
         .replace("point = \"bench\"", "point = \"hub\"")
         .replace("period = 0.5", "period = 0.03125");
-    let (trace, _) = flown(&text);
+    let trace = run(&text);
     let (felt, h) = (measured(&trace, 1), 0.03125);
-    let of = |topic: &str, name: &str| -> Vec<f64> {
-        trace.topic(topic).and_then(|rows| rows.numbers(name)).expect("numbers").to_vec()
-    };
+    let of = |topic: &str, name: &str| column(&trace, topic, name);
     let place = ["x_m", "y_m", "z_m"].map(|name| of("/position", name));
     let q = ["q_w", "q_x", "q_y", "q_z"].map(|name| of("/pointing", name));
     // The force begins and ends at 1 and 2 s: no difference reaches across.
@@ -126,8 +122,7 @@ fn what_is_felt_is_how_the_place_accelerates() {
 fn a_run_up_is_felt_on_the_bench() {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/wheel-run-up.toml")).expect("a file");
     let scenario = Scenario::parse("wheel-run-up.toml", &text).expect("a scenario");
-    let (mut trace, mut gather) = (Trace::new(Detail::Full), Gather::new(&scenario));
-    Simulation::new(&scenario, 0).run(&mut (&mut trace, &mut gather)).expect("a run");
+    let (metrics, trace) = flown(&scenario, 0, Detail::Full);
     let felt = measured(&trace, 1);
     let size = |row: &Vec<f64>| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     let within = |from: f64, to: f64| {
@@ -143,7 +138,6 @@ fn a_run_up_is_felt_on_the_bench() {
     );
     let squares: f64 = felt.iter().map(|row| size(row) * size(row)).sum();
     let rms = (squares / felt.len() as f64).sqrt();
-    let metrics = gather.finish(&scenario);
     let Some(Value::Numbers(told)) = metrics.get("acceleration_rms_m_s2") else { panic!("a metric") };
     assert!((told[0] / rms - 1.0).abs() < 1e-12, "{told:?} {rms}");
     // Nothing that watches changes the motion.
@@ -151,9 +145,8 @@ fn a_run_up_is_felt_on_the_bench() {
         &text[text.find("sensor = [").expect("sensors")..text.find("[spacecraft]").expect("a body")],
         "",
     );
-    let (trace_alone, _) = flown(&alone);
-    let rates =
-        |trace: &Trace| trace.topic("/pointing").expect("rows").numbers("q_x").expect("numbers").to_vec();
+    let trace_alone = run(&alone);
+    let rates = |trace: &Trace| column(trace, "/pointing", "q_x").to_vec();
     assert_eq!(rates(&trace), rates(&trace_alone));
 }
 

@@ -1,10 +1,10 @@
 //! Wheels as they are: the scenarios that ship do what their comments say, tachometers are read, and what cannot be is refused.
 
-use flexsc_core::Simulation;
-use flexsc_core::metrics::{Gather, Metrics, Value};
-use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::scenario::Scenario;
 
+use crate::traces::{column, flown, traced, within};
 use crate::util::SCENARIOS;
 
 fn text(name: &str) -> String {
@@ -21,17 +21,6 @@ fn changed(name: &str, change: &[(&str, &str)]) -> Scenario {
     Scenario::parse("wheels.toml", &text).expect("a scenario")
 }
 
-fn flown(scenario: &Scenario, detail: Detail) -> (Metrics, Trace) {
-    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
-    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
-    (gather.finish(scenario), trace)
-}
-
-fn numbers(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
-    let rows = trace.topic(topic).and_then(|rows: &Columns| rows.numbers(name));
-    rows.unwrap_or_else(|| panic!("{topic} {name}")).to_vec()
-}
-
 /// A count in each of the wheels' events.
 fn counts(trace: &Trace, name: &str) -> Vec<u64> {
     let rows = trace.topic("/wheel_events").expect("events");
@@ -40,17 +29,15 @@ fn counts(trace: &Trace, name: &str) -> Vec<u64> {
 }
 
 /// A number of each wheel in each row, wheel by wheel in a row.
-fn of_wheels(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
-    let rows = trace.topic(topic).unwrap_or_else(|| panic!("no {topic}"));
-    let Some(Column::Rows(_, wheels)) = rows.get("wheels") else { panic!("wheels") };
-    wheels.numbers(name).unwrap_or_else(|| panic!("{name}")).to_vec()
+fn of_wheels<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
+    within(trace, topic, "wheels", name)
 }
 
 /// The largest pointing error about any axis from a time on (rad).
 fn worst(trace: &Trace, from: f64) -> f64 {
     let period = 0.25;
     let errors =
-        ["roll", "pitch", "yaw"].map(|axis| numbers(trace, "/pointing", &format!("{axis}_error_rad")));
+        ["roll", "pitch", "yaw"].map(|axis| column(trace, "/pointing", &format!("{axis}_error_rad")));
     let rows = (0..errors[0].len()).filter(|row| period * *row as f64 >= from);
     rows.flat_map(|row| errors.each_ref().map(|of| of[row].abs())).fold(0.0, f64::max)
 }
@@ -62,8 +49,8 @@ const SILENT: (&str, &str) =
 
 #[test]
 fn wheels_pass_through_zero_and_compensation_helps() {
-    let (metrics, trace) = flown(&changed("wheel-friction", &[]), Detail::Full);
-    let (wheels, times) = (counts(&trace, "wheel"), numbers(&trace, "/wheel_events", "time_s"));
+    let (metrics, trace) = flown(&changed("wheel-friction", &[]), 0, Detail::Full);
+    let (wheels, times) = (counts(&trace, "wheel"), column(&trace, "/wheel_events", "time_s"));
     assert_eq!(metrics.number("wheel_zero_crossings"), Some(times.len() as f64));
     let first: Vec<f64> =
         times.iter().zip(wheels).filter(|(_, wheel)| *wheel == 0).map(|(t, _)| *t).collect();
@@ -78,14 +65,13 @@ fn wheels_pass_through_zero_and_compensation_helps() {
     let total: f64 = heat[heat.len() - 4..].iter().sum();
     assert!((lost / total - 1.0).abs() < 1e-2, "{lost} {total}");
     assert_eq!(metrics.number("friction_heat_j"), Some(total));
-    let goal = |change: &[(&str, &str)]| flown(&changed("wheel-friction", change), Detail::Events).0;
+    let goal = |change: &[(&str, &str)]| flown(&changed("wheel-friction", change), 0, Detail::Events).0;
     let met = |metrics: &Metrics| metrics.get("goal") == Some(&Value::Word("met"));
     assert!(!met(&metrics) && met(&goal(&[COMPENSATED])));
     let faster = ("speeds = [40, -40, 40, -40] ", "speeds = [200, -200, 200, -200] ");
     assert!(met(&goal(&[faster])));
     // Without noise of the gyro the error is that of friction.
-    let error =
-        |change: &[(&str, &str)]| worst(&flown(&changed("wheel-friction", change), Detail::Full).1, 30.0);
+    let error = |change: &[(&str, &str)]| worst(&traced(&changed("wheel-friction", change)), 30.0);
     let (plain, helped) = (error(&[SILENT]), error(&[SILENT, COMPENSATED]));
     assert!(plain > 8e-4 && helped < 0.6 * plain, "{plain:e} {helped:e}");
 }
@@ -93,14 +79,14 @@ fn wheels_pass_through_zero_and_compensation_helps() {
 #[test]
 fn a_run_repeats_whatever_is_looked_at() {
     let scenario = changed("wheel-friction", &[("duration = 300.0", "duration = 60.0")]);
-    let (full, trace) = flown(&scenario, Detail::Full);
-    let (quiet, events) = flown(&scenario, Detail::Events);
+    let (full, trace) = flown(&scenario, 0, Detail::Full);
+    let (quiet, events) = flown(&scenario, 0, Detail::Events);
     assert_eq!(full.to_json(), quiet.to_json());
     let times = |trace: &Trace| counts(trace, "time_fs");
     assert_eq!(times(&trace), times(&events));
     let mut often = scenario.clone();
     often.written.log.period = Some(flexsc_core::time::Span::from_seconds(0.013));
-    assert_eq!(full.to_json(), flown(&often, Detail::Full).0.to_json());
+    assert_eq!(full.to_json(), flown(&often, 0, Detail::Full).0.to_json());
 }
 
 /// A tachometer of few pulses reads whole pulses; while it fails the drives keep the last reading.
@@ -114,7 +100,7 @@ fn drives_know_what_tachometers_read() {
             COMPENSATED,
         ],
     );
-    let (_, trace) = flown(&scenario, Detail::Full);
+    let trace = traced(&scenario);
     let (known, speeds) =
         (of_wheels(&trace, "/bearings", "known_rad_s"), of_wheels(&trace, "/wheels", "speed_rad_s"));
     let quantum = std::f64::consts::TAU / 24.0 / 0.05;
@@ -132,18 +118,16 @@ fn drives_know_what_tachometers_read() {
 /// The elastic rates are largest where a line passes the mode at 92.9 rad/s: twice the speed at 46 rad/s, then the speed itself.
 #[test]
 fn a_run_up_shakes_the_modes_that_it_passes() {
-    let (metrics, trace) = flown(&changed("wheel-run-up", &[]), Detail::Full);
+    let (metrics, trace) = flown(&changed("wheel-run-up", &[]), 0, Detail::Full);
     let speeds: Vec<f64> = of_wheels(&trace, "/wheels", "speed_rad_s").iter().step_by(4).copied().collect();
-    let rows = trace.topic("/rates").expect("rates");
-    let Some(Column::Rows(_, axes)) = rows.get("axes") else { panic!("axes") };
-    let elastic = axes.numbers("elastic_rad_s").expect("rates");
+    let elastic = within(&trace, "/rates", "axes", "elastic_rad_s");
     let size: Vec<f64> = elastic.chunks(3).map(|of| of.iter().map(|x| x * x).sum::<f64>().sqrt()).collect();
-    let within = |from: f64, to: f64| {
+    let most = |from: f64, to: f64| {
         let rows = speeds.iter().zip(&size).filter(|(speed, _)| (from..to).contains(*speed));
         rows.map(|(_, size)| *size).fold(0.0, f64::max)
     };
-    assert!(within(45.0, 49.0) > 4.0 * within(35.0, 40.0) && within(45.0, 49.0) > 3.0 * within(50.0, 54.0));
-    assert!(within(91.0, 95.0) > 8.0 * within(80.0, 84.0) && within(91.0, 95.0) > 5.0 * within(98.0, 110.0));
+    assert!(most(45.0, 49.0) > 4.0 * most(35.0, 40.0) && most(45.0, 49.0) > 3.0 * most(50.0, 54.0));
+    assert!(most(91.0, 95.0) > 8.0 * most(80.0, 84.0) && most(91.0, 95.0) > 5.0 * most(98.0, 110.0));
     // 115 - 85 exp(-2.4) rad/s.
     assert!((speeds.last().expect("rows") - 107.3).abs() < 0.2, "{:?}", speeds.last());
     assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));

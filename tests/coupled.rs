@@ -1,9 +1,10 @@
 //! Scenarios whose modes are coupled, by a wheel's back-EMF or a damping matrix: from the file to the log.
 
-use flexsc_core::record::{Column, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::Scenario;
+use flexsc_core::record::{Column, Trace};
 
 use crate::plants::golden;
+use crate::traces::{column, traced};
 use crate::util::Dir;
 
 /// The relay law of the study through a wheel, on the plants (a) and (b).
@@ -33,13 +34,7 @@ const DASHPOT: &str = "damping_matrix = [[0.0061, -0.005964], [-0.006048, 0.0061
 
 fn trace(text: &str) -> Trace {
     let scenario = Scenario::parse("linear.toml", text).expect("a valid scenario");
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    trace
-}
-
-fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace.topic(topic).and_then(|columns| columns.numbers(name)).expect("a column")
+    traced(&scenario)
 }
 
 /// The switchings that a log tells, against a file.

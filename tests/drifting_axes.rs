@@ -1,10 +1,9 @@
 //! Modes of three axes whose frequencies drift: against SciPy, in the log, and with filters.
 
-use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::study::nested;
+use crate::traces::{nested, traced};
 
 const BODY: &str = "[body.spatial]
 inertia = [[100.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 60.0]]
@@ -53,8 +52,7 @@ fn energies_and_filters_know_the_drift() {
     let law = "pd = { k_p = 0.4, k_d = 6.0, period = 0.2 }";
     let sensors = "sensor = { sampled = { period = 0.2, noise = 1e-6 } }\n\
                    estimator = { extended_kalman = { angle_noise = 1e-6 } }\nlog.period = 0.2";
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario(law, sensors), 0).run(&mut trace).expect("a run");
+    let trace = traced(&scenario(law, sensors));
     let last = |topic: &str, names: [&str; 2], place: (usize, usize)| {
         *nested(&trace, topic, names, place).last().expect("a row")
     };

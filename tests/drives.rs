@@ -1,31 +1,13 @@
 //! Appendages that turn: against an oracle of point masses, balances, what is refused, and the scenario that ships.
 
-use flexsc_core::Simulation;
-use flexsc_core::metrics::{Gather, Metrics, Value};
-use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::record::Detail;
 use flexsc_core::scenario::Scenario;
 
+use crate::traces::{column, flown, traced, within};
 use crate::util::SCENARIOS;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
-
-fn flown(scenario: &Scenario, detail: Detail) -> (Metrics, Trace) {
-    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
-    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
-    (gather.finish(scenario), trace)
-}
-
-fn numbers(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
-    let rows = trace.topic(topic).and_then(|rows: &Columns| rows.numbers(name));
-    rows.unwrap_or_else(|| panic!("{topic} {name}")).to_vec()
-}
-
-/// A number of each row within the rows.
-fn within(trace: &Trace, topic: &str, rows: &str, name: &str) -> Vec<f64> {
-    let of = trace.topic(topic).unwrap_or_else(|| panic!("no {topic}"));
-    let Some(Column::Rows(_, inner)) = of.get(rows) else { panic!("{rows}") };
-    inner.numbers(name).unwrap_or_else(|| panic!("{name}")).to_vec()
-}
 
 fn golden() -> String {
     std::fs::read_to_string(format!("{GOLDEN}/driven.toml")).expect("a file")
@@ -38,18 +20,18 @@ fn parsed(text: &str) -> Scenario {
 /// The kinetic energy of point masses, derived by nobody, moves the same way: `golden/driven_oracle.py`.
 #[test]
 fn panels_of_point_masses_turn_as_the_oracle_says() {
-    let (_, trace) = flown(&parsed(&golden()), Detail::Full);
+    let trace = traced(&parsed(&golden()));
     let text = std::fs::read_to_string(format!("{GOLDEN}/driven.csv")).expect("a file");
     let rows: Vec<Vec<f64>> = text
         .lines()
         .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
         .collect();
-    let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| numbers(&trace, "/pointing", name));
+    let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| column(&trace, "/pointing", name));
     let rates = within(&trace, "/rates", "axes", "rate_rad_s");
     let [momentum, elastic, rotational] =
-        ["momentum_nm_s", "elastic_j", "rotational_j"].map(|name| numbers(&trace, "/energy", name));
+        ["momentum_nm_s", "elastic_j", "rotational_j"].map(|name| column(&trace, "/energy", name));
     let frequencies = within(&trace, "/drives", "modes", "frequency_rad_s");
-    let position = ["x_m", "y_m", "z_m"].map(|name| numbers(&trace, "/position", name));
+    let position = ["x_m", "y_m", "z_m"].map(|name| column(&trace, "/position", name));
     assert_eq!(attitude[0].len(), rows.len());
     let mut worst = [0.0_f64; 7];
     for (at, row) in rows.iter().enumerate() {
@@ -84,10 +66,10 @@ fn a_drive_at_rest_changes_nothing() {
         .replace(drives[0], first)
         .replace("turned = { about = [0, 0, 1], by = 3.141592653589793 }", turned)
         .replace(drives[1], "");
-    let [driven, plain] = [driven, plain].map(|text| flown(&parsed(&text), Detail::Full).1);
+    let [driven, plain] = [driven, plain].map(|text| traced(&parsed(&text)));
     for (topic, name) in [("/pointing", "q_x"), ("/energy", "elastic_j"), ("/position", "y_m")] {
-        let [a, b] = [&driven, &plain].map(|trace| numbers(trace, topic, name));
-        let off = a.iter().zip(&b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        let [a, b] = [&driven, &plain].map(|trace| column(trace, topic, name));
+        let off = a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
         // Steps differ: those of a body with drives resolve all modes.
         assert!(off < 5e-10, "{topic} {name} {off:e}");
     }
@@ -99,17 +81,18 @@ fn momentum_stays_while_drives_turn() {
     let text = golden();
     let alone = text[..text.find("[[disturbance]]").expect("one")].to_owned()
         + &text[text.find("[law.open]").expect("one")..];
-    let (metrics, trace) = flown(&parsed(&alone), Detail::Full);
-    let momentum = numbers(&trace, "/energy", "momentum_nm_s");
+    let (metrics, trace) = flown(&parsed(&alone), 0, Detail::Full);
+    let momentum = column(&trace, "/energy", "momentum_nm_s");
     let off = momentum.iter().map(|of| (of / momentum[0] - 1.0).abs()).fold(0.0, f64::max);
     assert!(off < 1e-13, "{off:e}");
-    let (unseen, _) = flown(&parsed(&alone), Detail::Events);
+    let (unseen, _) = flown(&parsed(&alone), 0, Detail::Events);
     let end = |metrics: &Metrics| metrics.number("pointing_error_end_rad");
     assert_eq!(end(&metrics), end(&unseen));
     // A rate that jumps, and drives by a table: the same momentum.
     let table = "table = [{ time = 3, angle = 0.0 }, { time = 13, angle = 0.9 }, { time = 20, angle = 0.2 }]";
     let jumping = alone.replace("rate = 0.08, from = 5, until = 20, acceleration = 0.04", table);
-    let momentum = numbers(&flown(&parsed(&jumping), Detail::Full).1, "/energy", "momentum_nm_s");
+    let trace = traced(&parsed(&jumping));
+    let momentum = column(&trace, "/energy", "momentum_nm_s");
     let off = momentum.iter().map(|of| (of / momentum[0] - 1.0).abs()).fold(0.0, f64::max);
     assert!(off < 1e-13, "{off:e}");
 }
@@ -174,14 +157,14 @@ fn a_notch_has_to_cover_the_drift() {
     let narrow =
         ("frequency = 2.6, depth = 0.1, damping = 0.9", "frequency = 2.386, depth = 0.05, damping = 0.1");
     let met = |metrics: &Metrics| metrics.get("goal") == Some(&Value::Word("met"));
-    let (metrics, trace) = flown(&shipped(&[]), Detail::Full);
+    let (metrics, trace) = flown(&shipped(&[]), 0, Detail::Full);
     assert!(met(&metrics), "{metrics:?}");
     let frequencies = within(&trace, "/drives", "modes", "frequency_rad_s");
     let second: Vec<f64> = frequencies.iter().skip(1).step_by(6).copied().collect();
     let (least, most) = second.iter().fold((f64::MAX, 0.0_f64), |(a, b), w| (a.min(*w), b.max(*w)));
     assert!((2.37..2.38).contains(&least) && (2.85..2.86).contains(&most), "{least} {most}");
     assert!((second[0] - 2.386).abs() < 1e-3, "{}", second[0]);
-    assert!(!met(&flown(&shipped(&[short[0], short[1], narrow]), Detail::Events).0));
+    assert!(!met(&flown(&shipped(&[short[0], short[1], narrow]), 0, Detail::Events).0));
     // Keys of drives can be uncertain.
     let drawn = golden() + "[uncertain]\n\"appendage[0].drive.rate\" = { relative_uniform = 0.1 }\n";
     assert!(Scenario::parse("drawn.toml", &drawn).is_ok());

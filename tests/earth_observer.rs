@@ -1,10 +1,10 @@
 //! The Earth observer that ships: a spacecraft from parts, wheels, gyro, star tracker, attitude filter, law and turn together.
 
-use flexsc_core::Simulation;
-use flexsc_core::metrics::{Gather, Metrics, Value};
-use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::metrics::Value;
+use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::scenario::Scenario;
 
+use crate::traces::{column, flown, traced};
 use crate::util::SCENARIOS;
 
 /// The scenario with some of its words changed.
@@ -17,26 +17,12 @@ fn observer(change: &[(&str, &str)]) -> Scenario {
     Scenario::parse("observer.toml", &text).expect("a scenario")
 }
 
-/// Its metrics, and its full log.
-fn flown(scenario: &Scenario, run: u64) -> (Metrics, Trace) {
-    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(Detail::Full));
-    Simulation::new(scenario, run).run(&mut (&mut gather, &mut trace)).expect("a run");
-    (gather.finish(scenario), trace)
-}
-
-fn numbers<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace
-        .topic(topic)
-        .and_then(|rows: &Columns| rows.numbers(name))
-        .unwrap_or_else(|| panic!("{topic} {name}"))
-}
-
 /// The largest error of an axis between two times (rad).
 fn worst(trace: &Trace, from: f64, to: f64) -> f64 {
     // Rows come with the period of the log.
     let times: Vec<f64> = (0..=1200).map(|row| 0.25 * f64::from(row)).collect();
     let errors =
-        ["roll", "pitch", "yaw"].map(|axis| numbers(trace, "/pointing", &format!("{axis}_error_rad")));
+        ["roll", "pitch", "yaw"].map(|axis| column(trace, "/pointing", &format!("{axis}_error_rad")));
     let within = times.iter().enumerate().filter(|(_, t)| (from..=to).contains(*t));
     within.flat_map(|(row, _)| errors.map(|error| error[row].abs())).fold(0.0, f64::max)
 }
@@ -46,7 +32,7 @@ fn worst(trace: &Trace, from: f64, to: f64) -> f64 {
 fn it_does_what_its_comment_says() {
     let scenario = observer(&[]);
     for run in 0..5 {
-        let (metrics, trace) = flown(&scenario, run);
+        let (metrics, trace) = flown(&scenario, run, Detail::Full);
         assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "run {run}");
         let (turning, pointing) = (worst(&trace, 30.0, 200.9), worst(&trace, 240.9, 300.0));
         assert!(turning < 5e-4 && pointing < 1e-4, "run {run}: {turning} {pointing}");
@@ -66,7 +52,7 @@ fn it_does_what_its_comment_says() {
         ("noise = [2.4e-5, 2.4e-5, 1.5e-4]", "noise = [1e-10, 1e-10, 1e-10]"),
         ("initial = { angle = 1e-3, bias = 1e-5 }", "initial = { angle = 1e-9, bias = 1e-12 }"),
     ]);
-    let (_, trace) = flown(&silent, 0);
+    let trace = traced(&silent);
     let (turning, pointing) = (worst(&trace, 30.0, 300.0), worst(&trace, 280.0, 300.0));
     assert!(turning < 3e-4 && pointing < 1e-6, "{turning} {pointing}");
 }
@@ -77,7 +63,9 @@ fn its_filter_is_as_good_as_it_says() {
     let scenario = observer(&[]);
     let runs = 12;
     let mean = |name: &str| {
-        (0..runs).map(|run| flown(&scenario, run).0.number(name).expect("a number")).sum::<f64>()
+        (0..runs)
+            .map(|run| flown(&scenario, run, Detail::Full).0.number(name).expect("a number"))
+            .sum::<f64>()
             / runs as f64
     };
     // 480 innovations a run of three numbers: the mean is 1 within 1.96 sqrt(2/(3 480 12)) = 0.021; errors of a run are
@@ -90,9 +78,8 @@ fn its_filter_is_as_good_as_it_says() {
 /// Nothing outside acts: the momentum of body, panels and wheels together stays as it is, whatever the wheels do.
 #[test]
 fn wheels_and_panels_change_no_momentum() {
-    let (_, trace) =
-        flown(&observer(&[("speeds = [200, -200, 200, -200]", "speeds = [200, -150, 120, -90]")]), 0);
-    let momentum = numbers(&trace, "/energy", "momentum_nm_s");
+    let trace = traced(&observer(&[("speeds = [200, -200, 200, -200]", "speeds = [200, -150, 120, -90]")]));
+    let momentum = column(&trace, "/energy", "momentum_nm_s");
     let first = momentum[0];
     assert!(first > 1.0, "{first}");
     let off = momentum.iter().map(|h| (h / first - 1.0).abs()).fold(0.0, f64::max);

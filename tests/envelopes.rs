@@ -1,9 +1,10 @@
 //! The envelope on three axes: against closed forms, the true motion and the log, and the adaptation that learns from it.
 
-use flexsc_core::record::{Column, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::Scenario;
+use flexsc_core::record::Trace;
 
-use crate::study::{close, nested};
+use crate::study::close;
+use crate::traces::{column, nested, traced};
 
 const BODY: &str = "[body.spatial]
 inertia = [[100.0, 0.0, 0.0], [0.0, 80.0, 0.0], [0.0, 0.0, 60.0]]
@@ -29,25 +30,16 @@ modes = [{ frequency = 1.0, damping = 0.01, translation = [0.0, 0.0, 2.0], rotat
 
 const PD: &str = "pd = { k_p = 0.4, k_d = 6.0, period = 0.3 }";
 
-fn column(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
-    match trace.topic(topic).and_then(|rows| rows.get(name)) {
-        Some(Column::Numbers(values)) => values.clone(),
-        _ => panic!("{topic}.{name}"),
-    }
-}
-
 fn run(body: &str, law: &str, rest: &str) -> Trace {
     let text = format!("duration = 60.0\nlaw = {{ {law} }}\n{rest}\n{body}");
     let scenario = Scenario::parse("envelope.toml", &text).expect("a scenario");
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    trace
+    traced(&scenario)
 }
 
 /// The means over windows of 7 s.
 fn means(body: &str, law: &str, form: &str) -> Vec<f64> {
     let rest = format!("estimator = {{ envelope = {{ window = 7.0, form = \"{form}\" }} }}");
-    column(&run(body, law, &rest), "/envelope_mean", "mean_rad")
+    column(&run(body, law, &rest), "/envelope_mean", "mean_rad").to_vec()
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! What surrounds a body with three axes, through whole scenarios.
 
-use flexsc_core::record::{Column, Columns, Detail, Trace};
-use flexsc_core::{Scenario, ScenarioError, Simulation};
+use flexsc_core::record::Trace;
+use flexsc_core::{Scenario, ScenarioError};
+
+use crate::traces::{column, traced, within};
 
 /// Everything at once.
 const AROUND: &str = "[environment]\ntorque = [2e-4, 0.0, -1e-4]\n\
@@ -23,21 +25,12 @@ fn scenario(body: &str, around: &str, period: f64) -> Result<Scenario, ScenarioE
 
 fn run(body: &str, around: &str, period: f64) -> Trace {
     let scenario = scenario(body, around, period).expect("a scenario");
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    trace
-}
-
-/// A column of the log.
-fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace.topic(topic).and_then(|rows| rows.numbers(name)).expect("a column")
+    traced(&scenario)
 }
 
 /// The disturbing torques, three a row.
 fn torques(trace: &Trace) -> &[f64] {
-    let rows: &Columns = trace.topic("/torques").expect("torques");
-    let Some(Column::Rows(_, axes)) = rows.get("axes") else { panic!("axes") };
-    axes.numbers("disturbance_nm").expect("numbers")
+    within(trace, "/torques", "axes", "disturbance_nm")
 }
 
 const POINTING: [&str; 4] = ["q_w", "q_x", "q_y", "q_z"];

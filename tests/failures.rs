@@ -1,32 +1,20 @@
 //! Failures of actuators and sensors: each changes what is given as it says, from the instant that it names, and nobody knows.
 
-use flexsc_core::record::{Column, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::Scenario;
+use flexsc_core::record::{Column, Trace};
+
+use crate::traces::{column, traced, within};
 
 /// A wheel's axes in the pyramid of equal torques.
 const PART: f64 = 0.577_350_269_189_625_8;
 
 fn flown(text: &str) -> Trace {
     let scenario = Scenario::parse("failures.toml", text).unwrap_or_else(|error| panic!("{error}"));
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    trace
+    traced(&scenario)
 }
 
 fn refused(text: &str) -> String {
     Scenario::parse("failures.toml", text).expect_err("it does not fit").to_string()
-}
-
-fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace.topic(topic).and_then(|rows| rows.numbers(name)).unwrap_or_else(|| panic!("{topic}.{name}"))
-}
-
-/// A column of the rows within each row.
-fn within<'a>(trace: &'a Trace, topic: &str, rows: &str, name: &str) -> &'a [f64] {
-    match trace.topic(topic).and_then(|topic| topic.get(rows)) {
-        Some(Column::Rows(_, columns)) => columns.numbers(name).expect("numbers"),
-        _ => panic!("{topic}.{rows}"),
-    }
 }
 
 const RIGID: &str = "duration = 20.0\nlog = { period = 1.0 }\n[body.planar]\ninertia = 100.0\n";

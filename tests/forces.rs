@@ -1,8 +1,10 @@
 //! Forces at points of a spacecraft, steady and in pulses: where they move it, and what is refused.
 
 use flexsc_core::metrics::Gather;
-use flexsc_core::record::{Columns, Detail, Trace};
+use flexsc_core::record::{Columns, Trace};
 use flexsc_core::{Scenario, ScenarioError, Simulation};
+
+use crate::traces::{column, traced};
 
 const HUB: &str = "duration = 100.0\n[law.open]\n[log]\nperiod = 10.0\n[spacecraft]\nmass = 250.0\n\
     inertia = [[80, 0, 0], [0, 80, 0], [0, 0, 120]]\n";
@@ -16,13 +18,7 @@ fn scenario(text: &str) -> Result<Scenario, ScenarioError> {
 
 fn flown(text: &str) -> Trace {
     let scenario = scenario(text).unwrap_or_else(|error| panic!("{error}"));
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    trace
-}
-
-fn column<'a>(trace: &'a Trace, name: &str) -> &'a [f64] {
-    trace.topic("/position").and_then(|rows| rows.numbers(name)).expect("a column")
+    traced(&scenario)
 }
 
 #[track_caller]
@@ -48,10 +44,10 @@ fn a_force_turns_with_its_body() {
         let x = a / (w * w) * (1.0 - cos) + v_x * (t - burn);
         let y = a / (w * w) * (w * burn - sin) + v_y * (t - burn);
         let row = row as usize;
-        near(column(&trace, "x_m")[row], x, 1e-11);
-        near(column(&trace, "y_m")[row], y, 1e-11);
-        near(column(&trace, "x_m_s")[row], v_x, 1e-12);
-        near(column(&trace, "z_m")[row], 0.0, 1e-12);
+        near(column(&trace, "/position", "x_m")[row], x, 1e-11);
+        near(column(&trace, "/position", "y_m")[row], y, 1e-11);
+        near(column(&trace, "/position", "x_m_s")[row], v_x, 1e-12);
+        near(column(&trace, "/position", "z_m")[row], 0.0, 1e-12);
     }
 }
 
@@ -64,7 +60,7 @@ fn pulses_give_their_impulse_and_a_swinging_mass_takes_its_part() {
     ));
     // Nine pulses, the last at 57 s. What swings about the centre of mass dies out as exp(-zeta W t), and turns the body a little.
     let delta = 9.0 * 0.3 * 3.0 / 290.0;
-    let v_y = column(&pulsed, "y_m_s");
+    let v_y = column(&pulsed, "/position", "y_m_s");
     assert!(v_y[..6].iter().any(|v| (v - delta).abs() > 1e-2 * delta));
     near(v_y[10], delta, 0.1 * delta);
     // The same pulses written one by one move it to the same place, to what other steps lose.
@@ -74,7 +70,7 @@ fn pulses_give_their_impulse_and_a_swinging_mass_takes_its_part() {
     };
     let single = flown(&format!("{body}{}", (0..9).map(one).collect::<String>()));
     for name in ["x_m", "y_m", "z_m", "y_m_s"] {
-        for (a, b) in column(&pulsed, name).iter().zip(column(&single, name)) {
+        for (a, b) in column(&pulsed, "/position", name).iter().zip(column(&single, "/position", name)) {
             near(*a, *b, 2e-11);
         }
     }
@@ -136,11 +132,8 @@ fn a_force_turns_every_body_with_three_axes() {
         flown(&format!("{}{point}{force}", HUB.replace("[spacecraft]\nmass = 250.0", "[body.spatial]")));
     assert!(spatial.topic("/position").is_none_or(Columns::is_empty), "nobody knows its mass");
     for name in ["q_w", "q_x", "q_y", "q_z"] {
-        let of = |trace: &Trace| {
-            trace.topic("/pointing").and_then(|rows| rows.numbers(name)).expect("rows").to_vec()
-        };
-        for (a, b) in of(&spacecraft).into_iter().zip(of(&spatial)) {
-            near(a, b, 1e-10);
+        for (a, b) in column(&spacecraft, "/pointing", name).iter().zip(column(&spatial, "/pointing", name)) {
+            near(*a, *b, 1e-10);
         }
     }
 }

@@ -2,12 +2,13 @@
 //! scenario that ships.
 
 use flexsc_core::Simulation;
-use flexsc_core::metrics::{Gather, Metrics, Value};
-use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::metrics::Value;
+use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
 use flexsc_core::time::{Instant, Span};
 
 use crate::drawing::Drawing;
+use crate::traces::{column, flown, traced, within};
 use crate::util::{Dir, SCENARIOS};
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
@@ -28,24 +29,6 @@ fn changed(change: &[(&str, &str)]) -> String {
     })
 }
 
-fn flown(scenario: &Scenario, detail: Detail) -> (Metrics, Trace) {
-    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
-    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
-    (gather.finish(scenario), trace)
-}
-
-fn numbers(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
-    let rows = trace.topic(topic).and_then(|rows: &Columns| rows.numbers(name));
-    rows.unwrap_or_else(|| panic!("{topic} {name}")).to_vec()
-}
-
-/// A number of each row within the rows.
-fn within(trace: &Trace, topic: &str, rows: &str, name: &str) -> Vec<f64> {
-    let of = trace.topic(topic).unwrap_or_else(|| panic!("no {topic}"));
-    let Some(Column::Rows(_, inner)) = of.get(rows) else { panic!("{rows}") };
-    inner.numbers(name).unwrap_or_else(|| panic!("{name}")).to_vec()
-}
-
 fn golden(name: &str) -> Vec<Vec<f64>> {
     let cells = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
     text(&format!("{GOLDEN}/{name}.csv")).lines().map(cells).collect()
@@ -53,9 +36,9 @@ fn golden(name: &str) -> Vec<Vec<f64>> {
 
 /// The largest differences from rows of t, Q, w and |H|.
 fn off(trace: &Trace, rows: &[Vec<f64>]) -> [f64; 3] {
-    let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| numbers(trace, "/pointing", name));
+    let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| column(trace, "/pointing", name));
     let rates = within(trace, "/rates", "axes", "rate_rad_s");
-    let momentum = numbers(trace, "/energy", "momentum_nm_s");
+    let momentum = column(trace, "/energy", "momentum_nm_s");
     assert_eq!(attitude[0].len(), rows.len());
     let mut worst = [0.0_f64; 3];
     for (at, row) in rows.iter().enumerate() {
@@ -73,11 +56,11 @@ fn off(trace: &Trace, rows: &[Vec<f64>]) -> [f64; 3] {
 /// is the work of the gimbals' motors.
 #[test]
 fn a_flexible_body_turns_as_the_oracle_says() {
-    let (_, trace) = flown(&parsed(&text(&format!("{GOLDEN}/gimbals.toml"))), Detail::Full);
+    let trace = traced(&parsed(&text(&format!("{GOLDEN}/gimbals.toml"))));
     let rows = golden("gimbals");
     let worst = off(&trace, &rows);
     assert!(worst[0] < 1e-11 && worst[1] < 1e-11 && worst[2] < 1e-12, "{worst:?}");
-    let [elastic, rotational] = ["elastic_j", "rotational_j"].map(|name| numbers(&trace, "/energy", name));
+    let [elastic, rotational] = ["elastic_j", "rotational_j"].map(|name| column(&trace, "/energy", name));
     for (at, row) in rows.iter().enumerate() {
         let gained = elastic[at] + rotational[at] - elastic[0] - rotational[0];
         assert!((elastic[at] - row[9]).abs() < 1e-11, "{at}");
@@ -91,25 +74,25 @@ fn a_flexible_body_turns_as_the_oracle_says() {
 fn a_rigid_body_turns_as_the_oracle_says() {
     let text = text(&format!("{GOLDEN}/gimbals.toml"));
     let rigid = text.split("[[appendage]]").next().expect("the hub");
-    let (_, trace) = flown(&parsed(rigid), Detail::Full);
+    let trace = traced(&parsed(rigid));
     let worst = off(&trace, &golden("gimbals_rigid"));
     assert!(worst[0] < 1e-11 && worst[1] < 1e-11 && worst[2] < 1e-12, "{worst:?}");
 }
 
 #[test]
 fn the_shipped_scenario_does_what_its_comment_says() {
-    let (metrics, trace) = flown(&parsed(&changed(&[])), Detail::Full);
+    let (metrics, trace) = flown(&parsed(&changed(&[])), 0, Detail::Full);
     assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "{metrics:?}");
     let rates = within(&trace, "/control_moment_gyros", "gyros", "rate_rad_s");
     let largest = rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
     let told = metrics.number("gimbal_rate_peak_rad_s").expect("a rate");
     assert!(largest <= told && told <= 1.0, "{largest} {told}");
-    let measure = numbers(&trace, "/control_moment_gyros", "singularity");
+    let measure = column(&trace, "/control_moment_gyros", "singularity");
     let least = measure.iter().copied().fold(f64::INFINITY, f64::min);
     assert!((least - metrics.number("singularity_min").expect("a measure")).abs() < 1e-9, "{least}");
     // It ends at rest: what the gyros stored during the turn is given back.
-    let momentum = ["x", "y", "z"]
-        .map(|axis| numbers(&trace, "/control_moment_gyros", &format!("momentum_{axis}_nm_s")));
+    let momentum =
+        ["x", "y", "z"].map(|axis| column(&trace, "/control_moment_gyros", &format!("momentum_{axis}_nm_s")));
     let size = |at: usize| momentum.iter().map(|of| of[at] * of[at]).sum::<f64>().sqrt();
     let last = momentum[0].len() - 1;
     assert!(size(last) < 0.05, "{}", size(last));
@@ -171,22 +154,22 @@ fn with(actuators: &[&str]) -> String {
 #[test]
 fn they_share_the_demand_with_wheels_that_stick_and_slip() {
     let text = with(&[GYROS, WHEELS]).replace("duration = 120.0", "duration = 50.0");
-    let (_, trace) = flown(&parsed(&text), Detail::Full);
-    let momentum = numbers(&trace, "/energy", "momentum_nm_s");
+    let trace = traced(&parsed(&text));
+    let momentum = column(&trace, "/energy", "momentum_nm_s");
     let of = |fold: fn(f64, f64) -> f64, from: f64| momentum.iter().copied().fold(from, fold);
     let spread = of(f64::max, 0.0) - of(f64::min, f64::INFINITY);
     assert!(momentum[0] > 1.0 && spread < 1e-9, "{spread}");
     assert!(trace.topic("/wheel_events").is_some_and(|events| !events.is_empty()));
-    let turned = numbers(&trace, "/pointing", "roll_rad");
+    let turned = column(&trace, "/pointing", "roll_rad");
     assert!((turned[turned.len() - 1] - turned[0]).abs() > 0.1);
 }
 
 #[test]
 fn magnetorquers_unload_them() {
     let text = with(&[GYROS, TORQUERS]).replace("duration = 120.0", "duration = 300.0");
-    let (metrics, trace) = flown(&parsed(&text), Detail::Full);
+    let (metrics, trace) = flown(&parsed(&text), 0, Detail::Full);
     let [x, y, z] = ["x", "y", "z"]
-        .map(|axis| numbers(&trace, "/control_moment_gyros", &format!("momentum_{axis}_nm_s"))[0]);
+        .map(|axis| column(&trace, "/control_moment_gyros", &format!("momentum_{axis}_nm_s"))[0]);
     let start = (x * x + y * y + z * z).sqrt();
     let end = metrics.number("gyro_momentum_end_nm_s").expect("a momentum");
     assert!(start > 5.0 && end < 0.9 * start, "{end} of {start}");
@@ -233,14 +216,22 @@ fn what_does_not_fit_is_refused_with_the_reason() {
         ("momentum = 15.0", "momentum = 15.0\nperiod = 0.1"),
         ("duration = 120.0", "duration = 15.0"),
     ]);
-    let (metrics, _) = flown(&parsed(&text), Detail::Full);
+    let (metrics, _) = flown(&parsed(&text), 0, Detail::Full);
     assert!(metrics.number("torque_error_peak_nm").expect("a torque") < 1e-2);
 }
 
 #[test]
-fn their_figure_shows_gimbals_and_limits() {
+fn their_summary_and_figure_show_gimbals_and_limits() {
+    let (metrics, _) =
+        flown(&parsed(&changed(&[("duration = 120.0", "duration = 45.0")])), 0, Detail::Events);
+    let [rate, measure, off] = ["gimbal_rate_peak_rad_s", "singularity_min", "torque_error_peak_nm"]
+        .map(|name| metrics.number(name).expect(name));
     let dir = Dir::with(&["agile-observer"]);
-    dir.run("simulate agile-observer.toml --set duration=45").exits(0);
+    dir.run("simulate agile-observer.toml --set duration=45").exits(0).says(&[
+        &format!("  gimbals        at most {rate:.3e} rad/s; "),
+        &format!("singularity measure at least {measure:.3}; "),
+        &format!("torque within {off:.3e} N m of the demand"),
+    ]);
     dir.run("plot agile-observer.mcap --what gimbals --format svg").exits(0);
     let drawing = Drawing::at(&dir, "agile-observer-gimbals.svg");
     drawing.shows(&[

@@ -1,9 +1,9 @@
 //! Jets that act by themselves: the least propellant for what laws demand. The programme itself is compared with SciPy's in
 //! `numerics/simplex.rs`; here it is what comes of it.
 
-use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::Scenario;
+use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::{Column, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
 
 use crate::util::SCENARIOS;
 
@@ -13,9 +13,7 @@ fn text(name: &str) -> String {
 
 fn flown(text: &str) -> (Metrics, Trace) {
     let scenario = Scenario::parse("jets.toml", text).unwrap_or_else(|error| panic!("{error}"));
-    let (mut gather, mut trace) = (Gather::new(&scenario), Trace::new(Detail::Full));
-    Simulation::new(&scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
-    (gather.finish(&scenario), trace)
+    crate::traces::flown(&scenario, 0, Detail::Full)
 }
 
 /// The on-times of each cycle in which any thruster fires.

@@ -1,28 +1,16 @@
 //! Magnetic control in whole scenarios: momentum, decay rates, detumbling, filters of vectors, targets of the orbit.
 
-use flexsc_core::metrics::{Gather, Metrics, Value};
-use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::metrics::{Gather, Value};
+use flexsc_core::record::{Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
+use crate::traces::{column, flown, traced, within};
 use crate::util::SCENARIOS;
-
-fn flown(scenario: &Scenario, run: u64) -> (Metrics, Trace) {
-    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(Detail::Full));
-    Simulation::new(scenario, run).run(&mut (&mut gather, &mut trace)).expect("a run");
-    (gather.finish(scenario), trace)
-}
 
 /// A column of rows along three axes.
 fn along(trace: &Trace, topic: &str, field: &str) -> Vec<[f64; 3]> {
-    let rows: &Columns = trace.topic(topic).unwrap_or_else(|| panic!("no {topic}"));
     let list = if topic == "/wheels" { "wheels" } else { "axes" };
-    let Some(Column::Rows(_, axes)) = rows.get(list) else { panic!("{topic} {list}") };
-    let numbers = axes.numbers(field).expect(field);
-    numbers.chunks_exact(3).map(|row| [row[0], row[1], row[2]]).collect()
-}
-
-fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace.topic(topic).and_then(|rows: &Columns| rows.numbers(name)).expect(name)
+    within(trace, topic, list, field).chunks_exact(3).map(|row| [row[0], row[1], row[2]]).collect()
 }
 
 fn norm(of: &[f64; 3]) -> f64 {
@@ -87,7 +75,7 @@ fn decayed(momentum: [f64; 3], gain: f64, until: f64) -> [f64; 3] {
 #[test]
 fn wheels_lose_their_momentum_at_the_mean_rate_across_the_field() {
     let scenario = Scenario::parse("hold.toml", HOLD).expect("a scenario");
-    let (metrics, trace) = flown(&scenario, 0);
+    let (metrics, trace) = flown(&scenario, 0, Detail::Full);
     let momenta = along(&trace, "/wheels", "momentum_nm_s");
     let (first, last) = (momenta[0], momenta.last().expect("rows"));
     assert!((first[0] - 0.4).abs() < 1e-12 && (first[1] + 0.3).abs() < 1e-12);
@@ -124,7 +112,7 @@ fn the_b_dot_law_takes_the_rotation_away() {
         law = { b_dot = { period = 1.0, gain = 4e5 } }\nactuator = { magnetorquers = { moment = 3.0 } }\nlog = { period = 20.0 }\n\
         [spacecraft]\nmass = 20.0\ninertia = [[0.4, 0.01, 0], [0.01, 0.45, 0], [0, 0, 0.3]]\nrate = [0.02, -0.03, 0.025]\n\
         [environment]\norbit = { semi_major_axis = 6.928e6, inclination = 1.7 }\nmagnetic_field = {}\n";
-    let (metrics, trace) = flown(&Scenario::parse("tumble.toml", text).expect("a scenario"), 0);
+    let (metrics, trace) = flown(&Scenario::parse("tumble.toml", text).expect("a scenario"), 0, Detail::Full);
     let energy = column(&trace, "/energy", "rotational_j");
     let first = energy[0];
     let early = energy.windows(2).take(100);
@@ -154,7 +142,7 @@ fn an_attitude_law_points_by_torquers_alone() {
         attitude = [0.995, 0.0998333, 0, 0]\n\
         [environment]\norbit = { semi_major_axis = 6.928e6, inclination = 1.7 }\nmagnetic_field = {}\n";
     let text = text.replace("[0.995, 0.0998333, 0, 0]", "[0.9950041652780258, 0.09983341664682815, 0, 0]");
-    let (metrics, _) = flown(&Scenario::parse("torquers.toml", &text).expect("a scenario"), 0);
+    let (metrics, _) = flown(&Scenario::parse("torquers.toml", &text).expect("a scenario"), 0, Detail::Full);
     let error = metrics.number("pointing_error_end_rad").expect("a number");
     assert!(error < 0.01, "{error}");
 }
@@ -163,7 +151,7 @@ fn an_attitude_law_points_by_torquers_alone() {
 fn the_small_satellite_does_what_its_comment_says() {
     let scenario = shipped("detumble-and-point", &[]);
     for run in 0..3 {
-        let (metrics, trace) = flown(&scenario, run);
+        let (metrics, trace) = flown(&scenario, run, Detail::Full);
         assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "run {run}");
         let rates = along(&trace, "/rates", "rigid_rad_s");
         // Rows come every 5 s: the end of the detumbling, and that of the run.
@@ -222,13 +210,13 @@ fn filters_with_constant_gains_are_as_good_as_they_say() {
 
 #[test]
 fn the_observer_keeps_its_wheels_empty_by_torquers() {
-    let (metrics, trace) = flown(&shipped("magnetic-unloading", &[]), 0);
+    let (metrics, trace) = flown(&shipped("magnetic-unloading", &[]), 0, Detail::Full);
     assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
     let momenta = along(&trace, "/wheels", "momentum_nm_s");
     let most = momenta.iter().map(norm).fold(0.0, f64::max);
     assert!((0.06..0.12).contains(&most), "{most}");
     let without = shipped("magnetic-unloading", &[("gain = 2e-3  ", "gain = 1e-9  ")]);
-    let (metrics, _) = flown(&without, 0);
+    let (metrics, _) = flown(&without, 0, Detail::Full);
     assert!(metrics.number("wheel_momentum_peak_nm_s").expect("a number") > 0.3);
 }
 
@@ -243,11 +231,8 @@ fn an_appendage_snaps_as_its_closed_form_does() {
          thermal = {{ deflection = [{eta}], time_constant = {tau} }}\n\
          [environment]\norbit = {{ semi_major_axis = 7e6, anomaly = 1.97 }}\nsun = [1, 0, 0]\n"
     );
-    let (_, trace) = flown(&Scenario::parse("snap.toml", &text).expect("a scenario"), 0);
-    let Some(Column::Rows(_, modes)) = trace.topic("/vibrations").and_then(|rows| rows.get("modes")) else {
-        panic!("modes")
-    };
-    let found = modes.numbers("displacement").expect("a column");
+    let trace = traced(&Scenario::parse("snap.toml", &text).expect("a scenario"));
+    let found = within(&trace, "/vibrations", "modes", "displacement");
     // One free mode: E = 1 - t²/m, W = O/sqrt(E), Y = 1/sqrt(E); the force is Y O² eta.
     let e = 1.0_f64 - t * t / m;
     let (w, force) = (o / e.sqrt(), o * o * eta / e.sqrt());
@@ -288,7 +273,7 @@ fn a_table_on_an_orbit_is_followed_to_the_hold_of_a_sample() {
              [spacecraft]\nmass = 100.0\ninertia = [[30, 1, 0], [1, 40, 2], [0, 2, 35]]\nattitude = [0.5, 0.5, 0.5, 0.5]\n\
              [environment]\norbit = {{ semi_major_axis = 7.0e6, inclination = 1.2, node = 0.3, eccentricity = 0.05 }}\n"
         );
-        let (_, trace) = flown(&Scenario::parse("table.toml", &text).expect("a scenario"), 0);
+        let trace = traced(&Scenario::parse("table.toml", &text).expect("a scenario"));
         let errors = ["roll", "pitch", "yaw"]
             .map(|axis| column(&trace, "/pointing", &format!("{axis}_error_rad"))[360..].to_vec());
         errors.iter().flatten().fold(0.0_f64, |most, error| most.max(error.abs()))

@@ -98,6 +98,7 @@ mod stops_soon;
 mod structure;
 mod study;
 mod swinging;
+mod traces;
 mod tuning;
 mod typos;
 mod units;

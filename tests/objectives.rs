@@ -6,12 +6,13 @@ use std::sync::Arc;
 use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, SearchStep};
 use flexsc_core::own::Own;
 use flexsc_core::random::Seed;
-use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::record::Trace;
 use flexsc_core::scenario::OwnParts;
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::study::{metrics, nested, scenario};
+use crate::study::{metrics, scenario};
+use crate::traces::{column, nested, traced};
 
 /// It adds the same after each window.
 #[derive(Clone, Debug)]
@@ -55,21 +56,12 @@ impl Learn for Climbing {
     }
 }
 
-/// A column of a topic.
-fn column(trace: &Trace, topic: &str, name: &str) -> Vec<f64> {
-    match trace.topic(topic).and_then(|rows| rows.get(name)) {
-        Some(Column::Numbers(values)) => values.clone(),
-        _ => panic!("{topic}.{name}"),
-    }
-}
-
 /// The objective over each window, of a scenario whose number climbs so.
 fn measured(plain: &Scenario, stairs: Stairs) -> (Vec<f64>, Trace) {
     let own: Own<dyn Adapt> = Own::new(Arc::new(stairs));
     let study = plain.bringing(OwnParts { adaptation: Some(own), ..OwnParts::default() }).expect("it fits");
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&study, 0).run(&mut trace).expect("a run");
-    (column(&trace, "/objective", "value"), trace)
+    let trace = traced(&study);
+    (column(&trace, "/objective", "value").to_vec(), trace)
 }
 
 const ONE_ANGLE: &str = "duration = 29.5
@@ -130,7 +122,7 @@ fn objectives_about_three_axes_are_those_of_the_log() {
         x.iter().zip(&y).zip(&z).map(|((x, y), z)| (x * x + y * y + z * z).sqrt()).collect()
     };
     let norm = |trace: &Trace, topic: &str, names: [&str; 3]| -> Vec<f64> {
-        lengths(names.map(|name| column(trace, topic, name)))
+        lengths(names.map(|name| column(trace, topic, name).to_vec()))
     };
     let close = |found: &[f64], exact: &[f64], objective: Objective| {
         assert!(found.len() == 2 && exact.len() == 2, "{objective:?}: {found:?} {exact:?}");
@@ -257,8 +249,7 @@ fn every_number_of_every_law_is_tuned_by_every_objective_or_refused_with_a_reaso
                         }
                     };
                     *count += 1;
-                    let mut trace = Trace::new(Detail::Full);
-                    Simulation::new(&study, 0).run(&mut trace).expect("a run");
+                    let trace = traced(&study);
                     let name = format!("{law}: {} by {objective}", number.key);
                     let gains = column(&trace, "/adaptation", "gain");
                     assert_eq!(gains.len(), 3, "{name}");

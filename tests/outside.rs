@@ -6,6 +6,7 @@ use flexsc_core::metrics::{Gather, Value};
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
+use crate::traces::{column, flown, traced};
 use crate::util::SCENARIOS;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
@@ -24,15 +25,8 @@ fn scenario(name: &str) -> Scenario {
     Scenario::load(format!("{GOLDEN}/outside/{name}.toml").as_ref()).expect("a scenario")
 }
 
-/// A full log.
-fn flown(scenario: &Scenario) -> Trace {
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
-    trace
-}
-
 fn number(trace: &Trace, topic: &str, name: &str, row: usize) -> f64 {
-    trace.topic(topic).and_then(|rows| rows.numbers(name)).expect("a column")[row]
+    column(trace, topic, name)[row]
 }
 
 /// A column of the rows within a row, of which each has as many.
@@ -77,7 +71,7 @@ fn near(found: f64, exact: f64, error: f64) {
 #[test]
 fn a_hub_with_four_clamped_modes_moves_as_in_its_own_equations() {
     let (scenario, exact) = (scenario("four-modes"), oracle("di-gennaro", 10.0));
-    let trace = flown(&scenario);
+    let trace = traced(&scenario);
     let rates = each(&trace, "/rates", "axes", "rate_rad_s", 1);
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         near(rodrigues(&trace, 1)[axis], exact[&format!("p_{name}")], 1e-9);
@@ -96,7 +90,7 @@ fn a_hub_with_four_clamped_modes_moves_as_in_its_own_equations() {
 #[test]
 fn a_hub_with_two_hinged_panels_is_pushed_as_three_rigid_bodies_are() {
     let scenario = scenario("two-panels");
-    let trace = flown(&scenario);
+    let trace = traced(&scenario);
     for (row, time) in [(1, 2.5), (3, 7.5), (5, 12.5)] {
         let exact = oracle("panels", time);
         near(number(&trace, "/position", "x_m", row), exact["x"], 2e-8);
@@ -114,7 +108,7 @@ fn a_hub_with_two_hinged_panels_is_pushed_as_three_rigid_bodies_are() {
 #[test]
 fn a_pulse_pushes_a_mode_by_translation_and_rotation() {
     let (scenario, exact) = (scenario("pulse"), oracle("pulse", 7.5));
-    let trace = flown(&scenario);
+    let trace = traced(&scenario);
     let rates = each(&trace, "/rates", "axes", "rate_rad_s", 1);
     for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
         near(rodrigues(&trace, 1)[axis], exact[&format!("p_{name}")], 1e-8);
@@ -189,9 +183,8 @@ fn pulses_of_the_period_of_the_slosh_drive_it() {
         let text = std::fs::read_to_string(format!("{SCENARIOS}/station-keeping.toml")).expect("a file");
         let text = text.replace("period = 30.0", &format!("period = {period}"));
         let scenario = Scenario::parse("station-keeping.toml", &text).expect("a scenario");
-        let (mut gather, mut trace) = (Gather::new(&scenario), Trace::new(Detail::Full));
-        Simulation::new(&scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
-        (scenario.clone(), gather.finish(&scenario), trace)
+        let (metrics, trace) = flown(&scenario, 0, Detail::Full);
+        (scenario, metrics, trace)
     };
     let (scenario, metrics, trace) = flight("30.0");
     assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
@@ -214,7 +207,7 @@ fn pulses_of_the_period_of_the_slosh_drive_it() {
 #[test]
 fn two_masses_and_a_spring_settle_as_their_compensator_was_published() {
     let scenario = scenario("two-masses");
-    let trace = flown(&scenario);
+    let trace = traced(&scenario);
     let (mut settled, mut largest, mut torque) = (0.0_f64, 0.0_f64, 0.0_f64);
     for row in 0..=8000 {
         let modes = each(&trace, "/vibrations", "modes", "displacement", row);
@@ -251,7 +244,7 @@ fn two_masses_are_stable_for_the_springs_that_were_published() {
         ] {
             document.set_text(key, &value).expect("a key");
         }
-        let trace = flown(&Scenario::from_document(&document).expect("a scenario"));
+        let trace = traced(&Scenario::from_document(&document).expect("a scenario"));
         let energy = |from: usize, to: usize| {
             let rows = from..to;
             rows.map(|row| each(&trace, "/vibrations", "modes", "energy_j", row)[0]).fold(0.0, f64::max)
@@ -271,7 +264,7 @@ fn four_clamped_modes_move_on_with_actuators_that_fail() {
         text.replace("noise = 3.2e-4", "noise = 0.0").replace("rate_noise = 5e-5", "rate_noise = 1e-30");
     assert!(quiet != text);
     let scenario = Scenario::parse("quiet.toml", &quiet).expect("a scenario");
-    let trace = flown(&scenario);
+    let trace = traced(&scenario);
     for time in [10_usize, 40, 100] {
         let exact = oracle("di-gennaro-faults", time as f64);
         let rates = each(&trace, "/rates", "axes", "rate_rad_s", time);

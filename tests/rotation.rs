@@ -3,12 +3,12 @@
 //! The exact numbers come from an independent integration of the generalised coordinates (SciPy's DOP853, rtol 1e-12) and,
 //! for the PD law and the exact chain, of the closed loop and of Lagrange's equations in absolute angles.
 
+use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
-use flexsc_core::record::{Columns, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
 
 use crate::study::{close, metrics, numbers, scenario};
+use crate::traces::{column, traced};
 use crate::util::{Dir, table};
 
 fn number(metrics: &Metrics, name: &str) -> f64 {
@@ -20,17 +20,6 @@ fn suppressing(name: &str, kind: &str, modes: usize, more: &[(&str, &str)]) -> S
     let key = format!("manoeuvre.command.{kind}.suppress");
     let modes = modes.to_string();
     scenario(name, &[&[(key.as_str(), modes.as_str())], more].concat())
-}
-
-/// The motion of a run.
-fn trace(scenario: &Scenario) -> Trace {
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
-    trace
-}
-
-fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace.topic(topic).and_then(|columns: &Columns| columns.numbers(name)).expect("a column")
 }
 
 #[test]
@@ -107,7 +96,7 @@ fn on_the_exact_chain_more_suppressed_modes_leave_more_vibration() {
         let command = format!("{{ {kind} = {{ suppress = {modes} }} }}");
         let chain = scenario("rotation-nonlinear", &[("manoeuvre.command", &command)]);
         let end = std::f64::consts::FRAC_PI_2;
-        let trace = trace(&chain);
+        let trace = traced(&chain);
         let after = column(&trace, "/attitude", "angle_rad").iter().skip(12 * 50).map(|angle| angle - end);
         let (low, high) =
             after.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
@@ -121,8 +110,8 @@ fn on_the_exact_chain_more_suppressed_modes_leave_more_vibration() {
 #[test]
 fn small_rotations_of_the_exact_chain_are_linear() {
     let set = [("manoeuvre.angle", "1e-4"), ("body.panels.damping", "0.01"), ("duration", "20")];
-    let linear = trace(&scenario("rotation-sine", &set));
-    let exact = trace(&scenario("rotation-nonlinear", &set));
+    let linear = traced(&scenario("rotation-sine", &set));
+    let exact = traced(&scenario("rotation-nonlinear", &set));
     let pairs = [
         ("/attitude", "angle_rad"),
         ("/attitude", "rigid_rad"),
@@ -166,7 +155,7 @@ fn a_zero_order_hold_of_a_short_period_is_ideal() {
 #[test]
 fn thrusters_give_the_planned_impulse_in_pulses() {
     let set = [("log.period", "0.005"), ("duration", "14")];
-    let trace = trace(&scenario("rotation-thrusters", &set));
+    let trace = traced(&scenario("rotation-thrusters", &set));
     let (applied, planned) =
         (column(&trace, "/torque", "applied_nm"), column(&trace, "/torque", "feedforward_nm"));
     assert!(applied.iter().all(|torque| [0.0, 600.0].contains(&torque.abs())));

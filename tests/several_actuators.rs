@@ -5,11 +5,11 @@
 use flexsc_core::actuator::{Actuator, Assigned};
 use flexsc_core::own::Own;
 use flexsc_core::parts::Parts;
-use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::scenario::OwnParts;
-use flexsc_core::{Document, Scenario, Simulation};
+use flexsc_core::{Document, Scenario};
 
 use crate::own_parts::servo;
+use crate::traces::{self, traced};
 use crate::util::{Dir, SCENARIOS};
 
 const ONE_ANGLE: &str = "duration = 100.0\nlaw = { pd = { k_p = 4.0, k_d = 30.0, period = 0.25 } }\n\
@@ -29,15 +29,10 @@ const WHEELS: &str = "wheels = { arrangement = \"orthogonal\", inertia = 0.02 }\
 
 /// The numbers of a column of a run's full record.
 fn column(scenario: &Scenario, topic: &str, name: &str) -> Vec<f64> {
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
-    let rows = trace.topic(topic).unwrap_or_else(|| panic!("{topic}"));
-    match rows.get(name.split('.').next().expect("a name")) {
-        Some(Column::Numbers(numbers)) => numbers.clone(),
-        Some(Column::Rows(_, rows)) => {
-            rows.numbers(name.split_once('.').expect("a field").1).expect("numbers").to_vec()
-        }
-        _ => panic!("{topic}.{name}"),
+    let trace = traced(scenario);
+    match name.split_once('.') {
+        Some((rows, name)) => traces::within(&trace, topic, rows, name).to_vec(),
+        None => traces::column(&trace, topic, name).to_vec(),
     }
 }
 
@@ -147,11 +142,7 @@ fn unloading_in_a_list_is_that_within_the_wheels() {
         let list = format!("{before}[[actuator]]\n[actuator.wheels]{wheels}[[actuator]]\n{unloads}{own}");
         let listed = scenario(&list);
         for topic in ["/pointing", "/rates", "/wheels", "/torques"] {
-            let columns = |of: &Scenario| {
-                let mut trace = Trace::new(Detail::Full);
-                Simulation::new(of, 0).run(&mut trace).expect("a run");
-                format!("{:?}", trace.topic(topic))
-            };
+            let columns = |of: &Scenario| format!("{:?}", traced(of).topic(topic));
             assert_eq!(columns(&nested), columns(&listed), "{name}: {topic}");
         }
         let keys: Vec<_> = listed.actuator.members().into_iter().map(|member| member.key).collect();

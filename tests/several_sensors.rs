@@ -1,7 +1,8 @@
 //! Several sensors: each at its own period; what they measure comes together, and what does not is refused.
 
-use flexsc_core::record::{Column, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::Scenario;
+
+use crate::traces::{column, nested, traced};
 
 const BODY: &str = "duration = 40.0\nseed = 3\n[law.pd]\nk_p = 4.0\nk_d = 60.0\nperiod = 0.5\n[body.spatial]\n\
     inertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\nrate = [1e-3, -2e-3, 2e-3]\n\
@@ -14,14 +15,9 @@ const GYRO: &str = "{ gyro = { period = 0.25, point = \"hub\" } }";
 /// The angle error and the measured rate about the first axis, at each log period.
 fn seen(sensors: &str) -> (Vec<f64>, Vec<f64>) {
     let scenario = Scenario::parse("s.toml", &format!("sensor = {sensors}\n{BODY}")).expect("a scenario");
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(&scenario, 0).run(&mut trace).expect("a run");
-    let rows = |topic: &str| trace.topic(topic).unwrap_or_else(|| panic!("no {topic}")).clone();
-    let errors = rows("/pointing").numbers("roll_error_rad").expect("errors").to_vec();
-    let rates = rows("/rates");
-    let Some(Column::Rows(_, axes)) = rates.get("axes") else { panic!("axes") };
-    let measured = axes.numbers("measured_rad_s").expect("rates").iter().step_by(3).copied().collect();
-    (errors, measured)
+    let trace = traced(&scenario);
+    let measured = nested(&trace, "/rates", ["axes", "measured_rad_s"], (0, 3));
+    (column(&trace, "/pointing", "roll_error_rad").to_vec(), measured)
 }
 
 #[test]

@@ -10,19 +10,8 @@ use flexsc_core::{Scenario, Simulation};
 
 use crate::spatial::{body, free};
 use crate::study::{close, metrics, scenario};
+use crate::traces::{column, traced, within};
 use crate::util::{Dir, SCENARIOS, table};
-
-/// The full trace of a run.
-fn trace(scenario: &Scenario) -> Trace {
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
-    trace
-}
-
-/// A column of a topic.
-fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace.topic(topic).and_then(|rows| rows.numbers(name)).unwrap_or_else(|| panic!("{topic} {name}"))
-}
 
 /// A column of the rows about one axis.
 fn about(columns: &Columns, axis: usize, name: &str) -> Vec<f64> {
@@ -39,13 +28,10 @@ fn last(trace: &Trace, topic: &str, name: &str) -> f64 {
 #[test]
 fn the_energy_that_the_gyro_sees_is_told_apart() {
     let study = scenario("iss-manoeuvre", &[("duration", "120"), ("log.period", "10")]);
-    let full = trace(&study);
+    let full = traced(&study);
     let shapes =
         study.model.spatial().map(|body| body.shapes(&study.study.sensed_at[0])).expect("three axes");
-    let Some(Column::Rows(_, modes)) = full.topic("/vibrations").and_then(|rows| rows.get("modes")) else {
-        panic!("modes")
-    };
-    let energies = modes.numbers("energy_j").expect("a column");
+    let energies = within(&full, "/vibrations", "modes", "energy_j");
     // Modes 1 to 3, of 0.0978, 0.1063 and 0.2368 Hz, turn it by less than a tenth of what mode 5 does.
     let most = shapes.iter().map(|(_, rotation)| rotation.norm()).fold(0.0, f64::max);
     assert!(shapes.iter().zip(1..).all(|((_, shape), mode)| (shape.norm() < 0.1 * most) == (mode < 4)));
@@ -69,7 +55,7 @@ fn the_manoeuvre_is_that_of_another_program() {
     close(metrics.number("fuel_kg").expect("fuel"), 5.610_856_276_476_058, 1e-13);
     close(metrics.number("elastic_energy_peak_j").expect("energy"), 0.696_646_184_768_756_2, 1e-9);
     close(metrics.number("elastic_energy_end_j").expect("energy"), 1.898_426_293_957_833_7e-3, 1e-9);
-    let trace = trace(&study);
+    let trace = traced(&study);
     let q = [
         0.999_517_261_919_449,
         0.006_366_740_164_194_914,
@@ -148,7 +134,7 @@ fn the_gyro_has_noise_bias_and_a_resolution() {
         ("duration", "2000"),
         ("log.period", "0.2"),
     ];
-    let trace = trace(&free(&keys));
+    let trace = traced(&free(&keys));
     let rates = trace.topic("/rates").expect("rates");
     let errors = |axis: usize| -> Vec<f64> {
         let (measured, rate) = (about(rates, axis, "measured_rad_s"), about(rates, axis, "rate_rad_s"));
@@ -184,7 +170,7 @@ fn the_surroundings_push() {
         ("log.period", "80"),
         ("duration", "80"),
     ];
-    let trace = trace(&free(&keys));
+    let trace = traced(&free(&keys));
     let rates = trace.topic("/rates").expect("rates");
     let turn = std::f64::consts::TAU / 50.0;
     close(about(rates, 0, "rigid_rad_s")[1], 1e-9 * 80.0 / 5.0, 1e-12);
@@ -214,7 +200,7 @@ fn pulses_act_where_and_as_long_as_they_are_told() {
     };
     // 0.05 rad/s by 1/3 rad/s²: 0.15 s of fire about -y, from 0 or from 0.2 s on.
     for (delay, begins) in [("0", 0), ("1", 4)] {
-        let trace = trace(&free(&keys(delay)));
+        let trace = traced(&free(&keys(delay)));
         let (jets, rates) = (trace.topic("/jets").expect("jets"), trace.topic("/rates").expect("rates"));
         assert_eq!(jets.len(), 1);
         close(column(&trace, "/jets", "pitch_on_s")[0], -0.15, 1e-12);

@@ -2,7 +2,6 @@
 
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::{Metrics, Value};
-use flexsc_core::record::{Column, Trace};
 use flexsc_core::{Document, Scenario};
 
 /// A shipped scenario with some keys set.
@@ -33,12 +32,4 @@ pub fn numbers(metrics: &Metrics, name: &str) -> Vec<f64> {
 pub fn close(value: f64, exact: f64, relative: f64) {
     let error = (value / exact - 1.0).abs();
     assert!(error <= relative, "{value:e} is off {exact:e} by {error:e} of it");
-}
-
-/// A column of one of the rows within each row of a topic, of which there are so many.
-pub fn nested(trace: &Trace, topic: &str, [rows, name]: [&str; 2], (index, of): (usize, usize)) -> Vec<f64> {
-    let Some(Column::Rows(_, within)) = trace.topic(topic).and_then(|all| all.get(rows)) else {
-        panic!("{topic}.{rows}")
-    };
-    within.numbers(name).expect("numbers").iter().skip(index).step_by(of).copied().collect()
 }

@@ -2,17 +2,17 @@
 
 use std::sync::Arc;
 
-use flexsc_core::Simulation;
 use flexsc_core::attitude::{Vector, rotation};
 use flexsc_core::estimator::attitude::{
     AttitudeFilterState, AttitudeMeasurement, FilterHistory, Fix, GyroNoise, KnownMode, KnownModes, Swinging,
 };
-use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
 
+use crate::traces::flown;
 use crate::util::SCENARIOS;
 
 /// Readings of a made-up run, and what a filter that shares nothing with this one makes of them: `golden/swinging_oracle.py`.
@@ -99,12 +99,6 @@ fn changed(change: &[(&str, &str)]) -> Result<Scenario, String> {
     Scenario::parse("boom.toml", &text).map_err(|error| error.to_string())
 }
 
-fn flown(scenario: &Scenario) -> (Metrics, Trace) {
-    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(Detail::Full));
-    Simulation::new(scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
-    (gather.finish(scenario), trace)
-}
-
 const NONE: (&str, &str) =
     ("elastic = { modes = [0], noise = 1e-5, displacement = 1e-3, feeds = \"hub\" }\n", "");
 
@@ -120,7 +114,8 @@ fn worst(trace: &Trace) -> f64 {
 /// The comment of the scenario: what the filter knows with the mode, and without.
 #[test]
 fn a_filter_that_knows_the_mode_is_consistent_and_points_better() {
-    let [with, without] = [&[][..], &[NONE]].map(|change| flown(&changed(change).expect("it")));
+    let [with, without] =
+        [&[][..], &[NONE]].map(|change| flown(&changed(change).expect("it"), 0, Detail::Full));
     let number = |(metrics, _): &(Metrics, Trace), name: &str| metrics.number(name).expect(name);
     assert!((number(&with, "nis_mean") - 1.0).abs() < 0.1, "{}", number(&with, "nis_mean"));
     assert!((0.5..1.5).contains(&number(&with, "nees_mean")), "{}", number(&with, "nees_mean"));
@@ -135,9 +130,9 @@ fn a_filter_that_knows_the_mode_is_consistent_and_points_better() {
     assert_eq!(with.0.get("goal"), Some(&Value::Word("met")));
     // A filter that takes the mode for a tenth slower shows it.
     let wrong = ("modes = [0], noise", "modes = [0], factor = 0.9, noise");
-    assert!(number(&flown(&changed(&[wrong]).expect("it")), "nis_mean") > 2.0);
+    assert!(number(&flown(&changed(&[wrong]).expect("it"), 0, Detail::Full), "nis_mean") > 2.0);
     // What laws read without the mode does not answer to it.
-    let rigid = flown(&changed(&[("feeds = \"hub\"", "feeds = \"rigid\"")]).expect("it"));
+    let rigid = flown(&changed(&[("feeds = \"hub\"", "feeds = \"rigid\"")]).expect("it"), 0, Detail::Full);
     let rings = |run| number(run, "elastic_energy_end_j");
     assert!(rings(&rigid) > 3.0 * rings(&with), "{} {}", rings(&rigid), rings(&with));
 }

@@ -1,10 +1,10 @@
 //! Jets that unload wheels: the scenario that ships does what its comment says, and what cannot be is refused.
 
-use flexsc_core::Simulation;
-use flexsc_core::metrics::{Gather, Metrics, Value};
-use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::record::Detail;
 use flexsc_core::scenario::Scenario;
 
+use crate::traces::within;
 use crate::util::SCENARIOS;
 
 fn text() -> String {
@@ -14,15 +14,12 @@ fn text() -> String {
 /// Metrics, times (s) and momenta of the three wheels (N m s).
 fn flown(text: &str) -> (Metrics, Vec<f64>, Vec<[f64; 3]>) {
     let scenario = Scenario::parse("unloading.toml", text).expect("a scenario");
-    let (mut gather, mut trace) = (Gather::new(&scenario), Trace::new(Detail::Full));
-    Simulation::new(&scenario, 0).run(&mut (&mut gather, &mut trace)).expect("a run");
-    let rows = trace.topic("/wheels").expect("wheels");
-    let Some(Column::Rows(_, wheels)) = rows.get("wheels") else { panic!("wheels") };
-    let momenta = wheels.numbers("momentum_nm_s").expect("momenta");
-    let momenta = momenta.chunks_exact(3).map(|row| [row[0], row[1], row[2]]).collect();
+    let (metrics, trace) = crate::traces::flown(&scenario, 0, Detail::Full);
+    let momenta = within(&trace, "/wheels", "wheels", "momentum_nm_s").chunks_exact(3);
+    let momenta: Vec<_> = momenta.map(|row| [row[0], row[1], row[2]]).collect();
     let period = scenario.log_period().seconds();
-    let times = (0..rows.len()).map(|row| period * row as f64).collect();
-    (gather.finish(&scenario), times, momenta)
+    let times = (0..momenta.len()).map(|row| period * row as f64).collect();
+    (metrics, times, momenta)
 }
 
 fn norm(of: &[f64; 3]) -> f64 {

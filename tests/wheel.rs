@@ -3,25 +3,16 @@
 //! Numbers of the closed loop come from SciPy's matrix exponential and from DOP853 at rtol 1e-12 (drifting frequencies),
 //! of the set of constants that the scenarios hold.
 
-use flexsc_core::record::{Columns, Detail, Trace};
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::Scenario;
+use flexsc_core::record::Trace;
 
 use crate::study::{metrics, scenario};
+use crate::traces::{column, traced};
 use crate::util::Dir;
-
-fn trace(scenario: &Scenario) -> Trace {
-    let mut trace = Trace::new(Detail::Full);
-    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
-    trace
-}
-
-fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
-    trace.topic(topic).and_then(|columns: &Columns| columns.numbers(name)).expect("a column")
-}
 
 /// The measured angle at 30, 60, 120, 180 and 300 s.
 fn angles(scenario: &Scenario) -> [f64; 5] {
-    let trace = trace(scenario);
+    let trace = traced(scenario);
     let angle = column(&trace, "/attitude", "angle_rad");
     [1, 2, 4, 6, 10].map(|index| angle[index])
 }
@@ -148,7 +139,7 @@ fn a_wheel_without_command_takes_energy() {
         let set =
             [&still[..], &[("actuator.wheel.opposes", quoted.as_str()), ("actuator.wheel.back_emf", "1e-3")]]
                 .concat();
-        let energy = energy(&trace(&scenario("wheel-fast-mode", &set)));
+        let energy = energy(&traced(&scenario("wheel-fast-mode", &set)));
         let (first, last) = (energy[0], energy[energy.len() - 1]);
         // exp(-2 a t) of a rigid body: the modes take little of it.
         assert!(last < 0.1 * first && last > 1e-3 * first, "{opposes}: {first:e} {last:e}");
@@ -159,7 +150,7 @@ fn a_wheel_without_command_takes_energy() {
 fn wheels_have_limits() {
     let rotor = "{ inertia = 0.01, speed_limit = 0.05 }";
     let set = [("actuator.wheel.rotor", rotor), ("duration", "100"), ("log.period", "0.3")];
-    let trace = trace(&scenario("wheel-fast-mode", &set));
+    let trace = traced(&scenario("wheel-fast-mode", &set));
     let speed = column(&trace, "/wheel", "speed_rad_s");
     // The limit is tested at samples: between two the wheel may go a little beyond.
     let largest = speed.iter().fold(0.0_f64, |most, speed| most.max(speed.abs()));
@@ -171,7 +162,7 @@ fn wheels_have_limits() {
 
     let shaped = |key: &str, value: &str| {
         let set = [(key, value), ("duration", "60"), ("log.period", "0.3")];
-        let trace = self::trace(&scenario("wheel-fast-mode", &set));
+        let trace = traced(&scenario("wheel-fast-mode", &set));
         let applied = column(&trace, "/torque", "applied_nm").to_vec();
         let rate = column(&trace, "/rate", "rate_rad_s");
         // The command that is left when the back-EMF is taken out.
@@ -189,7 +180,7 @@ fn wheels_have_limits() {
 #[test]
 fn a_delay_moves_the_command() {
     let set = [("duration", "3"), ("log.period", "0.05"), ("actuator.wheel.delay", "0.1")];
-    let trace = trace(&scenario("wheel-fast-mode", &set));
+    let trace = traced(&scenario("wheel-fast-mode", &set));
     let applied = column(&trace, "/torque", "applied_nm");
     assert_eq!(applied[1], 0.0);
     assert!(applied[2] < -1e-4, "{:?}", &applied[..4]);

@@ -3,15 +3,10 @@
     pip install numpy scipy
     python3 tests/golden/driven_oracle.py tests/golden
 
-Two panels are lattices of point masses with two clamped modes each, shapes that are orthonormal by mass.
-The data of the scenario are sums over the points; their centres are beside the drives' axes, so that drives
-move the centre of mass. The oracle knows the points alone: with the place of each as a function of the
-drives' angles and the modes, the kinetic energy about the centre of mass is 1/2 z' M z with z = (w, alpha',
-eta'). M(alpha, eta) is kept to first order in eta in the blocks of w and alpha', to zeroth in those of
-eta', as the model has it; the first order is a difference quotient of a parabola, and so exact. Momenta are
-derivatives of T. H' = T - w x H, pi' = -O^2 eta - D eta' + dT/d eta + f, by DOP853 with a relative
-tolerance of 1e-13, from each change of what acts to the next. One drive turns at a constant rate from the
-start, the other begins and ends along a trapezium.
+The body is that of two_panels.py; the centres of the panels are beside the drives' axes, so that drives move
+the centre of mass. Momenta are derivatives of T. H' = T - w x H, pi' = -O^2 eta - D eta' + dT/d eta + f, by
+DOP853 with a relative tolerance of 1e-13, from each change of what acts to the next. One drive turns at a
+constant rate from the start, the other begins and ends along a trapezium.
 
 driven.csv has a line each half second: t, Q (4), w (3), |H| with the wheel, the free frequencies (4), the
 energy of the modes 1/2 (eta' S eta' + eta O^2 eta) with S of the free hub, the energy of all but the wheel,
@@ -24,108 +19,24 @@ import sys
 import numpy as np
 from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
+from two_panels import (
+    ETA,
+    MASS,
+    O2,
+    RATE,
+    WHEEL_INERTIA,
+    D,
+    appendage,
+    linear,
+    quaternion,
+    quaternion_rate,
+    spacecraft,
+)
 
-HUB_MASS, HUB_CENTRE = 200.0, np.array([0.05, -0.02, 0.1])
-HUB_INERTIA = np.array([[90.0, 6, -4], [6, 100, 5], [-4, 5, 80]])
-O2_DAMPING = [(0.9, 0.01), (3.1, 0.02), (1.0, 0.01), (2.7, 0.02)]
-WHEEL_AXIS, WHEEL_INERTIA, WHEEL_SPEED = np.array([0.0, 0, 1]), 0.05, 60.0
-RATE = np.array([0.01, -0.02, 0.015])
-ETA = np.array([0.02, -0.01, 0.015, 0.01])
+WHEEL_AXIS, WHEEL_SPEED = np.array([0.0, 0, 1]), 60.0
 TORQUE, FORCE, AT = np.array([0.0, 0.02, 0]), np.array([0.3, 0.1, -0.2]), np.array([0.4, 0.3, 0.2])
 FORCED = (6.0, 9.0)
-AXIS = np.array([0.0, 1, 0])
 DURATION = 40.0
-
-
-def cross(v):
-    return np.array([[0, -v[2], v[1]], [v[2], 0, -v[0]], [-v[1], v[0], 0]])
-
-
-def about(axis, angle):
-    a = cross(axis)
-    return np.eye(3) + np.sin(angle) * a + (1 - np.cos(angle)) * a @ a
-
-
-class Panel:
-    def __init__(self, root, axes, seed):
-        self.root, self.axes = np.array(root), axes
-        x, y = np.meshgrid(np.linspace(-0.4, 0.6, 3), np.linspace(0.4, 3.4, 6))
-        z = 0.1 + 0.05 * np.sin(3 * x + y + seed)
-        self.r = np.stack([x.ravel(), y.ravel(), z.ravel()], 1)
-        self.m = 1.0 + 0.3 * np.cos(np.arange(len(self.r)) + seed)
-        flap = np.stack([0.1 * self.r[:, 1] ** 2, 0 * self.r[:, 0], self.r[:, 1] ** 2], 1)
-        twist = np.stack(
-            [0.3 * self.r[:, 1] * self.r[:, 2], 0.2 * self.r[:, 0], self.r[:, 0] * self.r[:, 1]], 1
-        )
-        shapes = []
-        for shape in (flap, twist):
-            for other in shapes:
-                shape = shape - other * self.dot(shape, other)
-            shapes.append(shape / np.sqrt(self.dot(shape, shape)))
-        self.shapes = shapes
-
-    def dot(self, a, b):
-        return np.sum(self.m[:, None] * a * b)
-
-    def place(self, angle, eta):
-        bent = self.r + sum(e * s for e, s in zip(eta, self.shapes, strict=False))
-        turned = self.axes @ about(AXIS, angle)
-        return (
-            self.root + bent @ turned.T,
-            np.cross(self.axes @ AXIS, bent @ turned.T),
-            [s @ turned.T for s in self.shapes],
-        )
-
-
-PANELS = [
-    Panel([0.1, 0.6, 0.2], np.eye(3), 0.0),
-    Panel([0, -0.6, 0.2], about(np.array([0.0, 0, 1]), np.pi), 1.0),
-]
-ALL = np.concatenate([p.m for p in PANELS])
-MASS = HUB_MASS + ALL.sum()
-O2 = np.array([w * w for w, _ in O2_DAMPING])
-D = np.array([2 * z * w for w, z in O2_DAMPING])
-
-
-def mass_matrix(angles, eta):
-    """M of z = (w, alpha', eta'), all about the centre of mass, the centre and the matrix of dc/dz."""
-    places, columns = [], []
-    for k, panel in enumerate(PANELS):
-        p, turn, shapes = panel.place(angles[k], eta[2 * k : 2 * k + 2])
-        column = np.zeros((len(p), 3, 6), dtype=p.dtype)
-        column[:, :, k] = turn
-        for j, shape in enumerate(shapes):
-            column[:, :, 2 + 2 * k + j] = shape
-        places.append(p)
-        columns.append(column)
-    p, inner = np.concatenate(places), np.concatenate(columns)
-    centre = (HUB_MASS * HUB_CENTRE + ALL @ p) / MASS
-    column = np.zeros((len(p), 3, 9), dtype=p.dtype)
-    # w x p
-    column[:, 0, 1], column[:, 0, 2] = p[:, 2], -p[:, 1]
-    column[:, 1, 0], column[:, 1, 2] = -p[:, 2], p[:, 0]
-    column[:, 2, 0], column[:, 2, 1] = p[:, 1], -p[:, 0]
-    column[:, :, 3:] = inner
-    hub = np.zeros((3, 9), dtype=p.dtype)
-    hub[:, :3] = -cross(HUB_CENTRE)
-    mean = (HUB_MASS * hub + np.einsum("i,ijk->jk", ALL, column)) / MASS
-    m = np.einsum("i,ija,ijb->ab", ALL, column, column) + HUB_MASS * hub.T @ hub - MASS * mean.T @ mean
-    m[:3, :3] += HUB_INERTIA - WHEEL_INERTIA * np.eye(3)
-    return m, centre, mean[:, 3:] + 0, p
-
-
-def linear(angles):
-    """M at eta = 0, its derivatives in the blocks of w and alpha', c and dc/d eta."""
-    m0, c, mean, _ = mass_matrix(angles, np.zeros(4))
-    changes = []
-    for i in range(4):
-        e = np.zeros(4)
-        e[i] = 1.0
-        d = 0.5 * (mass_matrix(angles, e)[0] - mass_matrix(angles, -e)[0])
-        d[5:, :] = 0
-        d[:, 5:] = 0
-        changes.append(d)
-    return m0, changes, c, mean[:, 2:]
 
 
 def drives(t):
@@ -181,12 +92,11 @@ def rates(t, y, forced, work=False):
     arm = AT - c - dc @ eta
     torque = TORQUE + np.cross(arm, force)
     q = y[:4]
-    turn = 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
     h = torque - np.cross(w, y[4:7])
     pull = np.array([0.5 * full @ d @ full for d in changes])
     pi = -O2 * eta - D * speeds + pull - dc.T @ force
     inertial = rotated(q, force / MASS)
-    out = [turn, h, speeds, pi, y[18:21], inertial]
+    out = [quaternion_rate(q, w), h, speeds, pi, y[18:21], inertial]
     if work:
         _, rate, acc = drives(t)
         p = m[3:5] @ full
@@ -228,9 +138,7 @@ def start():
     p = m @ np.concatenate([RATE, rate, np.zeros(4)])
     # The attitude of the scenario is that of the mean axes, which modes do not turn: phi q = -J^-1 delta eta.
     bent = -np.linalg.solve(m0[:3, :3], m0[:3, 5:] @ ETA)
-    angle = np.linalg.norm(bent)
-    turned = [np.cos(0.5 * angle), *(np.sin(0.5 * angle) / angle * bent)]
-    return np.concatenate([turned, p[:3] + H_WHEEL, ETA, p[5:], np.zeros(3), np.zeros(3), [0, 0]])
+    return np.concatenate([quaternion(bent), p[:3] + H_WHEEL, ETA, p[5:], np.zeros(3), np.zeros(3), [0, 0]])
 
 
 def row(t, y, first):
@@ -273,48 +181,17 @@ def fly(work):
     return rows, y, e1 - e0, p1 - p0
 
 
-def written(of, name):
-    return f"{name} = " + repr(of.tolist() if hasattr(of, "tolist") else of)
-
-
 def scenario():
     lines = [
         "# Two panels of point masses that drives turn, beside their centres: made by driven_oracle.py.",
         f"duration = {DURATION}",
-        "[spacecraft]",
-        written(HUB_MASS, "mass"),
-        written(HUB_CENTRE, "centre"),
-        written(HUB_INERTIA, "inertia"),
-        written(RATE, "rate"),
-        "whole_damping = true",
+        *spacecraft(),
         f'points = [{{ name = "bus", position = {AT.tolist()} }}]',
     ]
     turns = ["rate = 0.05, angle = 0.3", "rate = 0.08, from = 5, until = 20, acceleration = 0.04"]
-    for k, panel in enumerate(PANELS):
-        mass = panel.m.sum()
-        centre = panel.m @ panel.r / mass
-        arm = panel.r - centre
-        inertia = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(panel.m, arm, strict=False))
-        lines += [
-            "[[appendage]]",
-            f'name = "panel {k + 1}"',
-            written(float(mass), "mass"),
-            written(centre, "centre"),
-            written(0.5 * (inertia + inertia.T), "inertia"),
-            written(panel.root, "at"),
-        ]
-        if k == 1:
-            lines.append("turned = { about = [0, 0, 1], by = 3.141592653589793 }")
-        lines += [f"drive = {{ about = [0, 1, 0], {turns[k]} }}", "modes = ["]
-        for j, shape in enumerate(panel.shapes):
-            w, z = O2_DAMPING[2 * k + j]
-            t = panel.m @ shape
-            n = (panel.m[:, None] * panel.r).T @ shape
-            lines.append(
-                f"    {{ frequency = {w}, damping = {z}, translation = {t.tolist()}, moments = {n.tolist()}, "
-                f"displacement = {ETA[2 * k + j]} }},"
-            )
-        lines.append("]")
+    for k, turn in enumerate(turns):
+        how = [] if k == 0 else ["turned = { about = [0, 0, 1], by = 3.141592653589793 }"]
+        lines += appendage(k, [*how, f"drive = {{ about = [0, 1, 0], {turn} }}"])
     lines += [
         "[[disturbance]]",
         'about = "pitch"',

@@ -3,11 +3,11 @@
     pip install numpy scipy
     python3 tests/golden/gimbals_oracle.py tests/golden
 
-The body is that of driven_oracle.py, two panels of point masses, with its drives at rest at the angles 0.3
-and 0 and without wheels. Four rotors of momentum h sit in gimbals of a pyramid of cant 0.9 rad; their
-momentum in the body, sum h (s cos d + t sin d), is a function of time alone, for the gimbal rates d' are
-given: failures that add to the rates of an open loop. H = dT/dw + sum h, H' = -w x H, pi' = -O^2 eta - D
-eta' + dT/d eta, by DOP853 with a relative tolerance of 3e-14 from each change of a rate to the next.
+The body is that of two_panels.py, with its panels at the angles 0.3 and 0 and without wheels. Four rotors of
+momentum h sit in gimbals of a pyramid of cant 0.9 rad; their momentum in the body, sum h (s cos d + t sin d),
+is a function of time alone, for the gimbal rates d' are given: failures that add to the rates of an open
+loop. H = dT/dw + sum h, H' = -w x H, pi' = -O^2 eta - D eta' + dT/d eta, by DOP853 with a relative tolerance
+of 3e-14 from each change of a rate to the next.
 
 gimbals.csv has a line each half second: t, Q (4), w (3), |H|, the energy of the modes, the energy of all but
 the rotors, the work of the gimbals' motors and the loss by damping since the start. A motor turns its
@@ -19,21 +19,21 @@ equations: t, Q, w, |H|, energy.
 import sys
 
 import numpy as np
-from driven_oracle import (
+from scipy.integrate import solve_ivp
+from two_panels import (
     ETA,
-    HUB_CENTRE,
     HUB_INERTIA,
-    HUB_MASS,
     O2,
-    O2_DAMPING,
-    PANELS,
     RATE,
     WHEEL_INERTIA,
     D,
+    appendage,
     linear,
+    quaternion,
+    quaternion_rate,
+    spacecraft,
     written,
 )
-from scipy.integrate import solve_ivp
 
 MOMENTUM, CANT, DURATION = 4.0, 0.9, 40.0
 ANGLES = np.array([0.3, 0.0])
@@ -89,9 +89,7 @@ class Flexible:
 
     def start(self):
         p = self.matrix(ETA) @ np.concatenate([RATE, np.zeros(4)])
-        angle = np.linalg.norm(self.bent)
-        turned = [np.cos(0.5 * angle), *(np.sin(0.5 * angle) / angle * self.bent)]
-        return np.concatenate([turned, p[:3] + rotors(0.0)[0], ETA, p[3:], [0.0, 0.0]])
+        return np.concatenate([quaternion(self.bent), p[:3] + rotors(0.0)[0], ETA, p[3:], [0.0, 0.0]])
 
     def speeds(self, t, y):
         p = np.concatenate([y[4:7] - rotors(t)[0], y[11:15]])
@@ -100,11 +98,12 @@ class Flexible:
     def rates(self, t, y, turning):
         z = self.speeds(t, y)
         w, eta, slid, q = z[:3], y[7:11], z[3:], y[:4]
-        turn = 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
         pull = np.array([0.5 * z @ d @ z for d in self.changes])
         pi = -O2 * eta - D * slid + pull
         work = -MOMENTUM * turning @ (rotors(t)[1] @ w)
-        return np.concatenate([turn, -np.cross(w, y[4:7]), slid, pi, [work, slid @ (D * slid)]])
+        return np.concatenate(
+            [quaternion_rate(q, w), -np.cross(w, y[4:7]), slid, pi, [work, slid @ (D * slid)]]
+        )
 
     def row(self, t, y):
         z, eta = self.speeds(t, y), y[7:11]
@@ -122,10 +121,9 @@ class Rigid:
 
     def rates(self, t, y, turning):
         w, q = y[4:], y[:4]
-        turn = 0.5 * np.array([-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))])
         h, across = rotors(t)
         torque = -MOMENTUM * turning @ across - np.cross(w, HUB_INERTIA @ w + h)
-        return np.concatenate([turn, np.linalg.solve(HUB_INERTIA, torque)])
+        return np.concatenate([quaternion_rate(q, w), np.linalg.solve(HUB_INERTIA, torque)])
 
     def row(self, t, y):
         w = y[4:]
@@ -159,12 +157,7 @@ def scenario():
     lines = [
         "# Gimbals that turn at given rates, on two panels of point masses: made by gimbals_oracle.py.",
         f"duration = {DURATION}",
-        "[spacecraft]",
-        written(HUB_MASS, "mass"),
-        written(HUB_CENTRE, "centre"),
-        written(HUB_INERTIA, "inertia"),
-        written(RATE, "rate"),
-        "whole_damping = true",
+        *spacecraft(),
         'points = [{ name = "bus" }]',
         "[law.open]",
         "[actuator.control_moment_gyros]",
@@ -185,30 +178,8 @@ def scenario():
         "{ about = [0, 1, 0], by = 0.3 }",
         "{ about = [0, 0, 1], by = 3.141592653589793 }",
     ]
-    for k, panel in enumerate(PANELS):
-        mass = panel.m.sum()
-        centre = panel.m @ panel.r / mass
-        arm = panel.r - centre
-        inertia = sum(m * (a @ a * np.eye(3) - np.outer(a, a)) for m, a in zip(panel.m, arm, strict=True))
-        lines += [
-            "[[appendage]]",
-            f'name = "panel {k + 1}"',
-            written(float(mass), "mass"),
-            written(centre, "centre"),
-            written(0.5 * (inertia + inertia.T), "inertia"),
-            written(panel.root, "at"),
-            f"turned = {turned[k]}",
-            "modes = [",
-        ]
-        for j, shape in enumerate(panel.shapes):
-            w, z = O2_DAMPING[2 * k + j]
-            t = panel.m @ shape
-            n = (panel.m[:, None] * panel.r).T @ shape
-            lines.append(
-                f"    {{ frequency = {w}, damping = {z}, translation = {t.tolist()}, moments = {n.tolist()}, "
-                f"displacement = {ETA[2 * k + j]} }},"
-            )
-        lines.append("]")
+    for k, turn in enumerate(turned):
+        lines += appendage(k, [f"turned = {turn}"])
     return "\n".join(lines) + "\n"
 
 

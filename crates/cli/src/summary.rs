@@ -29,7 +29,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64) {
     }
 }
 
-/// Propellant, elastic energy and pointing of a spatial body.
+/// Propellant, wheels, gimbals, elastic energy and pointing of a spatial body.
 fn spatial(metrics: &Metrics, bends: bool) {
     let number = |name: &str| metrics.number(name).unwrap_or(f64::NAN);
     // Other actuators use none.
@@ -48,6 +48,14 @@ fn spatial(metrics: &Metrics, bends: bool) {
             counted(number("wheel_zero_crossings"), "zero crossing"),
             counted(number("wheel_stops"), "stop"),
             number("friction_heat_j"),
+        );
+    }
+    if number("singularity_min").is_finite() {
+        say!(
+            "  gimbals        at most {:.3e} rad/s; singularity measure at least {:.3}; torque within {:.3e} N m of the demand",
+            number("gimbal_rate_peak_rad_s"),
+            number("singularity_min"),
+            number("torque_error_peak_nm"),
         );
     }
     let below = |name: &str, part: &str| match number(name) {

@@ -12,7 +12,7 @@ use crate::axes::Each;
 use crate::body::Wrench;
 use crate::quantity::Positive;
 use crate::record;
-use crate::time::{Instant, Span};
+use crate::time::Instant;
 
 /// Magnetorquers along the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -109,11 +109,7 @@ impl Actuate for Torquing {
         if demands.iter().any(|demand| matches!(demand, Demand::Moment(_))) {
             return self.hold(demands);
         }
-        let torque = |(demand, setting): (&Demand, &TorquerSetting)| match demand {
-            Demand::Torque(torque) => *torque,
-            Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
-            Demand::Moment(_) => 0.0,
-        };
+        let torque = |(demand, setting): (&Demand, &TorquerSetting)| setting.demanded(demand);
         let mut wanted = Vector::zeros();
         wanted.iter_mut().zip(demands.iter().zip(&self.settings).map(torque)).for_each(|(own, of)| *own = of);
         self.give(wanted);
@@ -166,6 +162,7 @@ impl Actuate for Torquing {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::time::Span;
 
     fn start(text: &str) -> Torquing {
         let torquers: Magnetorquers = crate::document::from_text(text).unwrap();

@@ -249,11 +249,7 @@ impl Actuate for Spinning {
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
         self.turn(now);
         for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
-            self.wanted[axis] = match demand {
-                Demand::Torque(torque) => *torque,
-                Demand::Change(change) => change * setting.inertia / setting.cycle.map_or(1.0, Span::seconds),
-                Demand::Moment(_) => 0.0,
-            };
+            self.wanted[axis] = setting.demanded(demand);
         }
         self.drive_all(now, &rigid.into());
     }

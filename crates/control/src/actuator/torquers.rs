@@ -38,6 +38,16 @@ impl TorquerSetting {
         let from = now.seconds();
         self.waveform.as_ref().map_or(0.0, |waveform| self.share * waveform.impulse(from, from + h))
     }
+
+    /// The constant torque of a demand (N m): a change of the rate takes one period of the law, or 1 s without a period. A torque
+    /// stays in the unit of its demand; there is none of a magnetic moment.
+    pub fn demanded(&self, demand: &Demand) -> f64 {
+        match demand {
+            Demand::Torque(torque) => *torque,
+            Demand::Change(change) => change * self.inertia / self.cycle.map_or(1.0, Span::seconds),
+            Demand::Moment(_) => 0.0,
+        }
+    }
 }
 
 /// An actuator of one axis at work.
@@ -137,12 +147,8 @@ impl Actuate for Torquers {
         for (axis, (actuator, demand)) in self.0.iter_mut().zip(demands).enumerate() {
             let Some((actuator, setting)) = actuator else { continue };
             let wanted = match demand {
-                Demand::Torque(torque) => *torque,
-                Demand::Change(change) => {
-                    let cycle = setting.cycle.map_or(1.0, Span::seconds);
-                    change * setting.inertia / cycle / actuator.unit()
-                }
-                Demand::Moment(_) => 0.0,
+                Demand::Change(_) => setting.demanded(demand) / actuator.unit(),
+                Demand::Torque(_) | Demand::Moment(_) => setting.demanded(demand),
             };
             actuator.command(now, wanted, rigid[axis]);
         }

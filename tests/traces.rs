@@ -1,0 +1,39 @@
+//! Runs made by tests, and the columns of their traces.
+
+use flexsc_core::metrics::{Gather, Metrics};
+use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::{Scenario, Simulation};
+
+/// The metrics and the trace of a run.
+pub fn flown(scenario: &Scenario, run: u64, detail: Detail) -> (Metrics, Trace) {
+    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
+    Simulation::new(scenario, run).run(&mut (&mut gather, &mut trace)).expect("a run");
+    (gather.finish(scenario), trace)
+}
+
+/// The full trace of the first run.
+pub fn traced(scenario: &Scenario) -> Trace {
+    let mut trace = Trace::new(Detail::Full);
+    Simulation::new(scenario, 0).run(&mut trace).expect("a run");
+    trace
+}
+
+/// A column of numbers of a topic.
+pub fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
+    let numbers = trace.topic(topic).and_then(|rows| rows.numbers(name));
+    numbers.unwrap_or_else(|| panic!("no {name} in {topic}"))
+}
+
+/// A column of numbers of the rows within the rows of a topic.
+pub fn within<'a>(trace: &'a Trace, topic: &str, rows: &str, name: &str) -> &'a [f64] {
+    match trace.topic(topic).and_then(|all| all.get(rows)) {
+        Some(Column::Rows(_, inner)) => inner.numbers(name),
+        _ => None,
+    }
+    .unwrap_or_else(|| panic!("no {rows}.{name} in {topic}"))
+}
+
+/// The numbers of one of the rows within each row of a topic, of which there are so many.
+pub fn nested(trace: &Trace, topic: &str, [rows, name]: [&str; 2], (index, of): (usize, usize)) -> Vec<f64> {
+    within(trace, topic, rows, name).iter().skip(index).step_by(of).copied().collect()
+}
