@@ -103,7 +103,7 @@ fn what_is_felt_is_how_the_place_accelerates() {
             let [a, b, c] = [1, 2, 3].map(|k| x[row - k] + x[row + k]);
             (1.5 * a - 0.15 * b + c / 90.0 - 49.0 / 18.0 * x[row]) / (h * h)
         };
-        let inertial = [0, 1, 2].map(|axis| second(&place[axis]));
+        let inertial = [0, 1, 2].map(|axis| second(place[axis]));
         let [w, x, y, z] = [0, 1, 2, 3].map(|part| q[part][row]);
         let matrix = [
             [1.0 - 2.0 * (y * y + z * z), 2.0 * (x * y + w * z), 2.0 * (x * z - w * y)],
