@@ -19,7 +19,7 @@ pub(super) struct Amplitudes<'a> {
     pub net: Vector,
     /// What the rotation does by each number of a mode's moments (rad²/s²).
     pub spun: [f64; 6],
-    pub amplitudes: &'a mut [Amplitude],
+    pub found: &'a mut [Amplitude],
 }
 
 impl LaneWork for Amplitudes<'_> {
@@ -27,7 +27,7 @@ impl LaneWork for Amplitudes<'_> {
 
     #[inline(always)]
     fn run<R: Real>(self, kind: R) {
-        let Self { model, modes, forces, turning, pushed, net, spun, amplitudes } = self;
+        let Self { model, modes, forces, turning, pushed, net, spun, found } = self;
         for group in 0..model.abreast.len() {
             let (of, first) = (&model.abreast[group], 4 * group);
             let (mut q, mut p, mut forced) = ([0.0; 4], [0.0; 4], [0.0; 4]);
@@ -51,12 +51,12 @@ impl LaneWork for Amplitudes<'_> {
             // At least the displacement, the rate, and what the torque or the rotation bends, each.
             let most = q.abs() + speed + most;
             let swings = most.min((q - held).abs() + speed);
-            let mut found = [[0.0; 4]; 2];
-            most.store(&mut found[0]);
-            swings.store(&mut found[1]);
+            let mut kept = [[0.0; 4]; 2];
+            most.store(&mut kept[0]);
+            swings.store(&mut kept[1]);
             for lane in 0..4 {
-                if let Some(amplitude) = amplitudes.get_mut(first + lane) {
-                    *amplitude = Amplitude { most: found[0][lane], swings: found[1][lane] };
+                if let Some(amplitude) = found.get_mut(first + lane) {
+                    *amplitude = Amplitude { most: kept[0][lane], swings: kept[1][lane] };
                 }
             }
         }

@@ -40,7 +40,7 @@ impl Turning {
         let (net, spun) = (pushed - rigid.cross(&grid.momentum), outward(&rigid));
         let lanes = model.lanes;
         let (modes, forces) = (&grid.modes[..], &acting.forces[..]);
-        lanes.run(Amplitudes { model, modes, forces, turning, pushed, net, spun, amplitudes });
+        lanes.run(Amplitudes { model, modes, forces, turning, pushed, net, spun, found: amplitudes });
         let pose = Pose {
             rate: model.mobility * (size + rotors.norm()) + slow,
             carried: rigid.norm() + model.mobility * size + slow,
