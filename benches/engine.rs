@@ -5,7 +5,6 @@
 mod reference;
 
 use std::hint::black_box;
-use std::io::Cursor;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
@@ -16,7 +15,7 @@ use flexsc_core::estimator::kalman::{FrequencyTracking, KalmanSetting, Predictio
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::random::Seed;
-use flexsc_core::record::{Detail, McapLog, Record, RunEnd, Trace};
+use flexsc_core::record::{Detail, LogBytes, Record, RunEnd, Trace};
 use flexsc_core::structure::{HubState, Structure};
 use flexsc_core::{Scenario, Simulation};
 use nalgebra::DMatrix;
@@ -66,7 +65,7 @@ fn run(c: &mut Criterion) {
     group.bench_function("windows, metrics, log", |b| {
         b.iter(|| {
             let from = Campaign::provenance(&run, Detail::Events);
-            let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Events).expect("a log");
+            let mut log = LogBytes::new(&from, Detail::Events).expect("a log");
             let metrics = Campaign::simulate(&run, &mut log).expect("a run");
             log.finish(&metrics, RunEnd::Complete).expect("a log")
         });
@@ -160,7 +159,7 @@ fn log(c: &mut Criterion) {
     group.bench_function("dense MCAP", |b| {
         b.iter(|| {
             let from = Campaign::provenance(&run, Detail::Full);
-            let mut log = McapLog::new(Cursor::new(Vec::new()), &from, Detail::Full).expect("a log");
+            let mut log = LogBytes::new(&from, Detail::Full).expect("a log");
             simulate(&full, &mut log);
             log.finish(&Metrics::default(), RunEnd::Complete).expect("a log")
         });

@@ -49,14 +49,14 @@ fn scenario(change: &[(&str, &str)]) -> Result<Scenario, String> {
 
 fn metric(scenario: &Scenario, run: u64, names: &[&str]) -> Vec<f64> {
     let mut gather = Gather::new(scenario);
-    Simulation::new(scenario, run).run(&mut gather).unwrap();
+    Simulation::new(scenario, run).run(&mut gather).expect("valid");
     let metrics = gather.finish(scenario);
     names.iter().map(|name| metrics.number(name).unwrap_or_else(|| panic!("{name} {metrics:?}"))).collect()
 }
 
 #[test]
 fn the_filter_is_as_good_as_it_says() {
-    let scenario = scenario(&[]).unwrap();
+    let scenario = scenario(&[]).expect("valid");
     let runs = 40;
     let mut sums = [0.0; 3];
     for run in 0..runs {

@@ -52,10 +52,7 @@ fn a_new_kind_is_named_where_the_document_says_and_nowhere_else() {
             .filter(|name| !name.starts_with(&own))
             .collect();
         for name in &elsewhere {
-            assert!(
-                row.contains(&format!("`{name}`")),
-                "{kind} is in {name}, of which its row says nothing"
-            );
+            assert!(row.contains(&format!("`{name}`")), "{kind} is in {name}, of which its row says nothing");
         }
         assert!(elsewhere.len() <= most, "{kind} is named in {} files: {elsewhere:?}", elsewhere.len());
         assert!(!elsewhere.is_empty(), "{kind} is named nowhere: a wrong name?");

@@ -31,7 +31,7 @@ fn wheels(imbalance: &str) -> Wheels {
     flexsc_core::document::from_text(&format!(
         "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\nimbalance = {{ {imbalance} }}"
     ))
-    .unwrap()
+    .expect("valid")
 }
 
 /// Of craft.json: the first wheel alone is out of balance.
@@ -47,8 +47,8 @@ fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
     let text = format!(
         "{CRAFT}\n[actuator.wheels]\narrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\n"
     );
-    let scenario = Scenario::parse("craft", &text).unwrap();
-    let craft = scenario.model.craft().unwrap();
+    let scenario = Scenario::parse("craft", &text).expect("valid");
+    let craft = scenario.model.craft().expect("valid");
     let mut flexible = craft.flexible.clone();
     let rows = rows(MODES);
     // The table's modes may have other signs.
@@ -60,8 +60,8 @@ fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
     flexible.damping = Some(damping);
     flexible.modes.iter_mut().for_each(|mode| mode.moments = Matrix3::zeros());
     let wheels = wheels(imbalance);
-    let bearings = wheels.bearings((&craft.spatial, &flexible)).unwrap();
-    (flexible, bearings, wheels.rotors().unwrap().iter().map(|rotor| rotor.axis).collect())
+    let bearings = wheels.bearings((&craft.spatial, &flexible)).expect("valid");
+    (flexible, bearings, wheels.rotors().expect("valid").iter().map(|rotor| rotor.axis).collect())
 }
 
 /// The complex amplitudes of the modes and of the rate, rigid and whole, at a steady speed (rad/s).
@@ -70,7 +70,7 @@ fn steady(flexible: &Flexible, bearing: &Bearing, speed: f64) -> (DVector<C>, [n
     let square = speed * speed;
     let torque =
         nalgebra::Vector3::from_fn(|axis, _| C::new(line.torque[0][axis], -line.torque[1][axis]) * square);
-    let damping = flexible.damping.as_ref().unwrap();
+    let damping = flexible.damping.as_ref().expect("valid");
     let (count, modes) = (flexible.modes.len(), &flexible.modes);
     let force = DVector::from_fn(count, |mode, _| {
         let own = C::new(line.forces[0][mode], -line.forces[1][mode]) * square;
@@ -81,8 +81,8 @@ fn steady(flexible: &Flexible, bearing: &Bearing, speed: f64) -> (DVector<C>, [n
         let w = modes[row].frequency;
         i * damping[(row, column)] + if row == column { C::from(w * w - square) } else { C::from(0.0) }
     });
-    let q = matrix.lu().solve(&force).unwrap();
-    let inverse = flexible.inertia.try_inverse().unwrap().map(C::from);
+    let q = matrix.lu().solve(&force).expect("valid");
+    let inverse = flexible.inertia.try_inverse().expect("valid").map(C::from);
     let rigid = inverse * torque / i;
     let whole = modes.iter().zip(&q).fold(rigid, |sum, (mode, q)| sum + mode.rotation.map(C::from) * (i * q));
     (q, [rigid, whole])
@@ -130,7 +130,7 @@ fn the_motion_is_the_steady_one() {
         let mut worst = 0.0_f64;
         for k in 1..=40 {
             let t = 0.1 * f64::from(k) + 1e-3;
-            turning.advance(t, None, || Ok::<(), ()>(())).unwrap();
+            turning.advance(t, None, || Ok::<(), ()>(())).expect("valid");
             let turn = wave(speed * t);
             let exact = whole.map(|part| (part * turn).re);
             worst = worst.max((turning.seen().rate - exact).norm() / whole.norm());
@@ -151,7 +151,7 @@ fn a_run_up_through_the_line() {
     let most = table.iter().map(|row| Vector::from_row_slice(&row[1..4]).norm()).fold(0.0, f64::max);
     assert!(table.len() == 80 && most > 3e-10);
     for row in table {
-        turning.advance(row[0], None, || Ok::<(), ()>(())).unwrap();
+        turning.advance(row[0], None, || Ok::<(), ()>(())).expect("valid");
         let off = (turning.seen().rate - Vector::from_row_slice(&row[1..4])).norm();
         assert!(off < 2e-8 * most, "{}: {off:e}", row[0]);
         assert!((turning.turned(None)[0].speed - row[4]).abs() < 1e-9);
@@ -174,7 +174,7 @@ fn harmonics_are_followed() {
     turning.settle(None);
     for k in 1..=20 {
         let t = 0.1 * f64::from(k);
-        turning.advance(t, None, || Ok::<(), ()>(())).unwrap();
+        turning.advance(t, None, || Ok::<(), ()>(())).expect("valid");
         let turn = wave(62.0 * t);
         let off = (turning.seen().rate - whole.map(|part| (part * turn).re)).norm() / whole.norm();
         assert!(off < 2e-8, "{t}: {off:e}");
@@ -200,17 +200,18 @@ fn steady_at(
 #[test]
 fn what_does_not_fit_is_refused_with_its_key() {
     let (flexible, spatial) = {
-        let scenario = Scenario::parse("craft", CRAFT).unwrap();
-        let craft = scenario.model.craft().unwrap();
+        let scenario = Scenario::parse("craft", CRAFT).expect("valid");
+        let craft = scenario.model.craft().expect("valid");
         (craft.flexible.clone(), craft.spatial.clone())
     };
-    let found = wheels("static = 1e-6, point = \"nowhere\"").bearings((&spatial, &flexible)).unwrap_err();
+    let found =
+        wheels("static = 1e-6, point = \"nowhere\"").bearings((&spatial, &flexible)).expect_err("refused");
     assert_eq!(found.key, "imbalance.point");
     for (keys, key) in [
         ("static = [1e-6, 2e-6]", "imbalance.static"),
         ("dynamic = [1e-6]", "imbalance.dynamic"),
         ("positions = [[0, 0, 1]]", "imbalance.positions"),
     ] {
-        assert_eq!(wheels(keys).allocation().unwrap_err().key, key);
+        assert_eq!(wheels(keys).allocation().expect_err("refused").key, key);
     }
 }

@@ -1,8 +1,8 @@
 """Golden numbers of the adaptive observers, by NumPy: `python3 tests/golden/observer_oracle.py` prints them.
 
-One channel with two modes and two groups of thrusters, each of which excites both modes, without noise: what
-the gradient observer of crates/control/src/estimator/adaptive identifies. Matrices are exponentials, derivatives
-by the frequency are differences of the fourth order.
+One channel with two modes and two groups of thrusters, each of which excites both modes, without noise:
+what the gradient observer of crates/control/src/estimator/adaptive identifies. Matrices are exponentials,
+derivatives by the frequency are differences of the fourth order.
 """
 
 import numpy as np

@@ -1,10 +1,9 @@
 //! The log of a run in memory, for what is read from logs and not kept.
 
-use std::io::Cursor;
 use std::path::Path;
 
 use flexsc_core::campaign::{Campaign, CampaignRun, Commanded};
-use flexsc_core::record::{Detail, Log, McapLog, RunEnd};
+use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
 use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, SimulationError};
 
@@ -36,7 +35,7 @@ fn bytes(
     until: Instant,
     detail: Detail,
 ) -> Result<Vec<u8>, SimulationError> {
-    let mut log = McapLog::new(Cursor::new(Vec::new()), &commanded.provenance(run, detail), detail)?;
+    let mut log = LogBytes::new(&commanded.provenance(run, detail), detail)?;
     let metrics = commanded.simulate(run, until, (&mut log, Stop))?;
-    Ok(log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?.into_inner())
+    Ok(log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
 }

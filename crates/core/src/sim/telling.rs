@@ -110,9 +110,16 @@ impl Telling {
     /// When anything is due.
     pub fn due(&self) -> Option<Instant> {
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
-        let due = [arrives, self.next_dense, self.next_frames, self.next_cycle];
-        let due = due.into_iter().chain([self.failures.due(), self.accelerometers.due()]);
-        due.flatten().min()
+        let told = earlier(earlier(arrives, self.next_dense), earlier(self.next_frames, self.next_cycle));
+        earlier(told, earlier(self.failures.due(), self.accelerometers.due()))
+    }
+}
+
+/// The first of two instants, either of which may not come.
+fn earlier(a: Option<Instant>, b: Option<Instant>) -> Option<Instant> {
+    match (a, b) {
+        (Some(a), Some(b)) => Some(a.min(b)),
+        _ => a.or(b),
     }
 }
 

@@ -16,6 +16,12 @@ impl TurningStep<'_> {
             || self.borne.is_some_and(|borne| borne.shakes())
     }
 
+    /// Whether the modes feel nothing but Gt, constants and what the rotation does to them.
+    pub(super) fn feels_motion_alone(&self) -> bool {
+        let others = self.around.is_some() || self.model.beside.is_some();
+        self.driven.is_none() && self.borne.is_none() && !(others && self.is_loud())
+    }
+
     /// Gives the modes what they feel at a node; tells by how much their forces changed.
     pub(super) fn feel(
         &self,

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Quaternion};
 
+mod amplitudes;
 mod level;
 
 use super::bearing::{Bearing, Borne, Slip, Spin};

@@ -9,10 +9,14 @@ use nalgebra::Vector2;
 
 use super::bearing::Spun;
 use super::facing::{Facing, inertial};
-use super::nodes::{Guess, Nodes, Passes};
-use super::shape::Sums;
+use super::model::{outward, tensor};
+use super::node_stages::Nodes;
+use super::nodes::{Guess, Passes};
+use super::shape::Deformation;
 use super::state::TurningState;
 use super::step::{Beside, Memory, StepStage, TurningStep, weights};
+use super::summed::{Feeling, Summed, Summing};
+use super::vectors::vector;
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::{NODES, WEIGHTS, exact_sum};
 
@@ -51,27 +55,26 @@ impl TurningStep<'_> {
             driving.prepare(t, self.h, &mut beside.driven);
         }
         let special = self.borne.is_some() || self.driven.is_some();
-        let (stage, [fastest, forced]) = match *start {
-            Some(start) if !special => start,
-            _ => self.start(state, modes, beside),
-        };
-        *start = Some((stage, [fastest, forced]));
+        if special {
+            *start = None;
+        }
+        let (stage, [fastest, forced]) = start.get_or_insert_with(|| self.start(state, modes, beside));
         let lanes = self.model.lanes;
-        lanes.run(Guess { step: self, state, start: &stage, modes, nodes });
-        let speed = fastest.max(self.h * forced);
+        lanes.run(Guess { step: self, state, start: stage, modes, nodes });
+        let speed = fastest.max(self.h * *forced);
         let mut facing = Facing::default();
         if self.around.is_some() {
             facing.find(&state.attitude, &nodes.means(), self.h);
         }
-        let (stages, passes) = if special {
+        let passes = if special {
             let mut stages = nodes.stages();
             let passes = self.one_by_one(state, (&mut stages, &mut facing), (modes, beside), speed);
-            (stages, passes)
+            nodes.keep(&stages);
+            passes
         } else {
-            let passes = lanes.run(Passes { step: self, state, modes, nodes, facing: &mut facing, speed });
-            (nodes.stages(), passes)
+            lanes.run(Passes { step: self, state, modes, nodes, facing: &mut facing, speed })
         };
-        self.end(state, (&stages, &facing), modes, &beside.spun);
+        self.end(state, (nodes, &facing), modes, &beside.spun);
         passes
     }
 
@@ -82,13 +85,22 @@ impl TurningStep<'_> {
         modes: &mut [Memory],
         beside: &mut Beside,
     ) -> (StepStage, [f64; 2]) {
-        let mut sums = Sums::default();
+        let lanes = self.model.lanes;
+        let Summed { bent, elastic, changed } =
+            lanes.run(Summing { model: self.model, states: &state.modes });
+        let levers = self.levers.iter().zip(&state.modes);
+        let levered = levers.fold(Vector::zeros(), |sum, (lever, [q, ..])| sum + lever * *q);
+        let shape = Deformation { bent, elastic, changed: tensor(changed), levered };
+        if self.feels_motion_alone() {
+            let (stage, felt) = self.turning((0, 0.0), &shape, &state.momentum, &state.attitude, beside);
+            let spun = self.model.stretches.then(|| outward(&felt.rate));
+            let (abreast, states) = (&self.model.abreast[..], &state.modes[..]);
+            return (stage, lanes.run(Feeling { abreast, states, turning: felt.turning, spun, modes }));
+        }
         for (index, memory) in modes.iter_mut().enumerate() {
             let [q, p, ..] = state.modes[index];
             memory.rate[0] = self.model.modes[index].frequency * p;
             self.keep(index, q, memory.rate[0], beside);
-            sums.add(&self.model.modes[index], q, memory.rate[0], self.model.stretches);
-            sums.lever(self, index, q);
         }
         if self.borne.is_some() {
             let Spun { at, now, .. } = &mut beside.spun;
@@ -96,7 +108,7 @@ impl TurningStep<'_> {
             at.extend(state.spins.iter().map(|spin| spin.sums));
             now.resize(at.len(), Vector::zeros());
         }
-        let (stage, felt) = self.turning((0, 0.0), &sums.shape(), &state.momentum, &state.attitude, beside);
+        let (stage, felt) = self.turning((0, 0.0), &shape, &state.momentum, &state.attitude, beside);
         if self.borne.is_some() {
             let Spun { rates, now, .. } = &mut beside.spun;
             rates.clear();
@@ -112,12 +124,13 @@ impl TurningStep<'_> {
     }
 
     /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
-    fn move_on(&self, state: &mut TurningState, stages: &[StepStage; 3], facing: &Facing) {
+    fn move_on(&self, state: &mut TurningState, nodes: &Nodes, facing: &Facing) {
         let [position, velocity] = &mut state.moved;
         *position += *velocity * self.h;
         if self.push.is_some() {
-            for (index, ((stage, weight), node)) in stages.iter().zip(WEIGHTS).zip(NODES).enumerate() {
-                let pushed = inertial(&facing.at(&state.attitude, index, self.h), &stage.pushed);
+            for (index, (weight, node)) in WEIGHTS.into_iter().zip(NODES).enumerate() {
+                let pushed =
+                    inertial(&facing.at(&state.attitude, index, self.h), &vector(&nodes.pushed, index));
                 *velocity += pushed * (weight * self.h);
                 *position += pushed * (weight * (1.0 - node) * self.h * self.h);
             }
@@ -128,15 +141,14 @@ impl TurningStep<'_> {
     fn end(
         &self,
         state: &mut TurningState,
-        (stages, facing): (&[StepStage; 3], &Facing),
+        (nodes, facing): (&Nodes, &Facing),
         modes: &[Memory],
         spun: &Spun,
     ) {
-        self.move_on(state, stages, facing);
+        self.move_on(state, nodes, facing);
         let [a, b, c] = weights(&WEIGHTS, self.h);
-        let push = stages[0].push * a + stages[1].push * b + stages[2].push * c;
+        let [push, rigid] = nodes.sums([a, b, c]);
         let turn = facing.turns[0] * a + facing.turns[1] * b + facing.turns[2] * c;
-        let rigid = stages[0].rigid * a + stages[1].rigid * b + stages[2].rigid * c;
         let TurningState { attitude, momentum, turned, lost, modes: states, spins, .. } = state;
         if self.borne.is_some() {
             for (spin, rates) in spins.iter_mut().zip(&spun.rates) {

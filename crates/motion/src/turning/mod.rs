@@ -29,6 +29,7 @@ mod gimbal;
 mod heated;
 mod method;
 mod model;
+mod node_stages;
 mod nodes;
 mod pace;
 mod response;
@@ -39,6 +40,7 @@ mod slipping;
 mod stage;
 mod state;
 mod step;
+mod summed;
 #[cfg(test)]
 mod tests;
 mod vectors;

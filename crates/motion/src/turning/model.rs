@@ -79,6 +79,9 @@ pub(super) struct Model {
     /// No rigid rate is larger for a unit of angular momentum (1/(kg m²)).
     pub mobility: f64,
     pub modes: Vec<Constants>,
+    /// The same, four modes side by side, and so that a vector of a mode fills a register.
+    pub abreast: Vec<Abreast>,
+    pub filled: Vec<Filled>,
     /// The damping matrix without its diagonal (1/s).
     pub beside: Option<DMatrix<f64>>,
     /// Whether any mode changes the inertia.
@@ -91,6 +94,47 @@ pub(super) struct Model {
     pub felt: Vec<f64>,
     /// By which instructions the stages of a step are found.
     pub lanes: Four,
+}
+
+/// The constants of four modes side by side; places without one have a mode that nothing moves.
+#[derive(Clone, Debug)]
+pub(super) struct Abreast {
+    pub frequency: [f64; 4],
+    pub rotation: [[f64; 4]; 3],
+    pub moments: [[f64; 4]; 6],
+}
+
+impl Abreast {
+    fn new(modes: &[Constants]) -> Self {
+        let of =
+            |lane: usize, part: &dyn Fn(&Constants) -> f64, none: f64| modes.get(lane).map_or(none, part);
+        let each =
+            |part: &dyn Fn(&Constants) -> f64, none: f64| [0, 1, 2, 3].map(|lane| of(lane, part, none));
+        Self {
+            frequency: each(&|mode| mode.frequency, 1.0),
+            rotation: [0, 1, 2].map(|axis| each(&|mode| mode.rotation[axis], 0.0)),
+            moments: [0, 1, 2, 3, 4, 5].map(|entry| each(&|mode| mode.moments[entry], 0.0)),
+        }
+    }
+}
+
+/// The constants of a mode in registers of four: nothing fills what is left.
+#[derive(Clone, Debug)]
+pub(super) struct Filled {
+    pub frequency: f64,
+    pub rotation: [f64; 4],
+    pub moments: [[f64; 4]; 2],
+}
+
+impl Filled {
+    fn new(mode: &Constants) -> Self {
+        let ([x, y, z], [xx, yy, zz, yz, zx, xy]) = (mode.rotation.into(), mode.moments);
+        Self {
+            frequency: mode.frequency,
+            rotation: [x, y, z, 0.0],
+            moments: [[xx, yy, zz, yz], [zx, xy, 0.0, 0.0]],
+        }
+    }
 }
 
 /// The constants of a mode.
@@ -147,6 +191,7 @@ impl Model {
                 moments: [m.m11, m.m22, m.m33, m.m23, m.m13, m.m12],
             }
         };
+        let modes: Vec<Constants> = body.modes.iter().enumerate().map(constants).collect();
         let size = libm::sqrt(body.inertia.norm());
         let felt = body
             .modes
@@ -158,7 +203,9 @@ impl Model {
             mobility: inverse.norm(),
             inverse,
             bending,
-            modes: body.modes.iter().enumerate().map(constants).collect(),
+            abreast: modes.chunks(4).map(Abreast::new).collect(),
+            filled: modes.iter().map(Filled::new).collect(),
+            modes,
             beside: body.damping.as_ref().map(|damping| {
                 let mut beside = damping.clone();
                 beside.fill_diagonal(0.0);

@@ -5,6 +5,7 @@
 use nalgebra::{Matrix3, Quaternion};
 
 use super::facing::Facing;
+use super::node_stages::Nodes;
 use super::settled::Change;
 use super::state::TurningState;
 use super::step::{Memory, PASSES, StepStage, TurningStep};
@@ -23,39 +24,6 @@ static COLUMNS: [[f64; 4]; 3] = [column(0), column(1), column(2)];
 
 const fn column(stage: usize) -> [f64; 4] {
     [MATRIX[0][stage], MATRIX[1][stage], MATRIX[2][stage], WEIGHTS[stage]]
-}
-
-/// The stages of a step at its nodes.
-#[derive(Clone, Debug, Default)]
-pub(super) struct Nodes {
-    push: StoredVectors,
-    mean: StoredVectors,
-    rigid: StoredVectors,
-    turning: StoredVectors,
-    pushed: StoredVectors,
-}
-
-impl Nodes {
-    /// The stage at a node.
-    pub fn stage(&self, node: usize) -> StepStage {
-        StepStage {
-            push: vector(&self.push, node),
-            mean: vector(&self.mean, node),
-            rigid: vector(&self.rigid, node),
-            turning: vector(&self.turning, node),
-            pushed: vector(&self.pushed, node),
-        }
-    }
-
-    /// All of them.
-    pub fn stages(&self) -> [StepStage; 3] {
-        [self.stage(0), self.stage(1), self.stage(2)]
-    }
-
-    /// The rates of the mean axes.
-    pub fn means(&self) -> [Vector; 3] {
-        [vector(&self.mean, 0), vector(&self.mean, 1), vector(&self.mean, 2)]
-    }
 }
 
 /// The first guess of a step: what modes come to by themselves, and stages like the start, but for the growth of what turns.
@@ -156,17 +124,17 @@ impl LaneWork for Passes<'_> {
     fn run<R: Real>(self, kind: R) -> u32 {
         let Self { step, state, modes, nodes, facing, speed } = self;
         let size = step.size(state);
-        let seeks = step.around.is_some();
+        let (seeks, loud) = (step.around.is_some(), step.is_loud());
         let (mut before, mut passes) = (0.0, 0);
         while passes < PASSES {
             passes += 1;
             let shapes = if step.levers.is_empty() {
-                shapes::<R, false>(kind, step, modes)
+                shapes::<R, false>(kind, step, loud, modes)
             } else {
-                shapes::<R, true>(kind, step, modes)
+                shapes::<R, true>(kind, step, loud, modes)
             };
             let (felt, mut change) = turn(kind, step, (state, &*facing), &shapes, nodes);
-            change.forced = feel(kind, step, &felt, modes);
+            change.forced = feel(kind, step, (&felt, loud), modes);
             change.stretched = size_of(&shapes.changed);
             change.rate = most(felt.rate.dot(felt.rate));
             if seeks {
@@ -201,11 +169,16 @@ fn size_of<R: Real>(of: &[R; 6]) -> f64 {
 
 /// How the modes are at the nodes; with what they add to the torque where forces have levers.
 #[inline(always)]
-fn shapes<R: Real, const LEVERED: bool>(kind: R, step: &TurningStep<'_>, modes: &mut [Memory]) -> Shapes<R> {
+fn shapes<R: Real, const LEVERED: bool>(
+    kind: R,
+    step: &TurningStep<'_>,
+    loud: bool,
+    modes: &mut [Memory],
+) -> Shapes<R> {
     let zero = kind.of(0.0);
     let none = Vectors { x: zero, y: zero, z: zero };
     let (mut bent, mut elastic, mut changed, mut levered) = (none, none, [zero; 6], none);
-    let (loud, stretches) = (step.is_loud(), step.model.stretches);
+    let stretches = step.model.stretches;
     let count = modes.len();
     let (responses, constants) = (&step.responses[..count], &step.model.modes[..count]);
     for index in 0..count {
@@ -333,10 +306,15 @@ fn surround<R: Real>(
 
 /// Gives the modes what they feel at the nodes; tells by how much their forces changed.
 #[inline(always)]
-fn feel<R: Real>(kind: R, step: &TurningStep<'_>, felt: &Felt<R>, modes: &mut [Memory]) -> f64 {
+fn feel<R: Real>(
+    kind: R,
+    step: &TurningStep<'_>,
+    (felt, loud): (&Felt<R>, bool),
+    modes: &mut [Memory],
+) -> f64 {
     let Vectors { x, y, z } = felt.rate;
     let spun = [x * x * 0.5, y * y * 0.5, z * z * 0.5, y * z, z * x, x * y];
-    let (stretches, loud) = (step.model.stretches, step.is_loud());
+    let stretches = step.model.stretches;
     let more = loud && (step.around.is_some() || step.model.beside.is_some());
     let mut change = kind.of(0.0);
     let count = modes.len();

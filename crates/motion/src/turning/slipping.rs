@@ -140,6 +140,9 @@ impl Turning {
 
     /// The rotors in bearings at the instant seen last.
     pub fn turned(&self, around: Option<(&dyn Surroundings, f64)>) -> Vec<SlippedRotor> {
+        if self.bearings.is_empty() {
+            return Vec::new();
+        }
         let borne = self.borne_by(&self.slips);
         let acceleration =
             if borne.sticks() { self.acceleration(&self.slips, around) } else { Vector::zeros() };

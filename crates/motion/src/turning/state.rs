@@ -5,6 +5,7 @@ use nalgebra::{Matrix3, Quaternion};
 use super::bearing::Spin;
 use super::model::{Model, tensor};
 use super::rotation::Bend;
+use super::summed::{Summed, Summing};
 use crate::attitude::{Vector, rotation};
 
 /// The state that steps carry on.
@@ -33,7 +34,9 @@ impl TurningState {
         (*attitude, *momentum, *turned, *lost) = (other.attitude, other.momentum, other.turned, other.lost);
         *moved = other.moved;
         modes.copy_from_slice(&other.modes);
-        spins.copy_from_slice(&other.spins);
+        if !spins.is_empty() {
+            spins.copy_from_slice(&other.spins);
+        }
     }
 }
 
@@ -102,12 +105,7 @@ impl TurningSight {
         rotors: &Vector,
         locked: &Matrix3<f64>,
     ) {
-        let (mut bent, mut elastic, mut changed) = (Vector::zeros(), Vector::zeros(), [0.0; 6]);
-        for (of, [q, p, ..]) in model.modes.iter().zip(&state.modes) {
-            bent += of.rotation * *q;
-            elastic += of.rotation * (of.frequency * p);
-            changed.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
-        }
+        let Summed { bent, elastic, changed } = model.lanes.run(Summing { model, states: &state.modes });
         let bend = Bend::new(bent);
         let changed = tensor(changed);
         self.mean = state.attitude;

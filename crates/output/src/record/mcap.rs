@@ -1,7 +1,7 @@
 //! The log file: a run as MCAP, whose bytes depend on the scenario, the seed and the version alone.
 
 use std::collections::BTreeMap;
-use std::io::{self, BufWriter, Seek, Write};
+use std::io::{self, BufWriter, Cursor, Seek, Write};
 use std::path::Path;
 
 use mcap::records::{MessageHeader, Metadata};
@@ -17,13 +17,13 @@ use crate::whole::Partial;
 const MESSAGES_PER_FLUSH: u64 = 2000;
 
 /// A run's log, written while it runs.
-pub struct McapLog<W: Write + Seek> {
+struct McapLog<W: Write + Seek> {
     log: Encode<Channels<W>>,
 }
 
 impl<W: Write + Seek> McapLog<W> {
     /// A log with its provenance written.
-    pub fn new(writer: W, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
+    fn new(writer: W, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
         let options =
             WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
         let mut writer = Writer::with_options(writer, options).map_err(failure)?;
@@ -48,7 +48,7 @@ impl<W: Write + Seek> McapLog<W> {
     }
 
     /// Writes the metrics, how the run ended, and the file's summary.
-    pub fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
+    fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
         let (Channels { mut writer, .. }, last) = self.log.finish(metrics, end)?;
         let end = match end {
             RunEnd::Complete => "complete",
@@ -137,6 +137,37 @@ impl LogFile {
 }
 
 impl Record for LogFile {
+    fn dense(&self) -> bool {
+        self.log.dense()
+    }
+
+    fn scene(&self) -> bool {
+        self.log.scene()
+    }
+
+    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        self.log.record(now, sample)
+    }
+}
+
+/// A log in memory, with the bytes of the file. Here and in [`LogFile`], so that all of it is compiled once, where it is.
+pub struct LogBytes {
+    log: McapLog<Cursor<Vec<u8>>>,
+}
+
+impl LogBytes {
+    /// A log with its provenance written.
+    pub fn new(from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
+        Ok(Self { log: McapLog::new(Cursor::new(Vec::new()), from, detail)? })
+    }
+
+    /// Finishes the log, and returns its bytes.
+    pub fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<Vec<u8>, RecordError> {
+        Ok(self.log.finish(metrics, end)?.into_inner())
+    }
+}
+
+impl Record for LogBytes {
     fn dense(&self) -> bool {
         self.log.dense()
     }

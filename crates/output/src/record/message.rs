@@ -115,7 +115,7 @@ impl<M: Messages> Encode<M> {
             toml: from.toml.clone(),
             outputs: from.outputs.clone(),
         };
-        encode.take(Instant::START, &params)?;
+        encode.rows().take(Instant::START, &params)?;
         Ok(encode)
     }
 
@@ -123,28 +123,44 @@ impl<M: Messages> Encode<M> {
     /// messages went, and the time of the last.
     pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<(M, Instant), RecordError> {
         if !metrics.0.is_empty() {
-            self.take(self.last, &Summary::of(metrics))?;
-            self.take(self.last, &metrics.to_row())?;
+            let last = self.last;
+            self.rows().take(last, &Summary::of(metrics))?;
+            self.rows().take(last, &metrics.to_row())?;
         }
         if end != RunEnd::Complete {
             let timestamp = Stamp(self.epoch_ns + self.last.nanoseconds());
             let message = format!("the run {} at {} s", end.verb(), self.last.seconds());
             let (level, name) = (LogLevel::Warning, "run".to_owned());
-            self.take(self.last, &Log { timestamp, level, message, name })?;
+            let last = self.last;
+            self.rows().take(last, &Log { timestamp, level, message, name })?;
         }
         Ok((self.to, self.last))
     }
 }
 
-impl<M: Messages> TakeRow for Encode<M> {
+impl<M: Messages> Encode<M> {
+    fn rows(&mut self) -> Rows<'_> {
+        Rows { to: &mut self.to, epoch_ns: self.epoch_ns, last: &mut self.last, buffer: &mut self.buffer }
+    }
+}
+
+/// Takes rows, wherever the messages go.
+struct Rows<'a> {
+    to: &'a mut dyn Messages,
+    epoch_ns: u64,
+    last: &'a mut Instant,
+    buffer: &'a mut Vec<u8>,
+}
+
+impl TakeRow for Rows<'_> {
     fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
         self.buffer.clear();
-        Encoder::encode(row, &mut self.buffer);
-        self.last = now;
+        Encoder::encode(row, self.buffer);
+        *self.last = now;
         self.to.take(Message {
             topic: const { index_of(R::TOPIC.name) },
             time_ns: self.epoch_ns + now.nanoseconds(),
-            data: &self.buffer,
+            data: self.buffer,
         })
     }
 }
@@ -160,6 +176,6 @@ impl<M: Messages> Record for Encode<M> {
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // Another record may want more.
-        if sample.detail() > self.detail { Ok(()) } else { self.take_sample(now, sample) }
+        if sample.detail() > self.detail { Ok(()) } else { self.rows().take_sample(now, sample) }
     }
 }

@@ -33,7 +33,7 @@ use crate::time::Instant;
 
 pub use columns::{Column, Columns};
 pub use log::{Log, LogError};
-pub use mcap::{LogFile, McapLog};
+pub use mcap::{LogBytes, LogFile};
 pub use message::{Attachment, COMMANDS, Encode, Message, Messages, Provenance, RunEnd};
 pub use origin::{There, difference, there};
 pub use recover::recover;

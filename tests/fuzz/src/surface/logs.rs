@@ -4,7 +4,7 @@ use std::io::{self, Cursor};
 
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::record::{Detail, McapLog, RunEnd};
+use flexsc_core::record::{Detail, LogBytes, RunEnd};
 use prost::Message as _;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{
@@ -52,9 +52,9 @@ fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Err
     let scenario = Scenario::parse("s.toml", text)?;
     let study = Campaign::new(scenario, "s.toml", None)?;
     let run = CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
-    let mut log = McapLog::new(Cursor::new(Vec::new()), &Campaign::provenance(&run, detail), detail)?;
+    let mut log = LogBytes::new(&Campaign::provenance(&run, detail), detail)?;
     let metrics = Campaign::simulate(&run, &mut log)?;
-    Ok(log.finish(&metrics, RunEnd::Complete)?.into_inner())
+    Ok(log.finish(&metrics, RunEnd::Complete)?)
 }
 
 /// The same log without compression.

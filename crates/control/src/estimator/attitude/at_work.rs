@@ -5,7 +5,7 @@ use nalgebra::Quaternion;
 use super::spec::{AttitudeFilter, AttitudeSetting, Role};
 use super::swinging::Swinging;
 use super::{AttitudeFilterState, AttitudeMeasurement, Correction, FilterHistory, Fix};
-use crate::attitude::{Vector, rotation};
+use crate::attitude::{Vector, beyond, rotation};
 use crate::belief::Belief;
 use crate::estimator::kalman::Prior;
 use crate::estimator::{Estimate, Taken};
@@ -25,6 +25,8 @@ pub struct Tracking {
     /// The last gyro reading (rad/s), and when the filter took a gyro reading last.
     rate: Vector,
     since: Instant,
+    /// The attitude after the last sample, and when that was.
+    sampled: Option<(Instant, Quaternion<f64>)>,
     /// The torque that the modes feel (N m).
     torque: Vector,
     /// What the last sample told of the attitude, and whether it told any.
@@ -42,6 +44,7 @@ impl Tracking {
             history: None,
             rate: Vector::zeros(),
             since: Instant::START,
+            sampled: None,
             torque: Vector::zeros(),
             told: Correction::default(),
             used: false,
@@ -101,6 +104,9 @@ impl Tracking {
 
     /// The attitude now, by the last gyro reading since.
     fn attitude(&self, now: Instant) -> Option<Quaternion<f64>> {
+        if let Some((_, attitude)) = self.sampled.filter(|(sampled, _)| *sampled == now) {
+            return Some(attitude);
+        }
         let filter = self.history.as_ref()?.latest();
         let mut turn = (self.rate - filter.bias) * now.since(self.since).seconds();
         if let Some(swinging) = &filter.swinging {
@@ -161,8 +167,10 @@ impl Estimate for Tracking {
             history.push(now, self.torque);
             self.history = Some(history);
         }
+        self.sampled = None;
         self.read(now, taken.readings);
-        let (Some(history), Some(attitude)) = (&self.history, self.attitude(now)) else { return };
+        self.sampled = self.attitude(now).map(|attitude| (now, attitude));
+        let (Some(history), Some((_, attitude))) = (&self.history, self.sampled) else { return };
         let (attitude, elastic) = (self.read_by_laws(attitude), self.elastic_rate());
         let angles = Orientation::Attitude(attitude).beyond(taken.origin);
         for (axis, belief) in beliefs.iter_mut().enumerate() {
@@ -188,9 +196,9 @@ impl Estimate for Tracking {
             return None;
         };
         let (estimate, bias) = (Tracking::attitude(self, now)?, Vector::from(bias));
-        let ([angle_sd, bias_sd], off) =
-            (filter.deviations(), AttitudeFilterState { attitude: estimate, ..filter.clone() });
-        let [angle_error, bias_error] = off.error(truth, &bias);
+        let [angle_sd, bias_sd] = filter.deviations();
+        let error = [beyond(&estimate, truth), bias - filter.bias];
+        let [angle_error, bias_error] = error;
         let axis = |axis: usize| AxisEstimate {
             angle_error_rad: -angle_error[axis],
             angle_sd_rad: angle_sd[axis],
@@ -205,7 +213,7 @@ impl Estimate for Tracking {
             q_y: estimate.j,
             q_z: estimate.k,
             axes: [0, 1, 2].map(axis).into(),
-            nees: off.nees(truth, &bias),
+            nees: filter.normalised(&error),
             nis: self.told.nis,
             numbers: self.told.numbers,
             measured: self.used.into(),

@@ -10,10 +10,12 @@ use nalgebra::{
     Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
 };
 
+use super::carried::Carried;
 use super::measurement::{AttitudeMeasurement, GyroNoise, across};
 use super::swinging::{SwingInnovation, Swinging};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
+use crate::lanes::Four;
 use crate::numerics::stumpff::stumpff;
 use crate::sensor::VectorSight;
 
@@ -54,16 +56,17 @@ impl AttitudeFilterState {
     pub fn predict(&mut self, reading: &Vector, seconds: f64, noise: &GyroNoise) {
         let turn = (reading - self.bias) * seconds;
         let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
-        let Interval { turned, drifted, added: [angle, both, bias] } =
-            interval(&turn, seconds, [white * white, walk * walk]);
         self.attitude = unit(self.attitude * rotation(&turn));
-        // The transition is [turned, -drifted; 0, 1].
-        let block = |row, column| self.covariance.fixed_view::<3, 3>(row, column).into_owned();
-        let (of_angle, across, of_bias) = (block(0, 0), block(0, 3), block(3, 3));
-        let carried = turned * across - drifted * of_bias;
-        let moved = turned * of_angle - drifted * across.transpose();
-        let of_angle = moved * turned.transpose() - carried * drifted.transpose() + angle;
-        self.covariance = blocks(&of_angle, &(carried + both), &(of_bias + bias));
+        let phis = stumpff(turn.norm_squared());
+        let covariance = &mut self.covariance;
+        Four::best().run(Carried {
+            covariance,
+            turn,
+            phis,
+            seconds,
+            white: white * white,
+            walk: walk * walk,
+        });
     }
 
     /// The same with modes, under torques (N m) each for so long (s).
@@ -116,11 +119,7 @@ impl AttitudeFilterState {
         let error = gain * innovation;
         self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
         self.bias += error.fixed_rows::<3>(3);
-        let mut kept = Matrix6::identity();
-        let mut told = kept.fixed_columns_mut::<3>(0);
-        told -= gain;
-        self.covariance =
-            symmetric(&(kept * self.covariance * kept.transpose() + gain * noise * gain.transpose()));
+        self.covariance = left(&self.covariance, &gain, &(gain * noise * gain.transpose()));
         Some(Correction { innovation, nis: innovation.dot(&(inverse * innovation)), numbers: 3 })
     }
 
@@ -176,10 +175,7 @@ impl AttitudeFilterState {
     fn take(&mut self, error: &SMatrix<f64, 6, 1>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) {
         self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
         self.bias += error.fixed_rows::<3>(3);
-        let mut kept = Matrix6::identity();
-        let mut first = kept.fixed_columns_mut::<3>(0);
-        first -= told;
-        self.covariance = symmetric(&(kept * self.covariance * kept.transpose() + added));
+        self.covariance = left(&self.covariance, told, added);
     }
 
     /// Takes D numbers that are beyond what is expected by so much, where a unit of theta moves them so, and errors have this
@@ -207,7 +203,11 @@ impl AttitudeFilterState {
 
     /// The normalised square of its error where these are attitude and bias; NaN of a covariance that is not positive.
     pub fn nees(&self, attitude: &Quaternion<f64>, bias: &Vector) -> f64 {
-        let [angle, rate] = self.error(attitude, bias);
+        self.normalised(&self.error(attitude, bias))
+    }
+
+    /// The normalised square of such an error (rad, rad/s); NaN of a covariance that is not positive.
+    pub fn normalised(&self, [angle, rate]: &[Vector; 2]) -> f64 {
         let error = SMatrix::<f64, 6, 1>::from_fn(|row, _| if row < 3 { angle[row] } else { rate[row - 3] });
         Cholesky::new(self.covariance).map_or(f64::NAN, |factor| error.dot(&factor.solve(&error)))
     }
@@ -218,40 +218,21 @@ impl AttitudeFilterState {
     }
 }
 
-/// What errors go through while the body turns: theta becomes `turned` theta - `drifted` beta.
-struct Interval {
-    turned: Matrix3<f64>,
-    drifted: Matrix3<f64>,
-    /// The covariance that noise adds: of theta, of theta with beta, and of beta.
-    added: [Matrix3<f64>; 3],
-}
-
-/// An interval in which the body turns so far (rad), under noise of these densities.
-fn interval(turn: &Vector, seconds: f64, [white, walk]: [f64; 2]) -> Interval {
-    let [c1, c2, c3, c4, c5] = stumpff(turn.norm_squared());
-    let (one, cross) = (Matrix3::identity(), turn.cross_matrix());
-    let twice = cross * cross;
-    let with_bias = (one * 0.5 - cross * c3 + twice * c4) * (seconds * seconds * walk);
-    let both = (one * c3 + turn * turn.transpose() * c5) * (2.0 * seconds * seconds * seconds * walk);
-    Interval {
-        turned: one - cross * c1 + twice * c2,
-        drifted: (one - cross * c2 + twice * c3) * seconds,
-        added: [both + one * (white * seconds), -with_bias, one * (walk * seconds)],
-    }
-}
-
-/// The symmetric matrix of these blocks.
-fn blocks(first: &Matrix3<f64>, across: &Matrix3<f64>, second: &Matrix3<f64>) -> Matrix6<f64> {
-    let mut all = Matrix6::zeros();
-    all.fixed_view_mut::<3, 3>(0, 0).copy_from(&((first + first.transpose()) * 0.5));
-    all.fixed_view_mut::<3, 3>(0, 3).copy_from(across);
-    all.fixed_view_mut::<3, 3>(3, 0).copy_from(&across.transpose());
-    all.fixed_view_mut::<3, 3>(3, 3).copy_from(second);
-    all
-}
-
 fn unit(q: Quaternion<f64>) -> Quaternion<f64> {
     q / q.norm()
+}
+
+/// The covariance that is left where a correction takes so much of theta, and this is added: K P K' with K = 1 - [told, 0].
+fn left(covariance: &Matrix6<f64>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) -> Matrix6<f64> {
+    let kept = Matrix6x3::identity() - told;
+    // The other columns of K are those of 1.
+    let mut once = kept * covariance.fixed_rows::<3>(0);
+    let mut below = once.fixed_rows_mut::<3>(3);
+    below += covariance.fixed_rows::<3>(3);
+    let mut twice = once.fixed_columns::<3>(0) * kept.transpose();
+    let mut beside = twice.fixed_columns_mut::<3>(3);
+    beside += once.fixed_columns::<3>(3);
+    symmetric(&(twice + added))
 }
 
 fn symmetric(of: &Matrix6<f64>) -> Matrix6<f64> {

@@ -128,11 +128,14 @@ impl FilterHistory {
         if now <= last.at {
             return Vec::new();
         }
-        let mut filter = last.filter.clone();
-        self.carry(&mut filter, &reading, [last.at, now]);
-        self.entries.push_back(Entry { at: now, reading, fixes: Vec::new(), filter });
-        let waiting = std::mem::take(&mut self.early);
-        let told = waiting.into_iter().filter_map(|fix| self.fix(fix)).collect();
+        let mut entry = Entry { at: now, reading, fixes: Vec::new(), filter: last.filter.clone() };
+        self.carry(&mut entry.filter, &reading, [last.at, now]);
+        self.entries.push_back(entry);
+        let mut told = Vec::new();
+        if !self.early.is_empty() {
+            let waiting = std::mem::take(&mut self.early);
+            told.extend(waiting.into_iter().filter_map(|fix| self.fix(fix)));
+        }
         // The last entry that is older stays: from there begins the interval with the oldest that may still be exposed.
         while self.entries.get(1).is_some_and(|second| second.at + self.reach <= now) {
             self.entries.pop_front();

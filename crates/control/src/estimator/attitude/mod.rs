@@ -1,6 +1,7 @@
 //! Attitude and gyro bias, by a multiplicative extended Kalman filter to which measurements may be late.
 
 mod at_work;
+mod carried;
 mod elastic;
 mod filter;
 mod gains;

@@ -1,12 +1,13 @@
 //! The level of the next step, and the responses of the modes over it.
 
+use super::amplitudes::Amplitudes;
 use super::{BESIDE, Turning};
 use crate::attitude::Vector;
 use crate::turning::Surroundings;
 use crate::turning::common::Regular;
 use crate::turning::gimbal;
 use crate::turning::model::outward;
-use crate::turning::pace::{Amplitude, Pose};
+use crate::turning::pace::Pose;
 
 impl Turning {
     /// The level of the next step.
@@ -37,16 +38,9 @@ impl Turning {
         // What holds the displacements that each mode swings about, and loses nothing of.
         let pushed = acting.torque - change;
         let (net, spun) = (pushed - rigid.cross(&grid.momentum), outward(&rigid));
-        for (index, (amplitude, of)) in amplitudes.iter_mut().zip(&model.modes).enumerate() {
-            let [q, p, ..] = grid.modes[index];
-            let (w, forced) = (of.frequency, acting.forces.get(index).copied().unwrap_or(0.0));
-            let held = (of.rotation.dot(&net) + of.moved(&spun) + forced) / (w * w);
-            let speed = (p + of.rotation.dot(&turning) / w).abs();
-            let most = ((of.rotation.dot(&pushed) + forced).abs() / (w * w)).max(held.abs());
-            // At least the displacement, the rate, and what the torque or the rotation bends, each.
-            let most = q.abs() + speed + most;
-            *amplitude = Amplitude { most, swings: most.min((q - held).abs() + speed) };
-        }
+        let lanes = model.lanes;
+        let (modes, forces) = (&grid.modes[..], &acting.forces[..]);
+        lanes.run(Amplitudes { model, modes, forces, turning, pushed, net, spun, found: amplitudes });
         let pose = Pose {
             rate: model.mobility * (size + rotors.norm()) + slow,
             carried: rigid.norm() + model.mobility * size + slow,

@@ -21,9 +21,11 @@ impl SpatialState {
 
     /// Whether every number is finite.
     pub fn is_finite(&self) -> bool {
-        let finite = |number: &f64| number.is_finite();
-        self.turn.attitude.coords.iter().all(finite)
-            && Rigid::momentum(&self.turn).iter().all(finite)
-            && self.modes.iter().all(|phase| finite(&phase.displacement) && finite(&phase.quadrature))
+        // All are looked at: branches would cost more.
+        let finite = |all: bool, number: &f64| all & number.is_finite();
+        let turn = self.turn.attitude.coords.iter().fold(true, finite);
+        let turn = Rigid::momentum(&self.turn).iter().fold(turn, finite);
+        let mode = |all: bool, phase: &Phase| finite(finite(all, &phase.displacement), &phase.quadrature);
+        self.modes.iter().fold(turn, mode)
     }
 }
