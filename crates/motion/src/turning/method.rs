@@ -9,13 +9,14 @@ use nalgebra::Vector2;
 
 use super::bearing::Spun;
 use super::facing::{Facing, inertial};
+use super::felt_abreast::Feeling;
 use super::model::{outward, tensor};
 use super::node_stages::Nodes;
 use super::nodes::{Guess, Passes};
 use super::shape::Deformation;
 use super::state::TurningState;
 use super::step::{Beside, Memory, StepStage, TurningStep, weights};
-use super::summed::{Feeling, Summed, Summing};
+use super::summed::{Summed, Summing};
 use super::vectors::vector;
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::{NODES, WEIGHTS, exact_sum};

@@ -23,6 +23,7 @@ mod common;
 mod driven;
 mod facing;
 mod feel;
+mod felt_abreast;
 mod flow;
 mod free;
 mod gimbal;

@@ -1,0 +1,61 @@
+//! What modes feel at the start of a step, four of them side by side.
+
+use super::model::Abreast;
+use super::step::Memory;
+use super::vectors::Vectors;
+use crate::attitude::Vector;
+use crate::lanes::{LaneWork, Real};
+
+/// What modes feel of Gt and of the rotation alone, four modes side by side.
+pub(super) struct Feeling<'a> {
+    pub abreast: &'a [Abreast],
+    pub states: &'a [[f64; 4]],
+    /// Gt (N m s).
+    pub turning: Vector,
+    /// What the rotation does by each number of a mode's moments (rad²/s²), where modes change the inertia.
+    pub spun: Option<[f64; 6]>,
+    /// Get g and s of the start.
+    pub modes: &'a mut [Memory],
+}
+
+impl LaneWork for Feeling<'_> {
+    /// The largest rate of a mode, and the largest force on one.
+    type Output = [f64; 2];
+
+    #[inline(always)]
+    fn run<R: Real>(self, kind: R) -> [f64; 2] {
+        let Self { abreast, states, turning, spun, modes } = self;
+        let (mut fastest, mut forced) = (kind.of(0.0), kind.of(0.0));
+        for group in 0..abreast.len() {
+            let (of, first) = (&abreast[group], 4 * group);
+            let mut p = [0.0; 4];
+            for lane in 0..4 {
+                if let Some(state) = states.get(first + lane) {
+                    p[lane] = state[1];
+                }
+            }
+            let [x, y, z] = &of.rotation;
+            let rotation = Vectors { x: kind.load(x), y: kind.load(y), z: kind.load(z) };
+            let g = rotation.along(&turning);
+            fastest = (kind.load(&of.frequency) * kind.load(&p) + g).abs().max(fastest);
+            let mut kept = [[0.0; 4]; 2];
+            g.store(&mut kept[0]);
+            if let Some([a, b, c, d, e, f]) = spun {
+                let [xx, yy, zz, yz, zx, xy] = &of.moments;
+                let s = (kind.load(xx) * a + kind.load(yy) * b + kind.load(zz) * c)
+                    + (kind.load(yz) * d + kind.load(zx) * e + kind.load(xy) * f);
+                forced = s.abs().max(forced);
+                s.store(&mut kept[1]);
+            }
+            for lane in 0..4 {
+                if let Some(memory) = modes.get_mut(first + lane) {
+                    memory.start = [kept[0][lane], kept[1][lane]];
+                }
+            }
+        }
+        let mut most = [[0.0; 4]; 2];
+        fastest.store(&mut most[0]);
+        forced.store(&mut most[1]);
+        most.map(|of| of[0].max(of[1]).max(of[2]).max(of[3]))
+    }
+}
