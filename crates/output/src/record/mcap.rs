@@ -63,20 +63,6 @@ impl<W: Write + Seek> McapLog<W> {
     }
 }
 
-impl<W: Write + Seek> Record for McapLog<W> {
-    fn dense(&self) -> bool {
-        self.log.dense()
-    }
-
-    fn scene(&self) -> bool {
-        self.log.scene()
-    }
-
-    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        self.log.record(now, sample)
-    }
-}
-
 /// The channels of a file, made with their first message.
 struct Channels<W: Write + Seek> {
     writer: Writer<W>,
@@ -136,20 +122,6 @@ impl LogFile {
     }
 }
 
-impl Record for LogFile {
-    fn dense(&self) -> bool {
-        self.log.dense()
-    }
-
-    fn scene(&self) -> bool {
-        self.log.scene()
-    }
-
-    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        self.log.record(now, sample)
-    }
-}
-
 /// A log in memory, with the bytes of the file. Here and in [`LogFile`], so that all of it is compiled once, where it is.
 pub struct LogBytes {
     log: McapLog<Cursor<Vec<u8>>>,
@@ -167,19 +139,26 @@ impl LogBytes {
     }
 }
 
-impl Record for LogBytes {
-    fn dense(&self) -> bool {
-        self.log.dense()
-    }
+/// A record is what the record within it is.
+macro_rules! records_within {
+    ($($log:ty),+) => {
+        $(impl Record for $log {
+            fn dense(&self) -> bool {
+                self.log.dense()
+            }
 
-    fn scene(&self) -> bool {
-        self.log.scene()
-    }
+            fn scene(&self) -> bool {
+                self.log.scene()
+            }
 
-    fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        self.log.record(now, sample)
-    }
+            fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+                self.log.record(now, sample)
+            }
+        })+
+    };
 }
+
+records_within!(McapLog<BufWriter<Partial>>, McapLog<Cursor<Vec<u8>>>, LogFile, LogBytes);
 
 fn attach<W: Write + Seek>(
     writer: &mut Writer<W>,
