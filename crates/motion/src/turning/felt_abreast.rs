@@ -2,7 +2,6 @@
 
 use super::model::Abreast;
 use super::step::Memory;
-use super::vectors::Vectors;
 use crate::attitude::Vector;
 use crate::lanes::{LaneWork, Real};
 
@@ -34,16 +33,12 @@ impl LaneWork for Feeling<'_> {
                     p[lane] = state[1];
                 }
             }
-            let [x, y, z] = &of.rotation;
-            let rotation = Vectors { x: kind.load(x), y: kind.load(y), z: kind.load(z) };
-            let g = rotation.along(&turning);
+            let g = of.along(kind, &turning);
             fastest = (kind.load(&of.frequency) * kind.load(&p) + g).abs().max(fastest);
             let mut kept = [[0.0; 4]; 2];
             g.store(&mut kept[0]);
-            if let Some([a, b, c, d, e, f]) = spun {
-                let [xx, yy, zz, yz, zx, xy] = &of.moments;
-                let s = (kind.load(xx) * a + kind.load(yy) * b + kind.load(zz) * c)
-                    + (kind.load(yz) * d + kind.load(zx) * e + kind.load(xy) * f);
+            if let Some(spun) = &spun {
+                let s = of.moved(kind, spun);
                 forced = s.abs().max(forced);
                 s.store(&mut kept[1]);
             }

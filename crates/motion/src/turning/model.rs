@@ -116,6 +116,21 @@ impl Abreast {
             moments: [0, 1, 2, 3, 4, 5].map(|entry| each(&|mode| mode.moments[entry], 0.0)),
         }
     }
+
+    /// The products of the modes' rotations with a vector.
+    #[inline(always)]
+    pub fn along<R: Real>(&self, kind: R, v: &Vector) -> R {
+        let [x, y, z] = &self.rotation;
+        Vectors { x: kind.load(x), y: kind.load(y), z: kind.load(z) }.along(v)
+    }
+
+    /// What the rotation does to the modes by each number of their moments.
+    #[inline(always)]
+    pub fn moved<R: Real>(&self, kind: R, [a, b, c, d, e, f]: &[f64; 6]) -> R {
+        let [xx, yy, zz, yz, zx, xy] = &self.moments;
+        (kind.load(xx) * *a + kind.load(yy) * *b + kind.load(zz) * *c)
+            + (kind.load(yz) * *d + kind.load(zx) * *e + kind.load(xy) * *f)
+    }
 }
 
 /// The constants of a mode in registers of four: nothing fills what is left.

@@ -2,7 +2,7 @@
 
 use crate::attitude::Vector;
 use crate::lanes::{LaneWork, Real};
-use crate::turning::model::{Abreast, Model};
+use crate::turning::model::Model;
 use crate::turning::pace::Amplitude;
 
 /// What the modes of a body are, and what acts on them.
@@ -40,14 +40,10 @@ impl LaneWork for Amplitudes<'_> {
                 }
             }
             let (q, p, forced) = (kind.load(&q), kind.load(&p), kind.load(&forced));
-            let Abreast { frequency, moments: [xx, yy, zz, yz, zx, xy], .. } = of;
-            let w = kind.load(frequency);
-            let [a, b, c, d, e, f] = spun;
-            let moved = (kind.load(xx) * a + kind.load(yy) * b + kind.load(zz) * c)
-                + (kind.load(yz) * d + kind.load(zx) * e + kind.load(xy) * f);
-            let held = (along(kind, of, &net) + moved + forced) / (w * w);
-            let speed = (p + along(kind, of, &turning) / w).abs();
-            let most = ((along(kind, of, &pushed) + forced).abs() / (w * w)).max(held.abs());
+            let w = kind.load(&of.frequency);
+            let held = (of.along(kind, &net) + of.moved(kind, &spun) + forced) / (w * w);
+            let speed = (p + of.along(kind, &turning) / w).abs();
+            let most = ((of.along(kind, &pushed) + forced).abs() / (w * w)).max(held.abs());
             // At least the displacement, the rate, and what the torque or the rotation bends, each.
             let most = q.abs() + speed + most;
             let swings = most.min((q - held).abs() + speed);
@@ -61,11 +57,4 @@ impl LaneWork for Amplitudes<'_> {
             }
         }
     }
-}
-
-/// The products of the modes' rotations with a vector.
-#[inline(always)]
-fn along<R: Real>(kind: R, of: &Abreast, v: &Vector) -> R {
-    let [x, y, z] = &of.rotation;
-    kind.load(x) * v.x + kind.load(y) * v.y + kind.load(z) * v.z
 }
