@@ -25,6 +25,7 @@ impl Accelerometers {
     }
 
     /// When one samples or tells next.
+    #[inline]
     pub fn due(&self) -> Option<Instant> {
         self.0.iter().map(|(.., sensor)| sensor.due()).min()
     }

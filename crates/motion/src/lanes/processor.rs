@@ -4,7 +4,9 @@ use pulp::Simd;
 #[cfg(target_arch = "aarch64")]
 use pulp::aarch64::Neon;
 #[cfg(target_arch = "x86_64")]
-use pulp::x86::{V3, V4};
+use pulp::x86::V3;
+#[cfg(all(target_arch = "x86_64", feature = "wide"))]
+use pulp::x86::V4;
 
 use super::real::LaneWork;
 use super::register::{Alone, Vectorized};
@@ -15,7 +17,7 @@ pub struct Processor(Instructions);
 
 #[derive(Copy, Clone, Debug)]
 enum Instructions {
-    #[cfg(target_arch = "x86_64")]
+    #[cfg(all(target_arch = "x86_64", feature = "wide"))]
     Avx512(V4),
     #[cfg(target_arch = "x86_64")]
     Avx2(V3),
@@ -24,10 +26,12 @@ enum Instructions {
 }
 
 impl Processor {
-    /// All instructions for lanes that this processor has, the widest first.
+    /// All instructions for lanes that this processor has and the build knows, the widest first.
     pub fn all() -> Vec<Self> {
-        #[cfg(target_arch = "x86_64")]
+        #[cfg(all(target_arch = "x86_64", feature = "wide"))]
         let all = [V4::try_new().map(Instructions::Avx512), V3::try_new().map(Instructions::Avx2)];
+        #[cfg(all(target_arch = "x86_64", not(feature = "wide")))]
+        let all = [V3::try_new().map(Instructions::Avx2)];
         #[cfg(target_arch = "aarch64")]
         let all = [Neon::try_new().map(Instructions::Neon)];
         #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
@@ -43,7 +47,7 @@ impl Processor {
     /// What the instructions are called.
     pub fn name(self) -> &'static str {
         match self.0 {
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", feature = "wide"))]
             Instructions::Avx512(_) => "AVX-512",
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(_) => "AVX2",
@@ -56,7 +60,7 @@ impl Processor {
     pub fn lanes(self, registers: usize) -> usize {
         registers
             * match self.0 {
-                #[cfg(target_arch = "x86_64")]
+                #[cfg(all(target_arch = "x86_64", feature = "wide"))]
                 Instructions::Avx512(_) => V4::F64_LANES,
                 #[cfg(target_arch = "x86_64")]
                 Instructions::Avx2(_) => V3::F64_LANES,
@@ -68,7 +72,7 @@ impl Processor {
     /// Does some work over numbers, one at a time, with such instructions; those of AVX-512 add nothing to one number.
     pub fn run_alone<W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", feature = "wide"))]
             Instructions::Avx512(simd) => Simd::vectorize(*simd, Alone(work)),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(simd) => Simd::vectorize(simd, Alone(work)),
@@ -80,7 +84,7 @@ impl Processor {
     /// Does some work over lanes of N registers.
     pub fn run<const N: usize, W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", feature = "wide"))]
             Instructions::Avx512(simd) => Simd::vectorize(simd, Vectorized::<W, N>(work)),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(simd) => Simd::vectorize(simd, Vectorized::<W, N>(work)),
@@ -92,7 +96,7 @@ impl Processor {
     /// Does some work over lanes of one register, not the widest: for work that takes longer to compile for that than it saves.
     pub fn run_narrow<W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
-            #[cfg(target_arch = "x86_64")]
+            #[cfg(all(target_arch = "x86_64", feature = "wide"))]
             Instructions::Avx512(simd) => Simd::vectorize(*simd, Vectorized::<W, 1>(work)),
             #[cfg(target_arch = "x86_64")]
             Instructions::Avx2(simd) => Simd::vectorize(simd, Vectorized::<W, 1>(work)),
