@@ -25,7 +25,6 @@ impl Accelerometers {
     }
 
     /// When one samples or tells next.
-    #[inline]
     pub fn due(&self) -> Option<Instant> {
         self.0.iter().map(|(.., sensor)| sensor.due()).min()
     }

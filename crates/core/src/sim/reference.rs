@@ -68,7 +68,6 @@ impl Reference {
     }
 
     /// What a law about an axis aims at, where the reference of three axes leads it or not: one that tracks follows the manoeuvre.
-    #[inline]
     pub fn aim(&self, law: &dyn Control, now: Instant, led: Option<Goal>) -> Goal {
         if let Some(goal) = led {
             return goal;

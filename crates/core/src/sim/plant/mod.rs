@@ -57,7 +57,6 @@ impl Plant {
     }
 
     /// Wheels in bearings at the instant seen last.
-    #[inline]
     pub fn borne(&self) -> Vec<SlippedRotor> {
         if let Self::Spatial(plant) = self { plant.borne() } else { Vec::new() }
     }
@@ -83,7 +82,6 @@ impl Plant {
     }
 
     /// The same at a sensor other than the first, which may be elsewhere.
-    #[inline]
     pub fn at_sensor(&self, sensor: usize, truth: &Truth) -> Truth {
         match self {
             Self::Spatial(plant) if sensor > 0 => plant.at_sensor(sensor, truth),

@@ -177,7 +177,6 @@ impl SpatialPlant {
     }
 
     /// Wheels in bearings at the instant seen last; none without friction, imbalance and tachometer.
-    #[inline]
     pub fn borne(&self) -> Vec<SlippedRotor> {
         let began = self.departed.seconds();
         self.two_way.as_deref().map_or_else(Vec::new, |two_way| two_way.turned(began))
@@ -198,7 +197,6 @@ impl SpatialPlant {
     }
 
     /// What there is to measure at another sensor, beside what there is at the first.
-    #[inline]
     pub fn at_sensor(&self, sensor: usize, first: &Truth) -> Truth {
         let shapes = &self.elsewhere[sensor - 1];
         let (angle, rate) = (self.turned(shapes), self.elastic.rate_at(shapes, &self.state.modes));

@@ -222,7 +222,6 @@ impl TwoWay {
     }
 
     /// Rotors in bearings at the instant seen last, after a departure so long after the start (s).
-    #[inline]
     pub fn turned(&self, began: f64) -> Vec<SlippedRotor> {
         self.turning.turned(self.outside.since(began))
     }
@@ -257,7 +256,6 @@ impl TwoWay {
     }
 
     /// Puts the state as seen from the mean axes into another.
-    #[inline]
     pub fn show(&self, rigid: &Rigid, state: &mut SpatialState) {
         let seen = self.turning.seen();
         state.turn = rigid.start(seen.mean, seen.rigid);
