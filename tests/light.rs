@@ -15,6 +15,18 @@ fn papers_are_left_out() {
     }
 }
 
+#[cfg(not(feature = "live"))]
+#[test]
+fn live_runs_are_left_out() {
+    let dir = Dir::with(&["relay-quiet"]);
+    for options in ["--live", "--live=127.0.0.1:0 --speed 20 --wait", "--live --paused --allow-origin https://a.example"] {
+        let run = dir.run(&format!("simulate relay-quiet.toml {options}"));
+        run.exits(2).says(&["the feature `live`", HINT]);
+    }
+    dir.run("simulate relay-quiet.toml --speed 20").exits(2).says(&["--live"]);
+    assert_eq!(dir.names("."), ["relay-quiet.toml"]);
+}
+
 #[cfg(not(feature = "png"))]
 #[test]
 fn figures_are_svg_alone() {

@@ -57,6 +57,7 @@ mod linear;
 mod linear_poles;
 #[cfg(feature = "live")]
 mod live;
+#[cfg(feature = "live")]
 mod live_limits;
 mod logs;
 mod loops;

@@ -2,7 +2,6 @@
 
 use std::collections::BTreeMap;
 use std::fs;
-use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Child, Command, Output, Stdio};
 use std::time::{Duration, Instant};
@@ -174,7 +173,10 @@ pub struct Started {
 
 impl Started {
     /// The next line of stderr that holds a word.
+    #[cfg(feature = "live")]
     pub fn line(&mut self, word: &str) -> String {
+        use std::io::Read;
+
         let err = self.child.as_mut().and_then(|child| child.stderr.as_mut()).expect("not yet waited for");
         let (mut line, mut byte) = (Vec::new(), [0]);
         // Byte by byte: what follows is left for the end.

@@ -15,9 +15,9 @@ mod grid;
 mod help;
 mod identify;
 mod layout;
-#[cfg(not(all(feature = "papers", feature = "png")))]
+#[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
 mod left_out;
-#[cfg(feature = "live")]
+#[cfg_attr(not(feature = "live"), path = "live/left_out.rs")]
 mod live;
 mod log;
 mod logged;

@@ -61,7 +61,6 @@ pub struct Args {
     options: Options,
     #[command(flatten)]
     consent: Consent,
-    #[cfg(feature = "live")]
     #[command(flatten)]
     live: crate::live::Args,
 }
@@ -101,7 +100,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let why = "--table, --metrics, --fail-fast, --sample, --replicas and --scheduler apply only to campaigns (--runs)";
         return Err(Failure::Arguments(why.to_owned()));
     }
-    #[cfg(feature = "live")]
     if args.live.live.is_some() && args.scenarios.len() > 1 {
         let count = args.scenarios.len();
         return Err(Failure::Arguments(format!("--live follows one scenario, got {count}")));
@@ -246,10 +244,7 @@ fn single(
 ) -> Result<(), Failure> {
     let _writing = detail.map(|_| stop::writing());
     let name = run.scenario.name.clone();
-    #[cfg(feature = "live")]
     let mut live = args.live.serve(run)?;
-    #[cfg(not(feature = "live"))]
-    let mut live: Option<()> = None;
     let began = WallInstant::now();
     // Who steers a live run types on the line of the bar.
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
@@ -277,7 +272,6 @@ fn single(
             say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
         }
     }
-    #[cfg(feature = "live")]
     if let Some(live) = live {
         live.finish(&metrics);
     }
