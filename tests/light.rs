@@ -19,7 +19,9 @@ fn papers_are_left_out() {
 #[test]
 fn live_runs_are_left_out() {
     let dir = Dir::with(&["relay-quiet"]);
-    for options in ["--live", "--live=127.0.0.1:0 --speed 20 --wait", "--live --paused --allow-origin https://a.example"] {
+    for options in
+        ["--live", "--live=127.0.0.1:0 --speed 20 --wait", "--live --paused --allow-origin https://a.example"]
+    {
         let run = dir.run(&format!("simulate relay-quiet.toml {options}"));
         run.exits(2).says(&["the feature `live`", HINT]);
     }
