@@ -211,3 +211,17 @@ fn a_metric_does_not_depend_on_which_others_are_wanted() {
         }
     }
 }
+
+/// The lanes are those of the build and of the processor: the feature `wide-lanes` reaches the crate that has them.
+#[cfg(target_arch = "x86_64")]
+#[test]
+fn lanes_are_as_wide_as_the_build_and_the_processor_allow() {
+    let has_wide = std::arch::is_x86_feature_detected!("avx512f")
+        && std::arch::is_x86_feature_detected!("avx512bw")
+        && std::arch::is_x86_feature_detected!("avx512cd")
+        && std::arch::is_x86_feature_detected!("avx512dq")
+        && std::arch::is_x86_feature_detected!("avx512vl");
+    let best = Processor::best().map(Processor::name);
+    assert_eq!(best == Some("AVX-512"), cfg!(feature = "wide-lanes") && has_wide, "{best:?}");
+    assert!(best.is_some() || !std::arch::is_x86_feature_detected!("avx2"), "{best:?}");
+}

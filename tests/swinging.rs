@@ -4,7 +4,8 @@ use std::sync::Arc;
 
 use flexsc_core::attitude::{Vector, rotation};
 use flexsc_core::estimator::attitude::{
-    AttitudeFilterState, AttitudeMeasurement, FilterHistory, Fix, GyroNoise, KnownMode, KnownModes, Swinging,
+    AttitudeFilterState, AttitudeMeasurement, FilterHistory, Fix, GyroNoise, Identified, KnownMode,
+    KnownModes, Swinging,
 };
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::{Detail, Trace};
@@ -12,12 +13,13 @@ use flexsc_core::scenario::Scenario;
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
 
-use crate::traces::flown;
+use crate::traces::{flown, within};
 use crate::util::SCENARIOS;
 
 /// Readings of a made-up run, and what a filter that shares nothing with this one makes of them: `golden/swinging_oracle.py`.
 const READ: &str = include_str!("golden/swinging-in.csv");
 const GIVEN: &str = include_str!("golden/swinging-out.csv");
+const IDENTIFIED: &str = include_str!("golden/swinging-identified.csv");
 
 fn rows(text: &str) -> Vec<Vec<f64>> {
     text.lines().map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect()
@@ -26,6 +28,7 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 fn known() -> KnownModes {
     let mode = |frequency: f64, damping: f64, [hub, gyro, mount]: [[f64; 3]; 3], rate: f64| KnownMode {
         frequency,
+        true_frequency: frequency,
         damping,
         hub: hub.into(),
         gyro: gyro.into(),
@@ -43,16 +46,32 @@ fn known() -> KnownModes {
 
 #[test]
 fn modes_in_the_filter_are_those_of_the_oracle() {
+    follows_the_oracle(known(), GIVEN, 1e-12);
+}
+
+/// From 20 % above and 10 % below.
+#[test]
+fn identified_frequencies_are_those_of_the_oracle() {
+    let mut known = known();
+    known.identified = Some(Identified { deviation: 0.15, walk: 1e-4 });
+    for (mode, off) in known.each.iter_mut().zip([1.2, 0.9]) {
+        mode.frequency *= off;
+    }
+    follows_the_oracle(known, IDENTIFIED, 1e-11);
+}
+
+/// A filter that knows or identifies these modes has the states of the oracle within a tolerance, and its deviations.
+fn follows_the_oracle(known: KnownModes, given: &str, tolerance: f64) {
     let (read, noise) = (rows(READ), GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 });
     let off = Vector::new(1e-3, -5e-4, 8e-4);
     let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
     let mut filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
-    filter.swinging = Some(Box::new(Swinging::new(Arc::new(known()), &filter.covariance)));
+    filter.swinging = Some(Box::new(Swinging::new(Arc::new(known), &filter.covariance)));
     let mut history = FilterHistory::new(Instant::START, filter, noise, Span::from_seconds(0.5));
     let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
     let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
     let tracker = Matrix3::from_diagonal(&Vector::new(2.4e-5, 2.4e-5, 1.5e-4).map(|noise| noise * noise));
-    let (mut given, mut nis) = (rows(GIVEN).into_iter().peekable(), 0.0);
+    let (mut given, mut nis) = (rows(given).into_iter().peekable(), 0.0);
     for k in 1..read.len() {
         history.push(at(k - 1, 0.1), three(&read[k - 1][1..4]));
         history.read(at(k, 0.0), three(&read[k][4..7]));
@@ -71,17 +90,22 @@ fn modes_in_the_filter_are_those_of_the_oracle() {
         let filter = history.latest();
         let swinging = filter.swinging.as_ref().expect("modes");
         let q = Quaternion::new(row[1], row[2], row[3], row[4]);
-        assert!((filter.attitude - q).norm() < 1e-12, "{k} {:e}", (filter.attitude - q).norm());
-        assert!((filter.bias - three(&row[5..8])).norm() < 1e-13, "{k} {}", filter.bias);
+        assert!((filter.attitude - q).norm() < tolerance, "{k} {:e}", (filter.attitude - q).norm());
+        assert!((filter.bias - three(&row[5..8])).norm() < 0.1 * tolerance, "{k} {}", filter.bias);
         for (mode, [x, y]) in swinging.state.iter().enumerate() {
             let gap = (x - row[8 + 2 * mode]).abs().max((y - row[9 + 2 * mode]).abs());
-            assert!(gap < 1e-12, "{k} {mode} {gap:e}");
+            assert!(gap < tolerance, "{k} {mode} {gap:e}");
         }
-        for state in 0..10 {
+        let states = swinging.covariance.nrows();
+        for state in 0..states {
             let deviation = swinging.covariance[(state, state)].sqrt();
             assert!((deviation / row[12 + state] - 1.0).abs() < 1e-9, "{k} {state} {deviation}");
         }
-        assert!((nis - row[22]).abs() < 1e-8 * (1.0 + nis), "{k} {nis}");
+        let (last, frequencies) = (row[12 + states], &row[13 + states..]);
+        assert!((nis - last).abs() < 1e-8 * (1.0 + nis), "{k} {nis} {last}");
+        for (frequency, given) in swinging.frequencies.iter().zip(frequencies) {
+            assert!((frequency / given - 1.0).abs() < 1e-9, "{k} {frequency} {given}");
+        }
     }
     assert!(given.peek().is_none());
 }
@@ -137,6 +161,41 @@ fn a_filter_that_knows_the_mode_is_consistent_and_points_better() {
     assert!(rings(&rigid) > 3.0 * rings(&with), "{} {}", rings(&rigid), rings(&with));
 }
 
+/// A number of the one mode in the filter, at each sample.
+fn column<'a>(trace: &'a Trace, field: &str) -> &'a [f64] {
+    within(trace, "/attitude_filter_modes", "modes", field)
+}
+
+/// From 15 % below to 15 % above, in runs with other noise: the slew tells the frequency, and the deviations are honest.
+#[test]
+fn frequencies_are_identified_from_the_slew() {
+    let mut squares = 0.0;
+    let cases = [(0.85, 0.15), (0.93, 0.15), (1.0, 0.15), (1.15, 0.15)];
+    for (factor, deviation) in cases {
+        let keys = format!("modes = [0], factor = {factor}, frequency_deviation = {deviation}, noise");
+        let boom = changed(&[("modes = [0], noise", &keys)]).expect("it");
+        for run in 0..5 {
+            let (metrics, trace) = flown(&boom, run, Detail::Full);
+            let Some(Value::Numbers(errors)) = metrics.get("frequency_estimate_errors") else {
+                panic!("no errors of frequencies")
+            };
+            assert!(errors.len() == 1 && errors[0].abs() < 2e-3, "{factor} {run} {errors:?}");
+            assert!(metrics.number("nis_mean").expect("it") < 1.6, "{factor} {run}");
+            let last = |field: &str| *column(&trace, field).last().expect("a row");
+            let error = last("frequency_rad_s") - last("true_frequency_rad_s");
+            assert!((error / last("true_frequency_rad_s") - errors[0]).abs() < 1e-12);
+            squares += (error / last("frequency_sd_rad_s")).powi(2);
+        }
+    }
+    let mean = squares / (5 * cases.len()) as f64;
+    assert!((0.5..4.0).contains(&mean), "{mean}");
+    // Of one that is taken as known, the frequency stays, without a deviation.
+    let (metrics, trace) = flown(&changed(&[]).expect("it"), 0, Detail::Full);
+    assert!(metrics.get("frequency_estimate_errors").is_none());
+    assert_eq!(column(&trace, "frequency_rad_s"), column(&trace, "true_frequency_rad_s"));
+    assert!(column(&trace, "frequency_sd_rad_s").iter().all(|deviation| *deviation == 0.0));
+}
+
 #[test]
 fn what_no_filter_with_modes_can_be_is_refused() {
     for (change, words) in [
@@ -144,6 +203,11 @@ fn what_no_filter_with_modes_can_be_is_refused() {
         (("modes = [0], noise", "modes = [0, 0], noise"), "names mode 0 again"),
         (("modes = [0], noise", "modes = [], noise"), "must name at least one mode"),
         (("feeds = \"hub\"", "feeds = \"modes\""), "must be `rigid` or `hub`"),
+        (("modes = [0], noise", "modes = [0], frequency_walk = 1e-4, noise"), "needs `frequency_deviation`"),
+        (
+            ("modes = [0], noise", "modes = [0], frequency_deviation = 0, noise"),
+            "frequency_deviation`: must be a positive number",
+        ),
         (
             ("modes = [0], noise", "modes = [0], frequencies = [1, 2], noise"),
             "must be one for each of 1 mode, got 2",

@@ -93,12 +93,11 @@ fn spatial(metrics: &Metrics, bends: bool) {
     goal(metrics, |band| format!("each axis in its band (at most ±{band:.3e} rad)"));
     if let Some(Value::Numbers(frequencies)) = metrics.get("frequency_estimates_hz") {
         let found: Vec<String> = frequencies.iter().map(|frequency| format!("{frequency:.4}")).collect();
-        say!(
-            "  modes          {} Hz as estimated; damped in {}, paused {}",
-            found.join(", "),
-            counted(number("damping_cycles"), "cycle"),
-            counted(number("damping_pauses"), "time"),
-        );
+        let damped = metrics.get("damping_cycles").map(|_| {
+            let [cycles, pauses] = ["damping_cycles", "damping_pauses"].map(number);
+            format!("; damped in {}, paused {}", counted(cycles, "cycle"), counted(pauses, "time"))
+        });
+        say!("  modes          {} Hz as estimated{}", found.join(", "), damped.unwrap_or_default());
     }
 }
 

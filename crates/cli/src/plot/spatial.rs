@@ -6,9 +6,9 @@ use std::path::Path;
 use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
-    Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion, Log,
-    Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialCycle, SpatialMotion, TrackedMode,
-    Tracking, Wheels,
+    Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion,
+    ElasticEstimates, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialCycle,
+    SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
@@ -27,6 +27,8 @@ pub struct Cycles {
     tracking: Vec<(f64, Tracking)>,
     /// What an attitude filter made of each sample.
     pub attitude: Vec<(f64, AttitudeEstimate)>,
+    /// What it knew of elastic modes.
+    pub elastic: Vec<(f64, ElasticEstimates)>,
     /// The wheels, at each period of the log.
     pub wheels: Vec<(f64, Wheels)>,
     /// Control moment gyros, at each period of the log.
@@ -84,6 +86,7 @@ impl Record for Cycles {
             Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
             Sample::Accelerations(row) => self.accelerations.push((now.seconds(), row.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
+            Sample::ElasticEstimates(row) => self.elastic.push((now.seconds(), row.clone())),
             Sample::SpatialMotion(SpatialMotion {
                 wheels,
                 gimbals,

@@ -9,8 +9,8 @@ use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra,
-    frequency, gain, gimbals, magnetorquers, modes, orbit, outputs, phase_plane, pointing, torque, wheel,
-    wheels,
+    frequency, gain, gimbals, identified, magnetorquers, modes, orbit, outputs, phase_plane, pointing,
+    torque, wheel, wheels,
 };
 
 /// A figure.
@@ -56,7 +56,7 @@ pub enum What {
     Orbit,
     /// Rotating appendages: drive angles and natural frequencies
     Drives,
-    /// Frequency of the dominant mode, estimated and true
+    /// Frequency of the dominant mode, or of those that an attitude filter identifies, estimated and true
     Frequency,
     /// Displacement of the dominant mode, estimated and true
     Estimate,
@@ -110,6 +110,7 @@ impl What {
             Self::Consistency if spatial => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
             }
+            Self::Frequency if spatial => identified::of(story),
             Self::Frequency | Self::Estimate | Self::Consistency => {
                 !spatial && story.scenario.estimator.as_ref().is_some_and(Estimator::filters)
             }
@@ -145,6 +146,7 @@ impl What {
             Self::Magnetorquers => magnetorquers::figure(story, cycles),
             Self::Drives => drives::figure(story, cycles),
             Self::Accelerations => accelerations::figure(story, cycles),
+            Self::Frequency if !cycles.elastic.is_empty() => identified::figure(story, cycles),
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),
             Self::Consistency if !cycles.attitude.is_empty() => attitude_filter::figure(story, cycles),

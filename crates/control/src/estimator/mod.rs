@@ -165,6 +165,11 @@ pub trait Estimate: fmt::Debug + Send + Sync {
         None
     }
 
+    /// What an attitude filter knows of elastic modes, if it knows any.
+    fn elastic(&self) -> Option<record::ElasticEstimates> {
+        None
+    }
+
     /// What adaptive observers know, beside the true rates of the body's modes, and what damping makes of it.
     fn tracking(
         &self,

@@ -128,6 +128,8 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(!scenario.study.jets_alone || scenario.environment.is_some(), "/torques", Full);
         add(planar::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
+        let elastic = estimator.and_then(Estimator::attitude).is_some_and(|filter| filter.elastic.is_some());
+        add(elastic, "/attitude_filter_modes", Full);
         add(scenario.study.wheels.is_some(), "/wheels", Full);
         add(!scenario.study.gimbals.is_empty(), "/control_moment_gyros", Full);
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);

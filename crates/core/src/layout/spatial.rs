@@ -5,6 +5,8 @@ use super::planar::adaptation;
 use super::{Tab, metrics};
 use crate::attitude::AXES;
 use crate::body::Spatial;
+use crate::estimator::Estimator;
+use crate::estimator::attitude::ElasticStates;
 use crate::motion::turning::Bearing;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
@@ -123,8 +125,10 @@ fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
 /// The tabs, with the panels of the motion and of the modes.
 fn together(scenario: &Scenario, motion: Vec<LayoutPanel>, elastic: Vec<LayoutPanel>) -> Vec<Tab> {
     let mut tabs = vec![Tab { title: "Motion", panels: motion }];
-    if scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some()) {
-        tabs.push(Tab { title: "Attitude filter", panels: filter() });
+    if let Some(spec) = scenario.estimator.as_ref().and_then(Estimator::attitude) {
+        let mut panels = filter();
+        panels.extend(spec.elastic.as_ref().filter(|elastic| elastic.identifies()).map(identified));
+        tabs.push(Tab { title: "Attitude filter", panels });
     }
     tabs.push(Tab { title: "Elastic modes", panels: elastic });
     if scenario.adaptation.is_some() {
@@ -213,6 +217,19 @@ fn rates(fields: &[(&str, &str)]) -> Vec<PlotLine> {
         AXES.into_iter().enumerate().map(axis).collect::<Vec<_>>()
     };
     fields.iter().flat_map(of).collect()
+}
+
+/// The frequencies that an attitude filter identifies, each beside what it really is.
+fn identified(elastic: &ElasticStates) -> LayoutPanel {
+    let of = |(index, mode): (usize, &usize)| {
+        let at = |field: &str| format!("/attitude_filter_modes.modes[{index}].{field}");
+        [
+            line(at("frequency_rad_s"), format!("mode {mode}")).color(index).thick(),
+            line(at("true_frequency_rad_s"), format!("mode {mode}, true")).color(index),
+        ]
+    };
+    let lines = elastic.modes.iter().enumerate().take(MOST_LINES).flat_map(of).collect();
+    LayoutPanel::plot("identified", "Frequencies that the filter identifies (rad/s)", lines)
 }
 
 /// The energy of all modes, and of those that the jets excite most.

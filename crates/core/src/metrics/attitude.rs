@@ -1,13 +1,17 @@
 //! How well an attitude filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
-use super::{ATTITUDE_ERROR, BIAS_ERROR, Meaning, MetricValue, NEES_MEAN, NIS_INSIDE, NIS_MEAN, Value};
+use super::{
+    ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, Meaning, MetricValue, NEES_MEAN,
+    NIS_INSIDE, NIS_MEAN, Value,
+};
 use crate::estimator::Estimator;
-use crate::record::{AttitudeEstimate, AxisEstimate, Use};
+use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
 /// What it tells.
-pub(super) const TOLD: &[Meaning] = &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, ATTITUDE_ERROR, BIAS_ERROR];
+pub(super) const TOLD: &[Meaning] =
+    &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ESTIMATES, FREQUENCY_ERRORS];
 
 /// Chi-square of three degrees of freedom lies between these with a probability of 95 %.
 const INSIDE: [f64; 2] = [0.215_795_282_623_897_85, 9.348_403_604_496_148];
@@ -27,6 +31,8 @@ pub struct AttitudeMetrics {
     inside: u64,
     /// Sums of the squared errors of attitude (rad²) and bias (rad²/s²).
     squares: [f64; 2],
+    /// The modes after the last sample, of a filter that identifies their frequencies.
+    identified: Option<Vec<ElasticEstimate>>,
 }
 
 impl AttitudeMetrics {
@@ -45,6 +51,10 @@ impl AttitudeMetrics {
             nis: 0.0,
             inside: 0,
             squares: [0.0; 2],
+            identified: filter
+                .attitude()
+                .and_then(|filter| filter.elastic.as_ref())
+                .and_then(|elastic| elastic.identifies().then(Vec::new)),
         })
     }
 
@@ -69,6 +79,13 @@ impl AttitudeMetrics {
         }
     }
 
+    /// Takes what it knew of the modes after a sample.
+    pub fn learn(&mut self, estimates: &ElasticEstimates) {
+        if let Some(identified) = &mut self.identified {
+            identified.clone_from(&estimates.modes);
+        }
+    }
+
     /// The metrics of the run that has ended.
     pub fn finish(self) -> Vec<MetricValue> {
         // 0/0 of no samples: no number.
@@ -77,12 +94,18 @@ impl AttitudeMetrics {
         if self.own && self.count.0 == 0 {
             return Vec::new();
         }
-        vec![
+        let mut told = vec![
             (&NEES_MEAN, Value::Number(self.nees / all / 6.0)),
             (&NIS_MEAN, Value::Number(self.nis / measured / 3.0)),
             (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
             (&ATTITUDE_ERROR, attitude),
             (&BIAS_ERROR, bias),
-        ]
+        ];
+        if let Some(last) = self.identified {
+            let list = |of: &dyn Fn(&ElasticEstimate) -> f64| Value::Numbers(last.iter().map(of).collect());
+            told.push((&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)));
+            told.push((&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)));
+        }
+        told
     }
 }

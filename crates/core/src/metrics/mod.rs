@@ -172,7 +172,7 @@ metrics! {
     ACCELERATION = "acceleration_rms_m_s2", "m/s²",
         "Root mean square reading of each accelerometer (norm over its axes)";
     FREQUENCY_ESTIMATES = "frequency_estimates_hz", "Hz",
-        "Estimated natural frequency of each mode tracked by an adaptive observer, at the last cycle; ordered by axis, then by frequency";
+        "Estimated natural frequency of each mode, at the last cycle: those tracked by an adaptive observer, ordered by axis, then by frequency, or those that an attitude filter identifies";
     FREQUENCY_ERRORS = "frequency_estimate_errors", "",
         "Relative errors of frequency_estimates_hz";
     INFLUENCE_ESTIMATES = "influence_estimates", "",
@@ -318,8 +318,10 @@ impl Record for Gather {
             (Some(filter), Sample::Estimates(estimates)) => filter.see(now, &estimates.axes),
             _ => {}
         }
-        if let (Some(known), Sample::AttitudeEstimate(estimate)) = (&mut self.known, sample) {
-            known.see(now, estimate);
+        match (&mut self.known, sample) {
+            (Some(known), Sample::AttitudeEstimate(estimate)) => known.see(now, estimate),
+            (Some(known), Sample::ElasticEstimates(estimates)) => known.learn(estimates),
+            _ => {}
         }
         if let (Some(windows), Sample::Window(window)) = (&mut self.windows, sample) {
             windows.see(window);

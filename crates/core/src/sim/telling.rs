@@ -216,7 +216,9 @@ impl Simulation {
         }
         let truth = self.plant.view(now)?.orientation;
         if let Some(row) = self.estimator.attitude(now, &truth, self.sensing.bias()) {
-            return Ok(record.record(now, Sample::AttitudeEstimate(&row))?);
+            record.record(now, Sample::AttitudeEstimate(&row))?;
+            let modes = self.estimator.elastic();
+            return Ok(modes.map_or(Ok(()), |row| record.record(now, Sample::ElasticEstimates(&row)))?);
         }
         let of = |axis: usize| self.estimator.estimate(axis, now, &self.plant.about(axis, &self.origin));
         if self.beliefs.len() == 1 {

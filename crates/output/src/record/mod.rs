@@ -42,12 +42,12 @@ pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use topics::{
     Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
     BearingMotion, Bearings, ChannelState, Command, ControlMomentGyro, ControlMomentGyros, Decision,
-    DriveMotion, DrivenMode, DrivesMotion, Energy, Envelope, Estimate, Estimates, FaultEvent, GoalMotion,
-    Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine, MetricPage, Metrics, ModeEnvelope,
-    ModeEstimate, ModeMotion, Modes, Objective, Orbit, OrbitAxis, OutputMotion, OutputName, Outputs, Params,
-    Pointing, Position, Rate, Rates, Residual, Sliding, Summary, TOPICS, ThrusterPulse, Thrusters, Torque,
-    Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations, Wheel, WheelEvent, WheelMotion, Wheels,
-    WindowMean,
+    DriveMotion, DrivenMode, DrivesMotion, ElasticEstimate, ElasticEstimates, Energy, Envelope, Estimate,
+    Estimates, FaultEvent, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
+    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit, OrbitAxis,
+    OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary,
+    TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
+    Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -76,6 +76,8 @@ pub enum Sample<'a> {
     Estimates(&'a Estimates),
     /// An attitude filter took a sample.
     AttitudeEstimate(&'a AttitudeEstimate),
+    /// What that filter then knew of elastic modes.
+    ElasticEstimates(&'a ElasticEstimates),
     /// A wheel passed through zero speed, stuck, or slipped again.
     WheelEvent(&'a WheelEvent),
     /// An accelerometer told a sample.
@@ -107,6 +109,7 @@ impl Sample<'_> {
             | Self::Estimate(_)
             | Self::Estimates(_)
             | Self::AttitudeEstimate(_)
+            | Self::ElasticEstimates(_)
             | Self::Tracking(_)
             | Self::Accelerations(_)
             | Self::SpatialMotion(_) => Detail::Full,
@@ -242,6 +245,7 @@ trait TakeRow {
             Sample::Estimate(estimate) => self.take(now, estimate),
             Sample::Estimates(estimates) => self.take(now, estimates),
             Sample::AttitudeEstimate(estimate) => self.take(now, estimate),
+            Sample::ElasticEstimates(estimates) => self.take(now, estimates),
             Sample::Tracking(tracking) => self.take(now, tracking),
             Sample::WheelEvent(event) => self.take(now, event),
             Sample::Fault(event) => self.take(now, event),

@@ -861,6 +861,12 @@ class ElasticStates(Part):
     """Natural frequencies in the filter's model (rad/s); default: the body's own."""
     factor: float | None = None
     """Factor on these frequencies: the error of the filter's model. Default: 1.0."""
+    frequency_deviation: float | None = None
+    """Relative standard deviation of the frequencies at the start, which the filter then identifies;
+    default: it takes them as known.
+    """
+    frequency_walk: float | None = None
+    """Random walk of the logarithm of each identified frequency (1/sqrt(s)); default: none."""
     displacement: float | None = None
     """Standard deviation of each displacement at the start (m sqrt(kg)). Default: 0.001."""
     rate: float | None = None

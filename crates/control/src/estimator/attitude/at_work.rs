@@ -10,7 +10,7 @@ use crate::belief::Belief;
 use crate::estimator::kalman::Prior;
 use crate::estimator::{Estimate, Taken};
 use crate::random::Stream;
-use crate::record::{AttitudeEstimate, AxisEstimate};
+use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates};
 use crate::sensor::{Orientation, Reading};
 use crate::time::Instant;
 
@@ -218,6 +218,22 @@ impl Estimate for Tracking {
             numbers: self.told.numbers,
             measured: self.used.into(),
         })
+    }
+
+    fn elastic(&self) -> Option<ElasticEstimates> {
+        let swinging = self.history.as_ref()?.latest().swinging.as_deref()?;
+        let each = swinging.known.each.iter().zip(&swinging.state).zip(&swinging.frequencies);
+        let modes = each.zip(swinging.deviations()).map(|(((mode, state), frequency), deviation)| {
+            let [displacement, rate_over_frequency] = *state;
+            ElasticEstimate {
+                displacement,
+                rate_over_frequency,
+                frequency_rad_s: *frequency,
+                frequency_sd_rad_s: deviation,
+                true_frequency_rad_s: mode.true_frequency,
+            }
+        });
+        Some(ElasticEstimates { modes: modes.collect() })
     }
 
     fn copy(&self) -> Box<dyn Estimate> {

@@ -13,7 +13,7 @@ use crate::body::Spatial;
 use crate::count::counted;
 use crate::document::Fault;
 use crate::estimator::Feeds;
-use crate::quantity::Positive;
+use crate::quantity::{NonNegative, Positive};
 
 /// Elastic modes as states of the filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -27,6 +27,13 @@ pub struct ElasticStates {
     /// Factor on these frequencies: the error of the filter's model.
     #[serde(default = "one")]
     pub factor: Positive,
+    /// Relative standard deviation of the frequencies at the start, which the filter then identifies; default: it takes them as
+    /// known.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_deviation: Option<Positive>,
+    /// Random walk of the logarithm of each identified frequency (1/sqrt(s)); default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub frequency_walk: Option<NonNegative>,
     /// Random walk of the rate of each mode due to random forces (m sqrt(kg)/s^1.5).
     pub noise: Positive,
     /// Standard deviation of each displacement at the start (m sqrt(kg)).
@@ -51,8 +58,10 @@ fn displacement() -> Positive {
 /// A mode as the filter knows it.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownMode {
-    /// Natural frequency (rad/s).
+    /// Natural frequency at the start (rad/s).
     pub frequency: f64,
+    /// That of the body (rad/s).
+    pub true_frequency: f64,
     /// Damping ratio.
     pub damping: f64,
     /// Rotation of the hub for a unit of it (rad/(m sqrt(kg))).
@@ -65,6 +74,15 @@ pub struct KnownMode {
     pub initial: [f64; 2],
 }
 
+/// How a filter identifies frequencies.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct Identified {
+    /// Standard deviation of the logarithm of each at the start.
+    pub deviation: f64,
+    /// Its random walk (1/sqrt(s)).
+    pub walk: f64,
+}
+
 /// The modes that a filter knows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownModes {
@@ -72,6 +90,8 @@ pub struct KnownModes {
     pub each: Vec<KnownMode>,
     /// By how much random forces let a rate walk (m sqrt(kg)/s^1.5).
     pub noise: f64,
+    /// How it identifies their frequencies, if it does.
+    pub identified: Option<Identified>,
     /// What turns a moment that is told (rad/s²) into a torque about each axis (kg m²).
     pub inertia: Vector,
     /// Whether the law reads angle and rate without the modes.
@@ -79,6 +99,11 @@ pub struct KnownModes {
 }
 
 impl ElasticStates {
+    /// Whether the filter identifies their frequencies.
+    pub fn identifies(&self) -> bool {
+        self.frequency_deviation.is_some()
+    }
+
     /// The modes of a body whose sensors are at these points, of which one is the gyro's; torques act on the hub, its first point.
     ///
     /// # Errors
@@ -101,6 +126,10 @@ impl ElasticStates {
             let why = format!("must be one for each of {}, got {given}", counted(self.modes.len(), "mode"));
             return Err(Fault::new("frequencies", why));
         }
+        if self.frequency_walk.is_some() && self.frequency_deviation.is_none() {
+            let why = "is of frequencies that are identified: needs `frequency_deviation`";
+            return Err(Fault::new("frequency_walk", why));
+        }
         if self.feeds == Some(Feeds::Modes) {
             return Err(Fault::new("feeds", "must be `rigid` or `hub`: the attitude is never as measured"));
         }
@@ -114,6 +143,7 @@ impl ElasticStates {
             let displacement = self.displacement.get();
             KnownMode {
                 frequency,
+                true_frequency: own.frequency.get(),
                 damping: own.damping.get(),
                 hub: hub[*mode].1,
                 gyro: beyond(&mounts[gyro]),
@@ -125,6 +155,10 @@ impl ElasticStates {
         Ok(KnownModes {
             each: self.modes.iter().enumerate().map(known).collect(),
             noise: self.noise.get(),
+            identified: self.frequency_deviation.map(|deviation| Identified {
+                deviation: deviation.get(),
+                walk: self.frequency_walk.map_or(0.0, NonNegative::get),
+            }),
             inertia: tensor.diagonal(),
             rigid: self.feeds != Some(Feeds::Hub),
         })

@@ -13,7 +13,7 @@ mod swinging;
 mod tests;
 
 pub use at_work::Tracking;
-pub use elastic::{ElasticStates, KnownMode, KnownModes};
+pub use elastic::{ElasticStates, Identified, KnownMode, KnownModes};
 pub use filter::{AttitudeFilterState, Correction};
 pub use gains::{Complementary, Form};
 pub use history::{FilterHistory, Fix};

@@ -1,7 +1,9 @@
 //! The states of an attitude filter's modes, with the covariance of all that it knows.
 //!
 //! Errors are theta, beta, and of each mode those of q and q'/W. Through an interval theta' = -w^ x theta - beta - g dq' - n_v,
-//! beta' = n_u, and the modes swing; transition and added covariance are those of Van Loan for constant w^, exact.
+//! beta' = n_u, and the modes swing; transition and added covariance are those of Van Loan for constant w^, exact. Where the
+//! filter identifies frequencies, the errors of each ln W follow; what they do to attitude and modes is the derivative of the
+//! estimate at the end of the interval, exact, and their random walk is added there.
 
 use std::sync::Arc;
 
@@ -12,6 +14,7 @@ use super::measurement::{GyroNoise, across};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::environment::into;
 use crate::numerics::exponential::exponential;
+use crate::numerics::stumpff::stumpff;
 use crate::sensor::VectorSight;
 
 /// The modes of a filter at one instant.
@@ -19,11 +22,15 @@ use crate::sensor::VectorSight;
 pub struct Swinging {
     /// What it knows of them.
     pub known: Arc<KnownModes>,
+    /// W of each, as identified so far (rad/s).
+    pub frequencies: Vec<f64>,
     /// q and q'/W of each (m sqrt(kg)).
     pub state: Vec<[f64; 2]>,
+    /// By how much q and q'/W of each grow over the last interval for a unit of ln W.
+    grown: Vec<[f64; 2]>,
     /// Mean rate of each over the last interval (m sqrt(kg)/s).
     pub mean: Vec<f64>,
-    /// Covariance of the errors of attitude, bias and modes.
+    /// Covariance of the errors of attitude, bias and modes, and of the logarithms of frequencies that are identified.
     pub covariance: DMatrix<f64>,
 }
 
@@ -39,7 +46,8 @@ impl Swinging {
     /// The modes at rest, beside attitude and bias of this covariance.
     pub fn new(known: Arc<KnownModes>, covariance: &Matrix6<f64>) -> Self {
         let count = known.each.len();
-        let mut whole = DMatrix::zeros(6 + 2 * count, 6 + 2 * count);
+        let order = 6 + 2 * count + if known.identified.is_some() { count } else { 0 };
+        let mut whole = DMatrix::zeros(order, order);
         whole.view_mut((0, 0), (6, 6)).copy_from(covariance);
         for (index, mode) in known.each.iter().enumerate() {
             for (part, deviation) in mode.initial.iter().enumerate() {
@@ -47,7 +55,23 @@ impl Swinging {
                 whole[(at, at)] = deviation * deviation;
             }
         }
-        Self { state: vec![[0.0; 2]; count], mean: vec![0.0; count], covariance: whole, known }
+        if let Some(identified) = known.identified {
+            for at in 6 + 2 * count..order {
+                whole[(at, at)] = identified.deviation * identified.deviation;
+            }
+        }
+        let frequencies = known.each.iter().map(|mode| mode.frequency).collect();
+        let (state, grown) = (vec![[0.0; 2]; count], vec![[0.0; 2]; count]);
+        Self { frequencies, state, grown, mean: vec![0.0; count], covariance: whole, known }
+    }
+
+    /// Standard deviations of the frequencies (rad/s): 0 of those that are taken for known.
+    pub fn deviations(&self) -> Vec<f64> {
+        let first = 6 + 2 * self.frequencies.len();
+        let relative =
+            |at: usize| if self.known.identified.is_some() { self.covariance[(at, at)] } else { 0.0 };
+        let each = self.frequencies.iter().enumerate();
+        each.map(|(index, frequency)| frequency * libm::sqrt(relative(first + index))).collect()
     }
 
     /// The covariance of attitude and bias.
@@ -78,13 +102,24 @@ impl Swinging {
     pub fn swing(&mut self, seconds: f64, torques: &[(f64, Vector)]) -> Vector {
         let known = self.known.clone();
         let mut turned = Vector::zeros();
-        for ((state, mean), mode) in self.state.iter_mut().zip(&mut self.mean).zip(&known.each) {
+        let moving = self.state.iter_mut().zip(&mut self.mean).zip(&mut self.grown);
+        for (((state, mean), grown), (mode, frequency)) in
+            moving.zip(known.each.iter().zip(&self.frequencies))
+        {
             let before = state[0];
+            *grown = [0.0; 2];
             for (lasts, torque) in torques {
-                let rest = mode.hub.dot(torque) / (mode.frequency * mode.frequency);
-                let [a, b, c, d] = transition(mode.frequency, mode.damping, *lasts);
+                let rest = mode.hub.dot(torque) / (frequency * frequency);
+                let [a, b, c, d] = transition(*frequency, mode.damping, *lasts);
                 let (x, y) = (state[0] - rest, state[1]);
-                *state = [rest + a * x + b * y, c * x + d * y];
+                let (swung, rate) = (a * x + b * y, c * x + d * y);
+                *state = [rest + swung, rate];
+                // exp(W t K) grows by W t K exp(W t K), and the rest by -2 of it.
+                let (x, y, angle) = (grown[0] + 2.0 * rest, grown[1], frequency * lasts);
+                *grown = [
+                    a * x + b * y + angle * rate - 2.0 * rest,
+                    c * x + d * y - angle * (swung + 2.0 * mode.damping * rate),
+                ];
             }
             *mean = if seconds > 0.0 { (state[0] - before) / seconds } else { 0.0 };
             turned += mode.gyro * (state[0] - before);
@@ -94,7 +129,7 @@ impl Swinging {
 
     /// Carries the covariance through an interval in which the body turns so far (rad).
     pub fn spread(&mut self, turn: &Vector, seconds: f64, noise: &GyroNoise) {
-        let order = self.covariance.nrows();
+        let order = 6 + 2 * self.state.len();
         let mut flow = DMatrix::zeros(order, order);
         flow.view_mut((0, 0), (3, 3)).copy_from(&(-turn.cross_matrix()));
         let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
@@ -105,14 +140,15 @@ impl Swinging {
             added[(axis + 3, axis + 3)] = walk * walk * seconds;
         }
         for (index, mode) in self.known.each.iter().enumerate() {
-            let (at, angle) = (6 + 2 * index, mode.frequency * seconds);
+            let frequency = self.frequencies[index];
+            let (at, angle) = (6 + 2 * index, frequency * seconds);
             flow[(at, at + 1)] = angle;
             flow[(at + 1, at)] = -angle;
             flow[(at + 1, at + 1)] = -2.0 * mode.damping * angle;
             for axis in 0..3 {
                 flow[(axis, at + 1)] = -mode.gyro[axis] * angle;
             }
-            let force = self.known.noise / mode.frequency;
+            let force = self.known.noise / frequency;
             added[(at + 1, at + 1)] = force * force * seconds;
         }
         // [VanLoan78]: exp [[-F, Q], [0, F']] = [[.., Phi^-1 Qd], [0, Phi']].
@@ -123,8 +159,37 @@ impl Swinging {
         let both = exponential(&both);
         let transition = both.view((order, order), (order, order)).transpose();
         let added = &transition * both.view((0, order), (order, order));
+        let (transition, added) = self.identifying((transition, added), turn, seconds);
         let carried = &transition * &self.covariance * transition.transpose() + added;
         self.covariance = 0.5 * (&carried + carried.transpose());
+    }
+
+    /// The transition and what noise adds over an interval, with the frequencies if they are identified.
+    fn identifying(
+        &self,
+        (transition, added): (DMatrix<f64>, DMatrix<f64>),
+        turn: &Vector,
+        seconds: f64,
+    ) -> (DMatrix<f64>, DMatrix<f64>) {
+        let Some(identified) = self.known.identified else { return (transition, added) };
+        let (first, order) = (transition.nrows(), self.covariance.nrows());
+        let mut transition = transition.resize(order, order, 0.0);
+        let mut added = added.resize(order, order, 0.0);
+        let ([_, half, sixth, ..], across) = (stumpff(turn.norm_squared()), turn.cross_matrix());
+        for (index, (mode, [grown, rate])) in self.known.each.iter().zip(&self.grown).enumerate() {
+            let at = first + index;
+            // What the gyro's turn beyond the hub grows by turns the estimate the other way.
+            let off = mode.gyro * -*grown;
+            let off = off - across * off * half + across * (across * off) * sixth;
+            for axis in 0..3 {
+                transition[(axis, at)] = off[axis];
+            }
+            transition[(6 + 2 * index, at)] = *grown;
+            transition[(7 + 2 * index, at)] = *rate;
+            transition[(at, at)] = 1.0;
+            added[(at, at)] = identified.walk * identified.walk * seconds;
+        }
+        (transition, added)
     }
 
     /// Takes what a sensor sees of the hub at this attitude: an attitude whose error has this covariance.
@@ -194,6 +259,10 @@ impl Swinging {
         for (index, state) in self.state.iter_mut().enumerate() {
             state[0] += error[6 + 2 * index];
             state[1] += error[7 + 2 * index];
+        }
+        let first = 6 + 2 * self.state.len();
+        for (frequency, error) in self.frequencies.iter_mut().zip(error.iter().skip(first)) {
+            *frequency *= libm::exp(error.clamp(-1.0, 1.0));
         }
         let part = |from: usize| Vector::new(error[from], error[from + 1], error[from + 2]);
         Some(SwingInnovation { error: [part(0), part(3)], nis: off.dot(&(inverse * off)) })

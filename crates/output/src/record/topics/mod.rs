@@ -17,10 +17,10 @@ pub use one_angle::{
 pub use run::{FaultEvent, Metric, MetricLine, MetricPage, Metrics, OutputName, Params, Summary};
 pub use three_axes::{
     Acceleration, Accelerations, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
-    ChannelState, ControlMomentGyro, ControlMomentGyros, DriveMotion, DrivenMode, DrivesMotion, Energy,
-    Estimates, Jets, Magnetorquer, Magnetorquers, Orbit, OrbitAxis, Pointing, Position, Rates, Sliding,
-    ThrusterPulse, Thrusters, Torques, TrackedMode, Tracking, Vibration, Vibrations, Wheel, WheelEvent,
-    Wheels,
+    ChannelState, ControlMomentGyro, ControlMomentGyros, DriveMotion, DrivenMode, DrivesMotion,
+    ElasticEstimate, ElasticEstimates, Energy, Estimates, Jets, Magnetorquer, Magnetorquers, Orbit,
+    OrbitAxis, Pointing, Position, Rates, Sliding, ThrusterPulse, Thrusters, Torques, TrackedMode, Tracking,
+    Vibration, Vibrations, Wheel, WheelEvent, Wheels,
 };
 
 /// The declarations, in the order of the list.

@@ -97,6 +97,24 @@ rows! {
         /// Dimension of the measurement: 2 for a direction, whose NIS is scaled to dimension 3.
         numbers: u64,
     }
+    /// A mode in an attitude filter, after a sample.
+    ElasticEstimate {
+        /// Estimated displacement (m sqrt(kg)).
+        displacement: f64,
+        /// Estimated rate over the estimated natural frequency (m sqrt(kg)).
+        rate_over_frequency: f64,
+        /// Natural frequency in the filter, identified or taken as known (rad/s).
+        frequency_rad_s: f64,
+        /// Its standard deviation (rad/s); 0 if it is taken as known.
+        frequency_sd_rad_s: f64,
+        /// True value, with drives that at the start (rad/s).
+        true_frequency_rad_s: f64,
+    }
+    /// The modes in an attitude filter, after a sample.
+    ElasticEstimates = "/attitude_filter_modes" {
+        /// Each mode, in the order of the scenario.
+        modes: Vec<ElasticEstimate>,
+    }
     /// Wheels of a spatial body.
     Wheels = "/wheels" {
         /// Each wheel, in the order of the scenario.
