@@ -36,8 +36,9 @@ const LONGEST: f64 = 1024.0;
 const DOUBLINGS: i32 = 6;
 
 /// The attitude may drift so fast, by the estimate, for the sake of modes that a step does not resolve (rad/s): 1e-10 rad in
-/// 1e4 s. The reference craft drifts by less than 2e-15 rad/s, at rates from 1e-6 to 0.03 rad/s and with modes that swing at
-/// 1e-9 to 0.1 m sqrt(kg)/s; of 3e-14, the estimate would be exceeded four times at 0.03 rad/s.
+/// 1e4 s. Measured on the reference craft, at rates from 1e-6 to 0.03 rad/s and with modes that swing at 1e-9 to 0.1 m
+/// sqrt(kg)/s: less than 2e-15 rad/s where steps are on average twice those that resolve all modes, or longer. With 3e-14 here,
+/// it would be up to 8e-14 at 0.03 rad/s.
 const DRIFT: f64 = 1e-14;
 
 /// For so long (s).
