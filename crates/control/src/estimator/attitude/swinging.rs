@@ -113,7 +113,7 @@ impl Swinging {
                 let [a, b, c, d] = transition(*frequency, mode.damping, *lasts);
                 let (x, y) = (state[0] - rest, state[1]);
                 let (swung, rate) = (a * x + b * y, c * x + d * y);
-                *state = [rest + swung, rate];
+                *state = [rest + a * x + b * y, rate];
                 // exp(W t K) grows by W t K exp(W t K), and the rest by -2 of it.
                 let (x, y, angle) = (grown[0] + 2.0 * rest, grown[1], frequency * lasts);
                 *grown = [
