@@ -71,3 +71,63 @@ fn the_filter_is_as_good_as_it_says() {
     assert!((nees - 1.0).abs() < 0.37, "{nees}");
     assert!(pointing < 2e-4, "{pointing:e}");
 }
+
+/// Means over runs of these metrics.
+fn means<const N: usize>(scenario: &Scenario, runs: u64, names: [&str; N]) -> [f64; N] {
+    let mut sums = [0.0; N];
+    for run in 0..runs {
+        let found = metric(scenario, run, &names);
+        sums.iter_mut().zip(found).for_each(|(sum, found)| *sum += found / runs as f64);
+    }
+    sums
+}
+
+/// A bias that wanders with a correlation time of 1000 s is, to a filter over 300 s, one that walks.
+#[test]
+fn a_bias_that_wanders_is_tracked() {
+    let keys = "rate_random_walk = 1e-8, bias_instability = 2e-6, correlation_time = 1000";
+    let wandering = scenario(&[("rate_random_walk = 1e-8", keys)]).expect("valid");
+    let names = ["nees_mean", "nis_mean", "bias_estimate_error_rms_rad_s"];
+    let [nees, nis, bias] = means(&wandering, 40, names);
+    assert!((nis - 1.0).abs() < 0.03 && (nees - 1.0).abs() < 0.37, "{nis} {nees}");
+    // A filter that does not know of it trusts its bias too long.
+    let deaf = scenario(&[
+        ("rate_random_walk = 1e-8", keys),
+        ("[estimator.attitude]\n", "[estimator.attitude]\nrate_random_walk = 1e-8\n"),
+    ]);
+    let [nees, _, worse] = means(&deaf.expect("valid"), 40, names);
+    assert!(nees > 1.5 && worse > bias, "{nees} {worse:e} {bias:e}");
+}
+
+/// The filter knows of when late rates are, and predicts from there. At rest a late gyro costs nothing but its noise; a filter that
+/// took the rates for those of now would show it in NIS during the turn.
+#[test]
+fn rates_of_a_late_gyro_are_of_when_they_were_measured() {
+    let late = |periods: f64, assess: &str| {
+        let keys = format!("gyro = {{ period = 0.25, latency = {},", 0.25 * periods);
+        scenario(&[("gyro = { period = 0.25,", &keys), ("ASSESS", assess)]).expect("valid")
+    };
+    let names = ["nis_mean", "attitude_estimate_error_rms_rad", "pointing_error_end_rad"];
+    let [nis, _, pointing] = means(&late(3.0, ""), 20, names);
+    assert!((nis - 1.0).abs() < 0.04 && pointing < 2e-4, "{nis} {pointing:e}");
+    let [[_, prompt, _], [_, delayed, _]] =
+        [0.0, 3.0].map(|periods| means(&late(periods, "assess = [220.0, 300.0]"), 20, names));
+    assert!(delayed < 1.1 * prompt, "{prompt:e} {delayed:e}");
+    // What is not late is told at once.
+    let error = ["attitude_estimate_error_rms_rad"];
+    assert_eq!(metric(&late(0.0, ""), 3, &error), metric(&scenario(&[]).expect("valid"), 3, &error));
+}
+
+#[test]
+fn what_no_gyro_can_be_is_refused() {
+    for (keys, words) in [
+        ("latency = 0.3", "`sensor[0].gyro.latency` must be a whole number of periods of 0.25 s, got 0.3 s"),
+        ("latency = 2501", "must be at most 10000 periods, got 2501 s"),
+        ("bias_instability = 1e-6", "correlation_time` must be given with `bias_instability`"),
+        ("correlation_time = 100", "correlation_time` is that of `bias_instability`"),
+        ("bias_instability = 1e-6, correlation_time = 0", "must be a positive number"),
+    ] {
+        let error = scenario(&[("rate_random_walk = 1e-8", keys)]).expect_err("refused");
+        assert!(error.contains(words), "{error}");
+    }
+}

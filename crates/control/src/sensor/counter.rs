@@ -4,6 +4,7 @@
 //! variance s_v²/D + s_u² D/12. That is exactly what b' = n_u and y = w + b + n_v integrated over D come to, with n_v and n_u
 //! white of the densities s_v² and s_u² (\[LeffertsMarkleyShuster82\]).
 
+use super::wander::Wander;
 use super::{Gyro, Truth};
 use crate::random::Stream;
 use crate::time::Instant;
@@ -54,12 +55,20 @@ impl Counter {
     }
 
     /// What is read of these mean rates (rad/s).
-    pub fn count(&mut self, gyro: &Gyro, mean: [f64; 3], noise: &mut [Stream]) -> [f64; 3] {
+    pub fn count(
+        &mut self,
+        gyro: &Gyro,
+        mean: [f64; 3],
+        (noise, wander): (&mut [Stream], &mut Wander),
+    ) -> [f64; 3] {
         let mut rate = [0.0; 3];
         for (axis, noise) in noise.iter_mut().enumerate() {
             rate[axis] = gyro.scaled(axis, &mean) + self.bias[axis];
             if self.period > 0.0 {
                 rate[axis] += self.walk(gyro, axis, noise);
+                if gyro.wandering(axis).is_some() {
+                    rate[axis] += wander.mean(gyro, axis, self.period, noise);
+                }
                 rate[axis] = self.round(rate[axis], gyro.quantum.about(axis).get(), axis);
             }
         }

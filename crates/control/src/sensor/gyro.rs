@@ -1,14 +1,17 @@
 //! A gyro: at a point of the structure, whose elastic motion it sees.
 
+use std::collections::VecDeque;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::counter::{self, Counter};
 use super::late::failing;
+use super::wander::Wander;
 use super::{Reading, Sense, Truth, stream};
 use crate::axes::Each;
 use crate::document::Fault;
-use crate::quantity::{Finite, NonNegative};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::random::{Seed, Stream};
 use crate::sensor;
 use crate::time::{Instant, Span};
@@ -45,6 +48,16 @@ pub struct Gyro {
     /// none.
     #[serde(default, skip_serializing_if = "is_zero")]
     pub quantum: Each<NonNegative>,
+    /// Standard deviation of the part of the bias about each axis that wanders, exponentially correlated (rad/s); 0 for none. It
+    /// is 0 at the start.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub bias_instability: Each<NonNegative>,
+    /// Correlation time of that part (s).
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub correlation_time: Option<Positive>,
+    /// How late it reports a rate (s), a whole number of periods.
+    #[serde(default, skip_serializing_if = "is_prompt")]
+    pub latency: Time,
     /// Relative error of the scale about each axis.
     #[serde(default, skip_serializing_if = "is_none")]
     pub scale: Each<Finite>,
@@ -61,6 +74,10 @@ fn is_zero(each: &Each<NonNegative>) -> bool {
     *each == Each::default()
 }
 
+fn is_prompt(latency: &Time) -> bool {
+    *latency == Time::default()
+}
+
 fn is_none(each: &Each<Finite>) -> bool {
     *each == Each::default()
 }
@@ -71,14 +88,28 @@ pub struct AtCycles {
     gyro: Gyro,
     noise: Vec<Stream>,
     counter: Option<Counter>,
+    wander: Wander,
+    /// The rates that it told last, and those that it has measured since, if it is late (rad/s).
+    told: Option<[f64; 3]>,
+    waiting: VecDeque<[f64; 3]>,
 }
+
+/// No gyro is later (periods).
+const LATEST: u64 = 10_000;
 
 impl Gyro {
     /// The gyro in a run of a body with so many axes, after so many others.
     pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> AtCycles {
         let draws = |axis: usize| stream("gyro", (axis, axes), ordinal, seed);
         let counter = self.integrates().then(|| Counter::new(self));
-        AtCycles { gyro: self.clone(), noise: (0..axes).map(draws).collect(), counter }
+        AtCycles {
+            gyro: self.clone(),
+            noise: (0..axes).map(draws).collect(),
+            counter,
+            wander: Wander::default(),
+            told: None,
+            waiting: VecDeque::new(),
+        }
     }
 
     /// The key of a number that is given for each of three axes, if there is one.
@@ -90,6 +121,7 @@ impl Gyro {
             ("angle_random_walk", self.angle_random_walk.is_three()),
             ("rate_random_walk", self.rate_random_walk.is_three()),
             ("quantum", self.quantum.is_three()),
+            ("bias_instability", self.bias_instability.is_three()),
             ("scale", self.scale.is_three()),
             ("misalignment", self.misalignment.is_some()),
         ];
@@ -99,6 +131,30 @@ impl Gyro {
     /// Whether it tells the mean rate of each of its periods.
     pub fn integrates(&self) -> bool {
         !(is_zero(&self.angle_random_walk) && is_zero(&self.rate_random_walk) && is_zero(&self.quantum))
+    }
+
+    /// How late it reports a rate.
+    pub fn latency(&self) -> Span {
+        Span::from_seconds(self.latency.get())
+    }
+
+    /// By how many periods.
+    fn late(&self) -> u64 {
+        let (Some(period), latency) = (self.period, self.latency()) else { return 0 };
+        (latency.seconds() / period.seconds()).round() as u64
+    }
+
+    /// Standard deviation (rad/s) and correlation time (s) of the part of the bias about an axis that wanders, if one does.
+    pub fn wandering(&self, axis: usize) -> Option<(f64, f64)> {
+        let deviation = self.bias_instability.about(axis).get();
+        self.correlation_time.filter(|_| deviation > 0.0).map(|time| (deviation, time.get()))
+    }
+
+    /// Random walk of its bias about an axis (rad/s^1.5): what wanders walks so within a short time.
+    pub fn walk(&self, axis: usize) -> f64 {
+        let own = self.rate_random_walk.about(axis).get();
+        self.wandering(axis)
+            .map_or(own, |(deviation, time)| libm::sqrt(own * own + 2.0 * deviation * deviation / time))
     }
 
     /// What it measures about an axis of these rates.
@@ -121,10 +177,40 @@ impl Gyro {
                 return Some(Fault::new("period", "must be given for a gyro that integrates"));
             }
         }
+        if !is_zero(&self.bias_instability) && self.correlation_time.is_none() {
+            return Some(Fault::new("correlation_time", "must be given with `bias_instability`"));
+        }
+        if self.correlation_time.is_some() && is_zero(&self.bias_instability) {
+            return Some(Fault::new("correlation_time", "is that of `bias_instability`, which is not given"));
+        }
+        if let Some(fault) = self.lateness() {
+            return Some(fault);
+        }
         let rows = self.misalignment.as_ref()?;
         let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
         let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
         Some(Fault::new(format!("misalignment[{axis}][{axis}]"), why))
+    }
+
+    /// Why it cannot be so late.
+    fn lateness(&self) -> Option<Fault> {
+        let latency = self.latency();
+        if latency == Span::ZERO {
+            return None;
+        }
+        let Some(period) = self.period else {
+            return Some(Fault::new("period", "must be given for a gyro with a `latency`"));
+        };
+        let (late, seconds) = (self.late(), latency.seconds());
+        if late > LATEST {
+            return Some(Fault::new("latency", format!("must be at most {LATEST} periods, got {seconds} s")));
+        }
+        let mut whole = Span::ZERO;
+        for _ in 0..late {
+            whole = whole + period;
+        }
+        let why = || format!("must be a whole number of periods of {} s, got {seconds} s", period.seconds());
+        (whole != latency).then(|| Fault::new("latency", why()))
     }
 
     /// Standard deviation of the rate about an axis (rad/s), that of its quantisation included.
@@ -142,6 +228,7 @@ impl Sense for AtCycles {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         // Draws are made in a failure too, and what turns is counted: what follows does not depend on it.
         let rate = self.rates(now, truth);
+        let rate = self.late(rate);
         let seen = Reading { at: truth.orientation, rate: Some(rate), sight: None };
         let told = failing(&self.gyro.faults, now, Some(seen), last)?;
         Some(Reading { at: truth.orientation, ..told })
@@ -149,7 +236,8 @@ impl Sense for AtCycles {
 
     fn bias(&self) -> Option<[f64; 3]> {
         let constant = [0, 1, 2].map(|axis| self.gyro.bias.about(axis).get());
-        Some(self.counter.as_ref().map_or(constant, |counter| counter.bias))
+        let bias = self.counter.as_ref().map_or(constant, |counter| counter.bias);
+        Some([0, 1, 2].map(|axis| bias[axis] + self.wander.bias[axis]))
     }
 
     fn copy(&self) -> Box<dyn Sense> {
@@ -158,13 +246,25 @@ impl Sense for AtCycles {
 }
 
 impl AtCycles {
+    /// What it tells when it measures these rates: those of so many periods before, and until then those of the start.
+    fn late(&mut self, rate: [f64; 3]) -> [f64; 3] {
+        let late = self.gyro.late();
+        let Some(told) = &mut self.told else { return *self.told.insert(rate) };
+        self.waiting.push_back(rate);
+        if self.waiting.len() as u64 > late {
+            *told = self.waiting.pop_front().unwrap_or(rate);
+        }
+        *told
+    }
+
     /// The rates that it measures now (rad/s).
     fn rates(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
-        let Self { gyro, noise, counter } = self;
+        let Self { gyro, noise, counter, wander, .. } = self;
         if let Some(counter) = counter {
             let mean = counter.mean(now, truth);
-            return counter.count(gyro, mean, noise);
+            return counter.count(gyro, mean, (noise, wander));
         }
+        let seconds = wander.go(now);
         let mut rate = truth.rate;
         for (axis, (rate, noise)) in rate.iter_mut().zip(noise).enumerate() {
             *rate = gyro.scaled(axis, &truth.rate) + gyro.bias.about(axis).get();
@@ -172,6 +272,7 @@ impl AtCycles {
             if sd > 0.0 {
                 *rate += sd * noise.normal();
             }
+            *rate += wander.now(gyro, axis, seconds, noise);
             if quantum > 0.0 {
                 *rate = libm::round(*rate / quantum) * quantum;
             }

@@ -11,6 +11,7 @@ mod star_tracker;
 mod sun_sensor;
 mod tachometer;
 mod vector;
+mod wander;
 
 use std::fmt;
 

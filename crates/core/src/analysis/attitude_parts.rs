@@ -59,7 +59,7 @@ impl AttitudeParts {
         for (index, role) in setting.roles.iter().enumerate() {
             match role {
                 Role::None => {}
-                Role::Gyro => found.0 = Some(mounted(index, 0.0)),
+                Role::Gyro { .. } => found.0 = Some(mounted(index, 0.0)),
                 Role::Corrects { .. } if found.1.is_some() || scenario.sensor[index].is_of_a_vector() => {
                     let why = "has gains that settle only with one sensor of the attitude and none of vectors: a loop has \
                                one `star_tracker` or `sampled` sensor";

@@ -10,6 +10,8 @@ use crate::estimator::{Estimator, Feeds};
 use crate::law::Law;
 use crate::random::Seed;
 use crate::scenario::Scenario;
+use crate::sensor::Sensor;
+use crate::time::Span;
 
 /// The parts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -42,6 +44,11 @@ impl LoopParts {
     /// # Errors
     /// An estimator that is not linear, or does not settle: its key, and why.
     pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
+        let late = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(gyro) if gyro.latency() > Span::ZERO);
+        if let Some(index) = scenario.sensor.iter().position(late) {
+            let key = format!("{}.latency", scenario.sensor_key(index));
+            return Err(Fault::new(key, "is not supported in linear loops: leave it out"));
+        }
         let axes = scenario.study.axes.len();
         let filters = (0..axes).map(|axis| filters(scenario.law.about(axis))).collect();
         let reads = |axis: usize| scenario.law.about(axis).reads() == Reads::DominantMode;

@@ -1081,6 +1081,14 @@ class Gyro(Part):
     """Quantum of the angle of an integrating gyro about each axis (rad); the remainder carries over to the
     next sample; 0 for none.
     """
+    bias_instability: float | Vector | None = None
+    """Standard deviation of the part of the bias about each axis that wanders, exponentially correlated
+    (rad/s); 0 for none. It is 0 at the start.
+    """
+    correlation_time: float | None = None
+    """Correlation time of that part (s)."""
+    latency: float | None = None
+    """How late it reports a rate (s), a whole number of periods."""
     scale: float | Vector | None = None
     """Relative error of the scale about each axis."""
     misalignment: Rows | None = None

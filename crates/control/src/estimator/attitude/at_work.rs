@@ -72,11 +72,13 @@ impl Tracking {
         let Some(history) = &mut self.history else { return };
         let mut corrections = Vec::new();
         // First the gyro: a measurement of now then finds the filter there.
-        for (_, (_, reading)) in self.setting.of(readings, &|role| *role == Role::Gyro) {
-            if let Some(rate) = reading.rate {
+        for (role, (_, reading)) in self.setting.of(readings, &|role| matches!(role, Role::Gyro { .. })) {
+            if let (Some(rate), Role::Gyro { latency }) = (reading.rate, role) {
+                // Until it tells a rate of later, it tells that of the start.
+                let of = if now < Instant::START + *latency { Instant::START } else { now.before(*latency) };
                 self.rate = rate.into();
-                corrections.extend(history.read(now, self.rate));
-                self.since = now;
+                corrections.extend(history.read(of, self.rate));
+                self.since = of;
             }
         }
         for (role, (sensor, reading)) in

@@ -76,7 +76,10 @@ impl Default for Initial {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Role {
     /// Its rates carry the attitude on.
-    Gyro,
+    Gyro {
+        /// How late it tells them.
+        latency: Span,
+    },
     /// It measures the attitude or a vector, so late, with errors of this covariance in the body's axes.
     Corrects {
         /// From exposure to when it is told.
@@ -139,7 +142,7 @@ impl AttitudeFilter {
                 let gain = self.form.gain(&gyro_noise, every.seconds(), &noise);
                 Ok(Role::Corrects { latency, noise, gain: gain.map(Box::new) })
             }
-            None if index == read => Ok(Role::Gyro),
+            None if index == read => Ok(Role::Gyro { latency: gyro.latency() }),
             None => Ok(Role::None),
         };
         let roles = sensors.iter().enumerate().map(role).collect::<Result<Vec<_>, Fault>>()?;
@@ -235,7 +238,7 @@ impl AttitudeFilter {
             let why = "must be given where the gyro has no noise about any axis";
             return Err(Fault::new("angle_random_walk", why));
         }
-        let walk = largest(&|axis| gyro.rate_random_walk.about(axis).get());
+        let walk = largest(&|axis| gyro.walk(axis));
         Ok(GyroNoise {
             angle_random_walk,
             rate_random_walk: self.rate_random_walk.map_or(walk, NonNegative::get),
