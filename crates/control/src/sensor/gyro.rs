@@ -74,6 +74,7 @@ fn is_zero(each: &Each<NonNegative>) -> bool {
     *each == Each::default()
 }
 
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
 fn is_prompt(latency: &Time) -> bool {
     *latency == Time::default()
 }

@@ -98,6 +98,7 @@ __all__ = [
     "Keys",
     "Law",
     "Lead",
+    "LitPlate",
     "Log",
     "LogUniform",
     "LowPass",
@@ -1295,6 +1296,24 @@ class Lead(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class LitPlate(Part):
+    """A plate; sunlight presses on one side of it."""
+
+    area: float
+    """Area (m²)."""
+    normal: Vector
+    """Its outward normal in the body's axes, of any length."""
+    at: Vector
+    """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
+    body.
+    """
+    specular: float | None = None
+    """The part of the light that it reflects like a mirror. Default: 0.0."""
+    diffuse: float | None = None
+    """The part that it reflects diffusely. Default: 0.0."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class Log(Part):
     """Contents of a full log."""
 
@@ -2108,14 +2127,18 @@ class Sinusoid(Part):
 
 @dataclass(frozen=True, kw_only=True)
 class SolarPressure(Part):
-    """Pressure of sunlight."""
+    """Pressure of sunlight: one `force` at a point, or `plates`."""
 
-    force: Vector
-    """The force (N), in inertial axes."""
-    at: Vector
+    force: Vector | None = None
+    """The force (N), constant in inertial axes."""
+    at: Vector | None = None
     """Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
     """
+    plates: Sequence[LitPlate] | None = None
+    """Plates that sunlight presses on."""
+    pressure: float | None = None
+    """Pressure of sunlight on the plates (N/m²); default: that at 1 au."""
     shadow: Rows | None = None
     """Intervals [from, to] without sunlight (s), in addition to the shadow of the orbit's planet."""
 

@@ -19,8 +19,6 @@ pub struct Around {
     axial: Option<Axial>,
     /// What rotors have about their axes (kg m²), which the inertia of the body is without and gravity pulls at too.
     spinning: Matrix3<f64>,
-    /// Force of sunlight in inertial axes (N), and where it acts from the centre of mass (m).
-    sunlight: (Vector, Vector),
     /// The centre of mass (m).
     centre: Vector,
     /// See `environment`.
@@ -42,8 +40,7 @@ impl Around {
         [inertia, spinning]: [Matrix3<f64>; 2],
         centre: &Vector,
     ) -> Self {
-        let sunlight = environment.solar_pressure.as_ref();
-        let sunlight = sunlight.map(|sun| (vector(&sun.force), vector(&sun.at) - centre)).unwrap_or_default();
+        let pressed = environment.solar_pressure.as_ref().map_or(0.0, |of| of.bound(centre));
         let torque = vector(&environment.torque);
         let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
         let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
@@ -60,10 +57,9 @@ impl Around {
             axial,
             spinning,
             centre: *centre,
-            bound: torque.norm() + sunlight.0.norm() * sunlight.1.norm() + pull + push + braked,
+            bound: torque.norm() + pressed + pull + push + braked,
             // Both are of second order in the local axes' sine and cosine.
             frequency: 2.0 * fastest,
-            sunlight,
             torque,
             held: Vector::zeros(),
             heated: Vec::new(),
@@ -126,9 +122,8 @@ impl Surroundings for Around {
             let pull = gradient.pull(t, attitude, place.as_ref());
             torque += GravityGradient::torque(pull, &(inertia + self.spinning));
         }
-        if solar_pressure.as_ref().is_some_and(|sun| sun.is_lit(t) && self.sky.is_lit(t)) {
-            let (force, at) = &self.sunlight;
-            torque += at.cross(&into(attitude, force));
+        if let Some(pressure) = solar_pressure.as_ref().filter(|of| of.is_lit(t) && self.sky.is_lit(t)) {
+            torque += pressure.torque(attitude, self.sky.sun(), &self.centre);
         }
         if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
             torque += drag.torque(orbit, place, attitude, &self.centre);

@@ -27,7 +27,7 @@ pub use kepler::{Kepler, OrbitPosition};
 pub use magnetic_field::MagneticField;
 pub use orbit::into;
 pub use sky::{Sky, SkySight};
-pub use solar_pressure::SolarPressure;
+pub use solar_pressure::{LitPlate, SolarPressure};
 pub use sun::Sun;
 
 /// The environment of a body with three axes. Its torques add up.
@@ -75,8 +75,8 @@ impl Environment {
         if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
             return Some(fault.within("drag"));
         }
-        let shadow = self.solar_pressure.as_ref().and_then(SolarPressure::fault);
-        shadow.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
+        let pressed = self.solar_pressure.as_ref().and_then(|of| of.fault(self.sun.is_some()));
+        pressed.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
     }
 
     /// An orbit that is there twice, or missing.

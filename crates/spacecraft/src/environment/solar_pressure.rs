@@ -1,24 +1,60 @@
-//! Pressure of sunlight: a force that is constant in inertial axes at a point of the body, but for the planet's shadow.
+//! Pressure of sunlight: a force that is constant in inertial axes at a point of the body, or forces on plates (\[Wertz78\]).
+//!
+//! On a plate of area A whose outward normal n faces the Sun s, n.s = c > 0, of which it reflects the part r_s like a mirror and
+//! r_d diffusely, the force is -P A c ((1 - r_s) s + 2 (r_s c + r_d/3) n), else none: a plate with two sides is two. Plates do not
+//! shade each other.
 
+use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::orbit::into;
+use crate::attitude::{Vector, vector};
 use crate::document::Fault;
-use crate::quantity::{Finite, Time};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::time::{Instant, Span};
 
-/// Pressure of sunlight.
+/// Pressure of sunlight: one `force` at a point, or `plates`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct SolarPressure {
-    /// The force (N), in inertial axes.
-    pub force: [Finite; 3],
+    /// The force (N), constant in inertial axes.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub force: Option<[Finite; 3]>,
     /// Centre of pressure (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
-    pub at: [Finite; 3],
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub at: Option<[Finite; 3]>,
+    /// Plates that sunlight presses on.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub plates: Vec<LitPlate>,
+    /// Pressure of sunlight on the plates (N/m²); default: that at 1 au.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub pressure: Option<Positive>,
     /// Intervals \[from, to\] without sunlight (s), in addition to the shadow of the orbit's planet.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shadow: Vec<[Time; 2]>,
 }
+
+/// A plate; sunlight presses on one side of it.
+#[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct LitPlate {
+    /// Area (m²).
+    pub area: Positive,
+    /// Its outward normal in the body's axes, of any length.
+    pub normal: [Finite; 3],
+    /// Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
+    pub at: [Finite; 3],
+    /// The part of the light that it reflects like a mirror.
+    #[serde(default)]
+    pub specular: NonNegative,
+    /// The part that it reflects diffusely.
+    #[serde(default)]
+    pub diffuse: NonNegative,
+}
+
+/// The pressure at 1 au (N/m²): 1361 W/m² over the speed of light.
+const AT_EARTH: f64 = 1361.0 / 299_792_458.0;
 
 impl SolarPressure {
     /// The instants at which the shadow begins and ends.
@@ -31,15 +67,140 @@ impl SolarPressure {
         !self.shadow.iter().any(|[from, to]| at(*from).seconds() <= t && t < at(*to).seconds())
     }
 
-    /// A shadow that ends before it begins.
-    pub(super) fn fault(&self) -> Option<Fault> {
+    /// What single values cannot show to be wrong under a Sun that is there or not: a key within it, and why.
+    pub(super) fn fault(&self, has_sun: bool) -> Option<Fault> {
+        let alone = self.plates.is_empty();
+        for (key, given) in [("force", self.force.is_some()), ("at", self.at.is_some())] {
+            if alone && !given {
+                return Some(Fault::new(key, "must be given where there are no `plates`"));
+            }
+            if !alone && given {
+                return Some(Fault::new(key, "is for sunlight without `plates`: leave one of them out"));
+            }
+        }
+        if alone && self.pressure.is_some() {
+            return Some(Fault::new("pressure", "is that on `plates`, and there are none"));
+        }
+        if !alone && !has_sun {
+            return Some(Fault::new("plates", "need `environment.sun`, the direction that they face or not"));
+        }
+        if let Some(fault) = self.plates.iter().enumerate().find_map(LitPlate::fault) {
+            return Some(fault);
+        }
         let index = self.shadow.iter().position(|[from, to]| from >= to)?;
         let [from, to] = self.shadow[index].map(Time::get);
         let why = format!("must be [from, to] (s) with `to` later than `from`, got [{from}, {to}]");
         Some(Fault::new(format!("shadow[{index}]"), why))
     }
+
+    /// The torque in the light about the centre of mass, which is here (m), in the axes of a body that faces this way (N m), where
+    /// this is the direction to the Sun.
+    pub(super) fn torque(&self, attitude: &Quaternion<f64>, sun: Option<&Vector>, centre: &Vector) -> Vector {
+        if let (Some(force), Some(at)) = (&self.force, &self.at) {
+            return (vector(at) - centre).cross(&into(attitude, &vector(force)));
+        }
+        let Some(sun) = sun.map(|sun| into(attitude, sun)) else { return Vector::zeros() };
+        let pressure = self.pressure();
+        self.plates.iter().fold(Vector::zeros(), |sum, plate| {
+            sum + (vector(&plate.at) - centre).cross(&(plate.force(&sun) * pressure))
+        })
+    }
+
+    /// No torque is larger (N m).
+    pub(super) fn bound(&self, centre: &Vector) -> f64 {
+        if let (Some(force), Some(at)) = (&self.force, &self.at) {
+            return vector(force).norm() * (vector(at) - centre).norm();
+        }
+        let most = |plate: &LitPlate| {
+            let part = 1.0 + plate.specular.get() + 2.0 / 3.0 * plate.diffuse.get();
+            part * plate.area.get() * (vector(&plate.at) - centre).norm()
+        };
+        self.pressure() * self.plates.iter().map(most).sum::<f64>()
+    }
+
+    fn pressure(&self) -> f64 {
+        self.pressure.map_or(AT_EARTH, Positive::get)
+    }
+}
+
+impl LitPlate {
+    fn fault((index, plate): (usize, &Self)) -> Option<Fault> {
+        if plate.normal.iter().all(|part| part.get() == 0.0) {
+            return Some(Fault::new(format!("plates[{index}].normal"), "must not be zero, got [0, 0, 0]"));
+        }
+        let reflected = plate.specular.get() + plate.diffuse.get();
+        let why = || format!("and `diffuse` must be at most 1 together, got {reflected}");
+        (reflected > 1.0).then(|| Fault::new(format!("plates[{index}].specular"), why()))
+    }
+
+    /// The force for a unit of pressure (m²), where this is the direction to the Sun in the body's axes.
+    fn force(&self, sun: &Vector) -> Vector {
+        let normal = vector(&self.normal).normalize();
+        let faced = normal.dot(sun).max(0.0);
+        let (specular, diffuse) = (self.specular.get(), self.diffuse.get());
+        (sun * (1.0 - specular) + normal * (2.0 * (specular * faced + diffuse / 3.0)))
+            * (-self.area.get() * faced)
+    }
 }
 
 fn at(time: Time) -> Instant {
     Instant::START + Span::from_seconds(time.get())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::attitude::rotation;
+
+    fn pressed(keys: &str) -> SolarPressure {
+        crate::document::from_text(keys).unwrap()
+    }
+
+    #[test]
+    fn plates_absorb_and_reflect() {
+        // A plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
+        let sun = Vector::new(0.0, libm::sqrt(0.75), 0.5);
+        let centre = Vector::new(0.1, 0.0, 0.0);
+        let torque = |parts: &str, by: Vector| {
+            let keys = format!("plates = [{{ area = 2, normal = [0, 0, 4], at = [0.6, 0, 0] {parts} }}]");
+            let pressure = pressed(&keys);
+            assert_eq!(pressure.fault(true), None);
+            let found = pressure.torque(&rotation(&by), Some(&sun), &centre);
+            assert!(found.norm() <= pressure.bound(&centre));
+            found / (4.539_807_335_646_65e-6 * 2.0 * 0.5)
+        };
+        let arm = Vector::new(0.5, 0.0, 0.0);
+        let none = Vector::zeros();
+        // All absorbed: along the light. A mirror: 2 c along the normal. White: the light, and 2/3 along the normal.
+        let along = |force: Vector| arm.cross(&force);
+        assert!((torque("", none) - along(-sun)).norm() < 1e-12);
+        assert!((torque(", specular = 1", none) - along(Vector::new(0.0, 0.0, -1.0))).norm() < 1e-12);
+        let white = -sun - Vector::new(0.0, 0.0, 2.0 / 3.0);
+        assert!((torque(", diffuse = 1", none) - along(white)).norm() < 1e-12);
+        // Turned away from the light by more than 90 degrees.
+        assert_eq!(torque(", specular = 0.3", Vector::new(0.6, 0.0, 0.0)), none);
+        // Turned into it by 60 degrees, the light comes along z: all on both.
+        let faced =
+            torque(", specular = 0.3, diffuse = 0.2", Vector::new(-std::f64::consts::FRAC_PI_3, 0.0, 0.0));
+        let straight = along(Vector::new(0.0, 0.0, -2.0 * (1.0 + 0.3 + 2.0 / 3.0 * 0.2)));
+        assert!((faced - straight).norm() < 1e-12, "{faced}");
+    }
+
+    #[test]
+    fn what_presses_is_a_force_or_plates() {
+        let plate = "plates = [{ area = 1, normal = [0, 0, 1], at = [0, 0, 0]";
+        for (keys, sun, found) in [
+            ("force = [1, 0, 0]".to_owned(), true, "`at` must be given"),
+            ("at = [1, 0, 0]".to_owned(), true, "`force` must be given"),
+            (format!("{plate} }}]"), false, "`plates` need `environment.sun`"),
+            (format!("{plate} }}]\nforce = [1, 0, 0]"), true, "`force` is for sunlight without `plates`"),
+            (format!("{plate}, specular = 0.7, diffuse = 0.4 }}]"), true, "must be at most 1 together"),
+            ("force = [1, 0, 0]\nat = [0, 0, 0]\npressure = 1e-6".to_owned(), true, "`pressure` is that on"),
+            (plate.replace("0, 0, 1]", "0, 0, 0]") + " }]", true, "must not be zero"),
+        ] {
+            let fault = pressed(&keys).fault(sun).expect(found).to_string();
+            assert!(fault.contains(found), "{fault}");
+        }
+        assert_eq!(pressed("force = [1, 0, 0]\nat = [0, 0, 0]").fault(false), None);
+    }
 }

@@ -105,6 +105,25 @@ fn the_pitch_swings_with_its_period() {
     assert!((first / (0.25 * exact) - 1.0).abs() < 1e-10, "{first}");
 }
 
+/// A plate behind the centre of mass, black and across the light, makes a pendulum of the body: theta'' = -P A a/J sin cos theta.
+#[test]
+fn a_sail_behind_the_body_swings_as_a_pendulum() {
+    let inertia = Matrix3::from_diagonal_element(100.0);
+    let around = around(
+        "sun = [0, 0, 3]\nsolar_pressure = { pressure = 1e-3, plates = [{ area = 1000, normal = [0, 0, 1], at = [0, 0, -1] }] }",
+        &inertia,
+    );
+    let start = rotation(&Vector::new(0.0, 0.6, 0.0));
+    let mut body = One::new(&inertia, around, start, Vector::zeros());
+    // A quarter of the period is K(sin² 0.6)/sqrt(P A a/J), with K of SciPy.
+    let quarter = 1.725_064_310_933_874_4 / 0.1;
+    for (quarters, angle) in [(1.0, 0.0), (2.0, -0.6), (3.0, 0.0), (8.0, 0.6)] {
+        body.go(quarters * quarter);
+        let off = beyond(&rotation(&Vector::new(0.0, angle, 0.0)), &body.turn.attitude);
+        assert!(off.norm() < 1e-9, "{quarters} {:e}", off.norm());
+    }
+}
+
 #[test]
 fn roll_and_yaw_swing_with_the_roots_of_the_quartic() {
     let inertia = upright();
