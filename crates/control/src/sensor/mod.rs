@@ -254,6 +254,11 @@ impl Sensor {
         }
     }
 
+    /// How late it reports rates.
+    pub fn rate_latency(&self) -> Span {
+        if let Self::Gyro(gyro) = self { gyro.latency() } else { Span::ZERO }
+    }
+
     /// Whether it measures the mean rate over each of its periods.
     pub fn integrates(&self) -> bool {
         matches!(self, Self::Gyro(gyro) if gyro.integrates())

@@ -10,7 +10,6 @@ use crate::estimator::{Estimator, Feeds};
 use crate::law::Law;
 use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::sensor::Sensor;
 use crate::time::Span;
 
 /// The parts.
@@ -44,8 +43,7 @@ impl LoopParts {
     /// # Errors
     /// An estimator that is not linear, or does not settle: its key, and why.
     pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
-        let late = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(gyro) if gyro.latency() > Span::ZERO);
-        if let Some(index) = scenario.sensor.iter().position(late) {
+        if let Some(index) = scenario.sensor.iter().position(|sensor| sensor.rate_latency() > Span::ZERO) {
             let key = format!("{}.latency", scenario.sensor_key(index));
             return Err(Fault::new(key, "is not supported in linear loops: leave it out"));
         }
