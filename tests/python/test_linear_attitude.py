@@ -230,6 +230,8 @@ def test_what_no_loop_has_is_refused() -> None:
         scenario.linearise(loop="measurement")
     with pytest.raises(ValueError, match="repeat together only after"):
         scenario.with_("sensor[0].gyro.period", 0.501).linearise(loop="command")
+    with pytest.raises(flexsc.ScenarioError, match=r"gyro.latency.* is not supported in linear loops"):
+        scenario.with_("sensor[0].gyro.latency", 1.0).linearise(loop="command")
     two = [*scenario.to_dict()["sensor"], {"star_tracker": {"period": 1.0, "noise": [1e-5] * 3}}]
     several = scenario.with_("sensor", two)
     with pytest.raises(flexsc.ScenarioError, match="only with one sensor of the attitude"):
