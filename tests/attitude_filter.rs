@@ -131,3 +131,20 @@ fn what_no_gyro_can_be_is_refused() {
         assert!(error.contains(words), "{error}");
     }
 }
+
+/// A loop whose analysis has no late rates has no spectral radius.
+#[test]
+fn loops_with_late_rates_are_not_analysed() {
+    let text = |latency: &str| {
+        format!(
+            "duration = 10.0\n[body.planar]\ninertia = 100.0\nangle = 0.05\nmodes = [{{ frequency = 2.0, gain = 0.02 }}]\n\
+             [sensor.gyro]\nperiod = 0.1\n{latency}\n[law.pd]\nperiod = 0.1\nk_p = 0.04\nk_d = 0.4\n"
+        )
+    };
+    let radius = |latency: &str| {
+        let scenario = Scenario::parse("loop.toml", &text(latency)).expect("valid");
+        metric(&scenario, 0, &["spectral_radius"])[0]
+    };
+    assert!(radius("").is_finite());
+    assert!(radius("latency = 0.2").is_nan());
+}

@@ -124,18 +124,22 @@ class Filter:
         self.q = self.q / np.linalg.norm(self.q)
         self.x, self.p = x, transition @ self.p @ transition.T + added
 
+    def learn(self, e):
+        """Nothing is left to take over."""
+
     def correct(self, z):
         off = beyond(times(self.q, turn(MOUNT.T @ self.x[::2])), z)
-        h = np.zeros((3, 10))
+        h = np.zeros((3, len(self.p)))
         h[:, :3] = np.eye(3)
-        h[:, 6::2] = MOUNT.T
+        h[:, 6:10:2] = MOUNT.T
         s = h @ self.p @ h.T + TRACKER
         k = np.linalg.solve(s, h @ self.p).T
         e = k @ off
         self.nis = off @ np.linalg.solve(s, off)
         self.q = times(self.q, turn(e[:3]))
-        self.b, self.x = self.b + e[3:6], self.x + e[6:]
-        keep = np.eye(10) - k @ h
+        self.b, self.x = self.b + e[3:6], self.x + e[6:10]
+        self.learn(e[10:])
+        keep = np.eye(len(self.p)) - k @ h
         self.p = keep @ self.p @ keep.T + k @ TRACKER @ k.T
 
 
@@ -166,19 +170,8 @@ class Identifying(Filter):
         self.q = self.q / np.linalg.norm(self.q)
         self.x, self.p = x, transition @ self.p @ transition.T + added
 
-    def correct(self, z):
-        off = beyond(times(self.q, turn(MOUNT.T @ self.x[::2])), z)
-        h = np.zeros((3, 12))
-        h[:, :3] = np.eye(3)
-        h[:, 6:10:2] = MOUNT.T
-        s = h @ self.p @ h.T + TRACKER
-        k = np.linalg.solve(s, h @ self.p).T
-        e = k @ off
-        self.nis = off @ np.linalg.solve(s, off)
-        self.q = times(self.q, turn(e[:3]))
-        self.b, self.x, self.w = self.b + e[3:6], self.x + e[6:10], self.w * np.exp(e[10:])
-        keep = np.eye(12) - k @ h
-        self.p = keep @ self.p @ keep.T + k @ TRACKER @ k.T
+    def learn(self, e):
+        self.w = self.w * np.exp(e)
 
 
 def readings():

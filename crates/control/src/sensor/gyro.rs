@@ -229,7 +229,7 @@ impl Sense for AtCycles {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         // Draws are made in a failure too, and what turns is counted: what follows does not depend on it.
         let rate = self.rates(now, truth);
-        let rate = self.late(rate);
+        let rate = self.queued(rate);
         let seen = Reading { at: truth.orientation, rate: Some(rate), sight: None };
         let told = failing(&self.gyro.faults, now, Some(seen), last)?;
         Some(Reading { at: truth.orientation, ..told })
@@ -248,7 +248,7 @@ impl Sense for AtCycles {
 
 impl AtCycles {
     /// What it tells when it measures these rates: those of so many periods before, and until then those of the start.
-    fn late(&mut self, rate: [f64; 3]) -> [f64; 3] {
+    fn queued(&mut self, rate: [f64; 3]) -> [f64; 3] {
         let late = self.gyro.late();
         let Some(told) = &mut self.told else { return *self.told.insert(rate) };
         self.waiting.push_back(rate);

@@ -10,7 +10,6 @@ use crate::estimator::{Estimator, Feeds};
 use crate::law::Law;
 use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::time::Span;
 
 /// The parts.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -43,9 +42,8 @@ impl LoopParts {
     /// # Errors
     /// An estimator that is not linear, or does not settle: its key, and why.
     pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
-        if let Some(index) = scenario.sensor.iter().position(|sensor| sensor.rate_latency() > Span::ZERO) {
-            let key = format!("{}.latency", scenario.sensor_key(index));
-            return Err(Fault::new(key, "is not supported in linear loops: leave it out"));
+        if let Some(fault) = scenario.late_rates() {
+            return Err(fault);
         }
         let axes = scenario.study.axes.len();
         let filters = (0..axes).map(|axis| filters(scenario.law.about(axis))).collect();

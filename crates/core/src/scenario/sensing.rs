@@ -5,6 +5,7 @@ use crate::document::Fault;
 use crate::estimator::Estimator;
 use crate::law::Reads;
 use crate::sensor::Sensor;
+use crate::time::Span;
 
 impl Written {
     pub(super) fn sensor_fault(&self) -> Option<Fault> {
@@ -77,6 +78,13 @@ impl Written {
             return None;
         };
         Some(Fault::new(self.sensor_key(index), why))
+    }
+
+    /// Rates that are measured late: no loop that is analysed has a place for them.
+    pub fn late_rates(&self) -> Option<Fault> {
+        let index = self.sensor.iter().position(|sensor| sensor.rate_latency() > Span::ZERO)?;
+        let key = format!("{}.latency", self.sensor_key(index));
+        Some(Fault::new(key, "is not supported in linear loops: leave it out"))
     }
 
     /// The key of a sensor, its kind included.

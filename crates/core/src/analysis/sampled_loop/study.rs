@@ -30,6 +30,9 @@ impl Loop {
         let Law::Pd(law) = &scenario.law else {
             return refused("law", "must be `pd`: only sampled loops are analysed");
         };
+        if let Some(fault) = scenario.late_rates() {
+            return Err(fault);
+        }
         if body.modes.is_empty() {
             return refused("body", "must have a mode whose frequency changes");
         }
