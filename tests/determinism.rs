@@ -43,7 +43,7 @@ fn runs_repeat_to_the_last_bit() {
     // three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
     let runs = [
         ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
-        ("relay-adaptive", "", "/adaptation", 0xb22e_04cb_1fc7_5d23),
+        ("relay-adaptive", "", "/adaptation", 0xc5d3_fe5a_3b03_bb60),
         ("adaptive-bandwidth", "", "/objective", 0x2fcd_8de4_2f12_62c6),
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0x326e_f6e7_a8ce_d541),

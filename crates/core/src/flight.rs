@@ -9,7 +9,7 @@ use crate::motion::damping::Damped;
 use crate::motion::{self, State};
 use crate::numerics::trig::FARTHEST;
 use crate::scenario::Scenario;
-use crate::time::Instant;
+use crate::time::{Instant, Span};
 
 pub use flexsc_flight::{
     Crew, CyclePlace, LaneRest, LaneSight, MOST, Searched, Setup, Structure, fly_alone, fly_beside,
@@ -104,6 +104,7 @@ pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
         weak: law.weak.get() * mobility,
         k_t: law.k_t.get(),
         structure: structure(scenario),
+        band: scenario.promise().band(1.0),
         end: (Instant::START + scenario.duration).parts(),
         window: envelope.map(|envelope| (Instant::START + envelope.window).parts()),
     }
@@ -129,6 +130,17 @@ pub fn phase(place: CyclePlace, side: f64) -> Phase {
         (CyclePlace::Brake, true) => Phase::RightBrake,
         (CyclePlace::Brake, false) => Phase::LeftBrake,
     }
+}
+
+/// Takes over what was searched: the span since departure, whether it is the first guard, and where the modes are.
+pub fn searched(found: &mut Searched, after: Span, is_first: bool, state: &State) {
+    *found = Searched {
+        after: ((Instant::START + after).parts(), after.seconds()),
+        right: is_first,
+        modes: std::mem::take(&mut found.modes),
+    };
+    found.modes.clear();
+    found.modes.extend(state.modes.iter().map(|phase| [phase.displacement, phase.quadrature]));
 }
 
 /// Takes a sight over.

@@ -36,6 +36,8 @@ pub struct Setup {
     pub weak: f64,
     /// Braking gain.
     pub k_t: f64,
+    /// Half the width of the band about the goal (rad).
+    pub band: f64,
     /// The end: whole seconds and femtoseconds.
     pub end: (u64, u64),
     /// The length of a window of the envelope: whole seconds and femtoseconds; none without one.
@@ -117,9 +119,9 @@ pub trait Crew {
     /// Whether it wants to know where bounds do not keep the angle within the band.
     fn looks(&self) -> bool;
     /// The next run for a lane, whose last run has ended.
-    fn next(&mut self, lane: usize) -> Option<Setup>;
-    /// Looks for the first trip of a lane that departs here at this place; nothing within the run.
-    fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched>;
+    fn next(&mut self, lane: usize) -> Option<&Setup>;
+    /// Looks for the first trip of a lane that departs here at this place, and answers whether there is one within the run.
+    fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, found: &mut Searched) -> bool;
     /// A lane cannot go on here: its run has to be made alone.
     fn give_up(&mut self, lane: usize);
     /// The law has switched to a place.
@@ -128,8 +130,6 @@ pub trait Crew {
     fn closed(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64;
     /// On the motion that departed here, at this place, and ends at an instant, the angle may leave the band (rad).
     fn strays(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, until: (u64, u64));
-    /// Half the width of the band about the goal (rad).
-    fn band(&self, lane: usize) -> f64;
     /// Whether its run must not go on.
     fn stops(&self) -> bool {
         false

@@ -9,13 +9,15 @@
 
 mod fill;
 mod look;
+mod mode;
 
 use super::clock::{Clock, nearest_ticks};
-use super::crew::{Crew, CyclePlace, LaneSight, Structure};
-use super::track::{self, PhasorTrack};
+use super::crew::{Crew, CyclePlace, LaneSight, Searched, Structure};
+use super::track::{self, PhasorTrack, Turning};
 use flexsc_motion::damping::Damping;
 use flexsc_motion::guess::{Departure, GuessLevel, GuessOscillator, GuessedTrip, locate};
 use flexsc_motion::lanes::{Four, Mask, Real};
+use mode::LaneMode;
 
 /// Most lanes.
 pub const MOST: usize = 16;
@@ -42,11 +44,9 @@ pub struct Flight<R: Real, D> {
     side: R,
     angle: R,
     rate: R,
-    /// Displacements from 0; the modes about their equilibria at departure, and at the end of the motion.
-    totals: Vec<R>,
-    modes: Vec<GuessOscillator<R, D>>,
+    modes: Vec<LaneMode<R, D>>,
+    /// The modes of a motion, where there are more or fewer than two.
     moved: Vec<GuessOscillator<R, D>>,
-    excitabilities: Vec<R>,
     fastest: R,
     longest: R,
     edge: R,
@@ -55,7 +55,7 @@ pub struct Flight<R: Real, D> {
     weak: R,
     k_t: R,
     band: R,
-    /// When the push began, and how long it lasted (s).
+    /// When the push of a run alone began, and how long the last push lasted (s).
     pushed: Clock<R>,
     lasted: R,
     tracks: Vec<PhasorTrack<R, D>>,
@@ -63,6 +63,9 @@ pub struct Flight<R: Real, D> {
     four: Four,
     /// Whether any run has windows.
     watches: bool,
+    /// What the crew wants to know: switchings, and where the angle may leave the band.
+    listens: bool,
+    looks: bool,
     /// When the envelope was followed last, its integral, and when and after how long windows close.
     seen: Clock<R>,
     integral: R,
@@ -73,6 +76,8 @@ pub struct Flight<R: Real, D> {
     /// All lanes as plain numbers, and one of them.
     rows: Vec<[f64; MOST]>,
     sight: LaneSight,
+    /// What was searched last.
+    found: Searched,
 }
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
@@ -109,12 +114,14 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             CyclePlace::Push => (-self.strong, -one, self.back),
             CyclePlace::Brake => (self.strong, one, self.edge),
         };
-        self.depart(moment);
-        if place == CyclePlace::Push {
+        for track in &mut self.tracks {
+            track.command(moment);
+        }
+        if Self::IS_ALONE && place == CyclePlace::Push {
             self.pushed = self.now;
         }
         let (span, right) = if place == CyclePlace::Brake {
-            (self.brake(crew), one.le(one))
+            (self.brake(crew, moment), one.le(one))
         } else if place == CyclePlace::Push {
             self.guarded(crew, place, moment, &[GuessLevel { angle: level, towards }])
         } else {
@@ -148,15 +155,15 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             let track = &mut self.tracks[index];
             track.equilibrium = mirror * track.equilibrium;
             for part in 0..2 {
-                track.frame[part] = mirror * track.frame[part];
-                track.deviation[part] = mirror * track.deviation[part];
+                track.now.frame[part] = mirror * track.now.frame[part];
+                track.now.deviation[part] = mirror * track.now.deviation[part];
             }
         }
     }
 
     /// The brake, which lasts as long as the law says.
     #[inline(always)]
-    fn brake(&mut self, crew: &mut dyn Crew) -> (Clock<R>, R) {
+    fn brake(&mut self, crew: &mut dyn Crew, moment: R) -> (Clock<R>, R) {
         let nearest = nearest_ticks(self.k_t * self.lasted);
         // So long a brake is for a run alone.
         let fits = nearest.lt(nearest.of(SHORT * 1e15));
@@ -170,27 +177,12 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
         let ticks = R::select(fits, nearest, nearest.of(0.0));
         let after = ticks / ticks.of(1e15);
-        for index in 0..self.modes.len() {
-            self.moved[index].go(after);
+        for mode in &mut self.modes {
+            let mut moved = mode.depart(moment);
+            moved.go(after);
+            mode.arrive(&moved);
         }
         (Clock::of_ticks(ticks), after)
-    }
-
-    /// The modes turn about equilibria of this moment from now on; none has moved yet.
-    #[inline(always)]
-    fn depart(&mut self, moment: R) {
-        for index in 0..self.modes.len() {
-            let GuessOscillator { frequency, quadrature, damping, .. } = self.modes[index];
-            let equilibrium = self.excitabilities[index] * moment;
-            let displacement = self.totals[index] - equilibrium;
-            // Number by number: a copy of the whole would wait for what was just written.
-            self.modes[index].equilibrium = equilibrium;
-            self.modes[index].displacement = displacement;
-            self.moved[index] = GuessOscillator { frequency, equilibrium, displacement, quadrature, damping };
-        }
-        for track in &mut self.tracks {
-            track.command(moment);
-        }
     }
 
     /// Finds the first trip: after how long, and of which level.
@@ -205,25 +197,35 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let (zero, one) = (moment.of(0.0), moment.of(1.0));
         let (fastest, longest) = (self.fastest, self.longest);
         let from = Departure { angle: self.angle, rate: self.rate, moment, fastest, longest };
-        let found: GuessedTrip<R> = match &mut self.moved[..] {
+        let found: GuessedTrip<R> = match &mut self.modes[..] {
             // So many modes, which is usual, stay in registers.
             [first, second] if !D::IS_DAMPED => {
-                let mut two = [*first, *second];
+                let mut two = [first.depart(moment), second.depart(moment)];
                 let found = locate(&from, levels, &mut two);
-                [*first, *second] = two;
+                first.arrive(&two[0]);
+                second.arrive(&two[1]);
                 found
             }
-            modes => locate(&from, levels, modes),
+            modes => {
+                for index in 0..modes.len() {
+                    self.moved[index] = modes[index].depart(moment);
+                }
+                let found = locate(&from, levels, &mut self.moved);
+                for index in 0..modes.len() {
+                    modes[index].arrive(&self.moved[index]);
+                }
+                found
+            }
         };
         let certain = found.certain;
         if certain.all() {
             return ((Clock::of_ticks(found.ticks), found.after), found.first);
         }
         // Lanes without a run stay where they are.
-        for index in 0..self.modes.len() {
-            let (moved, mode) = (&mut self.moved[index], self.modes[index]);
-            moved.displacement = R::select(certain, moved.displacement, mode.displacement);
-            moved.quadrature = R::select(certain, moved.quadrature, mode.quadrature);
+        for mode in &mut self.modes {
+            for part in 0..2 {
+                mode.end[part] = R::select(certain, mode.end[part], mode.at[part]);
+            }
         }
         let mut span = Clock::of_ticks(R::select(certain, found.ticks, zero));
         let mut after = R::select(certain, found.after, zero);
@@ -236,11 +238,12 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             }
             self.look(lane);
             let side = self.sight.side;
-            let Some(found) = crew.search(lane, place, &self.sight) else {
+            let found = &mut self.found;
+            if !crew.search(lane, place, &self.sight, found) {
                 // Nothing within the run, whose end is before any trip that lies so far ahead.
                 span = span.with_lane(lane, (NEVER as u64, 0));
                 continue;
-            };
+            }
             let (parts, seconds) = found.after;
             if !(seconds > 0.0 && seconds < SHORT) {
                 crew.give_up(lane);
@@ -253,10 +256,9 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
                 first = first.with_lane(lane, if found.right == (side > 0.0) { 1.0 } else { -1.0 });
             }
             for index in 0..found.modes.len() {
-                let (moved, [x, y]) = (&mut self.moved[index], found.modes[index]);
-                moved.equilibrium = moved.equilibrium.with_lane(lane, 0.0);
-                moved.displacement = moved.displacement.with_lane(lane, side * x);
-                moved.quadrature = moved.quadrature.with_lane(lane, side * y);
+                let (mode, [x, y]) = (&mut self.modes[index], found.modes[index]);
+                mode.end[0] = mode.end[0].with_lane(lane, 0.0 + side * x);
+                mode.end[1] = mode.end[1].with_lane(lane, side * y);
             }
         }
         ((span, after), zero.lt(first))
@@ -276,14 +278,14 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let zero = h.of(0.0);
         let until = self.now.plus(span);
         let ends = !until.not_after(self.end);
-        let until = Clock::select(ends, self.end, until);
+        let until = if ends.any() { Clock::select(ends, self.end, until) } else { until };
         if Self::IS_ALONE && (ends.any() || crew.stops()) {
             self.hand_back(crew, place);
             return;
         }
         // Where no run ends, it takes as long as was found.
         let lasts = if ends.any() { None } else { Some(h) };
-        if crew.looks() {
+        if self.looks {
             let span = match lasts {
                 Some(span) => span,
                 None => until.since(self.now).seconds(),
@@ -294,10 +296,10 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         self.now = until;
         self.angle = seen(mirror, self.angle + h * (self.rate + h.of(0.5) * moment * h));
         self.rate = seen(mirror, self.rate + moment * h);
-        for index in 0..self.modes.len() {
-            let moved = self.moved[index];
-            self.totals[index] = seen(mirror, moved.equilibrium + moved.displacement);
-            self.modes[index].quadrature = seen(mirror, moved.quadrature);
+        for mode in &mut self.modes {
+            for part in 0..2 {
+                mode.at[part] = seen(mirror, mode.end[part]);
+            }
         }
         if let Some(mirror) = mirror {
             self.mirror(mirror);
@@ -325,7 +327,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let mut goes_on = zero.le(zero);
         loop {
             let due = goes_on & self.closes.not_after(until);
-            let at = Clock::select(due, self.closes, until);
+            let at = if due.any() { Clock::select(due, self.closes, until) } else { until };
             let time = at.seconds();
             let span = match whole.take() {
                 Some(whole) if !due.any() => whole,
@@ -351,14 +353,15 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     #[inline(always)]
     fn follow_each(&mut self, goes_on: R::Mask, time: R, span: R) {
         let zero = time.of(0.0);
-        for index in 0..self.tracks.len() {
-            let mut advanced = self.tracks[index];
-            let integral = advanced.advance(time, span);
-            self.integral = self.integral + R::select(goes_on, integral, zero);
+        for track in &mut self.tracks {
+            let (mut there, mut integral) = track.advance(time, span);
             // As a rule all go on.
-            let is_whole = goes_on.all();
-            let before = &mut self.tracks[index];
-            *before = if is_whole { advanced } else { PhasorTrack::select(goes_on, &advanced, before) };
+            if !goes_on.all() {
+                there = Turning::select(goes_on, &there, &track.now);
+                integral = R::select(goes_on, integral, zero);
+            }
+            track.now = there;
+            self.integral = self.integral + integral;
         }
     }
 

@@ -13,61 +13,67 @@ use flexsc_motion::numerics::trig::sincos;
 /// Phasors that stand side by side.
 const SIDE: usize = 4;
 
-/// One mode's phasor.
+/// One mode's phasor. Its numbers do not straddle lines of the cache.
 #[derive(Copy, Clone, Debug)]
+#[repr(align(64))]
 pub struct PhasorTrack<R, D> {
     /// Natural frequency (rad/s).
     pub frequency: R,
     /// Static displacement for each unit of moment (s²).
     pub excitability: R,
-    /// The phasor in the turning frame; the axis of that frame now.
+    /// The equilibrium, whose imaginary part follows from its damping.
+    pub equilibrium: R,
+    pub damping: D,
+    pub now: Turning<R>,
+}
+
+/// Where a phasor is at one instant.
+#[derive(Copy, Clone, Debug)]
+pub struct Turning<R> {
+    /// The phasor in the turning frame; the axis of that frame.
     pub frame: [R; 2],
     pub axis: [R; 2],
-    /// The equilibrium, whose imaginary part follows from its damping, and the deviation from it now.
-    pub equilibrium: R,
+    /// The deviation from the equilibrium.
     pub deviation: [R; 2],
-    pub damping: D,
 }
 
 impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
-    /// Follows the mode to a time (s), over a span (s), and returns the integral of its envelope over it.
+    /// Where the mode is at a time (s), a span (s) later, and the integral of its envelope over it.
     #[inline(always)]
-    pub fn advance(&mut self, time: R, span: R) -> R {
+    pub fn advance(&self, time: R, span: R) -> (Turning<R>, R) {
         if D::IS_DAMPED {
             return self.fade(time, span);
         }
-        let (from, before) = (self.axis, self.deviation);
+        let Turning { frame: [re, im], axis: from, deviation: before } = self.now;
         let (sin, cos) = sincos(self.frequency * time);
-        self.axis = [cos, sin];
-        let [re, im] = self.frame;
         let re = re + self.equilibrium * (cos - from[0]);
         let im = im + self.equilibrium * (sin - from[1]);
-        self.frame = [re, im];
-        self.deviation = [(re * cos + im * sin) - self.equilibrium, im * cos - re * sin];
-        undamped(self.equilibrium, [before, self.deviation], self.frequency, span)
+        let deviation = [(re * cos + im * sin) - self.equilibrium, im * cos - re * sin];
+        let integral = undamped(self.equilibrium, [before, deviation], self.frequency, span);
+        (Turning { frame: [re, im], axis: [cos, sin], deviation }, integral)
     }
 
     /// The same of modes that may be damped.
     #[inline(always)]
-    fn fade(&mut self, time: R, span: R) -> R {
-        let (from, before, decay) = (self.axis, self.deviation, self.damping.decay(time));
+    fn fade(&self, time: R, span: R) -> (Turning<R>, R) {
+        let (Turning { frame: [re, im], axis: from, deviation: before }, decay) =
+            (self.now, self.damping.decay(time));
         let turning = self.damping.turning(self.frequency);
         let (sin, cos) = sincos(turning * time);
         let left = exp(-(decay * span));
-        self.axis = [cos, sin];
-        let ([re, im], equilibrium) = (self.frame, self.imaginary(self.equilibrium));
+        let equilibrium = self.imaginary(self.equilibrium);
         let (c, s) = (cos - from[0] * left, sin - from[1] * left);
         let re = re * left + (self.equilibrium * c - equilibrium * s);
         let im = im * left + (self.equilibrium * s + equilibrium * c);
-        self.frame = [re, im];
-        self.deviation = [(re * cos + im * sin) - self.equilibrium, (im * cos - re * sin) - equilibrium];
-        let ends = [before, self.deviation];
-        let integral = damped([self.equilibrium, equilibrium], ends, decay, turning, span);
+        let deviation = [(re * cos + im * sin) - self.equilibrium, (im * cos - re * sin) - equilibrium];
+        let ends = [before, deviation];
+        let mut integral = damped([self.equilibrium, equilibrium], ends, decay, turning, span);
         let stays = decay.le(decay.of(0.0));
-        if !stays.any() {
-            return integral;
+        if stays.any() {
+            let undamped = undamped(self.equilibrium, ends, self.frequency, span);
+            integral = R::select(stays, undamped, integral);
         }
-        R::select(stays, undamped(self.equilibrium, ends, self.frequency, span), integral)
+        (Turning { frame: [re, im], axis: [cos, sin], deviation }, integral)
     }
 
     /// The imaginary part of an equilibrium.
@@ -87,12 +93,14 @@ impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
         let equilibrium = self.excitability * moment;
         let shift = self.equilibrium - equilibrium;
         self.equilibrium = equilibrium;
-        self.deviation[0] = self.deviation[0] + shift;
+        self.now.deviation[0] = self.now.deviation[0] + shift;
         if D::IS_DAMPED {
-            self.deviation[1] = self.deviation[1] + (before - self.imaginary(equilibrium));
+            self.now.deviation[1] = self.now.deviation[1] + (before - self.imaginary(equilibrium));
         }
     }
+}
 
+impl<R: Real> Turning<R> {
     /// One or the other.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
@@ -102,7 +110,6 @@ impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
             one.axis[part] = R::select(mask, yes.axis[part], no.axis[part]);
             one.deviation[part] = R::select(mask, yes.deviation[part], no.deviation[part]);
         }
-        one.equilibrium = R::select(mask, yes.equilibrium, no.equilibrium);
         one
     }
 }
@@ -150,22 +157,25 @@ impl<R: Real, D: Damping<R>> LaneWork for Beside<'_, R, D> {
                 kind.load(&each)
             }};
         }
-        let mut all = PhasorTrack {
+        let all = PhasorTrack {
             frequency: load!(frequency),
             excitability: load!(excitability),
-            frame: [load!(frame[0]), load!(frame[1])],
-            axis: [load!(axis[0]), load!(axis[1])],
             equilibrium: load!(equilibrium),
-            deviation: [load!(deviation[0]), load!(deviation[1])],
             damping: Undamped,
+            now: Turning {
+                frame: [load!(now.frame[0]), load!(now.frame[1])],
+                axis: [load!(now.axis[0]), load!(now.axis[1])],
+                deviation: [load!(now.deviation[0]), load!(now.deviation[1])],
+            },
         };
-        let integral = all.advance(kind.of(self.time), kind.of(self.span));
+        let (there, integral) = all.advance(kind.of(self.time), kind.of(self.span));
         macro_rules! store {
             ($($part:tt)+) => {{
                 let mut each = [0.0; SIDE];
-                all.$($part)+.store(&mut each);
+                there.$($part)+.store(&mut each);
                 for lane in 0..=last {
-                    self.tracks[lane].$($part)+ = self.tracks[lane].$($part)+.of(each[lane]);
+                    let to = &mut self.tracks[lane].now.$($part)+;
+                    *to = to.of(each[lane]);
                 }
             }};
         }

@@ -25,7 +25,7 @@ impl LaneWork for Runs<'_> {
 
 /// Makes all runs of a crew side by side.
 pub fn fly_beside(processor: Processor, structure: Structure, crew: &mut dyn Crew) {
-    processor.run::<1, _>(Runs { structure, crew });
+    processor.run::<2, _>(Runs { structure, crew });
 }
 
 /// Makes the one run of a crew.

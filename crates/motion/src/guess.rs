@@ -101,7 +101,7 @@ impl<R: Real, D: Damping<R>> GuessOscillator<R, D> {
     pub fn reach(&self) -> R {
         let (x, y) = (self.displacement.abs(), self.quadrature.abs());
         let flat = x.of(std::f64::consts::SQRT_2 - 1.0);
-        R::select(x.lt(y), y + flat * x, x + flat * y)
+        x.max(y) + flat * x.min(y)
     }
 }
 
@@ -246,10 +246,12 @@ pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
             | speed.le(zero)
             | (-acceleration * until).le(speed * curvature)
             | (speed * speed).lt(-(gap + gap) * acceleration);
-        let rigid = zero.lt(gap) & zero.lt(end) & crest;
-        let (gap, speed) = (of.towards * (of.angle - angle), of.towards * rate);
-        let bound = zero.lt(gap) & zero.lt(gap * curvature - (speed + half) * until);
-        certain = certain & (rigid | bound | (is_it & until.le(zero)));
+        let mut clear = (zero.lt(gap) & zero.lt(end) & crest) | (is_it & until.le(zero));
+        if !clear.all() {
+            let (gap, speed) = (of.towards * (of.angle - angle), of.towards * rate);
+            clear = clear | (zero.lt(gap) & zero.lt(gap * curvature - (speed + half) * until));
+        }
+        certain = certain & clear;
     }
     GuessedTrip { certain, first, ticks, after, seen: [seen[0], seen[1], seen[2]] }
 }

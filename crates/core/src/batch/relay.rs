@@ -7,8 +7,8 @@ use super::{Batch, Job};
 use crate::body::{ForcedInput, Segment};
 use crate::estimator::Monitor;
 use crate::flight::{
-    Crew, CyclePlace, LaneSight, MOST, Searched, Setup, flies, fly_beside, guards, instant, phase, see,
-    setup, structure,
+    Crew, CyclePlace, LaneSight, MOST, Searched, Setup, Structure, flies, fly_beside, guards, instant, phase,
+    searched, see, setup, structure,
 };
 use crate::guard::Guard;
 use crate::lanes::Processor;
@@ -39,16 +39,16 @@ impl Batch for Side {
     }
 
     fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
-        let mut runs = Runs::new(jobs);
-        if let Some(first) = jobs.first() {
-            fly_beside(processor, structure(first.scenario), &mut runs);
-        }
+        let Some(first) = jobs.first() else { return Vec::new() };
+        let mut runs = Runs::new(structure(first.scenario), jobs);
+        fly_beside(processor, runs.structure, &mut runs);
         runs.found
     }
 }
 
 /// Some runs, and what is known of those in the lanes.
 struct Runs<'a> {
+    structure: Structure,
     jobs: &'a [Job<'a>],
     next: usize,
     lanes: Vec<Option<Lane<'a>>>,
@@ -73,10 +73,10 @@ struct Lane<'a> {
 }
 
 impl<'a> Runs<'a> {
-    fn new(jobs: &'a [Job<'a>]) -> Self {
+    fn new(structure: Structure, jobs: &'a [Job<'a>]) -> Self {
         let lanes = (0..MOST).map(|_| None).collect();
         let found = vec![None; jobs.len()];
-        Self { jobs, next: 0, lanes, found, listens: false, looks: false }
+        Self { structure, jobs, next: 0, lanes, found, listens: false, looks: false }
     }
 }
 
@@ -98,7 +98,7 @@ impl Crew for Runs<'_> {
         self.looks
     }
 
-    fn next(&mut self, lane: usize) -> Option<Setup> {
+    fn next(&mut self, lane: usize) -> Option<&Setup> {
         if let Some(ended) = self.lanes[lane].take() {
             let is_whole = !ended.is_alone && ended.state.is_finite();
             self.found[ended.index] = is_whole.then(|| ended.gather.finish(ended.scenario));
@@ -106,7 +106,7 @@ impl Crew for Runs<'_> {
         while let Some(job) = self.jobs.get(self.next) {
             self.next += 1;
             let Some((model, law)) = flies(job.scenario) else { continue };
-            if structure(job.scenario) != structure(self.jobs[0].scenario) {
+            if structure(job.scenario) != self.structure {
                 continue;
             }
             let mut gather = Gather::of(job.scenario, job.selection);
@@ -117,35 +117,31 @@ impl Crew for Runs<'_> {
                 continue;
             }
             let setup = setup(job.scenario, model, law);
-            self.lanes[lane] = Some(Lane {
+            let begun = self.lanes[lane].insert(Lane {
                 index: self.next - 1,
                 scenario: job.scenario,
-                setup: setup.clone(),
+                setup,
                 gather,
                 monitor: job.scenario.monitor(Seed { scenario: job.scenario.seed, run: job.number }),
                 segment: Segment::new(model),
                 state: model.start(),
                 is_alone: false,
             });
-            return Some(setup);
+            return Some(&begun.setup);
         }
         None
     }
 
-    fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched> {
-        let lane = self.lanes[lane].as_mut()?;
+    fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, found: &mut Searched) -> bool {
+        let Some(lane) = self.lanes[lane].as_mut() else { return false };
         lane.depart(place, from);
         let guards = guards(&lane.setup, place, from.side);
         let horizon = (Instant::START + lane.scenario.duration).since(instant(from.at));
         let trip = locate(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
         lane.is_alone |= !lane.state.is_finite();
-        let trip = trip.ok().flatten()?;
-        let modes = lane.state.modes.iter().map(|phase| [phase.displacement, phase.quadrature]);
-        Some(Searched {
-            after: ((Instant::START + trip.after).parts(), trip.after.seconds()),
-            right: trip.guard == 0,
-            modes: modes.collect(),
-        })
+        let Ok(Some(trip)) = trip else { return false };
+        searched(found, trip.after, trip.guard == 0, &lane.state);
+        true
     }
 
     fn give_up(&mut self, lane: usize) {
@@ -190,7 +186,7 @@ impl Crew for Runs<'_> {
             return;
         };
         lane.depart(place, from);
-        let band = lane.scenario.promise().band(f64::NAN);
+        let band = lane.setup.band;
         let span: Span = instant(until).since(instant(from.at));
         let guards = [Guard::at_least(band), Guard::at_most(-band)];
         let stays = lane.segment.stays_within(band, span.seconds())
@@ -199,9 +195,5 @@ impl Crew for Runs<'_> {
                 Ok(None)
             );
         lane.is_alone |= !stays;
-    }
-
-    fn band(&self, lane: usize) -> f64 {
-        self.lanes[lane].as_ref().map_or(1.0, |lane| lane.scenario.promise().band(1.0))
     }
 }

@@ -6,7 +6,7 @@
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
 use crate::flight::{
-    Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup, fly_alone, guards, instant, phase, see,
+    Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup, fly_alone, guards, instant, phase, searched, see,
 };
 use crate::law::Command;
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
@@ -20,7 +20,6 @@ struct Alone<'a> {
     /// Whether the flight has not begun.
     waits: bool,
     listens: bool,
-    band: f64,
     /// Whether it goes on elsewhere, and why it does not go on at all.
     stopped: bool,
     failed: Option<SimulationError>,
@@ -39,11 +38,10 @@ impl Simulation {
             return Ok(());
         }
         let Some(setup) = self.quick.flight.take() else { return Ok(()) };
-        let setup = Setup { end: until.parts(), ..*setup };
+        let setup = Setup { end: until.parts(), band, ..*setup };
         let listens = record.switchings();
         let (failed, rest) = (None, LaneRest::default());
-        let mut crew =
-            Alone { run: self, record, setup, waits: true, listens, band, stopped: false, failed, rest };
+        let mut crew = Alone { run: self, record, setup, waits: true, listens, stopped: false, failed, rest };
         fly_alone(crew.setup.structure, &mut crew);
         let Alone { failed, rest, .. } = crew;
         self.land(&rest, record)?;
@@ -118,33 +116,30 @@ impl Crew for Alone<'_> {
     }
 
     fn looks(&self) -> bool {
-        self.band.is_finite()
+        self.setup.band.is_finite()
     }
 
-    fn next(&mut self, lane: usize) -> Option<Setup> {
-        (lane == 0 && std::mem::take(&mut self.waits)).then(|| self.setup.clone())
+    fn next(&mut self, lane: usize) -> Option<&Setup> {
+        (lane == 0 && std::mem::take(&mut self.waits)).then_some(&self.setup)
     }
 
-    fn search(&mut self, _: usize, place: CyclePlace, from: &LaneSight) -> Option<Searched> {
+    fn search(&mut self, _: usize, place: CyclePlace, from: &LaneSight, found: &mut Searched) -> bool {
         self.run.set_off(from, self.setup.torque(place, from.side));
         let horizon = instant(self.setup.end).since(instant(from.at));
         let guards = guards(&self.setup, place, from.side);
-        let Plant::Planar(plant) = &mut self.run.plant else { return None };
-        let trip = plant.trip(&guards, horizon, &mut self.record);
-        let (at, guard) = match trip {
-            Ok(trip) => trip?,
+        let Plant::Planar(plant) = &mut self.run.plant else { return false };
+        match plant.trip(&guards, horizon, &mut self.record) {
+            Ok(Some((at, guard))) => {
+                plant.view(at);
+                searched(found, at.since(instant(from.at)), guard == 0, plant.state());
+                true
+            }
+            Ok(None) => false,
             Err(error) => {
                 self.keep(Err(error));
-                return None;
+                false
             }
-        };
-        plant.view(at);
-        let after = at.since(instant(from.at));
-        Some(Searched {
-            after: ((Instant::START + after).parts(), after.seconds()),
-            right: guard == 0,
-            modes: plant.state().modes.iter().map(|phase| [phase.displacement, phase.quadrature]).collect(),
-        })
+        }
     }
 
     fn give_up(&mut self, _: usize) {
@@ -174,10 +169,6 @@ impl Crew for Alone<'_> {
         let Plant::Planar(plant) = &self.run.plant else { return };
         let told = plant.tell_course(instant(until), &self.run.exerted, &mut self.record);
         self.keep(told);
-    }
-
-    fn band(&self, _: usize) -> f64 {
-        self.band
     }
 
     fn stops(&self) -> bool {

@@ -3,10 +3,11 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
+use super::mode::LaneMode;
 use super::{Flight, MOST, NEVER, ROWS};
 use crate::clock::Clock;
-use crate::crew::{Crew, LaneSight, Setup};
-use crate::track::PhasorTrack;
+use crate::crew::{Crew, LaneSight, Searched, Setup};
+use crate::track::{PhasorTrack, Turning};
 use flexsc_motion::damping::Damping;
 use flexsc_motion::guess::{FARTHEST_TURN, GuessOscillator};
 use flexsc_motion::lanes::{Four, Real};
@@ -28,22 +29,19 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let track = PhasorTrack {
             frequency: one,
             excitability: zero,
-            frame: [zero; 2],
-            axis: [one, zero],
             equilibrium: zero,
-            deviation: [zero; 2],
             damping,
+            now: Turning { frame: [zero; 2], axis: [one, zero], deviation: [zero; 2] },
         };
+        let mode = LaneMode { frequency: one, excitability: zero, damping, at: [zero; 2], end: [zero; 2] };
         let mut flight = Self {
             now: start,
             end: start,
             side: one,
             angle: zero,
             rate: zero,
-            totals: Vec::with_capacity(modes),
             modes: Vec::with_capacity(modes),
             moved: Vec::with_capacity(modes),
-            excitabilities: Vec::with_capacity(modes),
             fastest: one,
             longest: one,
             edge: one,
@@ -57,6 +55,8 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             tracks: Vec::with_capacity(tracks),
             four: Four::best(),
             watches: false,
+            listens: false,
+            looks: false,
             seen: start,
             integral: zero,
             closes: never,
@@ -64,12 +64,11 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             active: [false; MOST],
             rows: vec![[0.0; MOST]; ROWS + 2 * modes],
             sight: LaneSight::default(),
+            found: Searched::default(),
         };
         for _ in 0..modes {
-            flight.totals.push(zero);
-            flight.modes.push(still);
+            flight.modes.push(mode);
             flight.moved.push(still);
-            flight.excitabilities.push(zero);
         }
         for _ in 0..tracks {
             flight.tracks.push(track);
@@ -78,21 +77,25 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     }
 
     /// Gives lanes that have none the next runs; tells whether any has one.
+    #[inline(always)]
     pub(super) fn fill(&mut self, crew: &mut dyn Crew) -> bool {
         let mut any = false;
         for lane in 0..R::LANES {
             if !self.active[lane]
                 && let Some(setup) = crew.next(lane)
             {
-                self.begin(lane, &setup, crew.band(lane));
+                self.begin(lane, setup);
             }
             any |= self.active[lane];
         }
+        // They may have changed with the runs.
+        (self.listens, self.looks) = (crew.listens(), crew.looks());
         any
     }
 
     /// Puts a run into a lane.
-    fn begin(&mut self, lane: usize, setup: &Setup, band: f64) {
+    #[inline(always)]
+    fn begin(&mut self, lane: usize, setup: &Setup) {
         let put = |of: &mut R, value: f64| *of = of.with_lane(lane, value);
         self.active[lane] = true;
         self.now = self.now.with_lane(lane, (0, 0));
@@ -110,17 +113,17 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         put(&mut self.strong, setup.strong);
         put(&mut self.weak, setup.weak);
         put(&mut self.k_t, setup.k_t);
-        put(&mut self.band, band);
+        put(&mut self.band, setup.band);
         put(&mut self.integral, 0.0);
         let mut fastest = 0.0_f64;
         for (index, [frequency, k, x, y, ratio]) in setup.modes.iter().copied().enumerate() {
             fastest = fastest.max(frequency);
-            put(&mut self.modes[index].frequency, frequency);
-            put(&mut self.modes[index].quadrature, y);
-            put(&mut self.excitabilities[index], k);
-            put(&mut self.totals[index], x);
-            let damping = &mut self.modes[index].damping;
-            *damping = damping.with_lane(lane, frequency, ratio);
+            let mode = &mut self.modes[index];
+            put(&mut mode.frequency, frequency);
+            put(&mut mode.excitability, k);
+            put(&mut mode.at[0], x);
+            put(&mut mode.at[1], y);
+            mode.damping = mode.damping.with_lane(lane, frequency, ratio);
         }
         put(&mut self.fastest, fastest);
         put(&mut self.longest, FARTHEST_TURN / fastest);
@@ -131,9 +134,9 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             put(&mut track.excitability, k);
             put(&mut track.equilibrium, 0.0);
             for (part, value) in [x, y].into_iter().enumerate() {
-                put(&mut track.frame[part], value);
-                put(&mut track.deviation[part], value);
-                put(&mut track.axis[part], [1.0, 0.0][part]);
+                put(&mut track.now.frame[part], value);
+                put(&mut track.now.deviation[part], value);
+                put(&mut track.now.axis[part], [1.0, 0.0][part]);
             }
         }
     }

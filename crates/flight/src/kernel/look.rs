@@ -6,6 +6,7 @@
 use super::Flight;
 use crate::clock::Clock;
 use crate::crew::{Crew, CyclePlace, LaneRest};
+use crate::track::Turning;
 use flexsc_motion::damping::Damping;
 use flexsc_motion::lanes::{Mask, Real};
 
@@ -23,6 +24,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let zero = span.of(0.0);
         let (mut centre, mut reach) = (zero, zero);
         for mode in &self.modes {
+            let mode = mode.depart(moment);
             centre = centre + mode.equilibrium;
             reach = reach + mode.reach();
         }
@@ -50,7 +52,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     /// Tells a switching of each lane.
     #[inline(always)]
     pub(super) fn tell(&mut self, crew: &mut dyn Crew, to: CyclePlace) {
-        if !crew.listens() {
+        if !self.listens {
             return;
         }
         self.write();
@@ -70,10 +72,10 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let side = self.side.lane(0);
         let mut tracks = Vec::with_capacity(self.tracks.len());
         for track in &self.tracks {
-            let ([re, im], [x, y]) = (track.frame, track.deviation);
+            let Turning { frame: [re, im], axis, deviation: [x, y] } = track.now;
             let mirrored = [re, im, track.equilibrium, x, y].map(|part| side * part.lane(0));
             let [re, im, equilibrium, x, y] = mirrored;
-            tracks.push([re, im, track.axis[0].lane(0), track.axis[1].lane(0), equilibrium, x, y]);
+            tracks.push([re, im, axis[0].lane(0), axis[1].lane(0), equilibrium, x, y]);
         }
         crew.take_back(LaneRest {
             place: Some(place),
@@ -96,8 +98,9 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         (self.side * self.angle).store(angle);
         (self.side * self.rate).store(rate);
         for index in 0..self.modes.len() {
-            (self.side * self.totals[index]).store(&mut rest[2 * index]);
-            (self.side * self.modes[index].quadrature).store(&mut rest[2 * index + 1]);
+            for part in 0..2 {
+                (self.side * self.modes[index].at[part]).store(&mut rest[2 * index + part]);
+            }
         }
     }
 

@@ -25,13 +25,18 @@ enum Instructions {
 impl Four {
     /// The best that there are.
     pub fn best() -> Self {
+        Self::wide().unwrap_or_else(Self::any)
+    }
+
+    /// Those of more than one number at once, if there are any.
+    pub fn wide() -> Option<Self> {
         #[cfg(target_arch = "x86_64")]
-        let best = V3::try_new().map(Instructions::Avx2);
+        let wide = V3::try_new().map(Instructions::Avx2);
         #[cfg(target_arch = "aarch64")]
-        let best = Neon::try_new().map(Instructions::Neon);
+        let wide = Neon::try_new().map(Instructions::Neon);
         #[cfg(not(any(target_arch = "x86_64", target_arch = "aarch64")))]
-        let best = None;
-        Self(best.unwrap_or(Instructions::Any))
+        let wide = None;
+        wide.map(Self)
     }
 
     /// Those that every processor has.

@@ -92,16 +92,4 @@ impl Processor {
             Instructions::Neon(simd) => Simd::vectorize(simd, Vectorized::<W, N>(work)),
         }
     }
-
-    /// Does some work over lanes of one register, not the widest: for work that takes longer to compile for that than it saves.
-    pub fn run_narrow<W: LaneWork>(self, work: W) -> W::Output {
-        match self.0 {
-            #[cfg(all(target_arch = "x86_64", feature = "wide"))]
-            Instructions::Avx512(simd) => Simd::vectorize(*simd, Vectorized::<W, 1>(work)),
-            #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(simd) => Simd::vectorize(simd, Vectorized::<W, 1>(work)),
-            #[cfg(target_arch = "aarch64")]
-            Instructions::Neon(simd) => Simd::vectorize(simd, Vectorized::<W, 1>(work)),
-        }
-    }
 }

@@ -9,6 +9,9 @@ use pulp::{Simd, WithSimd};
 
 use super::real::{LaneWork, Mask, Real, WHOLE};
 
+/// The places of the lanes.
+const PLACES: [f64; 16] =
+    [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
 /// The digit of a number's sign.
 const SIGN: u64 = 1 << 63;
 
@@ -34,14 +37,29 @@ impl<S: Simd, const N: usize> Lanes<S, N> {
     }
 }
 
+/// Does something to each register, written out: of thousands of loops, LLVM takes minutes to unroll each.
+macro_rules! each_register {
+    ($index:ident => $body:expr) => {{
+        const { assert!(N == 1 || N == 2, "so many are written out") };
+        {
+            let $index = 0;
+            $body;
+        }
+        if N > 1 {
+            let $index = 1;
+            $body;
+        }
+    }};
+}
+
 /// New registers, each from the same one of the operands. No closure: it would lack the processor's instructions.
 macro_rules! each {
     ($lanes:expr, $($operand:ident = $of:expr),+ => $result:expr) => {{
         let mut lanes = $lanes;
-        for index in 0..N {
+        each_register!(index => {
             $(let $operand = $of.registers[index];)+
-            lanes.registers[index] = $result;
-        }
+            lanes.registers[index] = $result
+        });
         lanes
     }};
 }
@@ -101,18 +119,21 @@ impl<S: Simd, const N: usize> Real for Lanes<S, N> {
     fn load(self, from: &[f64]) -> Self {
         let all = S::as_simd_f64s(&from[..Self::LANES]).0;
         let mut lanes = self;
-        for index in 0..N {
-            lanes.registers[index] = all[index];
-        }
+        each_register!(index => lanes.registers[index] = all[index]);
         lanes
     }
 
     #[inline(always)]
     fn store(self, to: &mut [f64]) {
         let all = S::as_mut_simd_f64s(&mut to[..Self::LANES]).0;
-        for index in 0..N {
-            all[index] = self.registers[index];
-        }
+        each_register!(index => all[index] = self.registers[index]);
+    }
+
+    #[inline(always)]
+    fn with_lane(self, lane: usize, value: f64) -> Self {
+        // Chosen in the registers: a number written to memory would have to wait there for its neighbours.
+        let (at, half) = (self.load(&PLACES) - self.of(lane as f64), self.of(0.5));
+        Self::select(at.abs().lt(half), self.of(value), self)
     }
 
     #[inline(always)]
@@ -213,11 +234,11 @@ impl<S: Simd, const N: usize> Not for LaneMask<S, N> {
 impl<S: Simd, const N: usize> Mask for LaneMask<S, N> {
     #[inline(always)]
     fn any(self) -> bool {
-        let mut first = S::F64_LANES;
-        for index in 0..N {
-            first = first.min(self.simd.first_true_m64s(self.registers[index]));
+        let mut any = self.registers[0];
+        if N > 1 {
+            any = self.simd.or_m64s(any, self.registers[1]);
         }
-        first < S::F64_LANES
+        self.simd.first_true_m64s(any) < S::F64_LANES
     }
 }
 

@@ -23,12 +23,12 @@ pub fn undamped<R: Real>(centre: R, [from, to]: [[R; 2]; 2], frequency: R, h: R)
         swept = circle.alone();
     }
     if !below.all() {
-        let mut once = circle.landen::<true>();
+        let mut smaller = circle;
         let is_wide = angle.of(MIDDLE).le(circle.modulus);
         if is_wide.any() {
-            once = Circle::select(is_wide, &once.landen::<true>(), &once);
+            smaller = Circle::select(is_wide, &circle.once(), &circle);
         }
-        swept = R::select(below, swept, once.landen::<false>().after());
+        swept = R::select(below, swept, smaller.twice().after());
         if !circle.modulus.lt(angle.of(LARGE)).all() {
             for lane in 0..R::LANES {
                 if circle.modulus.lane(lane) >= LARGE {

@@ -11,16 +11,18 @@
 //! u = k e^(i b) = (z + k²)/|1 + z|,   z_2 = u² (1 + m)²/4,   dt_2 = 2 (dt - da)
 //! ```
 //!
-//! All of it is algebraic at both ends, but for one arc tangent, of half the angle between the two 1 + z.
+//! All of it is algebraic at both ends, but for the angle between the two 1 + z. With the other modulus, 1 + m = 2/(1 + k'), the next
+//! k' is 2 sqrt(k')/(1 + k') and |1 + z_2| = (|1 + z| + k'^2/|1 + z|)/(1 + k'): a second step has one root, and one arc tangent is enough
+//! for the angles of both.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
-use super::trig::arc;
+use super::trig::argument;
 use crate::lanes::Real;
 
 /// The series alone takes moduli below this.
 pub const SMALL: f64 = 0.1;
-/// Two steps of Landen's take moduli below this, three the next.
+/// Two steps of Landen's take moduli below this, three those below the next.
 pub const MIDDLE: f64 = 0.9;
 /// Beyond this three are not enough.
 pub const LARGE: f64 = 0.998;
@@ -107,47 +109,70 @@ impl<R: Real> Circle<R> {
         }
     }
 
-    /// The same integral on a smaller circle. One that is not `WIDE` has a modulus below 0.4.
+    /// The same integral on a smaller circle, of a modulus near 1.
     #[inline(always)]
     #[must_use]
-    pub fn landen<const WIDE: bool>(&self) -> Self {
-        let k = self.modulus;
-        let (one, two, half) = (k.of(1.0), k.of(2.0), k.of(0.5));
-        let complement = ((one - k) * (one + k)).sqrt();
-        let root = k / (one + complement);
-        let modulus = root * root;
-        let above = one + modulus;
-        let (ratio, quarter) = (one / above, half * above);
-        let turn = quarter * quarter;
+    pub fn once(&self) -> Self {
+        let complement = self.complement();
+        let sizes = self.sizes();
+        let step = Step::new(self, complement, sizes);
+        let part = argument(step.between);
+        let mut smaller = self.after_step(&step, complement);
+        smaller.modulus = step.modulus(self.modulus);
+        smaller.angle = (self.angle - part) * 2.0;
+        smaller
+    }
+
+    /// The same integral after two steps, of a modulus below [`MIDDLE`]: afterwards it is below 0.042.
+    #[inline(always)]
+    #[must_use]
+    pub fn twice(&self) -> Self {
+        let complement = self.complement();
+        let sizes = self.sizes();
+        let first = Step::new(self, complement, sizes);
+        let mut once = self.after_step(&first, complement);
+        once.modulus = first.modulus(self.modulus);
+        // Of the smaller circle, both are known without a root of what depends on the ends.
+        let square = complement * complement;
+        let next = complement.sqrt() * first.inverse * 2.0;
+        let [a, b] = first.sizes_inverse;
+        let sizes = [first.inverse * (sizes[0] + square * a), first.inverse * (sizes[1] + square * b)];
+        let second = Step::new(&once, next, sizes);
+        let mut twice = once.after_step(&second, next);
+        twice.modulus = second.modulus(once.modulus);
+        // Both angles at once: that of the first step, and half that of the second.
+        let ([re, im], [along, across]) = (first.between, second.between);
+        let along = sizes[0] * sizes[1] + along;
+        let part = argument([re * along - im * across, re * across + im * along]);
+        twice.angle = (self.angle - part) * 4.0;
+        twice
+    }
+
+    /// k' of the modulus.
+    #[inline(always)]
+    fn complement(&self) -> R {
+        let one = self.modulus.of(1.0);
+        ((one - self.modulus) * (one + self.modulus)).sqrt()
+    }
+
+    /// |1 + z| at both ends.
+    #[inline(always)]
+    fn sizes(&self) -> [R; 2] {
         let [a, b] = self.ends;
-        let (a_re, b_re) = (one + a[0], one + b[0]);
-        let (a_abs, b_abs) = ((a_re * a_re + a[1] * a[1]).sqrt(), (b_re * b_re + b[1] * b[1]).sqrt());
-        let both = one / (a_abs * b_abs);
-        let (a_in, b_in) = (both * b_abs, both * a_abs);
-        let square = k * k;
-        let (a_u, b_u) = ([a_in * (a[0] + square), a_in * a[1]], [b_in * (b[0] + square), b_in * b[1]]);
-        // Half the angle between both 1 + z; a fourth part of that, on a large circle.
-        let (across, along) = (a_re * b[1] - b_re * a[1], a_abs * b_abs + (a_re * b_re + a[1] * b[1]));
-        let square_across = across * across;
-        let part = if WIDE {
-            let along = along + (along * along + square_across).sqrt();
-            let along = along + (along * along + square_across).sqrt();
-            k.of(8.0) * arc(across / along)
-        } else {
-            two * arc(across / along)
-        };
-        let difference = one - modulus;
+        let (a_re, b_re) = (a[0] + 1.0, b[0] + 1.0);
+        [(a_re * a_re + a[1] * a[1]).sqrt(), (b_re * b_re + b[1] * b[1]).sqrt()]
+    }
+
+    /// All but the modulus and the angle after a step, of this k'.
+    #[inline(always)]
+    fn after_step(&self, step: &Step<R>, complement: R) -> Self {
+        let one = complement.of(1.0);
         Self {
-            scale: self.scale,
-            modulus,
-            ends: [
-                [turn * (a_u[0] * a_u[0] - a_u[1] * a_u[1]), two * turn * a_u[0] * a_u[1]],
-                [turn * (b_u[0] * b_u[0] - b_u[1] * b_u[1]), two * turn * b_u[0] * b_u[1]],
-            ],
-            angle: two * (self.angle - part),
-            length: self.length * ratio,
-            inverse: self.inverse * quarter - half * difference * difference * (self.length * ratio),
-            sum: self.sum + two * self.length * (b_u[1] - a_u[1]),
+            ends: step.ends,
+            length: self.length * ((one + complement) * 0.5),
+            inverse: step.inverse * (self.inverse - self.length * (complement * complement)),
+            sum: self.sum + self.length * step.rise * 2.0,
+            ..*self
         }
     }
 
@@ -199,6 +224,55 @@ impl<R: Real> Circle<R> {
         let inverse = polynomial::<R, { AFTER / 2 + 1 }>(&INVERSE[0], square);
         let mean = self.length * length + self.inverse * inverse;
         self.scale * (self.sum + mean * self.angle + (sums[1].sum() - sums[0].sum()))
+    }
+}
+
+/// What a step of Landen's makes of both ends.
+struct Step<R> {
+    /// 1/(1 + k').
+    inverse: R,
+    /// 1/|1 + z| at both ends.
+    sizes_inverse: [R; 2],
+    /// z_2 there.
+    ends: [[R; 2]; 2],
+    /// By how much Im u rises between them.
+    rise: R,
+    /// A number whose argument is the angle between both 1 + z.
+    between: [R; 2],
+}
+
+impl<R: Real> Step<R> {
+    /// The step of a circle whose k' and |1 + z| are known.
+    #[inline(always)]
+    fn new(circle: &Circle<R>, complement: R, [a_size, b_size]: [R; 2]) -> Self {
+        let square = circle.modulus * circle.modulus;
+        let [a, b] = circle.ends;
+        // One quotient for all three.
+        let (above, sizes) = (complement + 1.0, a_size * b_size);
+        let all = square.of(1.0) / (above * sizes);
+        let (inverse, both) = (all * sizes, all * above);
+        let sizes_inverse = [both * b_size, both * a_size];
+        let a_u = [sizes_inverse[0] * (a[0] + square), sizes_inverse[0] * a[1]];
+        let b_u = [sizes_inverse[1] * (b[0] + square), sizes_inverse[1] * b[1]];
+        let (a_v, b_v) = ([inverse * a_u[0], inverse * a_u[1]], [inverse * b_u[0], inverse * b_u[1]]);
+        let (a_re, b_re) = (a[0] + 1.0, b[0] + 1.0);
+        Self {
+            inverse,
+            sizes_inverse,
+            ends: [
+                [a_v[0] * a_v[0] - a_v[1] * a_v[1], a_v[0] * a_v[1] * 2.0],
+                [b_v[0] * b_v[0] - b_v[1] * b_v[1], b_v[0] * b_v[1] * 2.0],
+            ],
+            rise: b_u[1] - a_u[1],
+            between: [a_re * b_re + a[1] * b[1], a_re * b[1] - b_re * a[1]],
+        }
+    }
+
+    /// (1 - k')/(1 + k').
+    #[inline(always)]
+    fn modulus(&self, before: R) -> R {
+        let root = before * self.inverse;
+        root * root
     }
 }
 

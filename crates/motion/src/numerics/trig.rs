@@ -128,6 +128,23 @@ pub fn arc<R: Real>(t: R) -> R {
     t - t * (z * odd + w * even)
 }
 
+/// The argument of a complex number that is not 0, from -pi to pi (rad); within 6e-16.
+#[inline(always)]
+pub fn argument<R: Real>([re, im]: [R; 2]) -> R {
+    let zero = re.of(0.0);
+    let (along, across) = (re.abs(), im.abs());
+    let is_steep = along.lt(across);
+    let (large, small) = (R::select(is_steep, across, along), R::select(is_steep, along, across));
+    // Beyond pi/8, the angle to pi/4 is smaller.
+    let is_near = (large * std::f64::consts::SQRT_2 - large).lt(small);
+    let above = R::select(is_near, small - large, small);
+    let below = R::select(is_near, small + large, large);
+    let angle = R::select(is_near, re.of(std::f64::consts::FRAC_PI_4), zero) + arc(above / below);
+    let angle = R::select(is_steep, re.of(std::f64::consts::FRAC_PI_2) - angle, angle);
+    let angle = R::select(re.lt(zero), re.of(std::f64::consts::PI) - angle, angle);
+    R::select(im.lt(zero), -angle, angle)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -151,6 +168,17 @@ mod tests {
             check(quarter.next_up());
         }
         assert!(worst < 1.2e-16, "{worst:e}");
+    }
+
+    #[test]
+    fn arguments_agree_with_libm_in_every_quadrant() {
+        for i in -4000..=4000 {
+            let angle = std::f64::consts::PI * f64::from(i) / 4000.0;
+            for size in [1e-200, 0.3, 4e100] {
+                let (im, re) = (size * libm::sin(angle), size * libm::cos(angle));
+                assert!((argument([re, im]) - libm::atan2(im, re)).abs() < 1e-15, "{angle}");
+            }
+        }
     }
 
     #[test]

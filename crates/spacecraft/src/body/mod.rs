@@ -1,5 +1,6 @@
 //! What is controlled: the ways to describe a body, and its exact flow under a constant input.
 
+mod abreast;
 mod chain;
 mod coupled;
 pub mod craft;

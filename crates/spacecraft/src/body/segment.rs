@@ -4,6 +4,7 @@ mod guess;
 
 use nalgebra::DVector;
 
+use super::abreast::Abreast;
 use super::forced::{Forced, ForcedInput, ForcedResponse};
 use super::mode::ModeFlow;
 use super::{Drive, Planar};
@@ -26,6 +27,8 @@ pub struct Segment {
     angle: f64,
     rate: f64,
     modes: Vec<ModeSegment>,
+    /// The modes side by side, where that is faster.
+    abreast: Option<Abreast>,
     /// Sum of the modes' equilibria, and of their largest distances from them (rad).
     centre: f64,
     reach: f64,
@@ -59,6 +62,7 @@ impl Segment {
             angle: 0.0,
             rate: 0.0,
             modes: body.modes.iter().map(swing).collect(),
+            abreast: Abreast::new(&body.modes),
             centre: 0.0,
             reach: 0.0,
             curvature: 0.0,
@@ -77,11 +81,14 @@ impl Segment {
         self.reach = 0.0;
         self.curvature = self.moment.abs();
         self.jerk = 0.0;
-        for (swing, phase) in self.modes.iter_mut().zip(&from.modes) {
+        for (index, (swing, phase)) in self.modes.iter_mut().zip(&from.modes).enumerate() {
             let equilibrium = swing.flow.excitability * self.moment;
             let displacement = phase.displacement - equilibrium;
             swing.equilibrium = equilibrium;
             swing.from = Phase { displacement, quadrature: phase.quadrature };
+            if let Some(abreast) = &mut self.abreast {
+                abreast.depart(index, swing.from);
+            }
             let distance = libm::sqrt(displacement * displacement + phase.quadrature * phase.quadrature);
             if !self.visible {
                 continue;
@@ -101,12 +108,13 @@ impl Segment {
         state.rigid_rate = self.rate + self.moment * h;
         let mut sensed =
             Sensed { angle: state.rigid_angle, rate: state.rigid_rate, acceleration: self.moment };
+        match &self.abreast {
+            Some(abreast) if abreast.reaches(h) => abreast.turn(h, &mut state.modes),
+            _ => self.turn_each(h, &mut state.modes),
+        }
         for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
-            let [xx, xy, yx, yy] = swing.flow.turn(h);
-            let Phase { displacement: x, quadrature: y } = swing.from;
-            let deviation = xx * x + xy * y;
+            let deviation = phase.displacement;
             phase.displacement = swing.equilibrium + deviation;
-            phase.quadrature = yx * x + yy * y;
             if self.visible {
                 swing.flow.add_to(swing.equilibrium, deviation, phase.quadrature, &mut sensed);
             }
@@ -115,6 +123,16 @@ impl Segment {
             self.add_forced(forced, h, state, &mut sensed);
         }
         sensed
+    }
+
+    /// Where the modes are about their equilibria, one after the other.
+    #[inline]
+    fn turn_each(&self, h: f64, to: &mut [Phase]) {
+        for (swing, phase) in self.modes.iter().zip(to) {
+            let [xx, xy, yx, yy] = swing.flow.turn(h);
+            let Phase { displacement: x, quadrature: y } = swing.from;
+            *phase = Phase { displacement: xx * x + xy * y, quadrature: yx * x + yy * y };
+        }
     }
 
     /// Adds what the waveform does within `h` seconds of departure; apart, so that the search for crossings, which has
