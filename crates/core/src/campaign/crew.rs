@@ -144,7 +144,7 @@ impl Campaign {
         &self,
         worker: &Worker,
         (most, selection): (u64, &Selection),
-        outcomes: &Sender<RunOutcome>,
+        outcomes: &Sender<Vec<RunOutcome>>,
         work: &impl Fn(&CampaignRun) -> Result<Metrics, RunError>,
     ) {
         loop {
@@ -152,11 +152,11 @@ impl Campaign {
             if numbers.is_empty() {
                 return;
             }
-            let mut tell = |outcome| outcomes.send(outcome).is_ok();
+            let mut tell = |some| outcomes.send(some).is_ok();
             let goes_on = if numbers.end - numbers.start > 1 {
                 self.beside(numbers, selection, work, &mut tell)
             } else {
-                tell(self.outcome(numbers.start, selection, work))
+                tell(vec![self.outcome(numbers.start, selection, work)])
             };
             if !goes_on {
                 return;
@@ -164,14 +164,14 @@ impl Campaign {
         }
     }
 
-    /// What runs come to, side by side where they can go so, and each as soon as it is known; `work` simulates the others. Tells
-    /// whether `tell` wants more.
+    /// What runs come to, side by side where they can go so, as soon as it is known; `work` simulates the others. Tells whether
+    /// `tell` wants more.
     fn beside(
         &self,
         numbers: Range<u64>,
         selection: &Selection,
         work: &impl Fn(&CampaignRun) -> Result<Metrics, RunError>,
-        tell: &mut impl FnMut(RunOutcome) -> bool,
+        tell: &mut impl FnMut(Vec<RunOutcome>) -> bool,
     ) -> bool {
         let began = Instant::now();
         let runs: Vec<_> = numbers.map(|number| (number, self.run_for(number, selection))).collect();
@@ -181,7 +181,7 @@ impl Campaign {
         let mut found = batch::simulate(&jobs).into_iter();
         // What they took together is told of each alike.
         let seconds = began.elapsed().as_secs_f64() / runs.len().max(1) as f64;
-        let mut alone = Vec::new();
+        let (mut known, mut alone) = (Vec::with_capacity(runs.len()), Vec::new());
         for (number, run) in runs {
             let (drawn, metrics) = match run {
                 Ok(run) => {
@@ -193,32 +193,29 @@ impl Campaign {
                 }
                 Err(error) => (self.draw(number), Err(RunError::from(error))),
             };
-            if !tell(RunOutcome { number, drawn, metrics, seconds }) {
-                return false;
-            }
+            known.push(RunOutcome { number, drawn, metrics, seconds });
         }
-        alone.into_iter().all(|run| {
-            let began = Instant::now();
-            let metrics = work(&run);
-            let seconds = began.elapsed().as_secs_f64();
-            tell(RunOutcome { number: run.number, metrics, drawn: run.drawn, seconds })
-        })
+        tell(known)
+            && alone.into_iter().all(|run| {
+                let began = Instant::now();
+                let metrics = work(&run);
+                let seconds = began.elapsed().as_secs_f64();
+                tell(vec![RunOutcome { number: run.number, metrics, drawn: run.drawn, seconds }])
+            })
     }
 }
 
 fn tell_in_order<E>(
     crew: &Crew,
     runs: Range<u64>,
-    ended: &Receiver<RunOutcome>,
+    ended: &Receiver<Vec<RunOutcome>>,
     tell: &mut impl FnMut(Option<RunOutcome>) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut early = BTreeMap::new();
     let mut due = runs.start;
     while due < runs.end {
         match ended.recv_timeout(LOOK) {
-            Ok(outcome) => {
-                early.insert(outcome.number, outcome);
-            }
+            Ok(some) => early.extend(some.into_iter().map(|outcome| (outcome.number, outcome))),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => panic!("run {due} panicked"),
         }

@@ -13,12 +13,14 @@ use parquet::file::metadata::KeyValue;
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
-use parquet::schema::types::{Type, TypePtr};
+use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
 use super::rows::{ColumnCells, ColumnHeading, ColumnKind, Rows};
 
 /// How hard it is compressed: more gains nothing for numbers.
 const LEVEL: i32 = 3;
+/// So many cells show what a column is like.
+const FIRST: usize = 256;
 /// No part has more rows.
 pub const MOST_ROWS: usize = 1 << 24;
 
@@ -79,14 +81,19 @@ fn written(rows: &Rows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetErro
     let fields = rows.fields.iter().map(field_type).collect::<Result<Vec<_>, _>>()?;
     let schema = Type::group_type_builder("campaign").with_fields(fields).build()?;
     let notes = notes.iter().map(|(name, text)| KeyValue::new((*name).to_owned(), text.clone())).collect();
-    let properties = WriterProperties::builder()
+    let mut properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL)?))
         .set_created_by(format!("flexsc {}", env!("CARGO_PKG_VERSION")))
         .set_statistics_enabled(EnabledStatistics::Chunk)
-        .set_key_value_metadata(Some(notes))
-        .build();
+        .set_key_value_metadata(Some(notes));
+    for (field, column) in rows.fields.iter().zip(&rows.columns) {
+        if !repeats(column) {
+            properties =
+                properties.set_column_dictionary_enabled(ColumnPath::from(field.name.as_str()), false);
+        }
+    }
     let mut bytes = Vec::new();
-    let mut writer = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties))?;
+    let mut writer = SerializedFileWriter::new(&mut bytes, Arc::new(schema), Arc::new(properties.build()))?;
     let mut group = writer.next_row_group()?;
     for column in &rows.columns {
         write_column(&mut group, column)?;
@@ -94,6 +101,16 @@ fn written(rows: &Rows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetErro
     group.close()?;
     writer.close()?;
     Ok(bytes)
+}
+
+/// Whether numbers come again and again, as far as the first ones show, so that a dictionary of them saves space.
+fn repeats(column: &ColumnCells) -> bool {
+    let ColumnCells::Numbers(cells) = column else { return true };
+    let mut first: Vec<u64> = cells.iter().take(FIRST).map(|cell| cell.to_bits()).collect();
+    let count = first.len();
+    first.sort_unstable();
+    first.dedup();
+    2 * first.len() <= count
 }
 
 fn write_column<W: io::Write + Send>(

@@ -5,7 +5,7 @@ use std::sync::Arc;
 use toml::Value as Drawn;
 
 use super::{Campaign, RunOutcome};
-use crate::metrics::{Gather, Selection, Value};
+use crate::metrics::{Gather, Metrics, Selection, Value};
 
 /// The column of the numbers of the runs, which every table begins with.
 pub const RUN: &str = "run";
@@ -227,7 +227,7 @@ impl Rows {
         let first = self.fields.iter().take_while(|field| [RUN, SEED].contains(&field.name.as_str())).count();
         // A key may be the seed.
         let first = if campaign.keys().next() == Some(SEED) { 1 } else { first };
-        let metrics = outcome.metrics.as_ref().ok();
+        let mut metrics = outcome.metrics.as_ref().ok().map(Metrics::in_order);
         for (place, (field, column)) in self.fields.iter().zip(&mut self.columns).enumerate() {
             match (field.name.as_str(), column) {
                 (RUN, ColumnCells::Integers(cells)) => cells.push(i64::try_from(outcome.number).ok()),
@@ -239,7 +239,7 @@ impl Rows {
                 (ERROR, ColumnCells::Words(cells)) => {
                     cells.push(outcome.metrics.as_ref().err().map(ToString::to_string));
                 }
-                (name, column) => match metrics.and_then(|metrics| metrics.get(name)) {
+                (name, column) => match metrics.as_mut().and_then(|metrics| metrics.get(name)) {
                     Some(value) => column.push(value),
                     None => column.push_nothing(),
                 },

@@ -52,6 +52,11 @@ impl Metrics {
         self.0.iter().find(|(meaning, _)| meaning.name == name).map(|(_, value)| value)
     }
 
+    /// The same metrics, to be asked for in about their order.
+    pub fn in_order(&self) -> InOrder<'_> {
+        InOrder { metrics: self, next: 0 }
+    }
+
     /// The value of a metric that is a number or a count.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.get(name)? {
@@ -95,6 +100,24 @@ impl Metrics {
             }
         }
         Row { metrics }
+    }
+}
+
+/// Metrics that are asked for in about their order: each is looked for behind the last one first.
+#[derive(Copy, Clone, Debug)]
+pub struct InOrder<'a> {
+    metrics: &'a Metrics,
+    next: usize,
+}
+
+impl<'a> InOrder<'a> {
+    /// The value of a metric.
+    pub fn get(&mut self, name: &str) -> Option<&'a Value> {
+        let all = &self.metrics.0;
+        let is_it = |place: &usize| all[*place].0.name == name;
+        let place = (self.next..all.len()).find(is_it).or_else(|| (0..self.next).find(is_it))?;
+        self.next = place + 1;
+        Some(&all[place].1)
     }
 }
 
