@@ -11,7 +11,7 @@ use flexsc_motion::numerics::swing_integral::undamped;
 use flexsc_motion::numerics::trig::sincos;
 
 /// Phasors that stand side by side.
-const SIDE: usize = 4;
+const SIDE: usize = Four::LANES;
 
 /// One mode's phasor. Its numbers do not straddle lines of the cache.
 #[derive(Copy, Clone, Debug)]

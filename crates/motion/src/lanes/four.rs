@@ -23,6 +23,9 @@ enum Instructions {
 }
 
 impl Four {
+    /// So many numbers stand side by side.
+    pub const LANES: usize = 4;
+
     /// The best that there are.
     pub fn best() -> Self {
         Self::wide().unwrap_or_else(Self::any)

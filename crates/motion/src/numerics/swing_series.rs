@@ -113,13 +113,8 @@ impl<R: Real> Circle<R> {
     #[inline(always)]
     #[must_use]
     pub fn once(&self) -> Self {
-        let complement = self.complement();
-        let sizes = self.sizes();
-        let step = Step::new(self, complement, sizes);
-        let part = argument(step.between);
-        let mut smaller = self.after_step(&step, complement);
-        smaller.modulus = step.modulus(self.modulus);
-        smaller.angle = (self.angle - part) * 2.0;
+        let (step, mut smaller) = self.step(self.complement(), self.sizes());
+        smaller.angle = (self.angle - argument(step.between)) * 2.0;
         smaller
     }
 
@@ -127,19 +122,14 @@ impl<R: Real> Circle<R> {
     #[inline(always)]
     #[must_use]
     pub fn twice(&self) -> Self {
-        let complement = self.complement();
-        let sizes = self.sizes();
-        let first = Step::new(self, complement, sizes);
-        let mut once = self.after_step(&first, complement);
-        once.modulus = first.modulus(self.modulus);
+        let (complement, sizes) = (self.complement(), self.sizes());
+        let (first, once) = self.step(complement, sizes);
         // Of the smaller circle, both are known without a root of what depends on the ends.
         let square = complement * complement;
         let next = complement.sqrt() * first.inverse * 2.0;
         let [a, b] = first.sizes_inverse;
         let sizes = [first.inverse * (sizes[0] + square * a), first.inverse * (sizes[1] + square * b)];
-        let second = Step::new(&once, next, sizes);
-        let mut twice = once.after_step(&second, next);
-        twice.modulus = second.modulus(once.modulus);
+        let (second, mut twice) = once.step(next, sizes);
         // Both angles at once: that of the first step, and half that of the second.
         let ([re, im], [along, across]) = (first.between, second.between);
         let along = sizes[0] * sizes[1] + along;
@@ -163,17 +153,22 @@ impl<R: Real> Circle<R> {
         [(a_re * a_re + a[1] * a[1]).sqrt(), (b_re * b_re + b[1] * b[1]).sqrt()]
     }
 
-    /// All but the modulus and the angle after a step, of this k'.
+    /// A step, by k' and |1 + z| at both ends, and all but the angle of the same integral after it.
     #[inline(always)]
-    fn after_step(&self, step: &Step<R>, complement: R) -> Self {
-        let one = complement.of(1.0);
-        Self {
+    fn step(&self, complement: R, sizes: [R; 2]) -> (Step<R>, Self) {
+        let step = Step::new(self, complement, sizes);
+        // (1 - k')/(1 + k') is its square.
+        let root = self.modulus * step.inverse;
+        let smaller = Self {
+            scale: self.scale,
+            modulus: root * root,
             ends: step.ends,
-            length: self.length * ((one + complement) * 0.5),
+            angle: self.angle,
+            length: self.length * ((complement.of(1.0) + complement) * 0.5),
             inverse: step.inverse * (self.inverse - self.length * (complement * complement)),
             sum: self.sum + self.length * step.rise * 2.0,
-            ..*self
-        }
+        };
+        (step, smaller)
     }
 
     /// One or the other, of the same motion.
@@ -266,13 +261,6 @@ impl<R: Real> Step<R> {
             rise: b_u[1] - a_u[1],
             between: [a_re * b_re + a[1] * b[1], a_re * b[1] - b_re * a[1]],
         }
-    }
-
-    /// (1 - k')/(1 + k').
-    #[inline(always)]
-    fn modulus(&self, before: R) -> R {
-        let root = before * self.inverse;
-        root * root
     }
 }
 

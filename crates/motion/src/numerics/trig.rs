@@ -128,7 +128,7 @@ pub fn arc<R: Real>(t: R) -> R {
     t - t * (z * odd + w * even)
 }
 
-/// The argument of a complex number that is not 0, from -pi to pi (rad); within 6e-16.
+/// The argument of a complex number that is not 0, from -pi to pi (rad); within 1e-15.
 #[inline(always)]
 pub fn argument<R: Real>([re, im]: [R; 2]) -> R {
     let zero = re.of(0.0);

@@ -10,7 +10,7 @@ use crate::motion::damping::{Damping, Undamped};
 use crate::numerics::trig::FARTHEST;
 
 /// Modes that stand side by side.
-const SIDE: usize = 4;
+const SIDE: usize = Four::LANES;
 
 /// Modes that turn about their equilibria.
 #[derive(Clone, Debug)]
