@@ -139,6 +139,10 @@ impl LaneWork for Chosen {
         assert!(one.any());
         assert_eq!(one.all(), R::LANES == 1);
         assert!((one | !one).all());
+        for lane in 0..R::LANES {
+            let one = none.with_lane(lane, 7.0).gt(none.of(6.0));
+            assert!(one.any() && one.all() == (R::LANES == 1), "{lane} of {}", R::LANES);
+        }
         let apart = kind.apart(Lane(R::LANES - 1));
         assert_eq!(apart, 7.0);
     }
