@@ -26,7 +26,13 @@ ENVIRONMENT = TARGET / "venv"
 NASTRAN = TARGET / "venv-nastran"
 # The benchmarks are checked, and not built.
 EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
+# What is part of the full build alone.
+FULL = ("flexsc-fuzz", "flexsc-papers", "flexsc-py")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
+# What the type checkers say.
+TYPES = "tests/python/test_types.py"
+# Whether the wheel is in the environment.
+INSTALLED = threading.Event()
 # So many inputs, the same on every machine: about 12 s each.
 FUZZED = {"scenarios": "2500", "structures": "15000", "logs": "1000", "arguments": "1100", "live": "3500"}
 # What codespell reads; its exceptions are in pyproject.toml.
@@ -112,19 +118,17 @@ def crates() -> None:
         run("cargo", "deny", "check", "bans", "licenses", "sources")
 
 
-def clippy(*selected: str) -> None:
-    run("cargo", "clippy", "--release", "--quiet", *selected, "--", "-D", "warnings")
-
-
-def lint() -> None:
-    clippy("--workspace", "--all-targets")
-
-
 def lint_light() -> None:
-    clippy("--bins", "--tests")
+    """The light build, and the benchmarks, which are checked and not built."""
+    others = (word for name in FULL for word in ("--exclude", name))
+    targets = ("--bins", "--tests", "--benches", "--no-default-features")
+    run("cargo", "clippy", "--release", "--quiet", "--workspace", *others, *targets, "--", "-D", "warnings")
 
 
 def build() -> None:
+    """Builds with clippy beside the compiler (`lint.py` says why); later steps use the same artifacts."""
+    if os.name == "posix":
+        os.environ["RUSTC_WORKSPACE_WRAPPER"] = str(ROOT / "tests" / "lint.py")
     run("cargo", "build", "--release", "--quiet", *EVERYTHING, "--bins", "--tests")
 
 
@@ -146,18 +150,19 @@ def papers() -> None:
 
 def fuzz() -> None:
     """Two surfaces at a time: one keeps one core busy."""
+    if os.name != "posix":
+        return
 
     def fuzzed(surface: str, inputs: str) -> tuple[int, str]:
         command = [TARGET / "release" / "flexsc-fuzz", "--surface", surface, "--inputs", inputs]
         done = subprocess.run(command, cwd=ROOT, stdout=subprocess.PIPE, text=True, check=False)
         return done.returncode, done.stdout
 
-    if os.name == "posix":
-        with ThreadPoolExecutor(2) as pool:
-            for code, printed in pool.map(fuzzed, *zip(*FUZZED.items(), strict=True)):
-                print(printed, end="", flush=True)
-                if code != 0:
-                    sys.exit(f"fuzzing failed with {code}")
+    with ThreadPoolExecutor(2) as pool:
+        for code, printed in pool.map(fuzzed, *zip(*FUZZED.items(), strict=True)):
+            OUT.show(printed.encode())
+            if code != 0:
+                sys.exit(f"fuzzing failed with {code}")
 
 
 def wheel() -> None:
@@ -173,9 +178,18 @@ def built() -> Path:
 
 def python() -> str:
     python = environment(ENVIRONMENT)
-    run(python, *PIP, "install", "--force-reinstall", "--no-deps", built())
-    run(python, *PIP, "install", f"{built()}[test]")
-    return tally(run(python, "-m", "pytest", "tests/python", "-q"))
+    try:
+        run(python, *PIP, "install", "--force-reinstall", "--no-deps", built())
+        run(python, *PIP, "install", f"{built()}[test]")
+    finally:
+        INSTALLED.set()
+    return tally(run(python, "-m", "pytest", "tests/python", "-q", f"--ignore={TYPES}"))
+
+
+def types() -> str:
+    """The type checkers, which take a quarter of the time of all Python tests."""
+    INSTALLED.wait()
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", TYPES, "-q"))
 
 
 def extras() -> None:
@@ -231,7 +245,11 @@ def around() -> str:
     extras()
     told = nastran()
     site()
-    return f"with pyNastran {told}"
+    return f"with pyNastran {told}, of types {types()}"
+
+
+def fuzz_and_wheel() -> str:
+    return side_by_side(fuzz, wheel)
 
 
 def python_and_around() -> str:
@@ -241,16 +259,14 @@ def python_and_around() -> str:
 STEPS = [
     Step("form of the code: rustfmt, ruff, spelling", 10, form, quick=True),
     Step("licences, sources and duplicates of all crates", 5, crates, quick=True),
-    Step("clippy of everything", 110, lint),
-    Step("clippy of the light build", 35, lint_light),
-    Step("building the command, the tests and the fuzzer", 450, build),
+    Step("clippy of the light build and the benchmarks", 35, lint_light),
+    Step("building the command, the tests and the fuzzer, with clippy", 350, build),
     Step("Rust tests", 140, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
-    Step("fuzzing", 40, fuzz),
-    Step("the wheel", 40, wheel),
+    Step("fuzzing, and the wheel", 60, fuzz_and_wheel),
     Step(
         "Python tests; the wheel with an extra, with pyNastran, and the documentation site",
-        130,
+        100,
         python_and_around,
     ),
 ]

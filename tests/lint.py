@@ -1,0 +1,46 @@
+#!/usr/bin/env python3
+"""Runs the compiler on a crate of this workspace, and clippy beside it: RUSTC_WORKSPACE_WRAPPER in `all.py`.
+
+`cargo clippy` would check all third-party crates again, which takes four times as long as the lints. Here
+clippy gets the arguments of the compiler for each crate that is built. A warning of either fails the build.
+"""
+
+import os
+import subprocess
+import sys
+import tempfile
+
+
+def linted(arguments: list[str], out: str) -> list[str]:
+    """The arguments of the compiler for clippy, whose only output is metadata that nothing reads."""
+    changed = []
+    for before, argument in zip(["", *arguments], arguments, strict=False):
+        if before == "--out-dir":
+            argument = out
+        elif argument.startswith("--emit="):
+            argument = "--emit=metadata"
+        elif argument.startswith("--json="):
+            # Cargo waits for one set of artifacts, the compiler's.
+            kinds = argument.removeprefix("--json=").split(",")
+            argument = "--json=" + ",".join(kind for kind in kinds if kind != "artifacts")
+        changed.append(argument)
+    return [*changed, "-Dwarnings"]
+
+
+def main() -> int:
+    command = sys.argv[1:]
+    # Cargo also asks for the version, and builds crates that the command does not name.
+    if "--crate-name" not in command or "CARGO_PRIMARY_PACKAGE" not in os.environ:
+        return subprocess.run(command, check=False).returncode
+    with tempfile.TemporaryDirectory() as out, tempfile.TemporaryFile() as told:
+        lint = ["clippy-driver", *linted(command, out)]
+        with subprocess.Popen(lint, stderr=told) as clippy:
+            compiled = subprocess.run(command, check=False).returncode
+        told.seek(0)
+        # After the compiler's output, so that no line of either is torn.
+        sys.stderr.buffer.write(told.read())
+        return compiled or clippy.returncode
+
+
+if __name__ == "__main__":
+    sys.exit(main())
