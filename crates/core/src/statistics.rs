@@ -99,7 +99,7 @@ fn mean_and_sd(values: &[f64]) -> (f64, f64) {
     let of = |scale: f64| {
         let mean = values.iter().map(|v| v * scale).sum::<f64>() / n;
         let squares: f64 = values.iter().map(|v| (v * scale - mean) * (v * scale - mean)).sum();
-        (mean, if values.len() > 1 { libm::sqrt(squares / (n - 1.0)) } else { 0.0 })
+        (mean, if values.len() > 1 { f64::sqrt(squares / (n - 1.0)) } else { 0.0 })
     };
     let (mut mean, mut sd) = of(1.0);
     if mean.is_infinite() || !sd.is_finite() {

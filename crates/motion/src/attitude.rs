@@ -89,7 +89,7 @@ pub fn of_axes([x, y, z]: &[Vector; 3]) -> Quaternion<f64> {
     let squares =
         [1.0 + x.x + y.y + z.z, 1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z];
     let largest = (1..4).fold(0, |best, part| if squares[part] > squares[best] { part } else { best });
-    let twice = libm::sqrt(squares[largest]);
+    let twice = f64::sqrt(squares[largest]);
     let (a, b, c) = ((y.z - z.y) / twice, (z.x - x.z) / twice, (x.y - y.x) / twice);
     let (d, e, f) = ((x.y + y.x) / twice, (x.z + z.x) / twice, (y.z + z.y) / twice);
     let parts = match largest {

@@ -109,7 +109,7 @@ pub fn first_root(gap: f64, speed: f64, acceleration: f64) -> f64 {
     if discriminant < 0.0 {
         return f64::INFINITY;
     }
-    let root = libm::sqrt(discriminant);
+    let root = f64::sqrt(discriminant);
     if speed > 0.0 {
         2.0 * gap / (speed + root)
     } else if acceleration > 0.0 {

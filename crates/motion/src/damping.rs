@@ -71,7 +71,7 @@ pub struct Damped<R> {
 impl Damped<f64> {
     /// The damping of a mode of this frequency (rad/s) and damping ratio below 1.
     pub fn new(frequency: f64, ratio: f64) -> Self {
-        let root = libm::sqrt((1.0 - ratio) * (1.0 + ratio));
+        let root = f64::sqrt((1.0 - ratio) * (1.0 + ratio));
         Self {
             decay: ratio * frequency,
             frequency: frequency * root,
@@ -79,7 +79,7 @@ impl Damped<f64> {
             stretch: 1.0 / root,
             drag: 2.0 * ratio * frequency,
             // x'' = -w² (x + 2 zeta y) in (x, y) of length 1.
-            stiffness: frequency * frequency * libm::sqrt(1.0 + 4.0 * ratio * ratio),
+            stiffness: frequency * frequency * f64::sqrt(1.0 + 4.0 * ratio * ratio),
         }
     }
 }

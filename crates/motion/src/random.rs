@@ -62,7 +62,7 @@ impl Stream {
         if let Some(spare) = self.spare.take() {
             return spare;
         }
-        let radius = libm::sqrt(-2.0 * libm::log(1.0 - self.uniform()));
+        let radius = f64::sqrt(-2.0 * libm::log(1.0 - self.uniform()));
         let (sin, cos) = libm::sincos(2.0 * std::f64::consts::PI * self.uniform());
         self.spare = Some(radius * sin);
         radius * cos

@@ -159,7 +159,7 @@ impl Disturbing {
         let Some(period) = self.what.period else { return };
         while let Some(next) = self.next.filter(|next| *next <= now) {
             // Of the power of white noise, a draw that is held has what falls into its period.
-            self.drawn = libm::sqrt(self.what.noise.get() / period.seconds()) * self.draws.normal();
+            self.drawn = f64::sqrt(self.what.noise.get() / period.seconds()) * self.draws.normal();
             let next = next + period;
             self.next = self.what.to.is_none_or(|to| next < at(to)).then_some(next);
         }

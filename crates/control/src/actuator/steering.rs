@@ -110,7 +110,7 @@ fn gram(columns: &[Vector]) -> Matrix3<f64> {
 
 /// The singularity measure, sqrt(det(A A')): 0 where the gimbals give no torque in some direction.
 pub fn measure(columns: &[Vector]) -> f64 {
-    libm::sqrt(gram(columns).determinant().max(0.0))
+    f64::sqrt(gram(columns).determinant().max(0.0))
 }
 
 /// A' (A A')^-1 u: the least rates that come to u.

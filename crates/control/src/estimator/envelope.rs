@@ -204,7 +204,7 @@ impl Track {
         let (frequency, zeta) = (mode.frequency.get(), mode.damping.get());
         let mut track = Self {
             frequency,
-            damped: frequency * libm::sqrt((1.0 - zeta) * (1.0 + zeta)),
+            damped: frequency * f64::sqrt((1.0 - zeta) * (1.0 + zeta)),
             decay: zeta * frequency,
             excitability: mode.excitability(),
             rotation: 1.0,

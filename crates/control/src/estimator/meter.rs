@@ -166,7 +166,7 @@ impl Meter {
         let value = match self.objective {
             Objective::PointingErrorPeak | Objective::Switchings | Objective::Firings => self.sum,
             Objective::PointingErrorRms | Objective::RateErrorRms | Objective::ElasticRms => {
-                libm::sqrt(self.sum / over)
+                f64::sqrt(self.sum / over)
             }
             _ => self.sum / over,
         };

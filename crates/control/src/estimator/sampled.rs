@@ -248,7 +248,7 @@ impl Track {
         let known = model.ratio_of(mode);
         let value = |offset: usize| known.map_or(1.0 - offset as f64, |at| mean[at + offset]);
         let sd = |offset: usize| {
-            known.map_or(0.0, |at| libm::sqrt(filter.covariance()[(at + offset, at + offset)]))
+            known.map_or(0.0, |at| f64::sqrt(filter.covariance()[(at + offset, at + offset)]))
         };
         let modes = (0..model.modes()).map(|index| {
             let (amplitude_rad, amplitude_sd_rad) = filter.amplitude(index);

@@ -119,7 +119,7 @@ impl Filter {
             Self::Lead(lead) => {
                 let (zero, pole) = (lead.zero.get(), lead.pole.get());
                 // Where the phase is largest.
-                let middle = libm::sqrt(zero) * libm::sqrt(pole);
+                let middle = f64::sqrt(zero) * f64::sqrt(pole);
                 below_nyquist(middle, period).map_err(|why| {
                     Fault::new("lead.pole", format!("makes the middle of zero and pole one that {why}"))
                 })?;

@@ -28,7 +28,7 @@ impl Measure {
             Self::Quaternion => belief.angle,
             Self::Rodrigues => {
                 let half = 0.5 * belief.whole;
-                let cosine = libm::sqrt((1.0 - half * half).max(0.0));
+                let cosine = f64::sqrt((1.0 - half * half).max(0.0));
                 belief.angle * 2.0 / (1.0 + cosine)
             }
         }

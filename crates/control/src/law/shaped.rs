@@ -79,7 +79,7 @@ mod tests {
     /// rule over the poses of the turn, which know nothing of waveforms.
     fn left(turn: &RestToRest, mode: &Mode, axis: Vector) -> f64 {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
-        let damped = w * libm::sqrt(1.0 - zeta * zeta);
+        let damped = w * f64::sqrt(1.0 - zeta * zeta);
         let end = turn.duration();
         let (mut cosine, mut sine, mut most) = (0.0, 0.0, 0.0_f64);
         let count = 200_000;

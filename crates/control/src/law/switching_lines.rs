@@ -71,7 +71,7 @@ impl SwitchingLines {
         if beyond <= 0.0 {
             return 0.0;
         }
-        let slow = self.slow.min(self.slope * beyond).min(libm::sqrt(self.parabola * beyond));
+        let slow = self.slow.min(self.slope * beyond).min(f64::sqrt(self.parabola * beyond));
         (self.flat * beyond).max(slow).min(self.rate_limit)
     }
 
@@ -80,7 +80,7 @@ impl SwitchingLines {
         [angle, -angle].map(|ahead| {
             let beyond = ahead - self.edge;
             let allowed =
-                if beyond > 0.0 { 0.5 * self.returning(beyond) } else { libm::sqrt(-self.parabola * beyond) };
+                if beyond > 0.0 { 0.5 * self.returning(beyond) } else { f64::sqrt(-self.parabola * beyond) };
             allowed.clamp(self.least, self.on)
         })
     }

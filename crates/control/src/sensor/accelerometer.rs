@@ -144,7 +144,7 @@ impl Accelerating {
     pub fn sample(&mut self, now: Instant, force: &Vector) {
         let Self { spec, axes, noise, walk, bias, .. } = self;
         self.exposes = now + spec.period;
-        let step = if now == Instant::START { 0.0 } else { libm::sqrt(spec.period.seconds()) };
+        let step = if now == Instant::START { 0.0 } else { f64::sqrt(spec.period.seconds()) };
         let mut felt = Vec::with_capacity(axes.len());
         for (index, axis) in axes.iter().enumerate() {
             // Draws are made in a failure too: those after it do not depend on it.

@@ -27,7 +27,7 @@ pub(super) fn deviation(gyro: &Gyro, axis: usize, period: f64) -> f64 {
     let [white, walk, quantum] =
         [gyro.angle_random_walk, gyro.rate_random_walk, gyro.quantum].map(|each| each.about(axis).get());
     // A rounding now and one before.
-    libm::sqrt(spread(white, walk, period) + quantum * quantum / (6.0 * period * period))
+    f64::sqrt(spread(white, walk, period) + quantum * quantum / (6.0 * period * period))
 }
 
 /// Variance of v.
@@ -79,9 +79,9 @@ impl Counter {
     fn walk(&mut self, gyro: &Gyro, axis: usize, noise: &mut Stream) -> f64 {
         let [white, walk] =
             [gyro.angle_random_walk, gyro.rate_random_walk].map(|each| each.about(axis).get());
-        let step = walk * libm::sqrt(self.period) * noise.normal();
+        let step = walk * f64::sqrt(self.period) * noise.normal();
         self.bias[axis] += step;
-        0.5 * step + libm::sqrt(spread(white, walk, self.period)) * noise.normal()
+        0.5 * step + f64::sqrt(spread(white, walk, self.period)) * noise.normal()
     }
 
     fn round(&mut self, rate: f64, quantum: f64, axis: usize) -> f64 {

@@ -155,7 +155,7 @@ impl Gyro {
     pub fn walk(&self, axis: usize) -> f64 {
         let own = self.rate_random_walk.about(axis).get();
         self.wandering(axis)
-            .map_or(own, |(deviation, time)| libm::sqrt(own * own + 2.0 * deviation * deviation / time))
+            .map_or(own, |(deviation, time)| f64::sqrt(own * own + 2.0 * deviation * deviation / time))
     }
 
     /// What it measures about an axis of these rates.
@@ -221,7 +221,7 @@ impl Gyro {
             return counter::deviation(self, axis, period);
         }
         let (noise, resolution) = (self.noise.about(axis).get(), self.resolution.about(axis).get());
-        libm::sqrt(noise * noise + resolution * resolution / 12.0)
+        f64::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 }
 

@@ -73,7 +73,7 @@ impl Sampled {
     /// Standard deviation of the measured angle (rad), that of its quantisation included.
     pub fn angle_noise(&self) -> f64 {
         let (noise, resolution) = (self.noise.get(), self.resolution.get());
-        libm::sqrt(noise * noise + resolution * resolution / 12.0)
+        f64::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 
     fn measure(&self, angle: f64, noise: &mut Stream) -> f64 {

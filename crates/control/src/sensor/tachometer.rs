@@ -148,6 +148,6 @@ mod tests {
         assert_eq!(speeds, [1.0, 2.0, 2.0, 2.0, 5.0, 6.0]);
         let mut noisy = start("noise = 0.5");
         let square: f64 = (1..=4000).map(|k| read(&mut noisy, k, 0.0, 0.0)).map(|speed| speed * speed).sum();
-        assert!((libm::sqrt(square / 4000.0) - 0.5).abs() < 0.02);
+        assert!((f64::sqrt(square / 4000.0) - 0.5).abs() < 0.02);
     }
 }

@@ -40,7 +40,7 @@ impl Errors {
     /// Standard deviation along an axis, that of the rounding included.
     pub fn deviation(&self, axis: usize) -> f64 {
         let (noise, quantum) = (self.noise.about(axis).get(), self.resolution.about(axis).get());
-        libm::sqrt(noise * noise + quantum * quantum / 12.0)
+        f64::sqrt(noise * noise + quantum * quantum / 12.0)
     }
 
     /// Their covariance.

@@ -27,7 +27,7 @@ impl Wander {
     pub fn now(&mut self, gyro: &Gyro, axis: usize, seconds: f64, noise: &mut Stream) -> f64 {
         if let Some((deviation, time)) = gyro.wandering(axis).filter(|_| seconds > 0.0) {
             let kept = libm::exp(-seconds / time);
-            let spread = libm::sqrt(-libm::expm1(-2.0 * seconds / time));
+            let spread = f64::sqrt(-libm::expm1(-2.0 * seconds / time));
             self.bias[axis] = kept * self.bias[axis] + deviation * spread * noise.normal();
         }
         self.bias[axis]
@@ -42,7 +42,7 @@ impl Wander {
         let sum = before + self.now(gyro, axis, seconds, noise);
         let z = 0.5 * seconds / time;
         let (tanh, left) = (libm::tanh(z), beyond_tanh(z));
-        0.5 * sum * tanh / z + deviation * libm::sqrt(left) / z * noise.normal()
+        0.5 * sum * tanh / z + deviation * f64::sqrt(left) / z * noise.normal()
     }
 }
 
@@ -97,7 +97,7 @@ mod tests {
             let ratio: f64 = period / time;
             let exact = 2.0 * (ratio - 1.0 + libm::exp(-ratio)) / (ratio * ratio);
             // Of so many draws that each hang together over 2T/D of them, three standard errors.
-            let three = 3.0 * libm::sqrt(2.0 * (1.0 + 1.0 / ratio) / f64::from(count));
+            let three = 3.0 * f64::sqrt(2.0 * (1.0 + 1.0 / ratio) / f64::from(count));
             assert!((ends - 1.0).abs() < three, "{ends}");
             assert!((means / exact - 1.0).abs() < three, "{means} {exact}");
             assert!((products - libm::exp(-ratio)).abs() < three, "{products}");

@@ -83,7 +83,7 @@ impl Rigid {
         if weak <= 0.0 {
             return None;
         }
-        let q = libm::sqrt(2.0 * strong * gamma);
+        let q = f64::sqrt(2.0 * strong * gamma);
         let r = weak / strong;
         let width = 2.0 * weak * (2.0 * eps - gamma) / (q * q);
         let beta = k_t * (1.0 - k_t) * (1.0 - r);
@@ -95,7 +95,7 @@ impl Rigid {
         if z2 <= 1.0 || !z2.is_finite() {
             return None;
         }
-        let z = libm::sqrt(z2);
+        let z = f64::sqrt(z2);
         let entry = 0.5 * q * (z - 1.0 / z);
         let (push, angle_max) = (q * z / strong, eps + entry * entry / (2.0 * strong));
         let brake = k_t * push;

@@ -90,7 +90,7 @@ impl AttitudeMetrics {
     pub fn finish(self) -> Vec<MetricValue> {
         // 0/0 of no samples: no number.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
-        let [attitude, bias] = self.squares.map(|sum| Value::Number(libm::sqrt(sum / all)));
+        let [attitude, bias] = self.squares.map(|sum| Value::Number(f64::sqrt(sum / all)));
         if self.own && self.count.0 == 0 {
             return Vec::new();
         }

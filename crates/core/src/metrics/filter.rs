@@ -96,7 +96,7 @@ impl FilterMetrics {
             (&NEES_MEAN, Value::Number(self.nees / all / self.states)),
             (&NIS_MEAN, Value::Number(self.nis / measured / self.measurements as f64)),
             (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
-            (&FREQUENCY_ERROR_RMS, Value::Number(libm::sqrt(self.square / all))),
+            (&FREQUENCY_ERROR_RMS, Value::Number(f64::sqrt(self.square / all))),
             (&FREQUENCY_ERROR_MAX, Value::Number(largest)),
             (&LOCK_LOST, Value::Count(u64::from(self.lost_at.is_some()))),
             (&LOCK_LOST_AT, Value::Number(self.lost_at.unwrap_or(f64::NAN))),

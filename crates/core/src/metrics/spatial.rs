@@ -119,9 +119,9 @@ impl SpatialMetrics {
             self.square.0 += norm(cycle.elastic_rate_rad_s);
             self.square.1 += 1;
         }
-        self.error = libm::sqrt(norm(cycle.error_rad));
-        self.rate = libm::sqrt(norm(cycle.rigid_rate_rad_s));
-        let stored = libm::sqrt(norm(cycle.stored_nm_s));
+        self.error = f64::sqrt(norm(cycle.error_rad));
+        self.rate = f64::sqrt(norm(cycle.rigid_rate_rad_s));
+        let stored = f64::sqrt(norm(cycle.stored_nm_s));
         self.stored = [self.stored[0].max(stored), stored];
         self.steered = cycle.steered;
         if self.asked.as_ref().is_some_and(|asked| asked.counts(t)) {
@@ -178,7 +178,7 @@ impl SpatialMetrics {
             (&VISIBLE_END, Value::Number(self.visible.1)),
             (&BELOW_10, Value::Number(tenth)),
             (&BELOW_1, Value::Number(hundredth)),
-            (&ELASTIC_RATE, Value::Number(libm::sqrt(self.square.0 / self.square.1 as f64))),
+            (&ELASTIC_RATE, Value::Number(f64::sqrt(self.square.0 / self.square.1 as f64))),
             (&POINTING_END, Value::Number(self.error)),
         ];
         let jets = jets.into_iter().filter(|_| self.jets);
@@ -200,12 +200,12 @@ impl SpatialMetrics {
         let mut pointing: Vec<MetricValue> = Vec::new();
         if let Some(asked) = &self.asked {
             // 0/0 of no cycles: no number.
-            let rms = libm::sqrt(self.pointing.0 / self.pointing.1 as f64);
+            let rms = f64::sqrt(self.pointing.0 / self.pointing.1 as f64);
             pointing.push((&POINTING_RMS, Value::Number(rms)));
             let met = asked.rms.map(|most| goal::within(rms, most.get()));
             pointing.extend(met.map(|word| (&REQUIREMENT, Value::Word(word))));
         }
-        let shaken = self.shaken.iter().map(|(_, square, count)| libm::sqrt(square / *count as f64));
+        let shaken = self.shaken.iter().map(|(_, square, count)| f64::sqrt(square / *count as f64));
         let shaken = (!self.shaken.is_empty()).then(|| (&ACCELERATION, Value::Numbers(shaken.collect())));
         jets.chain(friction)
             .chain(metrics)

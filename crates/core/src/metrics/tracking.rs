@@ -49,7 +49,7 @@ impl Tracked {
             (&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)),
             (&INFLUENCE_ESTIMATES, list(&|of| of.influence)),
             (&INFLUENCE_ERRORS, list(&|of| of.influence / of.true_influence - 1.0)),
-            (&TRACKING_ERROR, Value::Number(libm::sqrt(self.square.0 / self.square.1 as f64))),
+            (&TRACKING_ERROR, Value::Number(f64::sqrt(self.square.0 / self.square.1 as f64))),
             (&DAMPING_CYCLES, Value::Count(self.cycles)),
             (&DAMPING_PAUSES, Value::Count(self.pauses)),
         ]

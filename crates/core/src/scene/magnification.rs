@@ -68,7 +68,7 @@ pub fn rate(scenario: &Scenario, body: &Planar) -> f64 {
     let by_law = match (&scenario.law, scenario.actuator.wheel()) {
         // What the spring of the law makes of the angle.
         (Law::Pd(pd), Some((wheel, _))) => {
-            angle(scenario, body) * libm::sqrt(pd.k_p.get() * wheel.gain.get() / body.commanded_inertia())
+            angle(scenario, body) * f64::sqrt(pd.k_p.get() * wheel.gain.get() / body.commanded_inertia())
         }
         _ => 0.0,
     };

@@ -76,7 +76,7 @@ pub fn cube(at: Vector, size: Vector, color: Color) -> CubePrimitive {
 /// A cylinder between two places, or a cone: its diameters are those at the first and at the second.
 pub fn cone(from: Vector, to: Vector, [first, second]: [f64; 2], color: Color) -> CylinderPrimitive {
     let axis = to - from;
-    let length = libm::sqrt(axis.norm_squared());
+    let length = f64::sqrt(axis.norm_squared());
     let widest = first.max(second);
     CylinderPrimitive {
         pose: pose(0.5 * (from + to), &from_z(axis / length)),

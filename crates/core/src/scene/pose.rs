@@ -26,7 +26,7 @@ pub fn attitude(of: &Rotation<f64>) -> Quaternion {
 
 /// The rotation by a vector (rad): about its direction, by its length.
 pub fn about(vector: Vector) -> Rotation<f64> {
-    let angle = libm::sqrt(vector.norm_squared());
+    let angle = f64::sqrt(vector.norm_squared());
     if angle == 0.0 {
         return Rotation::new(1.0, 0.0, 0.0, 0.0);
     }
@@ -42,7 +42,7 @@ pub fn about_z(angle: f64) -> Rotation<f64> {
 /// A rotation as many times as large, about its own axis.
 pub fn magnified(of: &Rotation<f64>, factor: f64) -> Rotation<f64> {
     let vector = of.vector() * libm::copysign(1.0, of.w);
-    let sine = libm::sqrt(vector.norm_squared());
+    let sine = f64::sqrt(vector.norm_squared());
     if sine == 0.0 || factor == 1.0 {
         return *of;
     }
@@ -52,7 +52,7 @@ pub fn magnified(of: &Rotation<f64>, factor: f64) -> Rotation<f64> {
 /// The rotation that takes z to a direction of length 1, by the shortest way.
 pub fn from_z(direction: Vector) -> Rotation<f64> {
     let axis = Vector::z().cross(&direction);
-    let sine = libm::sqrt(axis.norm_squared());
+    let sine = f64::sqrt(axis.norm_squared());
     if sine < 1e-9 {
         return about(if direction.z > 0.0 { Vector::zeros() } else { Vector::x() * std::f64::consts::PI });
     }
@@ -71,7 +71,7 @@ pub fn upright(at: Vector) -> Pose {
 
 /// A vector no longer than a limit, in the same direction.
 pub fn limited(vector: Vector, limit: f64) -> Vector {
-    let length = libm::sqrt(vector.norm_squared());
+    let length = f64::sqrt(vector.norm_squared());
     if length > limit { vector * (limit / length) } else { vector }
 }
 

@@ -313,7 +313,7 @@ impl Simulation {
         if beliefs.len() > 1 {
             let square: f64 = beliefs.iter().map(|belief| belief.angle * belief.angle).sum();
             for belief in beliefs.iter_mut() {
-                belief.whole = libm::sqrt(square);
+                belief.whole = f64::sqrt(square);
             }
         }
         let led = reference.led(*now, beliefs);

@@ -71,7 +71,7 @@ impl Correlated {
                     if rest < -ROUNDING {
                         return None;
                     }
-                    factor[row][row] = libm::sqrt(rest.max(0.0));
+                    factor[row][row] = f64::sqrt(rest.max(0.0));
                 } else if factor[column][column] > ROUNDING {
                     factor[row][column] = rest / factor[column][column];
                 } else if rest.abs() > 1e-8 {

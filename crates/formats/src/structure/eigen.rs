@@ -40,7 +40,7 @@ pub fn modes(
     falling.sort_by(|a, b| reduced.squares[*b].total_cmp(&reduced.squares[*a]));
     // What rounding has made of a square far below the largest is a frequency beyond every range.
     let frequencies: Vec<f64> =
-        falling.iter().map(|n| 1.0 / libm::sqrt(reduced.squares[*n].max(f64::MIN_POSITIVE))).collect();
+        falling.iter().map(|n| 1.0 / f64::sqrt(reduced.squares[*n].max(f64::MIN_POSITIVE))).collect();
     let values =
         DMatrix::from_fn(order, functionals.ncols(), |n, c| frequencies[n] * reduced.values[(falling[n], c)]);
     Ok(EigenModes { frequencies, values })

@@ -68,9 +68,9 @@ impl Cluster {
                 .map(|row| factor * (abs(row[(output, 0)]) * reach[0] + abs(row[(output, 1)]) * reach[1]))
         } else {
             let size = |sum: f64, z: &Phasor| sum + z.norm_sqr();
-            let rates = libm::sqrt(rates.iter().fold(0.0, size));
+            let rates = f64::sqrt(rates.iter().fold(0.0, size));
             [&self.residue, &self.jerk]
-                .map(|row| factor * rates * libm::sqrt(row.row(output).iter().fold(0.0, size)))
+                .map(|row| factor * rates * f64::sqrt(row.row(output).iter().fold(0.0, size)))
         }
     }
 }

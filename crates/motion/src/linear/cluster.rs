@@ -70,7 +70,7 @@ fn two(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
 /// By the exponential of T h bordered with r, whose last columns are the integrals.
 fn augmented(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     let count = t.nrows();
-    let size = libm::sqrt(r.iter().map(Phasor::norm_sqr).sum());
+    let size = f64::sqrt(r.iter().map(Phasor::norm_sqr).sum());
     let unit = |re: f64| Phasor { re, im: 0.0 };
     let scale = if size > 0.0 { size } else { 1.0 };
     let mut whole = DMatrix::zeros(count + 2, count + 2);

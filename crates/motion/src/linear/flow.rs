@@ -120,7 +120,7 @@ impl LinearFlow {
 
     /// The largest condition of a pole or a cluster: how much its rounding is magnified.
     pub fn condition(&self) -> f64 {
-        let of = |v: &DVector<Phasor>| libm::sqrt(v.iter().map(Phasor::norm_sqr).sum());
+        let of = |v: &DVector<Phasor>| f64::sqrt(v.iter().map(Phasor::norm_sqr).sum());
         let simple = self.poles.iter().map(|simple| of(&simple.left) * of(&simple.right));
         simple.chain(self.clusters.iter().map(|cluster| cluster.block.condition())).fold(1.0, f64::max)
     }

@@ -283,5 +283,5 @@ fn invert(blocks: &mut [Block], order: usize) -> Option<()> {
 const HUGE: Phasor = Phasor { re: 1e150, im: 0.0 };
 
 fn size(matrix: &DMatrix<Phasor>) -> f64 {
-    libm::sqrt(matrix.iter().map(Phasor::norm_sqr).sum())
+    f64::sqrt(matrix.iter().map(Phasor::norm_sqr).sum())
 }

@@ -93,7 +93,7 @@ impl Schur {
 
     /// Turns coordinates `row` and the next so that this vector lies along the first.
     fn rotate(&mut self, row: usize, [x, y]: [Phasor; 2]) {
-        let (size, norm) = (abs(x), libm::sqrt(x.norm_sqr() + y.norm_sqr()));
+        let (size, norm) = (abs(x), f64::sqrt(x.norm_sqr() + y.norm_sqr()));
         if norm == 0.0 {
             return;
         }
@@ -137,7 +137,7 @@ impl Schur {
 /// A square root.
 fn root(z: Phasor) -> Phasor {
     let size = abs(z);
-    let re = libm::sqrt(0.5 * (size + z.re.abs()));
+    let re = f64::sqrt(0.5 * (size + z.re.abs()));
     let im = if re > 0.0 { 0.5 * z.im.abs() / re } else { 0.0 };
     let (re, im) = if z.re >= 0.0 { (re, im) } else { (im, re) };
     Phasor { re, im: if z.im < 0.0 { -im } else { im } }

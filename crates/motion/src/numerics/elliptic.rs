@@ -38,7 +38,7 @@ fn principal<const N: usize>(angles: [(f64, f64); N], complement: f64) -> [f64; 
         let ((sin, cos), (rf, rd)) = (angles[at], carlson[at]);
         // DLMF 19.25.10: no two terms of different sign, so nothing cancels near m = 1.
         let s2 = sin * sin;
-        sin * (complement * (rf + m * s2 * rd / 3.0) + m * cos / libm::sqrt(z[at]))
+        sin * (complement * (rf + m * s2 * rd / 3.0) + m * cos / f64::sqrt(z[at]))
     })
 }
 
@@ -88,7 +88,7 @@ impl<const N: usize> Triples<N> {
         let mut next = *self;
         for at in 0..N {
             let (x, y, z) = (self.x[at], self.y[at], self.z[at]);
-            let (rx, ry, rz) = (libm::sqrt(x), libm::sqrt(y), libm::sqrt(z));
+            let (rx, ry, rz) = (f64::sqrt(x), f64::sqrt(y), f64::sqrt(z));
             let lambda = rx * (ry + rz) + ry * rz;
             let sum = self.sum[at] + self.power[at] / (rz * (z + lambda));
             let choose = |new: f64, old: f64| if which[at] { new } else { old };
@@ -115,7 +115,7 @@ fn rf_series(x: f64, y: f64, z: f64) -> f64 {
     let e2 = dx * dy - dz * dz;
     let e3 = dx * dy * dz;
     let series = 1.0 - e2 / 10.0 + e3 / 14.0 + e2 * e2 / 24.0 - 3.0 * e2 * e3 / 44.0;
-    series / libm::sqrt(mean)
+    series / f64::sqrt(mean)
 }
 
 fn rd_series(x: f64, y: f64, z: f64, mean: f64) -> f64 {
@@ -129,7 +129,7 @@ fn rd_series(x: f64, y: f64, z: f64, mean: f64) -> f64 {
     let series =
         1.0 - 3.0 * e2 / 14.0 + e3 / 6.0 + 9.0 * e2 * e2 / 88.0 - 3.0 * e4 / 22.0 - 9.0 * e2 * e3 / 52.0
             + 3.0 * e5 / 26.0;
-    series / (mean * libm::sqrt(mean))
+    series / (mean * f64::sqrt(mean))
 }
 
 #[cfg(test)]

@@ -45,13 +45,13 @@ pub fn quantile(p: f64) -> f64 {
         return -quantile(1.0 - p);
     }
     let z = if p < 0.02425 {
-        let q = libm::sqrt(-2.0 * libm::log(p));
+        let q = f64::sqrt(-2.0 * libm::log(p));
         at(&C, q) / at(&D, q)
     } else {
         let q = p - 0.5;
         at(&A, q * q) * q / at(&B, q * q)
     };
-    let density = libm::exp(-0.5 * z * z) / libm::sqrt(2.0 * std::f64::consts::PI);
+    let density = libm::exp(-0.5 * z * z) / f64::sqrt(2.0 * std::f64::consts::PI);
     let step = (cumulative(z) - p) / density;
     z - step / (1.0 + 0.5 * z * step)
 }

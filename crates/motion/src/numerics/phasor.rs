@@ -14,7 +14,7 @@ pub fn polar(abs: f64, arg: f64) -> Phasor {
 /// Absolute value. The phasors here are far from overflow and underflow.
 #[inline]
 pub fn abs(z: Phasor) -> f64 {
-    libm::sqrt(z.re * z.re + z.im * z.im)
+    f64::sqrt(z.re * z.re + z.im * z.im)
 }
 
 /// Argument in (-pi, pi].

@@ -266,7 +266,7 @@ mod tests {
         let mut roots = Vec::new();
         p.roots(0.0, &mut roots);
         assert_eq!(roots.len(), 2);
-        let half = libm::sqrt(1e-6 / 4e4);
+        let half = f64::sqrt(1e-6 / 4e4);
         assert!((roots[0] - (s - half)).abs() < 1e-9 && (roots[1] - (s + half)).abs() < 1e-9);
     }
 

@@ -8,7 +8,7 @@ pub fn stumpff(square: f64) -> [f64; 5] {
         let (c2, c3) = (0.5 - square * c4, 1.0 / 6.0 - square * c5);
         return [1.0 - square * c3, c2, c3, c4, c5];
     }
-    let x = libm::sqrt(square);
+    let x = f64::sqrt(square);
     let half = libm::sin(0.5 * x);
     let (c1, c2) = (libm::sin(x) / x, 2.0 * half * half / square);
     let c3 = (1.0 - c1) / square;

@@ -190,7 +190,7 @@ fn a_vibration_shakes_a_rotor_loose() {
     // Stuck, w (1 + I/J) = phi q' and q'' (1 + I phi²/(1 + I/J)) = -W² q.
     let (more, phi) = (1.0 + INERTIA / 200.0, 0.05);
     let square = 100.0 / (1.0 + INERTIA * phi * phi / more);
-    let w = libm::sqrt(square);
+    let w = f64::sqrt(square);
     let holds = |t: f64| {
         let q = 1e-3 * libm::cos(w * t) + 2e-3 / w * libm::sin(w * t);
         0.01 - (0.009_798 + INERTIA * phi / more * square * q)

@@ -27,7 +27,7 @@ impl Facing {
     pub fn find(&mut self, from: &Quaternion<f64>, means: &[Vector; 3], h: f64) {
         let rates = means.map(|mean| mean * 0.5);
         let fastest = means.iter().map(Vector::norm_squared).fold(0.0, f64::max);
-        let contraction = LEAVES * h * libm::sqrt(fastest);
+        let contraction = LEAVES * h * f64::sqrt(fastest);
         self.turns = rates.map(|rate| spin(from, &rate));
         for _ in 0..PASSES {
             let mut change = 0.0_f64;
@@ -36,7 +36,7 @@ impl Facing {
                 change = change.max((found - self.turns[node]).norm_squared());
                 self.turns[node] = found;
             }
-            if libm::sqrt(change) * h * contraction <= SETTLED {
+            if f64::sqrt(change) * h * contraction <= SETTLED {
                 break;
             }
         }

@@ -73,7 +73,7 @@ impl ClampedModes {
         }
         let mut falling: Vec<usize> = (0..order).collect();
         falling.sort_by(|a, b| values[*b].total_cmp(&values[*a]));
-        let frequencies: Vec<f64> = falling.iter().map(|index| 1.0 / libm::sqrt(values[*index])).collect();
+        let frequencies: Vec<f64> = falling.iter().map(|index| 1.0 / f64::sqrt(values[*index])).collect();
         let mut shapes = DMatrix::from_fn(order, order, |row, column| {
             vectors[(row, falling[column])] * frequencies[column] / of(row)
         });

@@ -207,7 +207,7 @@ impl Model {
             }
         };
         let modes: Vec<Constants> = body.modes.iter().enumerate().map(constants).collect();
-        let size = libm::sqrt(body.inertia.norm());
+        let size = f64::sqrt(body.inertia.norm());
         let felt = body
             .modes
             .iter()

@@ -303,9 +303,9 @@ mod tests {
             assert_eq!((undamped.turned, undamped.turned), (undamped.unresolved, damped.turned));
         }
         // phi m/W of the slow mode, whose swing ends within 100 s of 1e4 s.
-        let (alone, moments) = (0.04, 10.0 * libm::sqrt(3.0));
+        let (alone, moments) = (0.04, 10.0 * f64::sqrt(3.0));
         let coupled = 0.04 * 90.0 * 0.04 * moments * (0.01 + 1e-2 / 90.0 / 90.0);
-        let sum = alone + coupled + moments * libm::sqrt(3.0) / 300.0;
+        let sum = alone + coupled + moments * f64::sqrt(3.0) / 300.0;
         let found = turns(0.005)[1].unresolved;
         assert!((found - sum).abs() < 1e-6 * sum, "{found} {sum}");
     }

@@ -106,7 +106,7 @@ impl Pair {
 /// exp and phi_1 to phi_3 of A t, where W t is an `angle` (rad).
 fn phis(angle: f64, damping: f64) -> [Pair; 4] {
     if damping < NEAR_CRITICAL {
-        let root = libm::sqrt((1.0 - damping) * (1.0 + damping));
+        let root = f64::sqrt((1.0 - damping) * (1.0 + damping));
         let z = Phasor::new(-damping * angle, root * angle);
         phi::first(z).map(|value| Pair(value.re, value.im / root))
     } else {
@@ -167,7 +167,7 @@ mod tests {
         // Critical: exp(-a) (1 + a B) with B² = 0, and above it exp(-2 a) (cosh + B sinh/sqrt(3), of sqrt(3) a).
         let Pair(a, b) = phis(1.5, 1.0)[0];
         assert!((a - libm::exp(-1.5)).abs() < 1e-15 && (b - 1.5 * libm::exp(-1.5)).abs() < 1e-15);
-        let (Pair(a, b), root) = (phis(1.5, 2.0)[0], libm::sqrt(3.0));
+        let (Pair(a, b), root) = (phis(1.5, 2.0)[0], f64::sqrt(3.0));
         assert!((a - libm::exp(-3.0) * libm::cosh(1.5 * root)).abs() < 1e-14);
         assert!((b - libm::exp(-3.0) * libm::sinh(1.5 * root) / root).abs() < 1e-14);
     }

@@ -58,7 +58,7 @@ impl Bend {
             // 0.04^7/15! and 1e-15/7! are below the last bit.
             return Self { by, first: sum(&FIRST, x), second: sum(&SECOND, x), third: sum(&THIRD, x) };
         }
-        let t = libm::sqrt(x);
+        let t = f64::sqrt(x);
         let (sin, cos) = libm::sincos(t);
         Self { by, first: sin / t, second: (1.0 - cos) / x, third: (t - sin) / (x * t) }
     }

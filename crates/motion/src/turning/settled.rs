@@ -33,9 +33,9 @@ impl Change {
     /// The largest change, as a part of what changes.
     #[inline(always)]
     pub fn most(&self, h: f64, size: f64, speed: f64) -> f64 {
-        let mut most = self.spun.max(0.5 * h * libm::sqrt(self.mean));
+        let mut most = self.spun.max(0.5 * h * f64::sqrt(self.mean));
         if size > 0.0 {
-            most = most.max(libm::sqrt(self.push) * h / size);
+            most = most.max(f64::sqrt(self.push) * h / size);
         }
         if speed > 0.0 {
             most = most.max(self.forced * h / speed);
@@ -67,8 +67,8 @@ impl TurningStep<'_> {
         }
         let (model, h) = (self.model, self.h);
         let Model { mobility, reach, bendable, stretchable, .. } = model;
-        let [push, turning] = [change.push, change.turning].map(libm::sqrt);
-        let [stretched, rate] = [change.stretched, change.rate].map(libm::sqrt);
+        let [push, turning] = [change.push, change.turning].map(f64::sqrt);
+        let [stretched, rate] = [change.stretched, change.rate].map(f64::sqrt);
         // Errors of the elastic rate, how far the body is bent, and the momentum; by these of the hub's rate.
         let elastic = reach * h * change.forced + 2.0 * bendable * turning;
         let bent = h * elastic;

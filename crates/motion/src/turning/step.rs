@@ -8,6 +8,7 @@ use super::gimbal::Swung;
 use super::model::{Model, Surroundings};
 use super::response::NodeResponse;
 use super::state::TurningState;
+use super::vectors::length;
 use crate::attitude::Vector;
 
 /// Passes after which the stages are taken as they are.
@@ -91,8 +92,9 @@ pub(super) struct FeltByModes {
 impl TurningStep<'_> {
     /// What the momentum is measured by (N m s): sums of rotors' momenta are no more exact than a part of these.
     pub(super) fn size(&self, state: &TurningState) -> f64 {
-        let swung = self.swung.as_ref().map_or(0.0, |swung| swung.start.0.norm());
-        state.momentum.norm() + self.h * self.torque.norm() + ROTORS * (self.rotors.0.norm() + swung)
+        let swung = self.swung.as_ref().map_or(0.0, |swung| length(&swung.start.0));
+        let rotors = length(&self.rotors.0) + swung;
+        length(&state.momentum) + self.h * length(&self.torque) + ROTORS * rotors
     }
 
     /// Keeps q and P of a mode, where drives turn what the others make of them.

@@ -24,6 +24,13 @@ pub(super) fn vector([x, y, z]: &StoredVectors, lane: usize) -> Vector {
     Vector::new(x[lane], y[lane], z[lane])
 }
 
+/// The length of a vector. That of nalgebra takes the root by an instruction of SSE, which waits for registers of AVX
+/// that were used before it.
+#[inline(always)]
+pub(super) fn length(v: &Vector) -> f64 {
+    f64::sqrt(v.norm_squared())
+}
+
 impl<R: Real> Vectors<R> {
     /// The same vector in every lane.
     #[inline(always)]

@@ -45,8 +45,8 @@ impl Mode {
     pub fn amplitude(&self, phase: Phase) -> f64 {
         let zeta = self.damping.get();
         let Phase { displacement: x, quadrature: y } = phase;
-        let imaginary = (y + zeta * x) / libm::sqrt((1.0 - zeta) * (1.0 + zeta));
-        libm::sqrt(x * x + imaginary * imaginary)
+        let imaginary = (y + zeta * x) / f64::sqrt((1.0 - zeta) * (1.0 + zeta));
+        f64::sqrt(x * x + imaginary * imaginary)
     }
 
     /// Energy of motion and deformation (J) on a body of this inertia (kg m²). A mode without gain, which no torque
@@ -98,7 +98,7 @@ impl ModeFlow {
         } else if zeta < 1.0 {
             Regime::Under(Damped::new(w, zeta))
         } else {
-            let root = libm::sqrt((zeta - 1.0) * (zeta + 1.0));
+            let root = f64::sqrt((zeta - 1.0) * (zeta + 1.0));
             Regime::Over(zeta * w, w / (zeta + root), w * root)
         };
         let square = 4.0 * zeta * zeta;
@@ -107,8 +107,8 @@ impl ModeFlow {
             gain: mode.gain.get(),
             excitability: mode.excitability(),
             // x'' = -w² (x + 2 zeta y) and x''' = -w³ (y - 2 zeta x - 4 zeta² y) in (x, y) of length 1.
-            stiffness: w * w * libm::sqrt(1.0 + square),
-            jerk: w * w * w * libm::sqrt(square + (1.0 - square) * (1.0 - square)),
+            stiffness: w * w * f64::sqrt(1.0 + square),
+            jerk: w * w * w * f64::sqrt(square + (1.0 - square) * (1.0 - square)),
             drag: 2.0 * zeta * w,
             regime,
         }

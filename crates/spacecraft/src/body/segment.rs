@@ -89,7 +89,7 @@ impl Segment {
             if let Some(abreast) = &mut self.abreast {
                 abreast.depart(index, swing.from);
             }
-            let distance = libm::sqrt(displacement * displacement + phase.quadrature * phase.quadrature);
+            let distance = f64::sqrt(displacement * displacement + phase.quadrature * phase.quadrature);
             if !self.visible {
                 continue;
             }

@@ -114,7 +114,7 @@ mod tests {
         // At the start the body is on the inertial x and goes along y.
         let place = orbit.at(0.0);
         let centre = Vector::new(0.1, 0.0, 0.0);
-        let speed = libm::sqrt(3.986_004_418e14 / 6.8e6);
+        let speed = f64::sqrt(3.986_004_418e14 / 6.8e6);
         let force = 0.5 * 4e-12 * 2.2 * 2.0 * speed * speed;
         let torque = |by: Vector| drag.torque(&orbit, &place, &turned(&by), &centre);
         assert!((torque(Vector::zeros()) - Vector::new(0.5 * force, 0.0, 0.0)).norm() < 1e-12 * force);

@@ -92,13 +92,13 @@ impl Kepler {
     /// Mean motion (rad/s).
     pub fn mean_motion(&self) -> f64 {
         let a = self.semi_major_axis.get();
-        libm::sqrt(self.gravity.get() / a) / a
+        f64::sqrt(self.gravity.get() / a) / a
     }
 
     /// The largest rate of the local axes (rad/s), at the perigee.
     pub fn fastest(&self) -> f64 {
         let e = self.eccentricity.get();
-        libm::sqrt(self.gravity.get() * (1.0 + e) / self.nearest()) / self.nearest()
+        f64::sqrt(self.gravity.get() * (1.0 + e) / self.nearest()) / self.nearest()
     }
 
     /// The unit vectors P, Q and along the orbit's normal.
@@ -116,13 +116,13 @@ impl Kepler {
         let anomaly = eccentric(libm::fmod(self.anomaly.get() + self.mean_motion() * t, TAU), e);
         let (sin, cos) = libm::sincos(anomaly);
         let [p, q, normal] = self.plane();
-        let minor = libm::sqrt(1.0 - e * e);
+        let minor = f64::sqrt(1.0 - e * e);
         let radius = a * (1.0 - e * cos);
         let position = (p * (cos - e) + q * (minor * sin)) * a;
-        let anomaly_rate = libm::sqrt(gravity * a) / radius;
+        let anomaly_rate = f64::sqrt(gravity * a) / radius;
         let velocity = (q * (minor * cos) - p * sin) * anomaly_rate;
         let nadir = -position / radius;
-        let turning = libm::sqrt(gravity * a) * minor / (radius * radius);
+        let turning = f64::sqrt(gravity * a) * minor / (radius * radius);
         // r r' = sqrt(mu a) e sin E.
         let climb = anomaly_rate * e * sin;
         OrbitPosition {
@@ -170,7 +170,7 @@ impl Kepler {
     fn shadow_edges(&self, sun: &Vector) -> Vec<(f64, bool)> {
         let (a, e, planet) = (self.semi_major_axis.get(), self.eccentricity.get(), self.planet_radius.get());
         let [p, q, _] = self.plane().map(|axis| axis.dot(sun) * a);
-        let minor = libm::sqrt(1.0 - e * e);
+        let minor = f64::sqrt(1.0 - e * e);
         // How far the body is towards the Sun, and its distance from the axis of the shadow squared less the planet's radius
         // squared, with their derivatives.
         let towards = |sin: f64, cos: f64| p * (cos - e) + q * minor * sin;
@@ -269,7 +269,7 @@ mod tests {
             let energy = 0.5 * now.velocity.norm_squared() - gravity / radius;
             assert!((energy / (-gravity / 2.4e7) - 1.0).abs() < 1e-14, "{t}");
             let momentum = now.position.cross(&now.velocity);
-            let exact = libm::sqrt(gravity * 1.2e7 * (1.0 - 0.16));
+            let exact = f64::sqrt(gravity * 1.2e7 * (1.0 - 0.16));
             assert!((momentum + now.local[1] * exact).norm() < 1e-13 * exact, "{t}");
             // The local axes turn about -y at the rate of the true anomaly.
             let [rate, change] = now.turning;

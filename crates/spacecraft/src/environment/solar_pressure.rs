@@ -159,7 +159,7 @@ mod tests {
     #[test]
     fn plates_absorb_and_reflect() {
         // A plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
-        let sun = Vector::new(0.0, libm::sqrt(0.75), 0.5);
+        let sun = Vector::new(0.0, f64::sqrt(0.75), 0.5);
         let centre = Vector::new(0.1, 0.0, 0.0);
         let torque = |parts: &str, by: Vector| {
             let keys = format!("plates = [{{ area = 2, normal = [0, 0, 4], at = [0.6, 0, 0] {parts} }}]");

@@ -148,12 +148,12 @@ fn roll_and_yaw_swing_with_the_roots_of_the_quartic() {
     }
     let found = normal.try_inverse().expect("two harmonics") * right;
     let (sum, product) = (0.5 * found.x, 0.25 * (found.y - 2.0));
-    let root = libm::sqrt(sum * sum - 4.0 * product);
+    let root = f64::sqrt(sum * sum - 4.0 * product);
     let frequencies = [0.5 * (sum + root), 0.5 * (sum - root)].map(|cos| libm::acos(cos) / period);
     let (k1, k3) = ((1400.0 - 500.0) / 1100.0, (1400.0 - 1100.0) / 500.0);
     let (b, c) = (1.0 + 3.0 * k1 + k1 * k3, 4.0 * k1 * k3);
-    let root = libm::sqrt(b * b - 4.0 * c);
-    let exact = [0.5 * (b - root), 0.5 * (b + root)].map(|square| RATE * libm::sqrt(square));
+    let root = f64::sqrt(b * b - 4.0 * c);
+    let exact = [0.5 * (b - root), 0.5 * (b + root)].map(|square| RATE * f64::sqrt(square));
     for (found, exact) in frequencies.iter().zip(exact) {
         assert!((found / exact - 1.0).abs() < 1e-10, "{found} {exact}");
     }

@@ -81,7 +81,7 @@ impl Adjoint {
     /// The weights of the functions whose sum has these products: the command of the least energy.
     pub fn least(&self, products: &DVector<f64>) -> Option<DVector<f64>> {
         let gram = self.gram();
-        let scale = gram.diagonal().map(|d| 1.0 / libm::sqrt(d));
+        let scale = gram.diagonal().map(|d| 1.0 / f64::sqrt(d));
         let scaled = DMatrix::from_fn(self.len(), self.len(), |i, j| gram[(i, j)] * scale[i] * scale[j]);
         let factor = scaled.clone().cholesky()?;
         let right = products.component_mul(&scale);

@@ -9,7 +9,7 @@ use crate::waveform::{Term, TermShape, Waveform};
 /// T/2 + P/(2 A); of the two roots the larger has its switching within the time.
 pub fn plan(task: &Task) -> Waveform {
     let (t, p, e) = (task.time, task.impulse, task.excess());
-    let root = 2.0 * libm::sqrt(e * e + 0.25 * p * p * t * t);
+    let root = 2.0 * f64::sqrt(e * e + 0.25 * p * p * t * t);
     let sum = if e < 0.0 { 2.0 * e - root } else { 2.0 * e + root };
     let amplitude = sum / (t * t);
     if amplitude == 0.0 {

@@ -45,6 +45,6 @@ impl PlanEffort {
         let breaks = plan.waveform.breaks();
         let square = integral(&breaks, panel, |middle, t| value(middle, t) * value(middle, t));
         let initial = breaks.get(1).map_or(0.0, |second| value(0.5 * second, 0.0));
-        Self { peak, rms: libm::sqrt(square / plan.time), square, initial }
+        Self { peak, rms: f64::sqrt(square / plan.time), square, initial }
     }
 }

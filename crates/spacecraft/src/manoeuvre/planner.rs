@@ -90,7 +90,7 @@ impl<'a> Planner<'a> {
             if discriminant < 0.0 {
                 continue;
             }
-            let root = libm::sqrt(discriminant);
+            let root = f64::sqrt(discriminant);
             for time in [root - half, -root - half] {
                 let excess = side * (self.angle - mean * time);
                 if time > 0.0 && excess >= -1e-9 * self.angle.abs() {

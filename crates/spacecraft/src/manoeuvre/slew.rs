@@ -51,7 +51,7 @@ impl Pose {
     /// axis, rad).
     pub fn seen_from(&self, beyond: &Vector) -> [Vector; 2] {
         let half = beyond * 0.5;
-        let turn = Quaternion::from_parts(libm::sqrt((1.0 - half.norm_squared()).max(0.0)), half);
+        let turn = Quaternion::from_parts(f64::sqrt((1.0 - half.norm_squared()).max(0.0)), half);
         let turned = |vector: &Vector| -> Vector {
             (turn.conjugate() * Quaternion::from_imag(*vector) * turn).vector().into_owned()
         };
@@ -96,7 +96,7 @@ impl Slew {
         let (axis, angle) = eigenaxis(&from, &to);
         // The mean of the acceleration while the rate rises.
         let mean = if profile == Profile::Versine { 0.5 * acceleration } else { acceleration };
-        let rate = rate_limit.min(libm::sqrt(angle * mean));
+        let rate = rate_limit.min(f64::sqrt(angle * mean));
         let rise = rate / mean;
         let coast = if rate > 0.0 { (angle / rate - rise).max(0.0) } else { 0.0 };
         Self { from, to, axis, angle, profile, acceleration, rate, rise, coast }
@@ -228,7 +228,7 @@ mod tests {
             for rate in [8e-3, f64::INFINITY] {
                 let slew = slew(0.1, rate, profile);
                 let mean = if profile == Profile::Versine { 1e-4 } else { 2e-4 };
-                assert!((slew.duration() - 2.0 * libm::sqrt(0.1 / mean)).abs() < 1e-12);
+                assert!((slew.duration() - 2.0 * f64::sqrt(0.1 / mean)).abs() < 1e-12);
             }
         }
     }

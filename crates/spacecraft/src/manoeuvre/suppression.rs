@@ -54,7 +54,7 @@ impl Zero {
     /// The pole -zeta w + i w_d of a mode (1/s).
     pub fn pole(&self) -> Phasor {
         let Self { frequency: w, damping: zeta } = *self;
-        Phasor::new(-zeta * w, w * libm::sqrt((1.0 - zeta) * (1.0 + zeta)))
+        Phasor::new(-zeta * w, w * f64::sqrt((1.0 - zeta) * (1.0 + zeta)))
     }
 
     /// The zero at a mode.

@@ -70,8 +70,8 @@ impl estimator::Estimate for Observers {
             tracking.channels.push(ChannelState {
                 elastic_rad_s: modes.iter().map(|mode| mode.phase[0]).sum(),
                 true_elastic_rad_s: (0..rates.len()).map(|mode| seen(&mode)).sum(),
-                innovation_rms_rad_s: libm::sqrt(residual.innovation),
-                elastic_rms_rad_s: libm::sqrt(residual.elastic),
+                innovation_rms_rad_s: f64::sqrt(residual.innovation),
+                elastic_rms_rad_s: f64::sqrt(residual.elastic),
                 trusted: channel.is_trusted().into(),
                 acted_on_rad_s: damped.rate,
                 threshold_rad_s: damped.threshold,

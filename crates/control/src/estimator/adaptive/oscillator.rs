@@ -19,7 +19,7 @@ impl ModelOscillator {
     /// The transition over a time (s), exp(K t), by rows.
     pub fn transition(&self, time: f64) -> [ModelPhase; 2] {
         let zeta = self.damping;
-        let root = libm::sqrt((1.0 - zeta) * (1.0 + zeta));
+        let root = f64::sqrt((1.0 - zeta) * (1.0 + zeta));
         let turn = self.frequency * time;
         let (sin, cos) = libm::sincos(root * turn);
         let (shrink, sin) = (libm::exp(-zeta * turn), sin / root);

@@ -56,7 +56,7 @@ fn measured() -> Vec<f64> {
 /// The measured rate as the recurrence itself has it.
 fn recurred() -> Vec<f64> {
     let (w, zeta) = (MODE.0, 0.005);
-    let turn = 2.0 * libm::exp(-zeta * w * CYCLE) * libm::cos(w * libm::sqrt(1.0 - zeta * zeta) * CYCLE);
+    let turn = 2.0 * libm::exp(-zeta * w * CYCLE) * libm::cos(w * f64::sqrt(1.0 - zeta * zeta) * CYCLE);
     let decay = libm::exp(-2.0 * zeta * w * CYCLE);
     let (mut rate, mut now, mut before, mut push) = (0.0, 0.0, 0.0, 0.0);
     let sample = |cycle| {

@@ -92,7 +92,7 @@ pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
         let [mut low, mut high] = [frequency / reach, (frequency * reach).min(highest)];
         for other in trackers {
             let theirs = other.frequency.get();
-            let middle = libm::sqrt(frequency * theirs);
+            let middle = f64::sqrt(frequency * theirs);
             if theirs < frequency {
                 low = low.max(other.bounds.map_or(middle, |bounds| bounds[1].get()));
             } else if theirs > frequency {

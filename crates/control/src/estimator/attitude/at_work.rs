@@ -163,7 +163,7 @@ impl Estimate for Tracking {
         if self.history.is_none() {
             let Orientation::Attitude(origin) = taken.origin else { return };
             let beyond = Vector::from_fn(|axis, _| 0.5 * (taken.truth)(axis).rigid_angle);
-            let real = libm::sqrt((1.0 - beyond.norm_squared()).max(0.0));
+            let real = f64::sqrt((1.0 - beyond.norm_squared()).max(0.0));
             let filter = self.prior(&(origin * Quaternion::from_parts(real, beyond)));
             let mut history = FilterHistory::new(now, filter, self.setting.noise, self.setting.reach);
             history.push(now, self.torque);

@@ -214,7 +214,7 @@ impl AttitudeFilterState {
 
     /// Standard deviations of attitude (rad) and bias (rad/s) about each axis.
     pub fn deviations(&self) -> [[f64; 3]; 2] {
-        [0, 3].map(|from| [0, 1, 2].map(|axis| libm::sqrt(self.covariance[(from + axis, from + axis)])))
+        [0, 3].map(|from| [0, 1, 2].map(|axis| f64::sqrt(self.covariance[(from + axis, from + axis)])))
     }
 }
 

@@ -44,7 +44,7 @@ impl Complementary {
         let (angle, ratio) = (self.bandwidth.get() * period, self.damping.get());
         let decay = libm::exp(-ratio * angle);
         let swing = 1.0 - ratio * ratio;
-        let part = angle * libm::sqrt(swing.abs());
+        let part = angle * f64::sqrt(swing.abs());
         let half = decay * if swing > 0.0 { libm::cos(part) } else { libm::cosh(part) };
         let k = 1.0 - decay * decay;
         [k, (2.0 * half - 2.0 + k) / period]
@@ -54,10 +54,10 @@ impl Complementary {
 /// k and b (1/s) of the optimal filter in the end, at this period of corrections (s) of this standard deviation (rad).
 fn steady(noise: &GyroNoise, period: f64, deviation: f64) -> [f64; 2] {
     let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
-    let (sv, su) = (white * libm::sqrt(period) / deviation, walk * libm::sqrt(period) * period / deviation);
+    let (sv, su) = (white * f64::sqrt(period) / deviation, walk * f64::sqrt(period) * period / deviation);
     // [Farrenkopf78] in the form of Markley and Crassidis: theta- has the variance deviation² (z² - 1).
-    let g = libm::sqrt(1.0 + sv * sv / 4.0 + su * su / 48.0);
-    let z = g + su / 4.0 + 0.5 * libm::sqrt(2.0 * g * su + sv * sv + su * su / 3.0);
+    let g = f64::sqrt(1.0 + sv * sv / 4.0 + su * su / 48.0);
+    let z = g + su / 4.0 + 0.5 * f64::sqrt(2.0 * g * su + sv * sv + su * su / 3.0);
     [1.0 - 1.0 / (z * z), -su / (z * period)]
 }
 
@@ -80,7 +80,7 @@ impl Form {
             Self::Steady => {
                 // About the axes in which errors do not depend on each other.
                 let axes = covariance.symmetric_eigen();
-                let of = |variance: f64| steady(noise, period, libm::sqrt(variance));
+                let of = |variance: f64| steady(noise, period, f64::sqrt(variance));
                 let [attitude, bias] = [0, 1].map(|part| {
                     let diagonal =
                         Matrix3::from_diagonal(&axes.eigenvalues.map(|variance| of(variance)[part]));
@@ -138,7 +138,7 @@ mod tests {
                 seen.push(theta);
             }
             let product = libm::exp(-2.0 * ratio * bandwidth * period);
-            let part = bandwidth * period * libm::sqrt((1.0 - ratio * ratio).abs());
+            let part = bandwidth * period * f64::sqrt((1.0 - ratio * ratio).abs());
             let half = if ratio < 1.0 { libm::cos(part) } else { libm::cosh(part) };
             let sum = 2.0 * libm::exp(-ratio * bandwidth * period) * half;
             for x in seen.windows(3) {

@@ -231,7 +231,7 @@ impl AttitudeFilter {
         let own = if gyro.integrates() {
             largest(&|axis| gyro.angle_random_walk.about(axis).get())
         } else {
-            largest(&|axis| gyro.rate_noise(axis)) * libm::sqrt(period)
+            largest(&|axis| gyro.rate_noise(axis)) * f64::sqrt(period)
         };
         let angle_random_walk = self.angle_random_walk.map_or(own, Positive::get);
         if angle_random_walk <= 0.0 {

@@ -71,7 +71,7 @@ impl Swinging {
         let relative =
             |at: usize| if self.known.identified.is_some() { self.covariance[(at, at)] } else { 0.0 };
         let each = self.frequencies.iter().enumerate();
-        each.map(|(index, frequency)| frequency * libm::sqrt(relative(first + index))).collect()
+        each.map(|(index, frequency)| frequency * f64::sqrt(relative(first + index))).collect()
     }
 
     /// The covariance of attitude and bias.
@@ -271,7 +271,7 @@ impl Swinging {
 
 /// The transition of q and q'/W of a free mode, row by row.
 fn transition(frequency: f64, damping: f64, seconds: f64) -> [f64; 4] {
-    let root = libm::sqrt((1.0 - damping) * (1.0 + damping));
+    let root = f64::sqrt((1.0 - damping) * (1.0 + damping));
     let (sin, cos) = libm::sincos(root * frequency * seconds);
     let decay = libm::exp(-damping * frequency * seconds);
     let (part, lag) = (sin / root, damping * sin / root);

@@ -31,7 +31,7 @@ pub struct Lock {
 fn quantile(degrees: f64, deviations: f64) -> f64 {
     // Wilson and Hilferty: the cube root of chi-square over its degrees of freedom is about normal.
     let spread = 2.0 / (9.0 * degrees);
-    let root = 1.0 - spread + deviations * libm::sqrt(spread);
+    let root = 1.0 - spread + deviations * f64::sqrt(spread);
     degrees * root * root * root
 }
 

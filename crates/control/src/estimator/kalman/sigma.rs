@@ -16,7 +16,7 @@ pub fn transform(
     let order = mean.len();
     let n = order as f64;
     let scale = ALPHA * ALPHA * n;
-    let root = Cholesky::new(covariance.clone())?.unpack() * libm::sqrt(scale);
+    let root = Cholesky::new(covariance.clone())?.unpack() * f64::sqrt(scale);
     let mut points = DMatrix::zeros(order, 2 * order + 1);
     for (index, mut point) in points.column_iter_mut().enumerate() {
         point.copy_from(mean);

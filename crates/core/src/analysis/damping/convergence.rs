@@ -55,7 +55,7 @@ impl Convergence {
     /// A and B.
     pub fn recurrence(&self) -> (f64, f64) {
         let Self { frequency, damping, period, .. } = self;
-        let turn = frequency * libm::sqrt((1.0 - damping) * (1.0 + damping)) * period;
+        let turn = frequency * f64::sqrt((1.0 - damping) * (1.0 + damping)) * period;
         let shrink = libm::exp(-damping * frequency * period);
         (2.0 * shrink * libm::cos(turn), shrink * shrink)
     }

@@ -30,7 +30,7 @@ impl Decay {
     /// Amplitude (rad/s) after a time (s) with a threshold and no damping of the mode's own:
     /// sqrt(V² - g²) = sqrt(V0² - g²) - s t, and g once it is there.
     pub fn amplitude_above(&self, start: f64, threshold: f64, time: f64) -> f64 {
-        let left = libm::sqrt((start - threshold) * (start + threshold)) - self.slope * time;
+        let left = f64::sqrt((start - threshold) * (start + threshold)) - self.slope * time;
         libm::hypot(left.max(0.0), threshold)
     }
 
@@ -48,7 +48,7 @@ impl Decay {
             return Some(if ratio > 0.0 { libm::log1p(ratio) / rate } else { start / slope });
         }
         if rate == 0.0 {
-            return Some(libm::sqrt((start - threshold) * (start + threshold)) / slope);
+            return Some(f64::sqrt((start - threshold) * (start + threshold)) / slope);
         }
         Some(self.integral(start, threshold, |_| 1.0))
     }

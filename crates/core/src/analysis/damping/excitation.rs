@@ -26,7 +26,7 @@ impl Excitation {
     /// seen; none if there are no parameters, or one that was never excited.
     pub fn persistence(&self) -> Option<f64> {
         let count = self.0.nrows();
-        let lengths: Vec<f64> = (0..count).map(|i| libm::sqrt(self.0[(i, i)])).collect();
+        let lengths: Vec<f64> = (0..count).map(|i| f64::sqrt(self.0[(i, i)])).collect();
         if count == 0 || lengths.iter().any(|length| !(length.is_finite() && *length > 0.0)) {
             return None;
         }

@@ -266,7 +266,7 @@ impl Reader {
 fn is_modal(damping: &DMatrix<f64>) -> bool {
     let order = damping.nrows();
     let coupled = |i: usize, j: usize| {
-        damping[(i, j)].abs() > MODAL * libm::sqrt((damping[(i, i)] * damping[(j, j)]).abs())
+        damping[(i, j)].abs() > MODAL * f64::sqrt((damping[(i, i)] * damping[(j, j)]).abs())
     };
     damping.amax() > 0.0 && !(0..order).any(|i| (0..i).any(|j| coupled(i, j)))
 }

@@ -159,7 +159,7 @@ impl Frd {
             return Err(format!("line {}: must follow nodes and elements", line.number));
         }
         let natural =
-            Natural { line: number, mode, frequency: libm::sqrt(eigenvalue.max(0.0)), generalised_mass };
+            Natural { line: number, mode, frequency: f64::sqrt(eigenvalue.max(0.0)), generalised_mass };
         let natural = natural.checked(eigenvalue, cycles)?;
         self.shapes.push(NodalMode { natural, displacements: Vec::with_capacity(self.positions.len()) });
         Ok(At::Displacements)

@@ -52,7 +52,7 @@ pub fn modes(
     let places =
         points.iter().map(|point| Found::of(point, &frd, &mut rules)).collect::<Result<Vec<_>, _>>()?;
     let modes = natural.iter().zip(&shapes).map(|(natural, shape)| {
-        let scale = 1.0 / libm::sqrt(natural.generalised_mass);
+        let scale = 1.0 / f64::sqrt(natural.generalised_mass);
         let (mut translation, mut moments) = (Vector3::zeros(), Matrix3::zeros());
         for ((mass, moment), phi) in sums.masses.iter().zip(&sums.moments).zip(shape) {
             translation += phi * (scale * mass);
@@ -245,7 +245,7 @@ impl Within {
         let mut points = vec![self.natural];
         for axis in 0..3 {
             if self.natural[axis].abs() < MIDDLE && self.directions.column(axis).norm() < 0.5 * longest {
-                let gauss = Vector3::ith(axis, libm::sqrt(1.0 / 3.0));
+                let gauss = Vector3::ith(axis, f64::sqrt(1.0 / 3.0));
                 points = points.iter().flat_map(|point| [point - gauss, point + gauss]).collect();
             }
         }

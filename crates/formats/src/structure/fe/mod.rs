@@ -160,7 +160,7 @@ impl Natural {
             ));
         }
         let agrees = |other: f64| (other - frequency).abs() <= PRINTED * frequency;
-        if !agrees(libm::sqrt(eigenvalue)) || !agrees(2.0 * std::f64::consts::PI * cycles) {
+        if !agrees(f64::sqrt(eigenvalue)) || !agrees(2.0 * std::f64::consts::PI * cycles) {
             return Err(format!(
                 "line {line}: mode {mode} must have one frequency, got an eigenvalue of {eigenvalue}, {frequency} rad/s and {cycles} Hz"
             ));

@@ -44,7 +44,7 @@ impl Reactions {
                     natural.mode
                 ));
             };
-            let scale = -1.0 / (natural.frequency * natural.frequency * libm::sqrt(natural.generalised_mass));
+            let scale = -1.0 / (natural.frequency * natural.frequency * f64::sqrt(natural.generalised_mass));
             let mut sum = [0.0; 6];
             for (grid, forces) in rows {
                 let forces = forces.map(|force| scale * force);

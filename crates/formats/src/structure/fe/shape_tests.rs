@@ -45,10 +45,7 @@ fn first_moments_follow_from_shapes_and_masses() {
             let moments = mode.moments.expect("first moments").concat();
             let largest = row[4..].iter().fold(0.0_f64, |most, part| most.max(part.abs()));
             for (axis, part) in mode.translation.iter().enumerate() {
-                assert!(
-                    (part - row[1 + axis]).abs() < 1e-6 * libm::sqrt(mass),
-                    "{structure}: {part} {row:?}"
-                );
+                assert!((part - row[1 + axis]).abs() < 1e-6 * f64::sqrt(mass), "{structure}: {part} {row:?}");
             }
             for (part, expected) in mode.rotation.iter().chain(&moments).zip(&row[4..]) {
                 assert!((part - expected).abs() < 1e-6 * largest, "{structure}: {part} {expected}");

@@ -145,7 +145,7 @@ pub fn of_factors(
                 let effective = masses.of(natural)?;
                 agree(natural, row, effective)?;
             }
-            let scale = sign * libm::sqrt(natural.generalised_mass);
+            let scale = sign * f64::sqrt(natural.generalised_mass);
             Ok(natural.with(row.parts.map(|part| scale * part)))
         })
         .collect()
@@ -185,7 +185,7 @@ pub fn of_masses(
                     row.line, natural.mode
                 ));
             }
-            Ok(natural.with(parts.map(libm::sqrt)))
+            Ok(natural.with(parts.map(f64::sqrt)))
         })
         .collect()
 }

@@ -101,7 +101,7 @@ fn in_metres(key: &str, length: f64) -> Result<(), Fault> {
 
 /// The radius of gyration must be a length in metres too.
 fn extent(inertia: &Matrix3<f64>, mass: f64) -> Result<(), Fault> {
-    let radius = libm::sqrt(0.5 * inertia.trace() / mass);
+    let radius = f64::sqrt(0.5 * inertia.trace() / mass);
     if radius <= LARGEST {
         return Ok(());
     }
@@ -170,7 +170,7 @@ fn residual(appendage: &Appendage) -> Result<(), Fault> {
     let own = SymmetricEigen::new(inertia);
     let rounded = AGREEMENT * (mass * centre.norm_squared() + 0.5 * inertia.trace());
     let scales = own.eigenvalues.map(|moment| {
-        let scale = libm::sqrt(moment.max(rounded));
+        let scale = f64::sqrt(moment.max(rounded));
         if scale > 0.0 { scale } else { 1.0 }
     });
     let mut left = Matrix6::identity();
@@ -205,7 +205,7 @@ fn residual(appendage: &Appendage) -> Result<(), Fault> {
         }
         let about_centre: Vector = own.eigenvectors.tr_mul(&(r - centre.cross(&t)));
         let mut row = Vector6::zeros();
-        row.fixed_rows_mut::<3>(0).copy_from(&(t / libm::sqrt(mass)));
+        row.fixed_rows_mut::<3>(0).copy_from(&(t / f64::sqrt(mass)));
         row.fixed_rows_mut::<3>(3).copy_from(&about_centre.component_div(&scales));
         left -= row * row.transpose();
         if !left.iter().all(|element| element.is_finite()) {

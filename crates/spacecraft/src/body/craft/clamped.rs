@@ -50,7 +50,7 @@ impl ClampedMode {
     pub fn translation(&self, mass: f64) -> Vector {
         self.along
             .as_ref()
-            .map_or_else(|| vector(&self.translation), |along| vector(along).normalize() * libm::sqrt(mass))
+            .map_or_else(|| vector(&self.translation), |along| vector(along).normalize() * f64::sqrt(mass))
     }
 
     /// First moments, if they are given (sqrt(kg) m).

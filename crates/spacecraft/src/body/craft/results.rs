@@ -152,7 +152,7 @@ impl Appendage {
     /// A mode in SI.
     fn clamped(&self, mode: &FileMode, damping: NonNegative) -> Result<ClampedMode, String> {
         let units = self.units.unwrap_or_default();
-        let root = libm::sqrt(units.mass());
+        let root = f64::sqrt(units.mass());
         let three = |parts: [f64; 3], unit: f64| -> Result<[Finite; 3], String> {
             let mut three = <[Finite; 3]>::default();
             for (to, part) in three.iter_mut().zip(parts) {

@@ -21,7 +21,7 @@ impl Recurrence {
         let mode = ModelOscillator { frequency: tracker.frequency.get(), damping: self.damping.get() };
         let influence = tracker.influence.first().map_or(0.0, |influence| influence.get());
         let shrink = libm::exp(-mode.damping * mode.frequency * period);
-        let root = libm::sqrt((1.0 - mode.damping) * (1.0 + mode.damping));
+        let root = f64::sqrt((1.0 - mode.damping) * (1.0 + mode.damping));
         let [low, high] = tracker::bounds(std::slice::from_ref(tracker), self.reach.get(), period)[0];
         let [a, b] = self.influence_bounds.map(|bound| bound.get() * influence);
         RecurrenceObserver {
@@ -104,7 +104,7 @@ impl RecurrenceObserver {
 
     fn learn(&mut self, innovation: f64, active: bool) {
         let Motion { elastic_before, push, push_before, push_largest, driven, square, .. } = self.motion;
-        let amplitude = libm::sqrt(2.0 * square);
+        let amplitude = f64::sqrt(2.0 * square);
         if !active && amplitude > self.spec.gate.get() && elastic_before != 0.0 {
             let step = self.spec.frequency_gain.get() / amplitude * elastic_before.signum() * innovation;
             self.turn = stepped(self.turn, step, self.turn_bounds);

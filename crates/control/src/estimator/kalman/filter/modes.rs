@@ -17,7 +17,7 @@ impl KalmanFilter {
         if let Some(at) = self.tuning.model.ratio_of(mode) {
             gradient[2] = (at, -sin * quadrature / self.mean[at]);
         }
-        (amplitude, libm::sqrt(self.variance(&gradient)))
+        (amplitude, f64::sqrt(self.variance(&gradient)))
     }
 
     /// Estimated natural frequency of a mode, and its standard deviation (rad/s).
@@ -25,7 +25,7 @@ impl KalmanFilter {
         let model = &self.tuning.model;
         let w = model.frequency(mode, self.mean.as_slice());
         let sd =
-            model.ratio_of(mode).map_or(0.0, |at| w / self.mean[at] * libm::sqrt(self.covariance[(at, at)]));
+            model.ratio_of(mode).map_or(0.0, |at| w / self.mean[at] * f64::sqrt(self.covariance[(at, at)]));
         (w, sd)
     }
 
