@@ -16,6 +16,8 @@ pub(super) struct Counter {
     read: Option<(Instant, [f64; 3])>,
     /// The period that was read last (s).
     period: f64,
+    /// Standard deviations about each axis over such a period: of the bias's walk and of v (rad/s).
+    deviations: [[f64; 2]; 3],
     /// The bias now (rad/s).
     pub bias: [f64; 3],
     /// Angles that are counted with the next (rad).
@@ -35,17 +37,27 @@ fn spread(white: f64, walk: f64, period: f64) -> f64 {
     white * white / period + walk * walk * period / 12.0
 }
 
+/// Standard deviations over such a period about an axis: of the bias's walk and of v (rad/s).
+fn deviations(gyro: &Gyro, axis: usize, period: f64) -> [f64; 2] {
+    let [white, walk] = [gyro.angle_random_walk, gyro.rate_random_walk].map(|each| each.about(axis).get());
+    [walk * f64::sqrt(period), f64::sqrt(spread(white, walk, period))]
+}
+
 impl Counter {
     /// The counter before it is read.
     pub fn new(gyro: &Gyro) -> Self {
         let bias = [0, 1, 2].map(|axis| gyro.bias.about(axis).get());
-        Self { read: None, period: 0.0, bias, remainder: [0.0; 3] }
+        Self { read: None, period: 0.0, deviations: [[0.0; 2]; 3], bias, remainder: [0.0; 3] }
     }
 
     /// The mean rates since it was read last (rad/s); at first the rates themselves.
-    pub fn mean(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
+    pub fn mean(&mut self, gyro: &Gyro, now: Instant, truth: &Truth) -> [f64; 3] {
         let before = self.read.replace((now, truth.turned));
-        self.period = before.map_or(0.0, |(then, _)| now.since(then).seconds());
+        let period = before.map_or(0.0, |(then, _)| now.since(then).seconds());
+        if period.to_bits() != self.period.to_bits() {
+            self.period = period;
+            self.deviations = [0, 1, 2].map(|axis| deviations(gyro, axis, period));
+        }
         match before {
             Some((_, turned)) if self.period > 0.0 => {
                 std::array::from_fn(|axis| (truth.turned[axis] - turned[axis]) / self.period)
@@ -65,7 +77,7 @@ impl Counter {
         for (axis, noise) in noise.iter_mut().enumerate() {
             rate[axis] = gyro.scaled(axis, &mean) + self.bias[axis];
             if self.period > 0.0 {
-                rate[axis] += self.walk(gyro, axis, noise);
+                rate[axis] += self.walk(axis, noise);
                 if gyro.wandering(axis).is_some() {
                     rate[axis] += wander.mean(gyro, axis, self.period, noise);
                 }
@@ -76,12 +88,11 @@ impl Counter {
     }
 
     /// The bias walks; what that and the white noise add to the rate with the bias before (rad/s).
-    fn walk(&mut self, gyro: &Gyro, axis: usize, noise: &mut Stream) -> f64 {
-        let [white, walk] =
-            [gyro.angle_random_walk, gyro.rate_random_walk].map(|each| each.about(axis).get());
-        let step = walk * f64::sqrt(self.period) * noise.normal();
+    fn walk(&mut self, axis: usize, noise: &mut Stream) -> f64 {
+        let [walk, white] = self.deviations[axis];
+        let step = walk * noise.normal();
         self.bias[axis] += step;
-        0.5 * step + f64::sqrt(spread(white, walk, self.period)) * noise.normal()
+        0.5 * step + white * noise.normal()
     }
 
     fn round(&mut self, rate: f64, quantum: f64, axis: usize) -> f64 {

@@ -262,7 +262,7 @@ impl AtCycles {
     fn rates(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
         let Self { gyro, noise, counter, wander, .. } = self;
         if let Some(counter) = counter {
-            let mean = counter.mean(now, truth);
+            let mean = counter.mean(gyro, now, truth);
             return counter.count(gyro, mean, (noise, wander));
         }
         let seconds = wander.go(now);

@@ -24,6 +24,7 @@ impl Wander {
     }
 
     /// The bias about an axis now, so long (s) after the last (rad/s).
+    #[inline(never)]
     pub fn now(&mut self, gyro: &Gyro, axis: usize, seconds: f64, noise: &mut Stream) -> f64 {
         if let Some((deviation, time)) = gyro.wandering(axis).filter(|_| seconds > 0.0) {
             let kept = libm::exp(-seconds / time);
@@ -33,7 +34,9 @@ impl Wander {
         self.bias[axis]
     }
 
-    /// Its mean over the time since the last (rad/s).
+    /// Its mean over the time since the last (rad/s). Inlined, its divisions and exponentials would be done ahead of the question
+    /// whether there is a bias that wanders.
+    #[inline(never)]
     pub fn mean(&mut self, gyro: &Gyro, axis: usize, seconds: f64, noise: &mut Stream) -> f64 {
         let Some((deviation, time)) = gyro.wandering(axis).filter(|_| seconds > 0.0) else {
             return self.bias[axis];

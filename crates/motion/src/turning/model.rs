@@ -98,6 +98,7 @@ pub(super) struct Model {
 
 /// The constants of four modes side by side; places without one have a mode that nothing moves.
 #[derive(Clone, Debug)]
+#[repr(align(32))]
 pub(super) struct Abreast {
     pub frequency: [f64; 4],
     pub rotation: [[f64; 4]; 3],
@@ -135,6 +136,7 @@ impl Abreast {
 
 /// The constants of a mode in registers of four: nothing fills what is left.
 #[derive(Clone, Debug)]
+#[repr(align(32))]
 pub(super) struct Filled {
     pub frequency: f64,
     pub rotation: [f64; 4],

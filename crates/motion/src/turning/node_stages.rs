@@ -6,6 +6,7 @@ use crate::attitude::Vector;
 
 /// The stages of a step at its nodes.
 #[derive(Clone, Debug, Default)]
+#[repr(align(32))]
 pub(super) struct Nodes {
     pub push: StoredVectors,
     pub mean: StoredVectors,

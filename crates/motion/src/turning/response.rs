@@ -15,6 +15,7 @@ const NEAR_CRITICAL: f64 = 0.99;
 
 /// The responses of a mode at the three nodes and at the end of a step.
 #[derive(Clone, Debug)]
+#[repr(align(32))]
 pub struct NodeResponse {
     /// Transitions of (q, P/W), row by row, each entry at the nodes and the end.
     pub free: [[f64; 4]; 4],

@@ -51,7 +51,9 @@ pub(super) struct Beside {
     pub driven: Scratch,
 }
 
+/// What a step keeps of a mode, so that no register of four straddles two lines of the cache.
 #[derive(Clone, Debug, Default)]
+#[repr(align(32))]
 pub(super) struct Memory {
     /// g and s at the start of the step.
     pub start: [f64; 2],
