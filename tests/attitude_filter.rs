@@ -1,5 +1,6 @@
 //! The filter in the loop: gyro, star tracker, law and wheels on a body with three axes.
 
+use flexsc_core::analysis::loop_parts::LoopParts;
 use flexsc_core::metrics::Gather;
 use flexsc_core::{Scenario, Simulation};
 
@@ -72,6 +73,17 @@ fn the_filter_is_as_good_as_it_says() {
     assert!(pointing < 2e-4, "{pointing:e}");
 }
 
+/// A tracker that gathers light tells the mean attitude, which is that of the middle but for 5e-6 rad while the turn accelerates.
+#[test]
+fn a_mean_over_an_exposure_is_an_attitude_of_its_middle() {
+    let exposed = scenario(&[("latency = 0.6", "latency = 0.6, exposure = 0.8")]).expect("valid");
+    let names = ["nis_mean", "nees_mean", "attitude_estimate_error_rms_rad"];
+    let [nis, nees, error] = means(&exposed, 40, names);
+    assert!((nis - 1.0).abs() < 0.03 && (nees - 1.0).abs() < 0.37, "{nis} {nees}");
+    let [_, _, instant] = means(&scenario(&[]).expect("valid"), 40, names);
+    assert!((error / instant - 1.0).abs() < 0.05 && error != instant, "{error:e} {instant:e}");
+}
+
 /// Means over runs of these metrics.
 fn means<const N: usize>(scenario: &Scenario, runs: u64, names: [&str; N]) -> [f64; N] {
     let mut sums = [0.0; N];
@@ -130,6 +142,18 @@ fn what_no_gyro_can_be_is_refused() {
         let error = scenario(&[("rate_random_walk = 1e-8", keys)]).expect_err("refused");
         assert!(error.contains(words), "{error}");
     }
+}
+
+#[test]
+fn linear_loops_refuse_means_over_exposures() {
+    let parts = |exposure: &str| {
+        let latency = format!("latency = 0.6{exposure}");
+        let change = [("latency = 0.6", &latency[..]), ("ASSESS", "form = \"steady\"")];
+        LoopParts::of(&scenario(&change).expect("valid"))
+    };
+    assert!(parts("").is_ok());
+    let fault = parts(", exposure = 0.1").expect_err("refused").to_string();
+    assert!(fault.contains("sensor[1].star_tracker.exposure` is not supported in linear loops"), "{fault}");
 }
 
 /// A loop whose analysis has no late rates has no spectral radius.

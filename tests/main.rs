@@ -37,6 +37,7 @@ mod envelopes;
 mod environment;
 mod events;
 mod exact;
+mod exposure;
 mod extending;
 mod failures;
 mod filters;

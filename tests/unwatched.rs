@@ -33,6 +33,13 @@ const MIXED: &str = "[sensor.sampled]\nperiod = 0.2\nnoise = 1e-4\nrate_noise = 
     pitch = { pd = { k_p = 0.3, k_d = 1.0, period = 0.6 } }\nyaw = { open = {} }\n\
     [[disturbance]]\nabout = \"yaw\"\nnoise = 1e-6\nperiod = 0.7\n";
 
+/// Over the whole of its latency: an exposure is open most of the time.
+const EXPOSED: (&str, &str) = ("sensor[1].star_tracker.exposure", "0.4");
+
+/// Without decisions, beyond 20 s.
+const TRACKED: &str = "[law.open]\n[sensor.star_tracker]\nperiod = 0.7\nlatency = 0.5\nexposure = 0.7\nnoise = [1e-5, 1e-5, 1e-5]\n\
+    [[disturbance]]\nabout = \"yaw\"\nnoise = 1e-3\nperiod = 11.0\n";
+
 fn turning(rest: &str) -> Scenario {
     Scenario::parse("turning.toml", &format!("{TURNING}{rest}")).expect("valid")
 }
@@ -48,6 +55,8 @@ fn runs() -> Vec<(&'static str, Scenario)> {
         ("drifting modes", scenario("wheel-ekf", &[("duration", "60")])),
         ("a relay and a wheel", scenario("relay-wheel", &[("duration", "300")])),
         ("jets", scenario("iss-manoeuvre", &[("duration", "40")])),
+        ("a tracker that gathers light", scenario("flexible-boom", &[("duration", "40"), EXPOSED])),
+        ("the same of a body that no mode turns", turning(TRACKED)),
     ]
 }
 

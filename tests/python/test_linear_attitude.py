@@ -232,6 +232,9 @@ def test_what_no_loop_has_is_refused() -> None:
         scenario.with_("sensor[0].gyro.period", 0.501).linearise(loop="command")
     with pytest.raises(flexsc.ScenarioError, match=r"gyro.latency.* is not supported in linear loops"):
         scenario.with_("sensor[0].gyro.latency", 1.0).linearise(loop="command")
+    exposed = scenario.with_({LATENCY: 0.1, "sensor[1].star_tracker.exposure": 0.1})
+    with pytest.raises(flexsc.ScenarioError, match=r"tracker.exposure.* is not supported in linear loops"):
+        exposed.linearise(loop="command")
     two = [*scenario.to_dict()["sensor"], {"star_tracker": {"period": 1.0, "noise": [1e-5] * 3}}]
     several = scenario.with_("sensor", two)
     with pytest.raises(flexsc.ScenarioError, match="only with one sensor of the attitude"):

@@ -129,6 +129,15 @@ pub fn beyond(goal: &Quaternion<f64>, q: &Quaternion<f64>) -> Vector {
     difference.vector() * libm::copysign(2.0, difference.w)
 }
 
+/// The vector by which a [`rotation`] turns one attitude into another, in the body's axes and on the shorter way (rad).
+pub fn turn(from: &Quaternion<f64>, to: &Quaternion<f64>) -> Vector {
+    let difference = from.conjugate() * to;
+    let sine = difference.vector().norm();
+    let twice = libm::copysign(2.0, difference.w);
+    let stretch = if sine == 0.0 { 1.0 } else { libm::atan2(sine, difference.w.abs()) / sine };
+    difference.vector() * (twice * stretch)
+}
+
 /// The vector of a scenario's numbers.
 pub fn vector(of: &[Finite; 3]) -> Vector {
     Vector::new(of[0].get(), of[1].get(), of[2].get())
@@ -174,6 +183,12 @@ mod tests {
         for q in [further, -further] {
             let error = beyond(&at, &q);
             assert!((error - Vector::new(0.0, 2.0 * libm::sin(5e-4), 0.0)).norm() < 1e-15, "{error}");
+        }
+        // The vector of a rotation, however long.
+        for by in [[1e-9, 0.0, -2e-9], [0.3, -0.1, 0.2], [1.8, 0.0, -2.4], [0.0; 3]].map(Vector::from) {
+            for q in [at * rotation(&by), -(at * rotation(&by))] {
+                assert!((turn(&at, &q) - by).norm() < 4e-16 * by.norm().max(1.0), "{by}");
+            }
         }
         // Yaw first: a quarter turn brings the body's x to the inertial y.
         let quarter = turned(0.0, 0.0, std::f64::consts::FRAC_PI_2);

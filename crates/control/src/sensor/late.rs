@@ -2,7 +2,7 @@
 
 use std::collections::VecDeque;
 
-use super::{Fault, Reading};
+use super::{Fault, Orientation, Reading};
 use crate::time::{Instant, Span};
 
 /// What was seen and is not told yet.
@@ -32,6 +32,13 @@ impl Late {
         let told = if now == Instant::START { now } else { now + self.latency };
         self.exposes = now + self.period;
         self.waiting.extend(seen.map(|reading| (told, reading)));
+    }
+
+    /// Makes something else of the orientation that was seen last.
+    pub fn amend(&mut self, at: Orientation) {
+        if let Some((_, reading)) = self.waiting.back_mut() {
+            reading.at = at;
+        }
     }
 
     /// What is told now.

@@ -2,6 +2,8 @@
 
 mod accelerometer;
 mod counter;
+mod exact;
+mod exposure;
 mod gyro;
 mod instrument;
 mod late;
@@ -29,6 +31,7 @@ use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
 pub use accelerometer::{Accelerating, Accelerometer, MeasuredAcceleration};
+pub use exposure::Exposure;
 pub use gyro::{AtCycles, Gyro};
 pub use instrument::Instrument;
 pub use magnetometer::Magnetometer;
@@ -71,6 +74,9 @@ pub trait Sense: fmt::Debug + Send + Sync {
     fn after(&mut self, now: Instant, period: Span) -> Instant {
         now + period
     }
+
+    /// Takes what was seen over the exposure that ends now, of a sensor that gathers light.
+    fn gather(&mut self, _: &Exposure) {}
 
     /// The true bias of its rates now (rad/s), of a gyro.
     fn bias(&self) -> Option<[f64; 3]> {
@@ -171,40 +177,23 @@ pub struct VectorSight {
     pub is_direction: bool,
 }
 
-/// The true orientation and rates, at every instant.
-#[derive(Copy, Clone, Debug)]
-struct Exact;
-
-impl Sense for Exact {
-    fn read(&mut self, _: Instant, truth: &Truth, _: Option<&Reading>) -> Option<Reading> {
-        Some(Reading { at: truth.orientation.at(truth.seen()), rate: Some(truth.rate), sight: None })
-    }
-
-    fn copy(&self) -> Box<dyn Sense> {
-        Box::new(*self)
-    }
-}
-
 impl Sensor {
     /// What single values cannot show to be wrong: a key within the sensor, and why.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         match self {
             Self::Gyro(gyro) => gyro.inconsistency(),
+            Self::StarTracker(tracker) => tracker.inconsistency(),
             Self::Magnetometer(magnetometer) => magnetometer.inconsistency(),
             Self::SunSensor(sensor) => sensor.inconsistency(),
             Self::Accelerometer(accelerometer) => accelerometer.inconsistency(),
-            Self::Continuous
-            | Self::Sampled(_)
-            | Self::StarTracker(_)
-            | Self::Tachometer(_)
-            | Self::Own(_) => None,
+            Self::Continuous | Self::Sampled(_) | Self::Tachometer(_) | Self::Own(_) => None,
         }
     }
 
     /// The sensor in a run of a body with so many axes, after so many others of its kind.
     pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
         match self {
-            Self::Continuous => Box::new(Exact),
+            Self::Continuous => Box::new(exact::Exact),
             Self::Sampled(sampled) => Box::new(sampled.start(axes, seed, ordinal)),
             Self::Gyro(gyro) => Box::new(gyro.start(axes, seed, ordinal)),
             Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),

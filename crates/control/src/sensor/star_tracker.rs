@@ -1,12 +1,13 @@
-//! A star tracker: the attitude at its exposures, with noise in its own axes, told some time later.
+//! A star tracker: the attitude at its exposures or the mean over each, with noise in its own axes, told some time later.
 
 use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::late::{Late, failing};
-use super::{Fault, Orientation, Reading, Sense, Truth, stream};
+use super::{Exposure, Fault, Orientation, Reading, Sense, Truth, stream};
 use crate::attitude::{Attitude, Vector, rotation};
+use crate::document;
 use crate::quantity::{NonNegative, Positive, Time};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
@@ -27,15 +28,23 @@ pub struct StarTracker {
     /// default: its axes are the body's.
     #[serde(default)]
     pub axes: Attitude,
-    /// Time from an exposure to its output (s).
+    /// Time from the middle of an exposure to its output (s).
     #[serde(default)]
     pub latency: Time,
+    /// Time over which it gathers light (s): a reading is the mean attitude over it; 0 for that of the instant.
+    #[serde(default, skip_serializing_if = "is_instant")]
+    pub exposure: Time,
     /// Rate of the body at the tracker at and above which it gives no measurement (rad/s); default: no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blackout_rate: Option<Positive>,
     /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Fault>,
+}
+
+#[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
+fn is_instant(exposure: &Time) -> bool {
+    *exposure == Time::default()
 }
 
 impl StarTracker {
@@ -46,12 +55,44 @@ impl StarTracker {
             tracker: self.clone(),
             noise: [0, 1, 2].map(draws),
             late: Late::new(self.period, self.latency()),
+            gathers: None,
         }
+    }
+
+    /// What single values cannot show to be wrong: a key within the tracker, and why.
+    pub fn inconsistency(&self) -> Option<document::Fault> {
+        let (exposure, latency) = (self.exposure.get(), self.latency.get());
+        if self.exposure() > self.period {
+            let why =
+                format!("must be at most the `period` of {} s, got {exposure} s", self.period.seconds());
+            return Some(document::Fault::new("exposure", why));
+        }
+        let why = || {
+            format!(
+                "must be at most twice the `latency` of {latency} s, which counts from its middle, got {exposure} s"
+            )
+        };
+        (self.half() > self.latency()).then(|| document::Fault::new("exposure", why()))
     }
 
     /// How late a reading is told.
     pub fn latency(&self) -> Span {
         Span::from_seconds(self.latency.get())
+    }
+
+    /// The time over which it gathers light.
+    pub fn exposure(&self) -> Span {
+        Span::from_seconds(self.exposure.get())
+    }
+
+    /// Half of it.
+    pub fn half(&self) -> Span {
+        Span::from_seconds(0.5 * self.exposure.get())
+    }
+
+    /// Whether that is a time at all.
+    pub fn exposes(&self) -> bool {
+        self.half() > Span::ZERO
     }
 
     /// Standard deviation of the worst angle (rad).
@@ -81,6 +122,8 @@ pub struct Exposing {
     /// Draws about each of its axes.
     noise: [Stream; 3],
     late: Late,
+    /// The attitude in the middle of the exposure that is under way, and the error of its reading (rad).
+    gathers: Option<(Quaternion<f64>, Vector)>,
 }
 
 impl Exposing {
@@ -89,6 +132,7 @@ impl Exposing {
         // Draws are made in a failure too: those after it do not depend on it.
         let deviations = self.tracker.noise.map(NonNegative::get);
         let draws: [f64; 3] = std::array::from_fn(|axis| deviations[axis] * self.noise[axis].normal());
+        self.gathers = None;
         let Orientation::Attitude(attitude) = truth.orientation.at(truth.seen()) else { return None };
         let error = self.tracker.turned_to_body(&draws.into());
         let seen =
@@ -97,7 +141,12 @@ impl Exposing {
         if self.tracker.blackout_rate.is_some_and(|limit| rate >= limit.get()) {
             return None;
         }
-        failing(&self.tracker.faults, now, Some(seen), last)
+        let faults = &self.tracker.faults;
+        let told = failing(faults, now, Some(seen), last);
+        // What is told again was gathered before, and so was what is told at the start.
+        let again = failing(faults, now, None, last).is_some() || now == Instant::START;
+        self.gathers = (told.is_some() && !again && self.tracker.exposes()).then_some((attitude, error));
+        told
     }
 }
 
@@ -113,6 +162,12 @@ impl Sense for Exposing {
 
     fn after(&mut self, _: Instant, _: Span) -> Instant {
         self.late.next()
+    }
+
+    fn gather(&mut self, exposure: &Exposure) {
+        if let Some((middle, error)) = self.gathers.take() {
+            self.late.amend(Orientation::Attitude(exposure.mean(&middle) * rotation(&error)));
+        }
     }
 
     fn copy(&self) -> Box<dyn Sense> {
@@ -158,6 +213,66 @@ mod tests {
         for ((at, seen), (exact, exposed)) in told.into_iter().zip(exposed) {
             assert!(at == exact && (seen - turned(exposed)).norm() < 1e-15, "{at}");
         }
+    }
+
+    /// An exposure that is over before the reading is told, and one that is over just then.
+    #[test]
+    fn a_reading_is_the_mean_over_its_exposure() {
+        let turned = |t: f64| rotation(&Vector::new(0.0, 0.01 * t, 0.0));
+        let smear = Vector::new(2e-4, 0.0, -1e-4);
+        for (latency, exposure) in [(1.8, 0.5), (0.25, 0.5)] {
+            let keys = format!("latency = {latency}\nexposure = {exposure}\nnoise = [1e-5, 1e-5, 1e-5]");
+            let (mut tracker, mut plain) =
+                (start(&keys), start(&format!("latency = {latency}\nnoise = [1e-5, 1e-5, 1e-5]")));
+            let (mut now, mut gathered, mut told) = (Instant::START, Instant::START, 0);
+            while now.seconds() < 6.0 {
+                if gathered > Instant::START && gathered <= now {
+                    let mut seen = Exposure::default();
+                    let middle = gathered.before(tracker.tracker.half()).seconds();
+                    for lasts in [0.2, 0.3] {
+                        seen.see(turned(middle) * rotation(&smear), lasts);
+                    }
+                    tracker.gather(&seen);
+                    // It was told what it gathered: more does not count.
+                    seen.see(turned(9.0), 100.0);
+                    tracker.gather(&seen);
+                    gathered = Instant::START;
+                }
+                let seen = truth(turned(now.seconds()), [0.0; 3], [0.0; 3]);
+                let exposes = tracker.late.exposes(now) && now > Instant::START;
+                let (one, other) = (tracker.read(now, &seen, None), plain.read(now, &seen, None));
+                if exposes {
+                    gathered = now + tracker.tracker.half();
+                }
+                assert_eq!(one.is_some(), other.is_some());
+                if let (Some(one), Some(other)) = (one, other) {
+                    // The noise is the same, after what was gathered. At the start it was gathered before.
+                    let by = crate::attitude::turn(&attitude(other), &attitude(one));
+                    let exact = if now == Instant::START { Vector::zeros() } else { smear };
+                    assert!((by - exact).norm() < 1e-8, "{by}");
+                    told += 1;
+                }
+                let next = tracker.after(now, Span::from_seconds(1.0));
+                assert_eq!(next, plain.after(now, Span::from_seconds(1.0)));
+                now = if gathered > now { next.min(gathered) } else { next };
+            }
+            assert_eq!(told, if latency > 1.0 { 5 } else { 6 });
+        }
+    }
+
+    #[test]
+    fn what_is_told_again_was_gathered_before() {
+        let still = Quaternion::new(1.0, 0.0, 0.0, 0.0);
+        let faults = "faults = [{ stuck = { from = 2.0, to = 3.0 } }, { silent = { from = 3.0, to = 4.0 } }]";
+        let mut tracker = start(&format!("latency = 1.5\nexposure = 1.0\nblackout_rate = 0.1\n{faults}"));
+        let last = Reading { at: Orientation::Attitude(still), rate: None, sight: None };
+        let mut gathers = |t: f64, rate: f64| {
+            let now = Instant::START + Span::from_seconds(t);
+            tracker.read(now, &truth(still, [0.0; 3], [rate, 0.0, 0.0]), Some(&last));
+            tracker.gathers.is_some()
+        };
+        let found = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (4.0, 0.2), (5.0, 0.0)];
+        assert_eq!(found.map(|(t, rate)| gathers(t, rate)), [false, true, false, false, false, true]);
     }
 
     #[test]

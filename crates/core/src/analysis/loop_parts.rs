@@ -42,7 +42,7 @@ impl LoopParts {
     /// # Errors
     /// An estimator that is not linear, or does not settle: its key, and why.
     pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
-        if let Some(fault) = scenario.late_rates() {
+        if let Some(fault) = scenario.unlike_loops() {
             return Err(fault);
         }
         let axes = scenario.study.axes.len();

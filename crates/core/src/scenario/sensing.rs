@@ -80,10 +80,15 @@ impl Written {
         Some(Fault::new(self.sensor_key(index), why))
     }
 
-    /// Rates that are measured late: no loop that is analysed has a place for them.
-    pub fn late_rates(&self) -> Option<Fault> {
-        let index = self.sensor.iter().position(|sensor| sensor.rate_latency() > Span::ZERO)?;
-        let key = format!("{}.latency", self.sensor_key(index));
+    /// What no loop that is analysed has a place for: rates that are measured late, and attitudes that are means.
+    pub fn unlike_loops(&self) -> Option<Fault> {
+        let of = |index: usize| {
+            let sensor = &self.sensor[index];
+            let keys = [("latency", sensor.rate_latency()), ("exposure", sensor.exposure())];
+            let (key, _) = keys.into_iter().find(|(_, span)| *span > Span::ZERO)?;
+            Some(format!("{}.{key}", self.sensor_key(index)))
+        };
+        let key = (0..self.sensor.len()).find_map(of)?;
         Some(Fault::new(key, "is not supported in linear loops: leave it out"))
     }
 

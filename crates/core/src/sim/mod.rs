@@ -10,6 +10,7 @@ mod beside;
 mod drive;
 mod error;
 mod events;
+mod exposing;
 mod failing;
 mod flying;
 mod instants;
@@ -27,17 +28,17 @@ mod stepping;
 mod telling;
 
 use crate::belief::Belief;
-use crate::environment::into;
 use crate::estimator::{self, Estimate, Meter, Monitor, Taken};
 use crate::law::{Cause, Controls, Event};
 use crate::random::Seed;
-use crate::record::{Record, RecordError};
+use crate::record::Record;
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
 use drive::Loads;
 pub use error::SimulationError;
+use exposing::Exposures;
 pub(crate) use plant::Exerted;
 pub use sight::{LookField, LookGroup};
 pub use stepping::Occasion;
@@ -59,6 +60,7 @@ pub struct Simulation {
     end: Instant,
     plant: Plant,
     sensing: Sensing,
+    exposures: Exposures,
     estimator: Box<dyn Estimate>,
     /// Whether there is one.
     estimates: bool,
@@ -106,6 +108,7 @@ impl Simulation {
             end: Instant::START + scenario.duration,
             plant: Plant::new(scenario),
             sensing: Sensing::new(scenario, seed),
+            exposures: Exposures::new(scenario),
             estimator: estimator::start(&scenario.known(), seed),
             estimates: scenario.estimator.is_some(),
             given: Instant::START,
@@ -156,6 +159,7 @@ impl Simulation {
     /// Brings the body to the next instant at which anything is due, until an instant; tells whether anything is.
     fn arrive(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
         let mut next = self.next();
+        self.exposures.stay(self.now, &self.plant);
         if let Some(at) = self.plant.approach(next.min(until), record)? {
             next = at;
             self.slips(at)?;
@@ -206,6 +210,7 @@ impl Simulation {
             self.laws.until(),
             self.drive.due,
             self.sensing.next,
+            self.exposures.due(),
             closes,
             measured,
             self.telling.due(),
@@ -221,6 +226,7 @@ impl Simulation {
 
     /// Measures and estimates what is due now; tells what has come up for laws.
     fn perceive(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
+        self.expose(record)?;
         let now = self.now;
         let mut event = Event::Due { sampled: false };
         if let Some((_, guard)) = self.trip.filter(|(at, _)| *at == now) {
@@ -320,18 +326,6 @@ impl Simulation {
         laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
     }
 
-    /// Lets the actuator have the magnetic field as it was measured last, or as it is where nothing measures it.
-    fn feel(&mut self, truth: &Truth) {
-        let measured = self.sensing.field.map(|(_, field)| field);
-        let here = || match (truth.orientation, truth.sky.field) {
-            (Orientation::Attitude(attitude), Some(field)) => Some(into(&attitude, &field)),
-            _ => None,
-        };
-        if let Some(field) = measured.or_else(here) {
-            self.drive.actuator.feel(field);
-        }
-    }
-
     fn decide(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.steered = false;
@@ -362,9 +356,11 @@ impl Simulation {
     }
 
     /// Begins a motion under what acts from now on, and finds the next trip.
-    fn depart(&mut self, record: &mut dyn Record) -> Result<(), RecordError> {
+    fn depart(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.tell_course(now, &self.exerted, record)?;
+        self.look_back(record)?;
+        self.exposures.part();
         self.measure_course(now);
         let (actuator, axes) = (&self.drive.actuator, self.beliefs.len());
         if self.estimates {

@@ -1,10 +1,12 @@
 //! The sensors of a run: when each is due, and what their readings come to about each axis.
 
+use super::Simulation;
 use crate::attitude::Vector;
+use crate::environment::into;
 use crate::own::Halt;
 use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::sensor::{Orientation, Reading, Sense, Sensor, Truth};
+use crate::sensor::{Exposure, Orientation, Reading, Sense, Sensor, Truth};
 use crate::time::{Instant, Span};
 
 /// The sensors at work.
@@ -117,6 +119,11 @@ impl Sensing {
         any
     }
 
+    /// A sensor takes what it gathered over the exposure that ends now.
+    pub fn gather(&mut self, sensor: usize, exposure: &Exposure) {
+        self.sensors[sensor].sensor.gather(exposure);
+    }
+
     /// Why a sensor from outside cannot go on.
     pub fn halted(&self) -> Option<Halt> {
         self.sensors.iter().find_map(|due| due.sensor.halted())
@@ -125,6 +132,20 @@ impl Sensing {
     /// The true bias of the first gyro now (rad/s).
     pub fn bias(&self) -> [f64; 3] {
         self.sensors.iter().find_map(|due| due.sensor.bias()).unwrap_or_default()
+    }
+}
+
+impl Simulation {
+    /// Lets the actuator have the magnetic field as it was measured last, or as it is where nothing measures it.
+    pub(super) fn feel(&mut self, truth: &Truth) {
+        let measured = self.sensing.field.map(|(_, field)| field);
+        let here = || match (truth.orientation, truth.sky.field) {
+            (Orientation::Attitude(attitude), Some(field)) => Some(into(&attitude, &field)),
+            _ => None,
+        };
+        if let Some(field) = measured.or_else(here) {
+            self.drive.actuator.feel(field);
+        }
     }
 }
 

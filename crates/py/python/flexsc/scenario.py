@@ -2262,7 +2262,11 @@ class StarTracker(Part):
     into the body's; default: its axes are the body's.
     """
     latency: float | None = None
-    """Time from an exposure to its output (s). Default: 0.0."""
+    """Time from the middle of an exposure to its output (s). Default: 0.0."""
+    exposure: float | None = None
+    """Time over which it gathers light (s): a reading is the mean attitude over it; 0 for that of the
+    instant.
+    """
     blackout_rate: float | None = None
     """Rate of the body at the tracker at and above which it gives no measurement (rad/s); default: no
     limit.

@@ -30,7 +30,7 @@ impl Loop {
         let Law::Pd(law) = &scenario.law else {
             return refused("law", "must be `pd`: only sampled loops are analysed");
         };
-        if let Some(fault) = scenario.late_rates() {
+        if let Some(fault) = scenario.unlike_loops() {
             return Err(fault);
         }
         if body.modes.is_empty() {

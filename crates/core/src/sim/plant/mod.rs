@@ -89,6 +89,11 @@ impl Plant {
         }
     }
 
+    /// No part of the motion about three axes changes faster at the instant seen last (rad/s).
+    pub fn fastest(&self) -> f64 {
+        if let Self::Spatial(plant) = self { plant.fastest() } else { 0.0 }
+    }
+
     /// Begins a new motion at the instant seen last, under what acts from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         match self {

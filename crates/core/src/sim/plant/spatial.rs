@@ -14,6 +14,7 @@ use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
+mod fastest;
 mod logged;
 mod swinging;
 

@@ -211,6 +211,11 @@ impl TwoWay {
         self.turning.reach(h, self.outside.since(began));
     }
 
+    /// No part of the motion changes faster at the instant seen last (rad/s).
+    pub fn fastest(&self) -> f64 {
+        self.turning.fastest(self.outside.since(0.0).map(|(outside, _)| outside))
+    }
+
     /// How rotors in bearings slip.
     pub fn slips(&self) -> &[Slip] {
         self.turning.slips()

@@ -6,8 +6,9 @@ use crate::attitude::Vector;
 use crate::turning::Surroundings;
 use crate::turning::common::Regular;
 use crate::turning::gimbal;
-use crate::turning::model::outward;
+use crate::turning::model::{Constants, outward};
 use crate::turning::pace::Pose;
+use crate::turning::state::TurningState;
 
 impl Turning {
     /// The level of the next step.
@@ -48,10 +49,36 @@ impl Turning {
             amplitudes: known.then_some(&*amplitudes),
         };
         let turns = self.pace.level(pose);
-        let shakes = self.bearings.iter().zip(&self.grid.spins).map(|(bearing, spin)| {
+        self.pace.resolving(turns, self.shakes(&self.grid))
+    }
+
+    /// The highest frequency at which wheels shake the body in a state (rad/s).
+    fn shakes(&self, state: &TurningState) -> f64 {
+        let size = state.momentum.norm();
+        let shakes = self.bearings.iter().zip(&state.spins).map(|(bearing, spin)| {
             bearing.highest() * ((spin.sums.x / bearing.inertia).abs() + self.model.mobility * size)
         });
-        self.pace.resolving(turns, shakes.fold(0.0, f64::max))
+        shakes.fold(0.0, f64::max)
+    }
+
+    /// No part of the motion changes faster at the instant seen last (rad/s).
+    pub fn fastest(&self, around: Option<&dyn Surroundings>) -> f64 {
+        let mode = |(index, mode): (usize, &Constants)| {
+            // Of a body with drives they change with the angles.
+            let frequency =
+                self.seen.frequencies.get(index).map_or(mode.frequency, |w| w.max(mode.frequency));
+            frequency * (1.0 + 2.0 * mode.damping)
+        };
+        let modes = self.model.modes.iter().enumerate().map(mode).fold(0.0, f64::max);
+        let slow = around.map_or(0.0, Surroundings::frequency)
+            + self.driving.as_ref().map_or(0.0, |driving| driving.angles.fastest())
+            + gimbal::fastest(&self.acting.gimbals);
+        // The body turns, and precesses with what its rotors store.
+        let stored = self.acting.rotors(self.now).0.norm()
+            + self.here.spins.iter().map(|spin| spin.sums.x.abs()).sum::<f64>()
+            + self.acting.gimbals.iter().map(|gimbal| gimbal.momentum).sum::<f64>();
+        let turns = self.model.mobility * (self.here.momentum.norm() + stored);
+        modes + slow + turns + self.shakes(&self.here)
     }
 
     /// Makes sure that there are responses over a step beside the grid, of `h` seconds; tells their place.

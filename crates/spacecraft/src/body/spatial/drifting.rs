@@ -59,6 +59,11 @@ impl DriftingModes {
         }
     }
 
+    /// The largest ratio of a mode's frequency at a time (s) to that at the start.
+    pub fn ratio(&self, t: f64) -> f64 {
+        (0..self.frequencies.len()).map(|index| self.drift.ratio(index, t)).fold(0.0, f64::max)
+    }
+
     /// Energy of motion and deformation of each mode at a time (s) (J): (q'² + w² q²)/2.
     pub fn energies(&self, t: f64, phases: &[Phase]) -> Vec<f64> {
         let energy = |(index, (phase, w)): (usize, (&Phase, &f64))| {

@@ -49,6 +49,11 @@ impl Elastic {
         }
     }
 
+    /// No mode changes faster (rad/s).
+    pub fn fastest(&self) -> f64 {
+        self.flows.iter().map(ModeFlow::fastest).fold(0.0, f64::max)
+    }
+
     /// Rates q' of the modes (m sqrt(kg)/s).
     pub fn rates<'a>(&'a self, phases: &'a [Phase]) -> impl Iterator<Item = f64> + 'a {
         phases.iter().zip(&self.flows).map(|(phase, flow)| flow.frequency * phase.quadrature)

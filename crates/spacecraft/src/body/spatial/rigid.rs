@@ -76,6 +76,11 @@ impl Rigid {
         turn.momentum
     }
 
+    /// The rates of a turn are no larger with rotors of such a momentum (N m s), and it precesses no faster (rad/s).
+    pub fn fastest(&self, turn: &RigidTurn, stored: f64) -> f64 {
+        self.mobility * (turn.momentum.norm() + stored)
+    }
+
     /// The integral of the rates since the start (rad).
     pub fn turned(turn: &RigidTurn) -> Vector {
         turn.turned

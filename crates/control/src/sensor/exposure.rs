@@ -1,0 +1,129 @@
+//! Exposures: what a star tracker sees while it gathers light, and the mean of it.
+
+use nalgebra::Quaternion;
+
+use super::Sensor;
+use crate::attitude::{Vector, rotation, turn};
+use crate::parts::Parts;
+use crate::time::Span;
+
+/// Attitudes at instants of an exposure, each with its weight.
+#[derive(Clone, Debug, Default)]
+pub struct Exposure(Vec<(f64, Quaternion<f64>)>);
+
+impl Exposure {
+    /// Takes an attitude that lasts so long (s).
+    pub fn see(&mut self, attitude: Quaternion<f64>, lasts: f64) {
+        self.0.push((lasts, attitude));
+    }
+
+    /// Forgets all.
+    pub fn clear(&mut self) {
+        self.0.clear();
+    }
+
+    /// The mean attitude: that of the middle, turned by the mean of the vectors by which the others are turned from it. What
+    /// another attitude in place of the middle's would make of it differs in the third order of the angles turned.
+    pub fn mean(&self, middle: &Quaternion<f64>) -> Quaternion<f64> {
+        let (mut whole, mut sum) = (0.0, Vector::zeros());
+        for (lasts, attitude) in &self.0 {
+            whole += lasts;
+            sum += turn(middle, attitude) * *lasts;
+        }
+        if whole > 0.0 { middle * rotation(&(sum / whole)) } else { *middle }
+    }
+}
+
+impl Sensor {
+    /// The time over which it gathers light for a reading.
+    pub fn exposure(&self) -> Span {
+        if let Self::StarTracker(tracker) = self { tracker.exposure() } else { Span::ZERO }
+    }
+}
+
+impl Parts<Sensor> {
+    /// The trackers that gather light over a time: the place of each among the sensors, its period, and half that time.
+    pub fn exposed(&self) -> impl Iterator<Item = (usize, [Span; 2])> {
+        self.iter().enumerate().filter_map(|(index, sensor)| match sensor {
+            Sensor::StarTracker(tracker) if tracker.exposes() => {
+                Some((index, [tracker.period, tracker.half()]))
+            }
+            _ => None,
+        })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::numerics::quadrature::nodes;
+
+    /// The mean over pieces between these instants, from the attitude at 0, of what turns so (rad) at no more than 40 rad/s.
+    fn mean(breaks: &[f64], turned: impl Fn(f64) -> Vector) -> Quaternion<f64> {
+        let at = |t: f64| rotation(&Vector::new(0.4, -1.1, 0.3)) * rotation(&turned(t));
+        let mut exposure = Exposure::default();
+        for ends in breaks.windows(2) {
+            for (t, lasts) in nodes(ends[1] - ends[0], 40.0) {
+                exposure.see(at(ends[0] + t), lasts);
+            }
+        }
+        at(0.0).conjugate() * exposure.mean(&at(0.0))
+    }
+
+    fn off(found: &Quaternion<f64>, exact: Vector) -> f64 {
+        (turn(&Quaternion::new(1.0, 0.0, 0.0, 0.0), found) - exact).norm()
+    }
+
+    #[test]
+    fn a_constant_rate_gives_the_middle() {
+        // Of a fast one too.
+        for rate in [1e-3, 0.05, 3.0] {
+            let found = mean(&[-0.25, 0.1, 0.25], |t| Vector::new(0.6, -0.8, 0.5) * (rate * t));
+            assert!(off(&found, Vector::zeros()) < 4e-16, "{rate}");
+        }
+    }
+
+    #[test]
+    fn accelerations_vibrations_and_jumps_smear_as_in_closed_form() {
+        let (e, along) = (0.5, Vector::new(0.6, 0.0, -0.8));
+        let ends = [-0.5 * e, 0.5 * e];
+        // alpha t²/2 has the mean alpha e²/24.
+        let found = mean(&ends, |t| along * (0.05 * t * t + 0.02 * t));
+        assert!(off(&found, along * (0.1 * e * e / 24.0)) < 3e-16);
+        for w in [0.3, 5.0, 12.566, 40.0] {
+            let (amplitude, phase) = (1e-3, 0.7);
+            let swing = |t: f64| amplitude * libm::cos(w * t + phase);
+            let left = libm::sin(0.5 * w * e) / (0.5 * w * e);
+            let found = mean(&ends, |t| along * (swing(t) - swing(0.0)));
+            assert!(off(&found, along * (swing(0.0) * (left - 1.0))) < 3e-16, "{w}");
+        }
+        // An acceleration that sets in d after the middle: alpha (e/2 - d)³/6 of e.
+        let (alpha, d) = (0.02, 0.07);
+        let found = mean(&[ends[0], d, ends[1]], |t| along * (0.5 * alpha * (t - d).max(0.0) * (t - d)));
+        let late = ends[1] - d;
+        assert!(off(&found, along * (alpha * late * late * late / 6.0 / e)) < 3e-16);
+        // In one piece it would not be exact.
+        let found = mean(&ends, |t| along * (0.5 * alpha * (t - d).max(0.0) * (t - d)));
+        assert!(off(&found, along * (alpha * late * late * late / 6.0 / e)) > 1e-9);
+    }
+
+    /// About axes that change, it is the mean of the quaternions but for third orders.
+    #[test]
+    fn the_mean_is_that_of_the_chords() {
+        for size in [0.01, 0.04] {
+            let turned = |t: f64| Vector::new(t, 1.5 * t * t, libm::sin(3.0 * t) - t) * (size / 0.25);
+            let found = mean(&[-0.25, 0.25], turned);
+            let sum = nodes(0.5, 40.0)
+                .into_iter()
+                .fold(Quaternion::default(), |sum, (t, lasts)| sum + rotation(&turned(t - 0.25)) * lasts);
+            let apart = turn(&(sum / sum.norm()), &found).norm();
+            assert!(apart < 0.05 * size * size * size && apart > 0.0, "{size} {apart:e}");
+        }
+    }
+
+    #[test]
+    fn nothing_seen_is_the_middle() {
+        let middle = rotation(&Vector::new(0.1, 0.2, 0.3));
+        assert_eq!(Exposure::default().mean(&middle), middle);
+    }
+}
