@@ -6,7 +6,10 @@
 
 mod accelerometers;
 mod arrival;
+mod believing;
 mod beside;
+mod deciding;
+mod departing;
 mod drive;
 mod error;
 mod events;
@@ -28,12 +31,12 @@ mod stepping;
 mod telling;
 
 use crate::belief::Belief;
-use crate::estimator::{self, Estimate, Meter, Monitor, Taken};
-use crate::law::{Cause, Controls, Event};
+use crate::estimator::{self, Estimate, Meter, Monitor};
+use crate::law::{Controls, Event};
 use crate::random::Seed;
 use crate::record::Record;
 use crate::scenario::Scenario;
-use crate::sensor::{Orientation, Truth};
+use crate::sensor::Orientation;
 use crate::time::{Instant, Span};
 
 use drive::Loads;
@@ -264,131 +267,5 @@ impl Simulation {
         self.tell_accelerations(record)?;
         self.tell(record)?;
         self.show(record)
-    }
-
-    /// Takes a sample, which the estimator makes a belief of.
-    fn sense(&mut self, truth: &Truth, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        let measured = self.read.take().unwrap_or_else(|| self.measure(truth));
-        if self.sensing.next.is_some() {
-            let (from, to) = (self.given.seconds(), now.seconds());
-            self.estimator.pushed(self.drive.actuator.waveform_impulse(from, to));
-            self.given = now;
-        }
-        let (plant, origin) = (&self.plant, &self.origin);
-        let taken = Taken {
-            now,
-            measured: measured.then_some(&self.sensing.measured[..]),
-            readings: &self.sensing.fresh,
-            origin,
-            truth: &|axis| plant.about(axis, origin),
-            actuator: &*self.drive.actuator,
-            ahead: self.laws.ahead(),
-        };
-        self.estimator.take(&taken, &mut self.beliefs);
-        if let Some(changes) = self.sensing.field_rate {
-            self.beliefs.iter_mut().zip(&changes).for_each(|(belief, change)| belief.field_rate = *change);
-        }
-        for (belief, queued) in self.beliefs.iter_mut().zip(self.drive.actuator.queued()) {
-            belief.queued = queued;
-        }
-        self.tell_estimates(record)
-    }
-
-    /// Counts angles from the target of now: what is believed of them changes with it.
-    fn turn_to_target(&mut self, now: Instant) {
-        if self.next_target.is_none_or(|begins| now < begins) {
-            return;
-        }
-        let origin = self.reference.origin(now);
-        let by = self.origin.beyond(&origin);
-        self.estimator.shift(by);
-        for (axis, belief) in self.beliefs.iter_mut().enumerate() {
-            belief.angle += by[axis];
-        }
-        self.origin = origin;
-        self.next_target = self.reference.next_target(now);
-    }
-
-    /// Asks the laws that an event concerns; tells the cause.
-    fn ask(&mut self, event: Event) -> Option<Cause> {
-        let Self { reference, now, laws, beliefs, .. } = self;
-        if laws.are_steered() {
-            return None;
-        }
-        if beliefs.len() > 1 {
-            let square: f64 = beliefs.iter().map(|belief| belief.angle * belief.angle).sum();
-            for belief in beliefs.iter_mut() {
-                belief.whole = f64::sqrt(square);
-            }
-        }
-        let led = reference.led(*now, beliefs);
-        laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
-    }
-
-    fn decide(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        self.steered = false;
-        self.decisions += 1;
-        if self.decisions > MOST_DECISIONS {
-            return Err(SimulationError::Chatter { at: now, count: self.decisions });
-        }
-        let truth = self.plant.view(now)?;
-        self.turn_to_target(now);
-        if self.sensing.next.is_none() {
-            // What is continuous is as it is.
-            let angles = truth.orientation.at(truth.seen()).beyond(&self.origin);
-            for (axis, belief) in self.beliefs.iter_mut().enumerate() {
-                (belief.angle, belief.rate) = (angles[axis], truth.rate[axis]);
-            }
-        } else {
-            self.estimator.carry(now, &self.origin, &mut self.beliefs);
-        }
-        let before = self.laws.about(0).state();
-        let states = self.states();
-        let cause = self.ask(event);
-        self.count_switchings(states);
-        self.feel(&truth);
-        self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
-        self.depart(record)?;
-        let torque = self.drive.actuator.asked(0);
-        self.tell_switching(before, cause, [truth.seen()[0], truth.rate[0]], torque, record)
-    }
-
-    /// Begins a motion under what acts from now on, and finds the next trip.
-    fn depart(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        self.plant.tell_course(now, &self.exerted, record)?;
-        self.look_back(record)?;
-        self.exposures.part();
-        self.measure_course(now);
-        let (actuator, axes) = (&self.drive.actuator, self.beliefs.len());
-        if self.estimates {
-            let mut moments = [0.0; 3];
-            for (axis, moment) in moments.iter_mut().enumerate().take(axes) {
-                *moment = actuator.moment(axis);
-            }
-            self.estimator.given(now, moments);
-        }
-        let (constant, feedback) = (actuator.torque(0), actuator.asked(0));
-        self.exerted = Exerted { constant, feedback, back_emf: actuator.back_emf() };
-        if let Some(monitor) = &mut self.monitor {
-            let state = self.plant.swings(&self.origin);
-            match &self.plant {
-                Plant::Planar(_) => monitor.command(now, &state, self.exerted.constant),
-                Plant::Spatial(plant) => {
-                    monitor.push(now, &state, &plant.modal_forces(&self.drive.commanded(now)));
-                }
-            }
-        }
-        self.plant.depart(self.drive.wrench(now));
-        self.measure_torque();
-        self.trip = None;
-        // A sampled sensor trips its guards at samples.
-        if self.sensing.next.is_none() && !self.laws.guards().is_empty() {
-            let ends = [self.laws.until(), self.drive.due].into_iter().flatten().fold(self.end, Instant::min);
-            self.trip = self.plant.trip(self.laws.guards(), ends.since(now), record)?;
-        }
-        Ok(())
     }
 }

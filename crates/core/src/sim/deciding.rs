@@ -1,0 +1,53 @@
+//! Decisions: the laws that an event concerns are asked once, and the actuator gets what they command.
+
+use super::{MOST_DECISIONS, Simulation, SimulationError};
+use crate::law::{Cause, Event};
+use crate::record::Record;
+
+impl Simulation {
+    /// Asks the laws that an event concerns; tells the cause.
+    pub(super) fn ask(&mut self, event: Event) -> Option<Cause> {
+        let Self { reference, now, laws, beliefs, .. } = self;
+        if laws.are_steered() {
+            return None;
+        }
+        if beliefs.len() > 1 {
+            let square: f64 = beliefs.iter().map(|belief| belief.angle * belief.angle).sum();
+            for belief in beliefs.iter_mut() {
+                belief.whole = f64::sqrt(square);
+            }
+        }
+        let led = reference.led(*now, beliefs);
+        laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
+    }
+
+    /// Lets the laws decide on what has come up, and begins the motion under what they command.
+    pub(super) fn decide(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let now = self.now;
+        self.steered = false;
+        self.decisions += 1;
+        if self.decisions > MOST_DECISIONS {
+            return Err(SimulationError::Chatter { at: now, count: self.decisions });
+        }
+        let truth = self.plant.view(now)?;
+        self.turn_to_target(now);
+        if self.sensing.next.is_none() {
+            // What is continuous is as it is.
+            let angles = truth.orientation.at(truth.seen()).beyond(&self.origin);
+            for (axis, belief) in self.beliefs.iter_mut().enumerate() {
+                (belief.angle, belief.rate) = (angles[axis], truth.rate[axis]);
+            }
+        } else {
+            self.estimator.carry(now, &self.origin, &mut self.beliefs);
+        }
+        let before = self.laws.about(0).state();
+        let states = self.states();
+        let cause = self.ask(event);
+        self.count_switchings(states);
+        self.feel(&truth);
+        self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
+        self.depart(record)?;
+        let torque = self.drive.actuator.asked(0);
+        self.tell_switching(before, cause, [truth.seen()[0], truth.rate[0]], torque, record)
+    }
+}
