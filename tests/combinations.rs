@@ -47,7 +47,7 @@ const SENSORS: [Kind; 6] = [
     (
         "gyro and star_tracker",
         "b",
-        "sensor = [{ gyro = { period = 0.2, angle_random_walk = 1e-6 } }, { star_tracker = { period = 1.0, noise = [1e-6, 1e-6, 1e-6], latency = 0.3 } }]",
+        "sensor = [{ gyro = { period = 0.2, angle_random_walk = 1e-6 } }, { star_tracker = { period = 1.0, noise = [1e-6, 1e-6, 1e-6], latency = 0.3, exposure = 0.1 } }]",
     ),
     (
         "gyro, magnetometer and sun_sensor",
