@@ -29,8 +29,8 @@ EVERYTHING = ("--workspace", "--exclude", "flexsc-bench")
 # What is part of the full build alone.
 FULL = ("flexsc-fuzz", "flexsc-papers", "flexsc-py")
 PIP = ("-m", "pip", "--quiet", "--disable-pip-version-check")
-# What the type checkers say.
-TYPES = "tests/python/test_types.py"
+# Python tests that take long, and run beside the others: type checkers, and executors.
+LONG = ("tests/python/test_types.py", "tests/python/test_executor.py")
 # Whether the wheel is in the environment.
 INSTALLED = threading.Event()
 # So many inputs, the same on every machine: about 12 s each.
@@ -44,12 +44,11 @@ SUMMARIES: list[str] = []
 
 @dataclass
 class Step:
-    """One step: what it does, about how long (s), and whether it is part of `--quick`."""
+    """One step: what it does, and about how long (s)."""
 
     name: str
     seconds: int
     work: Callable[[], str | None]
-    quick: bool = False
 
 
 class Out(threading.local):
@@ -183,13 +182,14 @@ def python() -> str:
         run(python, *PIP, "install", f"{built()}[test]")
     finally:
         INSTALLED.set()
-    return tally(run(python, "-m", "pytest", "tests/python", "-q", f"--ignore={TYPES}"))
+    others = (f"--ignore={file}" for file in LONG)
+    return tally(run(python, "-m", "pytest", "tests/python", "-q", *others))
 
 
-def types() -> str:
-    """The type checkers, which take a quarter of the time of all Python tests."""
+def long_python() -> str:
+    """They take a third of the time of all Python tests."""
     INSTALLED.wait()
-    return tally(run(environment(ENVIRONMENT), "-m", "pytest", TYPES, "-q"))
+    return tally(run(environment(ENVIRONMENT), "-m", "pytest", *LONG, "-q"))
 
 
 def extras() -> None:
@@ -245,7 +245,11 @@ def around() -> str:
     extras()
     told = nastran()
     site()
-    return f"with pyNastran {told}, of types {types()}"
+    return f"with pyNastran {told}, beside the others {long_python()}"
+
+
+def form_and_light() -> str:
+    return side_by_side(form, lint_light)
 
 
 def fuzz_and_wheel() -> str:
@@ -257,21 +261,25 @@ def python_and_around() -> str:
 
 
 STEPS = [
-    Step("form of the code: rustfmt, ruff, spelling", 10, form, quick=True),
-    Step("licences, sources and duplicates of all crates", 5, crates, quick=True),
-    Step("clippy of the light build and the benchmarks", 35, lint_light),
+    Step("licences, sources and duplicates of all crates", 5, crates),
+    Step(
+        "form of the code: rustfmt, ruff, spelling; clippy of the light build and the benchmarks",
+        55,
+        form_and_light,
+    ),
     Step("building the command, the tests and the fuzzer, with clippy", 350, build),
-    Step("Rust tests", 140, rust),
+    Step("Rust tests", 120, rust),
     Step("docs/papers.md is what the program computes", 15, papers),
-    Step("fuzzing, and the wheel", 60, fuzz_and_wheel),
+    Step("fuzzing, and the wheel", 65, fuzz_and_wheel),
     Step(
         "Python tests; the wheel with an extra, with pyNastran, and the documentation site",
-        100,
+        110,
         python_and_around,
     ),
 ]
 QUICK = [
-    *(step for step in STEPS if step.quick),
+    Step("form of the code: rustfmt, ruff, spelling", 10, form),
+    Step("licences, sources and duplicates of all crates", 5, crates),
     Step("Rust tests of the light build", 150, rust_light),
 ]
 LEFT_OUT = """left out: clippy, the features `matrices`, `papers`, `parquet` and `png` with their tests,

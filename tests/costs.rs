@@ -149,6 +149,26 @@ fn long_work_needs_a_yes() {
         dir.run_bounded("simulate b.toml --log full"),
         &["`log.period` makes 1.0e11 steps", "TB for logs"],
     );
+    // An exposure is looked at several times.
+    dir.write(
+        "d.toml",
+        "duration = 1e5
+[body.spatial]
+inertia = [[5.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 2.0]]
+points = [{ name = \"hub\" }]
+[sensor.star_tracker]
+period = 1e-6
+latency = 1e-6
+exposure = 1e-6
+[law.attitude]
+period = 1.0
+bandwidth = 0.06
+",
+    );
+    refused(
+        dir.run_bounded("simulate d.toml --log none"),
+        &["`sensor.star_tracker.exposure` makes 6.0e11 steps", "must be confirmed"],
+    );
     dir.write("c.toml", UNCERTAIN);
     refused(
         dir.run_bounded("simulate c.toml --runs 100000000 --table csv -o out"),

@@ -40,6 +40,8 @@ const STEP_S: (f64, f64) = (3e-7, 4e-8);
 const RELAY_STRIDES: f64 = 0.1;
 /// A step of a rotation about three axes, with its passes over the stages, takes as long as so many others.
 const PASSES: f64 = 20.0;
+/// Looks at the motion within an exposure, and more for each radian of the fastest mode.
+const LOOKS: (f64, f64) = (6.0, 1.0);
 /// What the steps of a rotation are told by.
 const TURNS: &str = "duration";
 /// Time of an operation with numbers of a matrix (s).
@@ -213,6 +215,11 @@ impl Scenario {
             };
             if let Some(period) = own {
                 each(format!("{}.period", self.sensor_key(index)), duration, period);
+                let exposure = sensor.exposure().seconds();
+                if exposure > 0.0 {
+                    let looks = LOOKS.0 + LOOKS.1 * exposure * self.model.frequencies().fold(0.0, f64::max);
+                    each(format!("{}.exposure", self.sensor_key(index)), looks * duration, period);
+                }
             }
         }
         for axis in 0..self.axis_count() {
