@@ -11,10 +11,15 @@ use crate::quantity::Finite;
 #[derive(Clone, Debug)]
 pub struct Elastic {
     flows: Vec<ModeFlow>,
-    /// A span that comes again and again (s), and the transitions over it.
+    /// A span that comes again and again, and its multiples too (s).
     cycle: f64,
+    /// Of the spans near each multiple the one that came last (s), and the transitions of all modes over each.
+    spans: Vec<f64>,
     transitions: Vec<[f64; 4]>,
 }
+
+/// Transitions are known over so many cycles.
+const KNOWN: usize = 128;
 
 impl Elastic {
     /// The modes of a body that is often moved on by `cycle` seconds.
@@ -22,9 +27,12 @@ impl Elastic {
         let flow = |mode: &SpatialMode| {
             ModeFlow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping))
         };
-        let flows: Vec<ModeFlow> = body.modes.iter().map(flow).collect();
-        let transitions = flows.iter().map(|flow| flow.transition(cycle)).collect();
-        Self { flows, cycle, transitions }
+        Self {
+            flows: body.modes.iter().map(flow).collect(),
+            cycle,
+            spans: Vec::new(),
+            transitions: Vec::new(),
+        }
     }
 
     /// The phases at the start.
@@ -38,15 +46,39 @@ impl Elastic {
 
     /// Moves on by `h` seconds under constant modal forces (N/sqrt(kg), one for each mode; none at all if there are
     /// none): a mode turns about the equilibrium f/w².
-    pub fn advance(&self, phases: &mut [Phase], forces: &[f64], h: f64) {
-        let whole = h == self.cycle;
+    pub fn advance(&mut self, phases: &mut [Phase], forces: &[f64], h: f64) {
+        let known = self.learn(h);
         for (index, (phase, flow)) in phases.iter_mut().zip(&self.flows).enumerate() {
-            let [a, b, c, d] = if whole { self.transitions[index] } else { flow.transition(h) };
+            let [a, b, c, d] = match known {
+                Some(first) => self.transitions[first + index],
+                None => flow.transition(h),
+            };
             let force = forces.get(index).copied().unwrap_or(0.0);
             let centre = force / (flow.frequency * flow.frequency);
             let (x, y) = (phase.displacement - centre, phase.quadrature);
             *phase = Phase { displacement: centre + a * x + b * y, quadrature: c * x + d * y };
         }
+    }
+
+    /// The place of the first mode's transition over `h` seconds, which is known from now on; none of a span that is too long.
+    fn learn(&mut self, h: f64) -> Option<usize> {
+        let cycles = libm::round(h / self.cycle);
+        if cycles.is_nan() || cycles >= KNOWN as f64 {
+            return None;
+        }
+        let (place, modes) = (cycles as usize, self.flows.len());
+        if self.spans.len() <= place {
+            self.spans.resize(place + 1, f64::NAN);
+            self.transitions.resize((place + 1) * modes, [0.0; 4]);
+        }
+        let first = place * modes;
+        if self.spans[place].to_bits() != h.to_bits() {
+            self.spans[place] = h;
+            for (transition, flow) in self.transitions[first..].iter_mut().zip(&self.flows) {
+                *transition = flow.transition(h);
+            }
+        }
+        Some(first)
     }
 
     /// No mode changes faster (rad/s).
