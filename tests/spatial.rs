@@ -165,7 +165,7 @@ fn modes_follow_the_matrix_exponential() {
 #[track_caller]
 fn assert_moves(scenario: &Scenario, w: f64, pieces: &[(f64, f64)], exact: [f64; 2]) {
     // One of the pieces may be the cycle, whose transition is known beforehand.
-    let elastic = Elastic::new(body(scenario), 0.2);
+    let mut elastic = Elastic::new(body(scenario), 0.2);
     let mut phases = Elastic::start(body(scenario));
     for (push, t) in pieces {
         elastic.advance(&mut phases, &[*push], *t);

@@ -211,7 +211,7 @@ fn pulses_act_where_and_as_long_as_they_are_told() {
             assert!((rate - (0.05 - fired / 3.0)).abs() < 1e-15, "{k}: {rate}");
         }
         // The mode, pushed along x by -1 N where its displacement is 1/sqrt(kg), follows the exact pulse.
-        let elastic = Elastic::new(body(&free(&[])), 0.2);
+        let mut elastic = Elastic::new(body(&free(&[])), 0.2);
         let mut phases = Elastic::start(body(&free(&[])));
         elastic.advance(&mut phases, &[-1.0], 0.15);
         elastic.advance(&mut phases, &[], 0.85 - 0.05 * f64::from(begins));
