@@ -31,11 +31,12 @@ def main() -> int:
     command = sys.argv[1:]
     # Cargo also asks for the version, and builds crates that the command does not name.
     if "--crate-name" not in command or "CARGO_PRIMARY_PACKAGE" not in os.environ:
-        return subprocess.run(command, check=False).returncode
+        return subprocess.run(command, check=False, close_fds=False).returncode
     with tempfile.TemporaryDirectory() as out, tempfile.TemporaryFile() as told:
         lint = ["clippy-driver", *linted(command, out)]
-        with subprocess.Popen(lint, stderr=told) as clippy:
-            compiled = subprocess.run(command, check=False).returncode
+        # Both inherit cargo's jobserver, which says how many threads there may be.
+        with subprocess.Popen(lint, stderr=told, close_fds=False) as clippy:
+            compiled = subprocess.run(command, check=False, close_fds=False).returncode
         told.seek(0)
         # After the compiler's output, so that no line of either is torn.
         sys.stderr.buffer.write(told.read())
