@@ -183,7 +183,8 @@ def python() -> str:
     finally:
         INSTALLED.set()
     others = (f"--ignore={file}" for file in LONG)
-    return tally(run(python, "-m", "pytest", "tests/python", "-q", *others))
+    told = tally(run(python, "-m", "pytest", "tests/python", "-q", *others))
+    return f"{told}, with pyNastran {nastran()}"
 
 
 def long_python() -> str:
@@ -243,9 +244,8 @@ def side_by_side(*works: Callable[[], str | None]) -> str:
 def around() -> str:
     """What surrounds the wheel, one after the other."""
     extras()
-    told = nastran()
     site()
-    return f"with pyNastran {told}, beside the others {long_python()}"
+    return f"beside the others {long_python()}"
 
 
 def form_and_light() -> str:
