@@ -10,8 +10,8 @@ impl Simulation {
     pub(super) fn depart(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.tell_course(now, &self.exerted, record)?;
-        self.look_back(record)?;
-        self.exposures.part();
+        self.average(record)?;
+        self.exposures.drop_copy();
         self.measure_course(now);
         let (actuator, axes) = (&self.drive.actuator, self.beliefs.len());
         if self.estimates {

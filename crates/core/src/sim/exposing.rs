@@ -1,7 +1,7 @@
-//! Exposures of star trackers: behind the run comes a copy of its body, which looks at each motion that ends within one.
+//! Exposures of star trackers: the mean over each is taken in a copy of the body, one smooth piece of the motion after another.
 //!
-//! What acts on the body changes at departures, and no exposure knows of the next before: so the mean over it is taken piece by
-//! piece, each over a smooth motion that is over. The body of the run itself is not looked at.
+//! What acts on the body changes at departures, which are not known ahead: a piece is averaged when it is over. The body of the run
+//! itself is not moved back.
 
 use super::plant::Plant;
 use super::sensing::Sensing;
@@ -16,9 +16,9 @@ use crate::time::{Instant, Span};
 #[derive(Clone, Debug)]
 pub struct Exposures {
     shutters: Vec<Shutter>,
-    /// A body in the present motion, behind that of the run, if an exposure is open; and until when it has looked.
-    behind: Option<Plant>,
-    looked: Instant,
+    /// While an exposure is open, a copy of the body that departed as the run's did, and the instant up to which the mean is taken.
+    copy: Option<Plant>,
+    averaged: Instant,
 }
 
 /// What lets light into a tracker.
@@ -50,7 +50,7 @@ impl Exposures {
             exposure: Exposure::default(),
         };
         let shutters = scenario.sensor.exposed().map(shutter).collect();
-        Self { shutters, behind: None, looked: Instant::START }
+        Self { shutters, copy: None, averaged: Instant::START }
     }
 
     /// When one opens or closes next.
@@ -58,16 +58,16 @@ impl Exposures {
         self.shutters.iter().map(|shutter| shutter.due).min()
     }
 
-    /// Makes a body stay behind that of the run, which goes on from now, if an exposure is open.
-    pub fn stay(&mut self, now: Instant, plant: &Plant) {
-        if self.behind.is_none() && self.shutters.iter().any(|shutter| shutter.is_open) {
-            (self.behind, self.looked) = (Some(plant.clone()), now);
+    /// Copies the body before it moves on from now, if an exposure is open and there is no copy of this motion.
+    pub fn copy_body(&mut self, now: Instant, plant: &Plant) {
+        if self.copy.is_none() && self.shutters.iter().any(|shutter| shutter.is_open) {
+            (self.copy, self.averaged) = (Some(plant.clone()), now);
         }
     }
 
-    /// The present motion ends.
-    pub fn part(&mut self) {
-        self.behind = None;
+    /// Drops the copy: its motion ends.
+    pub fn drop_copy(&mut self) {
+        self.copy = None;
     }
 
     /// Closes and opens what is due now; sensors take what they gathered.
@@ -87,7 +87,7 @@ impl Exposures {
             }
         }
         if self.shutters.iter().all(|shutter| !shutter.is_open) {
-            self.part();
+            self.drop_copy();
         }
     }
 }
@@ -96,17 +96,17 @@ impl Simulation {
     /// Closes and opens the exposures that are due now.
     pub(super) fn expose(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.exposures.due().is_some_and(|due| due <= self.now) {
-            self.look_back(record)?;
+            self.average(record)?;
             self.exposures.serve(self.now, &mut self.sensing);
         }
         Ok(())
     }
 
-    /// Looks at what is new of the present motion until now, where an exposure is open.
-    pub(super) fn look_back(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (Exposures { shutters, behind, looked }, now) = (&mut self.exposures, self.now);
-        let Some(plant) = behind.as_mut().filter(|_| now > *looked) else { return Ok(()) };
-        let from = std::mem::replace(looked, now);
+    /// Averages the motion up to now, of which the mean is not taken yet, where an exposure is open.
+    pub(super) fn average(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let (Exposures { shutters, copy, averaged }, now) = (&mut self.exposures, self.now);
+        let Some(plant) = copy.as_mut().filter(|_| now > *averaged) else { return Ok(()) };
+        let from = std::mem::replace(averaged, now);
         let fastest = plant.fastest().max(self.plant.fastest());
         for (t, lasts) in quadrature::nodes(now.since(from).seconds(), fastest) {
             let at = from + Span::from_seconds(t);

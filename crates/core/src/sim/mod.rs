@@ -162,7 +162,7 @@ impl Simulation {
     /// Brings the body to the next instant at which anything is due, until an instant; tells whether anything is.
     fn arrive(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
         let mut next = self.next();
-        self.exposures.stay(self.now, &self.plant);
+        self.exposures.copy_body(self.now, &self.plant);
         if let Some(at) = self.plant.approach(next.min(until), record)? {
             next = at;
             self.slips(at)?;
