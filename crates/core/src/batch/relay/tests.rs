@@ -84,8 +84,10 @@ fn shipped_scenarios_and_others_come_to_the_same() {
     for modes in modes {
         let other = "[estimator.envelope]\nwindow = 77.0\nmodes = [{ frequency = 0.5, gain = 0.02, damping = 0.02 }]\n";
         for rest in ["", "[estimator.envelope]\nwindow = 77.0\n", "[reference]\nband = 5.1e-4\n", other] {
-            let scenarios = vec![text(modes, rest); 3];
-            compare(&scenarios, 0);
+            // A light build has no kernels for damped modes.
+            if cfg!(feature = "damped-flights") || ![modes, rest].concat().contains("damping") {
+                compare(&vec![text(modes, rest); 3], 0);
+            }
         }
     }
 }
