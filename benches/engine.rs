@@ -230,7 +230,7 @@ fn sampled_loop(c: &mut Criterion) {
 fn station(c: &mut Criterion) {
     let mut group = c.benchmark_group("station, 700 s");
     group.sample_size(20);
-    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/iss-manoeuvre-off.toml");
+    let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../scenarios/iss-manoeuvre-off.toml");
     let shipped = Scenario::load(path.as_ref()).expect("shipped");
     for count in [12_usize, 135] {
         let mut table = shipped.to_table();
