@@ -49,6 +49,7 @@ mod fuzz_corpus;
 mod gimbals;
 mod habits;
 mod help;
+mod hinges;
 mod imbalance;
 mod jets;
 mod layout;

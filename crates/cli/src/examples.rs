@@ -38,6 +38,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "iss-ringdown-off",
     "magnetic-unloading",
     "momentum-unloading",
+    "panel-deployment",
     "relay-adaptive",
     "relay-fixed",
     "relay-no-freeze",

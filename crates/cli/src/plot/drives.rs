@@ -7,7 +7,7 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// Colours of drives and modes, again from the first after the last.
+/// Colours of drives, hinges and modes, again from the first after the last.
 const COLOURS: [plotters::style::RGBColor; 7] = [
     colour::BLUE,
     colour::VERMILLION,
@@ -18,19 +18,21 @@ const COLOURS: [plotters::style::RGBColor; 7] = [
     colour::GREY,
 ];
 
+/// A panel of a line for each of several things alike.
+pub fn alike(x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>) -> Panel {
+    let values: Vec<f64> = lines.iter().flat_map(|(_, points)| points).map(|(_, value)| *value).collect();
+    let layers = lines.into_iter().enumerate().map(|(index, (name, points))| {
+        Layer::new(&name, COLOURS[index % COLOURS.len()], LayerShape::Line(1.2), points)
+    });
+    Panel::new(x, FigureAxis::around(name, unit, values), layers.collect())
+}
+
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let line = |of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
         cycles.drives.iter().map(|(time, row)| (*time, of(row))).collect()
     };
     let (drives, modes) =
         cycles.drives.first().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
-    let panel = |x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>| {
-        let values: Vec<f64> = lines.iter().flat_map(|(_, points)| points).map(|(_, value)| *value).collect();
-        let layers = lines.into_iter().enumerate().map(|(index, (name, points))| {
-            Layer::new(&name, COLOURS[index % COLOURS.len()], LayerShape::Line(1.2), points)
-        });
-        Panel::new(x, FigureAxis::around(name, unit, values), layers.collect())
-    };
     let x = time(0.0..story.end);
     let angles = (0..drives)
         .map(|drive| (format!("drive {}", drive + 1), unwrapped(line(&|row| row.drives[drive].angle_rad))))
@@ -45,9 +47,9 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
             (name, line(&|row| row.modes[mode].frequency_rad_s / most))
         })
         .collect();
-    let mut panels = vec![panel(x.unnamed(), "angle", "rad", angles)];
+    let mut panels = vec![alike(x.unnamed(), "angle", "rad", angles)];
     if modes > 0 {
-        panels.push(panel(x, "frequency over its highest", "", frequencies));
+        panels.push(alike(x, "frequency over its highest", "", frequencies));
     } else if let Some(last) = panels.last_mut() {
         last.x = x;
     }

@@ -16,6 +16,7 @@ mod failing;
 mod frequency;
 mod gain;
 mod gimbals;
+mod hinges;
 mod identified;
 mod lock;
 mod magnetorquers;

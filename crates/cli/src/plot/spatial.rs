@@ -7,7 +7,7 @@ use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
     Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion,
-    ElasticEstimates, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialCycle,
+    ElasticEstimates, Hinges, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialCycle,
     SpatialMotion, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
@@ -45,6 +45,8 @@ pub struct Cycles {
     pub bearings: Vec<(f64, Bearings)>,
     /// The drives of appendages, if they have any.
     pub drives: Vec<(f64, DrivesMotion)>,
+    /// The hinges of appendages, if they have any.
+    pub hinges: Vec<(f64, Hinges)>,
 }
 
 impl Cycles {
@@ -95,6 +97,7 @@ impl Record for Cycles {
                 position,
                 bearings,
                 drives,
+                hinges,
                 ..
             }) => {
                 let t = now.seconds();
@@ -104,6 +107,7 @@ impl Record for Cycles {
                 self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
                 self.position.extend(position.iter().map(|position| (t, position.clone())));
                 self.drives.extend(drives.iter().map(|drives| (t, drives.clone())));
+                self.hinges.extend(hinges.iter().map(|hinges| (t, hinges.clone())));
                 self.bearings.extend(bearings.iter().map(|bearings| (t, bearings.clone())));
             }
             _ => {}

@@ -9,8 +9,8 @@ use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
     accelerations, angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra,
-    frequency, gain, gimbals, identified, magnetorquers, modes, orbit, outputs, phase_plane, pointing,
-    torque, wheel, wheels,
+    frequency, gain, gimbals, hinges, identified, magnetorquers, modes, orbit, outputs, phase_plane,
+    pointing, torque, wheel, wheels,
 };
 
 /// A figure.
@@ -56,6 +56,8 @@ pub enum What {
     Orbit,
     /// Rotating appendages: drive angles and natural frequencies
     Drives,
+    /// Appendages on hinges: their angles and rates
+    Hinges,
     /// Frequency of the dominant mode, or of those that an attitude filter identifies, estimated and true
     Frequency,
     /// Displacement of the dominant mode, estimated and true
@@ -105,7 +107,10 @@ impl What {
             Self::Orbit => spatial && orbit::of(story),
             Self::Gimbals => gimbals::of(story),
             Self::Magnetorquers => magnetorquers::of(story),
-            Self::Drives => story.scenario.study.drives.is_some(),
+            Self::Drives => {
+                story.scenario.study.drives.as_ref().is_some_and(|drives| drives.courses.count() > 0)
+            }
+            Self::Hinges => hinges::of(story),
             Self::Accelerations => accelerations::of(story),
             Self::Consistency if spatial => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())
@@ -145,6 +150,7 @@ impl What {
             Self::Gimbals => gimbals::figure(story, cycles),
             Self::Magnetorquers => magnetorquers::figure(story, cycles),
             Self::Drives => drives::figure(story, cycles),
+            Self::Hinges => hinges::figure(story, cycles),
             Self::Accelerations => accelerations::figure(story, cycles),
             Self::Frequency if !cycles.elastic.is_empty() => identified::figure(story, cycles),
             Self::Frequency => frequency::figure(story, motion),

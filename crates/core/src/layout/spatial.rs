@@ -63,14 +63,24 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         motion.push(plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
         motion.push(LayoutPanel::states("sliding", "Which way wheels turn", each("sliding")));
     }
-    if let Some(drives) = &scenario.study.drives {
+    if let Some(drives) = scenario.study.drives.as_ref().filter(|drives| drives.courses.count() > 0) {
         let of =
             |drive: usize| line(format!("/drives.drives[{drive}].angle_rad"), format!("drive {}", drive + 1));
         let angles = (0..drives.courses.count().min(MOST_LINES)).map(of).collect();
         motion.push(plot("drives", "Angles of the drives (rad)", angles));
     }
+    let hinges = scenario.study.drives.as_ref().map_or(0, |drives| drives.driven.hinges());
+    if hinges > 0 {
+        let of =
+            |hinge: usize| line(format!("/hinges.hinges[{hinge}].angle_rad"), format!("hinge {}", hinge + 1));
+        motion.push(plot(
+            "hinges",
+            "Angles of the hinges (rad)",
+            (0..hinges.min(MOST_LINES)).map(of).collect(),
+        ));
+    }
     let mut elastic = vec![plot("energy", "Elastic energy (J)", energies(scenario, body))];
-    if scenario.study.drives.is_some() {
+    if scenario.study.drives.as_ref().is_some_and(|drives| drives.courses.count() > 0) {
         let of = |mode: usize| line(format!("/drives.modes[{mode}].frequency_rad_s"), format!("mode {mode}"));
         let each = (0..body.modes.len().min(MOST_LINES)).map(of).collect();
         elastic.push(plot("drifting", "Natural frequencies (rad/s)", each));

@@ -1,4 +1,5 @@
-//! The drives of a scenario's appendages: their angles at every instant of the run, known before it begins.
+//! The drives of a scenario's appendages: their angles at every instant of the run, known before it begins; and what does not go
+//! with appendages that turn.
 
 use std::sync::Arc;
 
@@ -241,7 +242,8 @@ impl Written {
 
     /// Refuses a drive that is too fast for the modes of its appendage.
     fn too_fast(&self, index: usize, most: f64) -> Result<(), Fault> {
-        let own = self.appendage[index].modes.iter().map(|mode| mode.frequency.get());
+        let clamped = self.appendage[index].clamped_modes();
+        let own = clamped.iter().map(|mode| mode.frequency.get());
         let limit = 0.2 * own.fold(f64::INFINITY, f64::min);
         if most <= limit {
             return Ok(());
@@ -255,7 +257,7 @@ impl Written {
 }
 
 impl Scenario {
-    /// What does not go with drives.
+    /// What does not go with drives and hinges.
     pub(super) fn drive_fault(&self) -> Option<Fault> {
         let driven = &self.study.drives.as_ref()?.driven;
         let spacecraft = self.spacecraft.as_ref()?;
@@ -265,8 +267,7 @@ impl Scenario {
                 || spacecraft.points.is_empty() && point == "hub"
         };
         let place = |key: String| {
-            let why =
-                "must be a point of the hub: with drives, the motion of points on appendages is not computed";
+            let why = "must be a point of the hub: with drives or hinges, the motion of points on appendages is not computed";
             Some(Fault::new(key, why))
         };
         for (index, sensor) in self.sensor.iter().enumerate() {
@@ -274,7 +275,7 @@ impl Scenario {
                 return place(format!("{}.point", self.sensor_key(index)));
             }
             if matches!(sensor, Sensor::Accelerometer(_)) {
-                let why = "cannot be used with appendages that turn: the acceleration by their modes is not computed";
+                let why = "cannot be used with appendages that turn, on drives or hinges: the acceleration by their modes is not computed";
                 return Some(Fault::new(self.sensor_key(index), why));
             }
         }
@@ -291,8 +292,8 @@ impl Scenario {
         if let Some((wheels, of)) = self.actuator.wheels()
             && let Some(key) = wheels.rubs_or_shakes()
         {
-            let why = "needs appendages that do not turn: the instants at which wheels stick, and the excitation of modes by imbalance, are \
-                       searched for with constant modes";
+            let why = "needs appendages that do not turn, on drives or hinges: the instants at which wheels stick, and the excitation of modes by \
+                       imbalance, are searched for with constant modes";
             return Some(Fault::new(format!("{of}.{key}"), why));
         }
         let pressed = self.environment.as_ref().and_then(|around| {
@@ -300,8 +301,8 @@ impl Scenario {
             pressure.or(around.drag.is_some().then_some("drag"))
         });
         if let Some(key) = pressed.filter(|_| driven.moves_centre()) {
-            let why = "acts at an arm that is known where drives do not move the centre of mass: put the axis of the drive through \
-                       that of the appendage";
+            let why = "acts at an arm that is known where drives and hinges do not move the centre of mass: put the axis of the drive \
+                       through that of the appendage, or write the hinge as a mode";
             return Some(Fault::new(format!("environment.{key}"), why));
         }
         None

@@ -395,6 +395,7 @@ impl Simulation {
             envelope: self.monitor.as_ref().map(|monitor| monitor.envelope(self.now)),
             bearings: self.bearings(plant),
             drives: plant.drives(),
+            hinges: plant.hinges(),
         }
     }
 }

@@ -31,23 +31,30 @@ impl TurningStep<'_> {
         node: usize,
     ) -> f64 {
         let spun = outward(&felt.rate);
-        for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
-            memory.g[node] = of.rotation.dot(&felt.turning);
-            memory.rate[node] += memory.g[node];
-        }
+        let mut change = 0.0_f64;
         if let Some((driving, _)) = self.driven {
             let scratch = &mut beside.driven;
             let pulls = Pulls { around: self.around, tide: felt.tide, push: self.push };
             driving.pull((felt.stage, felt.t), &felt.rate, &pulls, scratch);
-            for (memory, (speed, p)) in modes.iter_mut().zip(scratch.speeds.iter().zip(&scratch.p)) {
-                (memory.g[node], memory.rate[node]) = (speed - p, *speed);
+            let (given, swings) = (scratch.speeds.iter().zip(&scratch.p), driving.swings());
+            for ((memory, (speed, p)), of) in modes.iter_mut().zip(given).zip(&self.model.modes) {
+                let turned = speed - p;
+                // What hinges do to the rates depends on how far they are turned, which passes find.
+                if swings {
+                    change = change.max((turned - memory.g[node]).abs() * of.frequency);
+                }
+                (memory.g[node], memory.rate[node]) = (turned, *speed);
+            }
+        } else {
+            for (memory, of) in modes.iter_mut().zip(&self.model.modes) {
+                memory.g[node] = of.rotation.dot(&felt.turning);
+                memory.rate[node] += memory.g[node];
             }
         }
         if !self.is_loud() {
             return 0.0;
         }
         let more = self.around.is_some() || self.borne.is_some() || self.model.beside.is_some();
-        let mut change = 0.0_f64;
         for index in 0..modes.len() {
             let mut force = match self.driven {
                 Some(_) => beside.driven.forces[index],

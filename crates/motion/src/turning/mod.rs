@@ -50,7 +50,7 @@ mod watch;
 pub use acceleration::Accelerations;
 pub use bearing::{Bearing, HarmonicLine, Slip};
 pub use common::CommonSteps;
-pub use driven::{Angles, DrivenPanel, DrivenSpacecraft, Driving, PanelMode};
+pub use driven::{Angles, DrivenPanel, DrivenSpacecraft, Driving, Hinge, PanelMode};
 pub use flow::{Acting, FlowEffort, Turning};
 pub use free::{ClampedModes, Free};
 pub use gimbal::Gimbal;

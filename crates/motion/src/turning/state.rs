@@ -72,6 +72,8 @@ pub struct TurningSight {
     pub shift: Option<[Vector; 2]>,
     /// Of such a body, its inertia as it is bent (kg m²).
     pub inertia: Option<Matrix3<f64>>,
+    /// Angle (rad) and rate (rad/s) of each hinge.
+    pub hinges: Vec<[f64; 2]>,
 }
 
 impl TurningSight {
@@ -93,6 +95,7 @@ impl TurningSight {
             rotations: Vec::new(),
             shift: None,
             inertia: None,
+            hinges: Vec::new(),
         }
     }
 

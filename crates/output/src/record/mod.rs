@@ -43,11 +43,11 @@ pub use topics::{
     Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
     BearingMotion, Bearings, ChannelState, Command, ControlMomentGyro, ControlMomentGyros, Decision,
     DriveMotion, DrivenMode, DrivesMotion, ElasticEstimate, ElasticEstimates, Energy, Envelope, Estimate,
-    Estimates, FaultEvent, GoalMotion, Jets, Law, Magnetorquer, Magnetorquers, Metric, MetricLine,
-    MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit, OrbitAxis,
-    OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding, Summary,
-    TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration, Vibrations,
-    Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
+    Estimates, FaultEvent, GoalMotion, HingeMotion, Hinges, Jets, Law, Magnetorquer, Magnetorquers, Metric,
+    MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit,
+    OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding,
+    Summary, TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration,
+    Vibrations, Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
 };
 pub use trace::Trace;
 
@@ -282,6 +282,7 @@ trait TakeRow {
                 }
                 motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))?;
                 motion.drives.as_ref().map_or(Ok(()), |drives| self.take(now, drives))?;
+                motion.hinges.as_ref().map_or(Ok(()), |hinges| self.take(now, hinges))?;
                 motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
                 motion.gimbals.as_ref().map_or(Ok(()), |gimbals| self.take(now, gimbals))?;
                 motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))

@@ -1,8 +1,8 @@
 //! What is reported of a body with three axes.
 
 use super::{
-    Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Jets, Magnetorquers, Orbit, Pointing,
-    Position, Rates, Torques, Vibrations, Wheels,
+    Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Hinges, Jets, Magnetorquers, Orbit,
+    Pointing, Position, Rates, Torques, Vibrations, Wheels,
 };
 
 /// A cycle of a spatial loop, after its law has decided.
@@ -73,6 +73,8 @@ pub struct SpatialMotion {
     pub bearings: Option<Bearings>,
     /// The drives of its appendages.
     pub drives: Option<DrivesMotion>,
+    /// The hinges of its appendages.
+    pub hinges: Option<Hinges>,
     /// Where the body is on its orbit.
     pub orbit: Option<Orbit>,
     /// Magnetic moments of torquers.

@@ -31,7 +31,7 @@ pub struct TwoWay {
     acting: Acting,
     /// What moves it, and where its first point was at the start, from the centre of mass (m).
     moving: Option<(Moving, Vector)>,
-    /// How drives turn its appendages, if they do, and which of their changes is next.
+    /// How drives turn its appendages, if drives or hinges do, and which of their changes is next.
     courses: Option<(Arc<Courses>, usize)>,
 }
 
@@ -151,7 +151,7 @@ impl TwoWay {
         }
     }
 
-    /// The same with drives that turn its appendages.
+    /// The same with drives that turn its appendages, and hinges on which they swing.
     #[must_use]
     pub fn driven(mut self, drives: Option<&Drives>) -> Self {
         let Some(Drives { driven, courses }) = drives else { return self };
@@ -165,13 +165,23 @@ impl TwoWay {
         self
     }
 
+    /// Whether drives turn its appendages.
+    pub fn has_drives(&self) -> bool {
+        self.courses.as_ref().is_some_and(|(courses, _)| courses.count() > 0)
+    }
+
+    /// Angle (rad) and rate (rad/s) of each hinge at the instant seen last.
+    pub fn hinges(&self) -> &[[f64; 2]] {
+        &self.turning.seen().hinges
+    }
+
     /// Angle (rad) and rate (rad/s) of each drive so many seconds after the start.
     pub fn drives(&self, t: f64) -> Vec<[f64; 2]> {
         let each = |courses: &Courses| (0..courses.count()).map(|drive| courses.at(drive, t)).collect();
         self.courses.as_ref().map_or_else(Vec::new, |(courses, _)| each(courses))
     }
 
-    /// Of a body with drives the frequencies of its modes (rad/s) at the instant seen last, and how they turn the hub.
+    /// Of a body with drives or hinges the frequencies of its modes (rad/s) at the instant seen last, and how they turn the hub.
     pub fn modes(&self) -> Option<(&[f64], &[Vector])> {
         let seen = self.turning.seen();
         self.courses.as_ref().map(|_| (&seen.frequencies[..], &seen.rotations[..]))

@@ -33,7 +33,7 @@ impl Basis {
     /// That of the start, as the body is written.
     pub fn first(of: &DrivenSpacecraft, angles: &dyn Angles) -> Option<Self> {
         let mut posed = Posed::default();
-        of.pose(|drive| angles.at(drive, 0.0), &mut posed);
+        of.pose(|drive| angles.at(drive, 0.0), &[], &mut posed);
         let free = posed.free(of)?;
         let start = inverse(of, &free).transpose();
         Some(Self::of(of, &posed, free, (posed.centre, start)))
@@ -42,7 +42,7 @@ impl Basis {
     /// That of another time since the start (s), each mode the one that is most like it here.
     pub fn at(&self, of: &DrivenSpacecraft, angles: &dyn Angles, t: f64) -> Option<Self> {
         let mut posed = Posed::default();
-        of.pose(|drive| angles.at(drive, t), &mut posed);
+        of.pose(|drive| angles.at(drive, t), &[], &mut posed);
         let free = self.followed(&posed.free(of)?);
         Some(Self::of(of, &posed, free, (self.first_centre, self.start.clone())))
     }

@@ -1,4 +1,4 @@
-//! A flexible body whose appendages are turned by drives, their angles known as functions of time.
+//! A flexible body whose appendages are turned by drives, their angles known as functions of time, or swing on hinges.
 //!
 //! With alpha(t) the kinetic energy about the centre of mass is, to first order in the clamped modes eta,
 //!
@@ -10,8 +10,10 @@
 //! are H = dT/dw + sum a h and pi = dT/d eta'; H' = T - w x H, pi' = -O² eta - D eta' + dT/d eta + f. Q, H, eta and pi are
 //! continuous whatever alpha does. Steps carry them in the free modes of one angle, q = Y0⁻¹ eta and P = Y0' pi, whose
 //! oscillation is exact; by how much q' differs from P + phi' G as the panels turn on is part of what the stages feel.
+//! A panel on a hinge turns by its own coordinate, and all coefficients depend on that too (`hinged.rs`).
 
 mod basis;
+mod hinged;
 mod posed;
 mod seen;
 mod stage;
@@ -25,6 +27,7 @@ use super::model::Flexible;
 use crate::attitude::Vector;
 
 pub(super) use basis::Basis;
+pub use hinged::Hinge;
 pub(super) use posed::Posed;
 pub(super) use stage::{Pulls, Scratch};
 
@@ -68,6 +71,8 @@ pub struct DrivenPanel {
     pub modes: Vec<PanelMode>,
     /// Unit vector along the axis of its drive through the root, and which of the drives it is, if it has one.
     pub drive: Option<(Vector, usize)>,
+    /// The hinge at its root on which it swings, if it does; it then is rigid, and its only mode is that of the hinge.
+    pub hinge: Option<Hinge>,
 }
 
 /// A spacecraft as its drives turn it.
@@ -82,12 +87,17 @@ pub struct DrivenSpacecraft {
 impl DrivenSpacecraft {
     /// Whether anything turns.
     pub fn turns(&self) -> bool {
-        self.panels.iter().any(|panel| panel.drive.is_some())
+        self.panels.iter().any(|panel| panel.drive.is_some() || panel.hinge.is_some())
     }
 
     /// How many drives there are.
     pub fn drives(&self) -> usize {
         self.panels.iter().filter(|panel| panel.drive.is_some()).count()
+    }
+
+    /// How many hinges there are.
+    pub fn hinges(&self) -> usize {
+        self.panels.iter().filter(|panel| panel.hinge.is_some()).count()
     }
 
     /// Total mass (kg).
@@ -103,14 +113,15 @@ impl DrivenSpacecraft {
     /// The frequencies of the free modes with drives at these angles (rad/s), increasing.
     pub fn frequencies(&self, angles: &[f64]) -> Vec<f64> {
         let mut posed = Posed::default();
-        self.pose(|drive| [angles[drive], 0.0], &mut posed);
+        self.pose(|drive| [angles[drive], 0.0], &[], &mut posed);
         posed.free(self).map(|free| free.frequencies).unwrap_or_default()
     }
 
-    /// Whether a drive moves the centre of mass.
+    /// Whether a drive or a hinge moves the centre of mass.
     pub fn moves_centre(&self) -> bool {
         self.panels.iter().any(|panel| {
-            let moved = panel.drive.map_or_else(Vector::zeros, |(axis, _)| axis.cross(&panel.centre));
+            let axis = panel.drive.map(|(axis, _)| axis).or(panel.hinge.map(|hinge| hinge.about));
+            let moved = axis.map_or_else(Vector::zeros, |axis| axis.cross(&panel.centre));
             moved.norm() > 1e-9 * (1.0 + panel.centre.norm())
         })
     }
@@ -122,6 +133,8 @@ pub struct Driving {
     pub(super) of: Arc<DrivenSpacecraft>,
     pub(super) angles: Arc<dyn Angles>,
     pub(super) basis: Basis,
+    /// Whether any panel swings on a hinge.
+    swings: bool,
     /// Seconds from the start to the departure.
     pub(super) began: f64,
 }
@@ -130,12 +143,18 @@ impl Driving {
     /// Drives of a body that is `flexible` with their angles of the start: the modes in which it is written.
     pub fn new(of: Arc<DrivenSpacecraft>, angles: Arc<dyn Angles>) -> Option<Self> {
         let basis = Basis::first(&of, &*angles)?;
-        Some(Self { of, angles, basis, began: 0.0 })
+        let swings = of.hinges() > 0;
+        Some(Self { of, angles, basis, swings, began: 0.0 })
     }
 
-    /// The body as it is at a time since the start (s).
-    pub(super) fn posed(&self, t: f64, posed: &mut Posed) {
-        self.of.pose(|drive| self.angles.at(drive, t), posed);
+    /// The body as it is at a time since the start (s), with hinges turned by these displacements of the clamped modes.
+    pub(super) fn posed(&self, t: f64, eta: &[f64], posed: &mut Posed) {
+        self.of.pose(|drive| self.angles.at(drive, t), eta, posed);
+    }
+
+    /// Whether any panel swings on a hinge.
+    pub(super) fn swings(&self) -> bool {
+        self.swings
     }
 
     /// The body in the modes in which it is carried.

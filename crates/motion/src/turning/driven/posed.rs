@@ -2,7 +2,8 @@
 
 use nalgebra::{Matrix3, Matrix3xX};
 
-use super::DrivenSpacecraft;
+use super::hinged::Swinging;
+use super::{DrivenPanel, DrivenSpacecraft};
 use crate::attitude::Vector;
 use crate::turning::free::{ClampedModes, Free};
 
@@ -36,6 +37,8 @@ pub struct Posed {
     pub share: Matrix3<f64>,
     /// J - delta E⁻¹ delta': the inertia left to the hub.
     pub left: Matrix3<f64>,
+    /// The panels on hinges.
+    pub hinges: Vec<Swinging>,
 }
 
 /// The rotation by an angle about a unit axis.
@@ -60,18 +63,25 @@ fn of_point(mass: f64, at: &Vector) -> Matrix3<f64> {
 }
 
 impl DrivenSpacecraft {
-    /// Fills in what the body is where drives have these angles (rad) and rates (rad/s).
-    pub fn pose(&self, at: impl Fn(usize) -> [f64; 2], posed: &mut Posed) {
+    /// Fills in what the body is where drives have these angles (rad) and rates (rad/s), and the modes of hinges these
+    /// displacements, all 0 if there are none.
+    pub fn pose(&self, at: impl Fn(usize) -> [f64; 2], eta: &[f64], posed: &mut Posed) {
         let (hub_mass, hub_centre, hub_inertia) = &self.hub;
         let mass = self.mass();
-        let state = |index: usize| {
-            let panel = &self.panels[index];
+        let mut modes = 0;
+        let state = |panel: &DrivenPanel| {
+            let mode = modes;
+            modes += panel.modes.len();
+            if let Some(hinge) = &panel.hinge {
+                let angle = eta.get(mode).map_or(0.0, |eta| hinge.angle(*eta));
+                return (panel.axes * turn(&hinge.about, angle), Vector::zeros(), 0.0);
+            }
             panel.drive.map_or((panel.axes, Vector::zeros(), 0.0), |(axis, drive)| {
                 let [angle, rate] = at(drive);
                 (panel.axes * turn(&axis, angle), panel.axes * axis, rate)
             })
         };
-        let turned: Vec<_> = (0..self.panels.len()).map(state).collect();
+        let turned: Vec<_> = self.panels.iter().map(state).collect();
         let mut centre = hub_centre * *hub_mass;
         let mut push = Vector::zeros();
         for (panel, (axes, about, rate)) in self.panels.iter().zip(&turned) {
@@ -82,13 +92,14 @@ impl DrivenSpacecraft {
         centre /= mass;
         let mut inertia = hub_inertia + of_point(*hub_mass, &(hub_centre - centre));
         let (mut momentum, mut double) = (Vector::zeros(), -push.norm_squared() / mass);
-        let Posed { translations, rotations, moments, momenta, kicks, pulls, pushes, .. } = posed;
+        let Posed { translations, rotations, moments, momenta, kicks, pulls, pushes, hinges, .. } = posed;
         for list in [&mut *translations, rotations, momenta, pushes] {
             list.clear();
         }
         moments.clear();
         kicks.clear();
         pulls.clear();
+        hinges.clear();
         for (panel, (axes, about, rate)) in self.panels.iter().zip(&turned) {
             let from_centre = panel.root - centre;
             let arm = axes * panel.centre;
@@ -97,6 +108,17 @@ impl DrivenSpacecraft {
             let about_root = own + of_point(panel.mass, &arm);
             momentum += (from_centre.cross(&about.cross(&(arm * panel.mass))) + about_root * about) * *rate;
             double += rate * rate * about.dot(&(about_root * about));
+            if let Some(hinge) = &panel.hinge {
+                let (mode, moment) = (translations.len(), arm * panel.mass);
+                hinges.push(Swinging::new(
+                    hinge,
+                    mode,
+                    &(panel.axes * hinge.about),
+                    from_centre,
+                    moment,
+                    about_root,
+                ));
+            }
             for mode in &panel.modes {
                 let t = axes * mode.translation;
                 let n = axes * mode.moments * axes.transpose();

@@ -46,18 +46,25 @@ impl Driving {
         seen: &mut TurningSight,
     ) {
         let mut posed = Posed::default();
-        self.posed(self.began + now, &mut posed);
-        let Bare { attitude, momentum, eta, mut pi, .. } = self.bare(state);
+        let Bare { attitude, momentum, mut eta, mut pi, .. } = self.bare(state);
+        // The free modes are those with hinges at 0.
+        self.posed(self.began + now, &[], &mut posed);
+        let Some(free) = posed.free(&self.of) else { return };
+        if self.swings {
+            self.posed(self.began + now, &eta, &mut posed);
+        }
+        let all = eta.clone();
+        posed.small(&mut eta);
         let rate = posed.rates(&(momentum - rotors), &eta, &mut pi);
         let rates = pi;
-        let Some(free) = posed.free(&self.of) else { return };
         let free = self.basis.followed(&free);
         let inverse = super::basis::inverse(&self.of, &free);
         let of = |held: &[f64]| -> Vec<f64> {
             let rows = inverse.row_iter();
             rows.map(|row| row.iter().zip(held).map(|(part, held)| part * held).sum()).collect()
         };
-        (seen.displacements, seen.rates) = (of(&eta), of(&rates));
+        (seen.displacements, seen.rates) = (of(&all), of(&rates));
+        seen.hinges = posed.hinged(&all, &rates);
         seen.rotations = (0..free.frequencies.len()).map(|mode| free.rotation(mode)).collect();
         let sum = |of: &[Vector], by: &[f64]| -> Vector {
             of.iter().zip(by).fold(Vector::zeros(), |sum, (of, by)| sum + of * *by)
@@ -101,17 +108,24 @@ impl Turning {
     /// Lets drives turn the appendages from the start on, before anything else.
     pub fn drive(&mut self, driving: Driving) {
         let mut posed = Posed::default();
-        driving.posed(0.0, &mut posed);
         let (eta, rates) =
             (driving.basis.held(&self.seen.displacements), driving.basis.held(&self.seen.rates));
-        let (momentum, pi) = posed.momenta(&self.seen.rate, &eta, &rates);
-        let bare = Bare {
-            attitude: self.seen.attitude,
-            momentum,
-            bent: driving.basis.bent(&self.seen.displacements),
-            eta,
-            pi,
+        driving.posed(0.0, &eta, &mut posed);
+        let mut small = eta.clone();
+        posed.small(&mut small);
+        // Where hinges are at the start turns the hub no further, and neither does how they swing.
+        let swung = |all: &[f64]| {
+            let mut others = all.to_vec();
+            posed.small(&mut others);
+            driving.basis.bent(&driving.basis.free(all)) - driving.basis.bent(&driving.basis.free(&others))
         };
+        let (mut attitude, mut rate) = (self.seen.attitude, self.seen.rate);
+        if driving.swings {
+            attitude *= rotation(&-swung(&eta));
+            rate -= swung(&rates);
+        }
+        let (momentum, pi) = posed.momenta(&rate, &small, &rates);
+        let bare = Bare { attitude, momentum, bent: driving.basis.bent(&self.seen.displacements), eta, pi };
         driving.carried(&bare, &mut self.here);
         self.driving = Some(Box::new(driving));
         self.remodel();

@@ -10,11 +10,13 @@ use crate::turning::Surroundings;
 /// The memory of the steps of a driven body.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    /// What it is at the start of the step and at its nodes.
+    /// What it is at the start of the step and at its nodes, and when those are (s since the start).
     posed: [Posed; 4],
+    times: [f64; 4],
     /// q of the free modes, P.
     pub q: Vec<f64>,
     pub p: Vec<f64>,
+    /// Displacements of the clamped modes but for those of hinges, and rates of all.
     eta: Vec<f64>,
     rates: Vec<f64>,
     /// q', and the forces on the free modes.
@@ -47,16 +49,24 @@ impl Driving {
         let modes = self.basis.frequencies.len();
         scratch.q.resize(modes, 0.0);
         scratch.p.resize(modes, 0.0);
-        for (posed, part) in scratch.posed.iter_mut().zip([0.0].into_iter().chain(NODES)) {
+        let Scratch { posed, times, .. } = scratch;
+        for ((posed, at), part) in posed.iter_mut().zip(times).zip([0.0].into_iter().chain(NODES)) {
             // Angles are known from the departure on, whatever jumps there.
-            self.posed(self.began + (t + part * h), posed);
+            *at = self.began + (t + part * h);
+            if !self.swings {
+                self.posed(*at, &[], posed);
+            }
         }
     }
 
     /// How the body turns at a stage with this momentum without rotors, where scratch holds q and P.
     pub fn turns(&self, stage: usize, free: &Vector, push: Option<Vector>, scratch: &mut Scratch) -> Turns {
-        let posed = &scratch.posed[stage];
         scratch.eta = self.basis.held(&scratch.q);
+        if self.swings {
+            self.posed(scratch.times[stage], &scratch.eta, &mut scratch.posed[stage]);
+        }
+        let posed = &scratch.posed[stage];
+        posed.small(&mut scratch.eta);
         scratch.rates = self.basis.held_rates(&scratch.p);
         let rate = posed.rates(free, &scratch.eta, &mut scratch.rates);
         scratch.speeds = self.basis.free(&scratch.rates);
@@ -81,19 +91,21 @@ impl Driving {
     /// Fills in the forces on the modes at a stage, `t` seconds after the start of the step, at which the hub has this rate (rad/s).
     pub fn pull(&self, (stage, t): (usize, f64), rate: &Vector, pulls: &Pulls<'_>, scratch: &mut Scratch) {
         let posed = &scratch.posed[stage];
-        let force = |index: usize| {
-            let moments = &posed.moments[index];
-            let mut force =
-                0.5 * rate.dot(&(moments * rate)) + posed.momenta[index].dot(rate) + posed.pulls[index];
+        let moved = |index: usize| {
+            0.5 * rate.dot(&(posed.moments[index] * rate))
+                + posed.momenta[index].dot(rate)
+                + posed.pulls[index]
+        };
+        let mut forces: Vec<f64> = (0..posed.moments.len()).map(moved).collect();
+        posed.swing(rate, &scratch.eta, &scratch.rates, &mut forces);
+        for (index, force) in forces.iter_mut().enumerate() {
             if let Some(tide) = &pulls.tide {
-                force += moments.component_mul(tide).sum();
+                *force += posed.moments[index].component_mul(tide).sum();
             }
             if let Some(push) = &pulls.push {
-                force -= posed.translations[index].dot(push);
+                *force -= posed.translations[index].dot(push);
             }
-            force
-        };
-        let forces: Vec<f64> = (0..posed.moments.len()).map(force).collect();
+        }
         scratch.forces = self.basis.forced(&forces);
         let Some((around, since)) = pulls.around else { return };
         for heated in around.heated() {

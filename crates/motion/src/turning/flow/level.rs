@@ -30,10 +30,13 @@ impl Turning {
             && self.acting.levers.is_empty()
             && self.acting.push == Vector::zeros()
             && around.is_none_or(|(around, _)| around.heated().is_empty());
+        // Gt but for how much the body is bent now.
+        let turning = self.grid.momentum - rotors;
+        // A step turns a hinge by half of what it may turn the body.
+        slow +=
+            2.0 * self.driving.as_ref().map_or(0.0, |driving| driving.swinging(&self.grid.modes, &turning));
         let Self { model, grid, acting, amplitudes, .. } = self;
         let push = acting.torque.norm() + exerted + change.norm();
-        // Gt but for how much the body is bent now.
-        let turning = grid.momentum - rotors;
         let size = grid.momentum.norm();
         let rigid = model.inverse * turning;
         // What holds the displacements that each mode swings about, and loses nothing of.

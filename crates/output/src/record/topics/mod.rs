@@ -18,9 +18,9 @@ pub use run::{FaultEvent, Metric, MetricLine, MetricPage, Metrics, OutputName, P
 pub use three_axes::{
     Acceleration, Accelerations, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
     ChannelState, ControlMomentGyro, ControlMomentGyros, DriveMotion, DrivenMode, DrivesMotion,
-    ElasticEstimate, ElasticEstimates, Energy, Estimates, Jets, Magnetorquer, Magnetorquers, Orbit,
-    OrbitAxis, Pointing, Position, Rates, Sliding, ThrusterPulse, Thrusters, Torques, TrackedMode, Tracking,
-    Vibration, Vibrations, Wheel, WheelEvent, Wheels,
+    ElasticEstimate, ElasticEstimates, Energy, Estimates, HingeMotion, Hinges, Jets, Magnetorquer,
+    Magnetorquers, Orbit, OrbitAxis, Pointing, Position, Rates, Sliding, ThrusterPulse, Thrusters, Torques,
+    TrackedMode, Tracking, Vibration, Vibrations, Wheel, WheelEvent, Wheels,
 };
 
 /// The declarations, in the order of the list.

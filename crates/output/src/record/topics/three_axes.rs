@@ -214,6 +214,18 @@ rows! {
         /// Each mode, in the order at the start.
         modes: Vec<DrivenMode>,
     }
+    /// A hinge on which an appendage swings.
+    HingeMotion {
+        /// Angle (rad), 0 where its spring is relaxed.
+        angle_rad: f64,
+        /// Rate (rad/s).
+        rate_rad_s: f64,
+    }
+    /// Hinges of a spacecraft's appendages.
+    Hinges = "/hinges" {
+        /// Each hinge, in the order of the appendages.
+        hinges: Vec<HingeMotion>,
+    }
     /// Bearings of the wheels of a spatial body with friction, imbalance or a tachometer.
     Bearings = "/bearings" {
         /// The bearing of each wheel, in the order of the scenario.

@@ -6,6 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::clamped::{ClampedMode, rotation_of};
 use super::drive::Drive;
+use super::hinge::Hinge;
 use super::mass::MassProperties;
 use super::results::Units;
 use super::thermal::Thermal;
@@ -40,6 +41,9 @@ pub struct Appendage {
     /// Drive that turns it about an axis through its root during a run; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub drive: Option<Drive>,
+    /// Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub hinge: Option<Hinge>,
     /// For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments then follow
     /// from the participations in rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -101,8 +105,9 @@ impl Appendage {
             axes: self.turned.matrix(),
             centre: vector(&self.centre),
             inertia: tensor(&self.inertia),
-            modes: self.modes.iter().map(mode).collect(),
+            modes: self.clamped_modes().iter().map(mode).collect(),
             drive: self.drive.as_ref().map(|drive| (drive.axis(), drives)),
+            hinge: self.hinge_of_motion(),
         }
     }
 
@@ -122,7 +127,10 @@ impl Appendage {
 
     /// Participation of each mode in translation (sqrt(kg)) and in rotation about the root (sqrt(kg) m), in its own axes.
     pub fn participations(&self) -> Vec<(Vector, Vector)> {
-        self.modes.iter().map(|mode| (self.translation(mode), rotation_of(&self.moments(mode)))).collect()
+        self.clamped_modes()
+            .iter()
+            .map(|mode| (self.translation(mode), rotation_of(&self.moments(mode))))
+            .collect()
     }
 
     /// Participation of a mode in translation, in the axes of the appendage (sqrt(kg)).

@@ -34,6 +34,8 @@ pub struct Part {
     pub moments: Matrix3<f64>,
     /// Whether the first moments are known, and not only their antisymmetric part.
     pub knows_moments: bool,
+    /// Whether it is the swing of a rigid body on a hinge, which is exact at any angle and rate.
+    pub is_hinge: bool,
 }
 
 /// An appendage, and what turns vectors of its own axes into those of the body.
@@ -67,7 +69,7 @@ impl Craft {
         let parts = parts(&turned, &whole.centre);
         for (index, appendage) in appendages.iter().enumerate() {
             let thermal = appendage.thermal.as_ref();
-            if let Some(fault) = thermal.and_then(|thermal| thermal.fault(appendage.modes.len())) {
+            if let Some(fault) = thermal.and_then(|thermal| thermal.fault(appendage.clamped_modes().len())) {
                 return Err(fault.within(&format!("appendage[{index}]")));
             }
         }
@@ -110,7 +112,7 @@ impl Craft {
     }
 }
 
-/// The spacecraft as drives turn it, if it has any.
+/// The spacecraft as drives and hinges turn it, if it has any.
 fn driven(
     spacecraft: &Spacecraft,
     appendages: &[Appendage],
@@ -145,8 +147,7 @@ impl Part {
 fn parts(appendages: &[Turned<'_>], centre: &Vector) -> Vec<Part> {
     let of = |(appendage, axes): &Turned<'_>| -> Vec<Part> {
         let from_centre = vector(&appendage.at) - centre;
-        let mode = |mode| {
-            let mode: &super::ClampedMode = mode;
+        let mode = |mode: &super::ClampedMode| {
             let translation = axes * appendage.translation(mode);
             let own = axes * appendage.moments(mode) * axes.transpose();
             Part {
@@ -155,9 +156,10 @@ fn parts(appendages: &[Turned<'_>], centre: &Vector) -> Vec<Part> {
                 translation,
                 moments: own + from_centre * translation.transpose(),
                 knows_moments: appendage.knows_moments(mode),
+                is_hinge: appendage.hinge.is_some(),
             }
         };
-        appendage.modes.iter().map(mode).collect()
+        appendage.clamped_modes().iter().map(mode).collect()
     };
     appendages.iter().flat_map(of).collect()
 }
@@ -174,16 +176,17 @@ fn places<'a>(hub: &'a [NamedPoint], appendages: &[Turned<'a>], modes: usize) ->
         hub.iter().map(|point| Place { point, at: vector(&point.position), shapes: rigid() }).collect();
     let mut first = 0;
     for (appendage, axes) in appendages {
+        let clamped = appendage.clamped_modes();
         for point in &appendage.points {
             let mut shapes = rigid();
-            for (index, mode) in appendage.modes.iter().enumerate() {
+            for (index, mode) in clamped.iter().enumerate() {
                 let shape = mode.shapes.get(&point.name).copied().unwrap_or_default();
                 shapes[first + index] = (axes * vector(&shape.translation), axes * vector(&shape.rotation));
             }
             let at = vector(&appendage.at) + axes * vector(&point.position);
             places.push(Place { point, at, shapes });
         }
-        first += appendage.modes.len();
+        first += clamped.len();
     }
     places
 }
@@ -204,9 +207,10 @@ fn modes(
     places: &[Place],
     centre: &Vector,
 ) -> Result<Vec<SpatialMode>, Fault> {
-    let clamped = || appendages.iter().flat_map(|appendage| appendage.modes.iter());
-    let displacements: Vec<f64> = clamped().map(|mode| mode.displacement.get()).collect();
-    let rates: Vec<f64> = clamped().map(|mode| mode.rate.get()).collect();
+    let clamped: Vec<_> =
+        appendages.iter().flat_map(|appendage| appendage.clamped_modes().into_owned()).collect();
+    let displacements: Vec<f64> = clamped.iter().map(|mode| mode.displacement.get()).collect();
+    let rates: Vec<f64> = clamped.iter().map(|mode| mode.rate.get()).collect();
     let (displacements, rates) = (held.to_free(free, &displacements), held.to_free(free, &rates));
     let mode = |(index, frequency): (usize, &f64)| {
         let shapes =

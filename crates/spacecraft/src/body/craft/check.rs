@@ -38,7 +38,7 @@ pub fn check(spacecraft: &Spacecraft, appendages: &[Appendage]) -> Result<(), Fa
             let why = format!("must differ from the other names, got `{}` again", appendage.name);
             return Err(within(Fault::new("name", why)));
         }
-        modes += appendage.modes.len();
+        modes += appendage.modes.len().max(usize::from(appendage.hinge.is_some()));
         if modes > MOST_MODES {
             let why =
                 format!("brings the number of modes to {modes}, and at most {MOST_MODES} are supported");
@@ -83,6 +83,7 @@ fn appendage_itself(appendage: &Appendage) -> Result<(), Fault> {
     if let Some(drive) = &appendage.drive {
         drive.check().map_err(|fault| fault.within("drive"))?;
     }
+    appendage.check_hinge()?;
     for (index, point) in appendage.points.iter().enumerate() {
         in_metres(&format!("points[{index}].position"), vector(&point.position).norm())?;
     }
@@ -177,7 +178,8 @@ fn residual(appendage: &Appendage) -> Result<(), Fault> {
     for axis in 0..3 {
         left[(3 + axis, 3 + axis)] = own.eigenvalues[axis].max(0.0) / (scales[axis] * scales[axis]);
     }
-    let modes = appendage.modes.iter().zip(appendage.participations());
+    let clamped = appendage.clamped_modes();
+    let modes = clamped.iter().zip(appendage.participations());
     for (index, (mode, (t, r))) in modes.enumerate() {
         let at = |key: &str, why: String| Err(Fault::new(format!("modes[{index}]{key}"), why));
         let effective = t.norm_squared();

@@ -17,7 +17,7 @@ pub struct Limit {
 }
 
 impl Craft {
-    /// The largest rate up to which its modes tell how it bends; none if it is rigid.
+    /// The largest rate up to which its modes tell how it bends; none if it is rigid, or all swing on hinges.
     pub fn rate_limit(&self) -> Option<Limit> {
         let limit = |part: &Part| {
             if part.knows_moments {
@@ -28,6 +28,6 @@ impl Craft {
                 Limit { rate: WITHOUT_MOMENTS * part.frequency, why }
             }
         };
-        self.parts.iter().map(limit).min_by(|a, b| a.rate.total_cmp(&b.rate))
+        self.parts.iter().filter(|part| !part.is_hinge).map(limit).min_by(|a, b| a.rate.total_cmp(&b.rate))
     }
 }

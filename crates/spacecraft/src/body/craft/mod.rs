@@ -9,6 +9,7 @@ mod check;
 mod clamped;
 mod damping;
 mod drive;
+mod hinge;
 mod limit;
 mod mass;
 mod moving;
@@ -27,6 +28,7 @@ pub use appendage::{Appendage, Plate};
 pub use assembly::Part;
 pub use clamped::ClampedMode;
 pub use drive::{Drive, DrivePoint, Piece, Track};
+pub use hinge::Hinge;
 pub use limit::Limit;
 pub use moving::Moving;
 pub use results::Units;
@@ -60,6 +62,6 @@ pub struct Craft {
     pub bendings: Vec<Bending>,
     /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
     pub damping_coupling: f64,
-    /// The same parts as drives turn them, if any does.
+    /// The same parts as drives and hinges turn them, if any does.
     pub driven: Option<Arc<DrivenSpacecraft>>,
 }

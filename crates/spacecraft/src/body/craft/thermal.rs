@@ -61,7 +61,7 @@ pub(super) fn bendings(appendages: &[Appendage], frequencies: &[f64], shapes: &D
                 time_constant: thermal.time_constant.get(),
             });
         }
-        first += appendage.modes.len();
+        first += appendage.clamped_modes().len();
     }
     bendings
 }

@@ -1,22 +1,34 @@
-//! Drives, modes and orbit of a body with three axes, as logged.
+//! Drives, hinges, modes and orbit of a body with three axes, as logged.
 
 use super::SpatialPlant;
 use crate::attitude::Vector;
 use crate::environment::into;
 use crate::motion::Phase;
-use crate::record::{DriveMotion, DrivenMode, DrivesMotion, Orbit, OrbitAxis, Vibration, Vibrations};
+use crate::record::{
+    DriveMotion, DrivenMode, DrivesMotion, HingeMotion, Hinges, Orbit, OrbitAxis, Vibration, Vibrations,
+};
 
 impl SpatialPlant {
     /// The drives of appendages and the frequencies of the modes, which change with them, as logged; none without drives.
     pub fn drives(&self) -> Option<DrivesMotion> {
         let two_way = self.two_way.as_deref()?;
-        let (frequencies, _) = two_way.modes()?;
+        let (frequencies, _) = two_way.modes().filter(|_| two_way.has_drives())?;
         let drive = |[angle_rad, rate_rad_s]: [f64; 2]| DriveMotion { angle_rad, rate_rad_s };
         let mode = |frequency_rad_s: &f64| DrivenMode { frequency_rad_s: *frequency_rad_s };
         Some(DrivesMotion {
             drives: two_way.drives(self.seen.seconds()).into_iter().map(drive).collect(),
             modes: frequencies.iter().map(mode).collect(),
         })
+    }
+
+    /// The hinges of appendages, as logged; none without hinges.
+    pub fn hinges(&self) -> Option<Hinges> {
+        let hinge = |[angle_rad, rate_rad_s]: &[f64; 2]| HingeMotion {
+            angle_rad: *angle_rad,
+            rate_rad_s: *rate_rad_s,
+        };
+        let hinges = self.two_way.as_deref()?.hinges();
+        (!hinges.is_empty()).then(|| Hinges { hinges: hinges.iter().map(hinge).collect() })
     }
 
     /// Where it is on its orbit, as logged.

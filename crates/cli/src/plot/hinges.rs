@@ -1,0 +1,27 @@
+//! Figure `hinges` of a spacecraft whose appendages swing on hinges: angles and rates of the hinges.
+
+use flexsc_core::record::HingeMotion;
+use flexsc_figure::{Figure, Point};
+
+use super::drives::alike;
+use super::spatial::Cycles;
+use super::story::Story;
+use super::{time, title};
+
+/// Whether a scenario has hinges.
+pub fn of(story: &Story) -> bool {
+    story.scenario.study.drives.as_ref().is_some_and(|drives| drives.driven.hinges() > 0)
+}
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let hinges = cycles.hinges.first().map_or(0, |(_, row)| row.hinges.len());
+    let lines = |of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {
+        let line =
+            |hinge: usize| cycles.hinges.iter().map(|(time, row)| (*time, of(&row.hinges[hinge]))).collect();
+        (0..hinges).map(|hinge| (format!("hinge {}", hinge + 1), line(hinge))).collect()
+    };
+    let x = time(0.0..story.end);
+    let angles = alike(x.unnamed(), "angle", "rad", lines(&|hinge| hinge.angle_rad));
+    let rates = alike(x, "rate", "rad/s", lines(&|hinge| hinge.rate_rad_s));
+    Figure { title: title(story, "hinges"), panels: vec![angles, rates], panel_height: 240 }
+}
