@@ -72,8 +72,8 @@ impl Driving {
                 let each = parts.iter().zip(modes).enumerate();
                 let rate: f64 = each
                     .map(|(free, (part, [q, p, ..]))| {
-                        let swings = basis.frequencies[free] * (q.abs() + p.abs());
-                        part.abs() * (swings + basis.rotations[free].dot(turning).abs())
+                        let (w, rotation) = (basis.frequencies[free], &basis.rotations[free]);
+                        part.abs() * (w * q.abs() + (w * p + rotation.dot(turning)).abs())
                     })
                     .sum();
                 fastest = fastest.max(hinge.angle(rate));
