@@ -146,6 +146,16 @@ pub struct Truth {
 }
 
 impl Truth {
+    /// Nothing is known of a body at rest.
+    pub const UNKNOWN: Self = Self {
+        orientation: Orientation::Angle(0.0),
+        elastic: [0.0; 3],
+        rate: [0.0; 3],
+        rigid: [0.0; 3],
+        turned: [0.0; 3],
+        sky: SkySight { field: None, sun: None },
+    };
+
     /// What a sensor of angles sees: one angle, or the small rotations by which its place differs from the attitude (rad).
     pub fn seen(&self) -> [f64; 3] {
         match self.orientation {

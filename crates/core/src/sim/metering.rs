@@ -8,7 +8,6 @@ use crate::attitude::Vector;
 use crate::estimator::{Beside, Meter, Monitor, Searching, WindowEnd, WindowMeans};
 use crate::law::Phase;
 use crate::record::{Record, RecordError, Sample};
-use crate::sensor::Truth;
 use crate::time::Instant;
 
 impl Simulation {
@@ -61,7 +60,7 @@ impl Simulation {
     }
 
     /// Measures three axes at the start of a control cycle.
-    pub(super) fn measure_cycle(&mut self, truth: &Truth) {
+    pub(super) fn measure_cycle(&mut self) {
         if let (Some(monitor), Plant::Spatial(plant)) = (&mut self.monitor, &self.plant) {
             monitor.see(self.now, || plant.swings());
         }
@@ -69,6 +68,7 @@ impl Simulation {
         if self.beliefs.len() == 1 {
             return;
         }
+        let truth = self.plant.viewed();
         let error = || truth.orientation.beyond(&self.origin);
         let norm = |v: [f64; 3]| Vector::from(v).norm();
         let value = match meter.objective {

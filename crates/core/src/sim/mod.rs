@@ -180,12 +180,13 @@ impl Simulation {
     }
 
     fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let truth = self.plant.view(self.now)?;
+        self.plant.view(self.now)?;
         self.ask(Event::Start);
-        self.feel(&truth);
-        self.drive.command(self.now, self.laws.commands(), &self.beliefs, truth.rigid);
+        self.feel();
+        let rigid = self.plant.viewed().rigid;
+        self.drive.command(self.now, self.laws.commands(), &self.beliefs, rigid);
         self.steered = false;
-        self.drive.serve(self.now, truth.rigid);
+        self.drive.serve(self.now, rigid);
         self.depart(record)?;
         self.name_tuned();
         self.turned(self.now);
@@ -236,8 +237,7 @@ impl Simulation {
             event = Event::Guard(guard);
         }
         if self.sensing.next == Some(now) || self.read.is_some() {
-            let truth = self.plant.view(now)?;
-            self.sense(&truth, record)?;
+            self.sense(record)?;
             event = Event::Due { sampled: true };
         }
         if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
@@ -256,9 +256,9 @@ impl Simulation {
         }
         let met = std::mem::take(&mut self.met);
         if met || self.drive.due == Some(now) {
-            let truth = self.plant.view(now)?;
-            self.feel(&truth);
-            self.drive.serve(now, truth.rigid);
+            self.plant.view(now)?;
+            self.feel();
+            self.drive.serve(now, self.plant.viewed().rigid);
             self.depart(record)?;
         }
         self.check_own_parts()?;

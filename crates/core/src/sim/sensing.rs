@@ -1,6 +1,7 @@
 //! The sensors of a run: when each is due, and what their readings come to about each axis.
 
 use super::Simulation;
+use super::plant::Plant;
 use crate::attitude::Vector;
 use crate::environment::into;
 use crate::own::Halt;
@@ -77,16 +78,16 @@ impl Sensing {
         }
     }
 
-    /// Reads what is due now, of what there is to measure at each sensor, with angles beyond an origin; tells whether
+    /// Reads what is due now, of a body that was viewed now, with angles beyond an origin; tells whether
     /// anything was measured.
-    pub fn read(&mut self, now: Instant, truth: impl Fn(usize) -> Truth, origin: &Orientation) -> bool {
+    pub fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         let mut any = false;
         for (index, due) in self.sensors.iter_mut().enumerate() {
             self.fresh[index] = None;
             if now > Instant::START && due.next.is_some_and(|next| next != now) {
                 continue;
             }
-            let truth = truth(index);
+            let truth = plant.at_sensor(index);
             let reading = due.sensor.read(now, &truth, due.last.as_ref());
             if let Some(period) = due.period.filter(|_| now > Instant::START) {
                 due.next = Some(due.sensor.after(now, period));
@@ -137,7 +138,8 @@ impl Sensing {
 
 impl Simulation {
     /// Lets the actuator have the magnetic field as it was measured last, or as it is where nothing measures it.
-    pub(super) fn feel(&mut self, truth: &Truth) {
+    pub(super) fn feel(&mut self) {
+        let truth = self.plant.viewed();
         let measured = self.sensing.field.map(|(_, field)| field);
         let here = || match (truth.orientation, truth.sky.field) {
             (Orientation::Attitude(attitude), Some(field)) => Some(into(&attitude, &field)),

@@ -55,8 +55,7 @@ impl Simulation {
     /// As a run.
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.telling.open(self.now, record)? {
-            let truth = self.plant.view(self.now)?;
-            self.sense(&truth, record)?;
+            self.sense(record)?;
             self.unanswered = Some(Event::Start);
         }
         Ok(())

@@ -15,7 +15,6 @@ use crate::record::{
 };
 use crate::scenario::Scenario;
 use crate::scene::Scene;
-use crate::sensor::Truth;
 use crate::time::{Instant, Span};
 
 /// What is told of a run, and when.
@@ -147,11 +146,11 @@ impl Simulation {
         }
         if self.telling.next_dense == Some(now) {
             self.telling.next_dense = Some(now + self.telling.log_period);
-            let truth = self.plant.view(now)?;
+            self.plant.view(now)?;
             match &self.plant {
                 Plant::Planar(_) => self.tell_motion(record)?,
                 Plant::Spatial(plant) => {
-                    record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant, &truth)))?;
+                    record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant)))?;
                 }
             }
             if now >= self.telling.next_law {
@@ -168,8 +167,8 @@ impl Simulation {
     pub(super) fn tell_arrival(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         let Some(arrival) = self.telling.arrival.take_if(|arrival| arrival.at == now) else { return Ok(()) };
-        let truth = self.plant.view(now)?;
-        let row = arrival.row(&truth, &self.plant.about(0, &self.origin));
+        self.plant.view(now)?;
+        let row = arrival.row(self.plant.viewed(), &self.plant.about(0, &self.origin));
         record.record(now, Sample::Arrival(&row))?;
         Ok(self.telling.events.arrived(now, &row, record)?)
     }
@@ -259,19 +258,20 @@ impl Simulation {
     /// A cycle of a body with three axes, or of adaptive observers.
     fn tell_cycle(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
-        let truth = self.plant.view(now)?;
+        self.plant.view(now)?;
         // A law that is never asked aims at the targets all the same.
         self.turn_to_target(now);
         let origin = self.origin;
-        self.measure_cycle(&truth);
+        self.measure_cycle();
         if let Plant::Spatial(plant) = &self.plant {
+            let truth = plant.viewed();
             let error = truth.orientation.beyond(&origin);
             let (rigid, elastic) = plant.rates();
             let jets = self.drive.actuator.cycle();
-            let none = || ([0.0; 3], f64::NAN, 0, Vec::new());
-            let (on, fuel_kg, pulses, thrusters) =
-                jets.map_or_else(none, |cycle| (cycle.on, cycle.fuel, cycle.pulses, cycle.each));
-            let [roll_on_s, pitch_on_s, yaw_on_s] = on;
+            let [roll_on_s, pitch_on_s, yaw_on_s] = jets.as_ref().map_or([0.0; 3], |cycle| cycle.on);
+            let fuel_kg = jets.as_ref().map_or(f64::NAN, |cycle| cycle.fuel);
+            let pulses = jets.as_ref().map_or(0, |cycle| cycle.pulses);
+            let thrusters = jets.map_or_else(Vec::new, |cycle| cycle.each);
             // Jets may have cycles of their own, which are longer.
             let pulses = pulses - std::mem::replace(&mut self.telling.pulses, pulses);
             let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
@@ -290,7 +290,7 @@ impl Simulation {
             };
             record.record(now, Sample::Cycle(&cycle))?;
             if let Some(written) = self.reference.written(now) {
-                let error = truth.orientation.beyond(&self.reference.target(now));
+                let error = || truth.orientation.beyond(&self.reference.target(now));
                 self.telling.events.target(now, written, error, record)?;
             }
             if self.estimates {
@@ -356,7 +356,8 @@ impl Simulation {
         Ok(())
     }
 
-    pub(super) fn spatial_motion(&self, plant: &SpatialPlant, truth: &Truth) -> SpatialMotion {
+    pub(super) fn spatial_motion(&self, plant: &SpatialPlant) -> SpatialMotion {
+        let truth = plant.viewed();
         let (rigid, elastic) = plant.rates();
         let axis = |axis: usize| AxisRate {
             rate_rad_s: rigid[axis] + elastic[axis],
