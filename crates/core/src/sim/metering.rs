@@ -119,7 +119,7 @@ impl Simulation {
         self.plant.view(self.now)?;
         let gain = self.tuned();
         let Some(monitor) = &mut self.monitor else { return Ok(()) };
-        let closed = monitor.close(self.now, &self.plant.swings(&self.origin), gain);
+        let closed = monitor.close(self.now, &self.plant.swings(), gain);
         if let (Some((row, _)), Some(search)) = (&closed.step, monitor.search()) {
             self.laws.tune(search.tunes().0, row.gain);
         }

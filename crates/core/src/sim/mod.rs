@@ -20,7 +20,6 @@ mod instants;
 mod journal;
 mod metering;
 mod own;
-mod plain;
 mod plant;
 mod reference;
 mod sensing;
@@ -32,6 +31,7 @@ mod telling;
 
 use crate::belief::Belief;
 use crate::estimator::{self, Estimate, Meter, Monitor};
+use crate::flight::{self, Setup};
 use crate::law::{Controls, Event};
 use crate::random::Seed;
 use crate::record::Record;
@@ -46,7 +46,6 @@ pub(crate) use plant::Exerted;
 pub use sight::{LookField, LookGroup};
 pub use stepping::Occasion;
 
-use plain::Quick;
 use plant::Plant;
 use reference::Reference;
 use sensing::Sensing;
@@ -96,8 +95,8 @@ pub struct Simulation {
     steered: bool,
     /// Whether parts of it are a program's own.
     own: bool,
-    /// Which quicker loops suit it.
-    quick: Quick,
+    /// The start of a flight of its own, if it can make one.
+    flight: Option<Box<Setup>>,
 }
 
 impl Simulation {
@@ -131,7 +130,7 @@ impl Simulation {
             unanswered: None,
             steered: false,
             own: scenario.has_own_parts(),
-            quick: Quick::new(scenario),
+            flight: flight::alone(scenario).map(Box::new),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -152,7 +151,7 @@ impl Simulation {
         let until = until.min(self.end);
         self.open(record)?;
         self.resume(None, record)?;
-        self.run_quickly(until, record)?;
+        self.fly(until, record)?;
         while self.arrive(until, record)? {
             self.serve(record)?;
         }

@@ -9,6 +9,7 @@ use std::borrow::Cow;
 
 use super::SimulationError;
 use crate::body::{Axes, Wrench};
+use crate::estimator::Monitor;
 use crate::guard::Guard;
 use crate::motion::State;
 use crate::motion::turning::SlippedRotor;
@@ -124,10 +125,25 @@ impl Plant {
 
     /// The modes as the monitor of the envelope takes them: those of one angle, or the rotations that those of three axes give the
     /// first sensor.
-    pub fn swings(&self, target: &Orientation) -> Cow<'_, State> {
+    pub fn swings(&self) -> Cow<'_, State> {
         match self {
-            Self::Planar(_) => self.about(0, target),
+            Self::Planar(plant) => Cow::Borrowed(plant.state()),
             Self::Spatial(plant) => Cow::Owned(plant.swings()),
+        }
+    }
+
+    /// Lets the monitor of the envelope know what acts on the modes from now on: a torque (N m) on those of one angle, what is
+    /// commanded on those of three axes.
+    pub fn push_monitor(
+        &self,
+        monitor: &mut Monitor,
+        now: Instant,
+        torque: f64,
+        commanded: impl FnOnce() -> Wrench,
+    ) {
+        match self {
+            Self::Planar(plant) => monitor.command(now, plant.state(), torque),
+            Self::Spatial(plant) => monitor.push(now, &plant.swings(), &plant.modal_forces(&commanded())),
         }
     }
 

@@ -6,7 +6,7 @@ use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{DriftingModes, Elastic, Periodic, Rigid, SpatialState};
-use crate::environment::{Around, SkySight};
+use crate::environment::Around;
 use crate::motion::turning::{Flexible, Rotor, Slip, SlippedRotor, Surroundings};
 use crate::motion::{Phase, State};
 use crate::record::{Record, RecordError};
@@ -191,12 +191,13 @@ impl SpatialPlant {
             if !self.state.is_finite() {
                 return None;
             }
-            let (truth, elastic) = match self.two_way.as_deref() {
-                None => self.one_way(),
-                Some(two_way) => two_way.measurable(&self.sensed),
-            };
-            self.rates = (truth.rigid.into(), elastic);
-            self.truth = truth;
+            if let Some(two_way) = self.two_way.as_deref() {
+                let (truth, elastic) = two_way.measurable(&self.sensed);
+                self.rates = (truth.rigid.into(), elastic);
+                self.truth = truth;
+            } else {
+                self.view_one_way();
+            }
             if let Some(around) = &self.around {
                 self.truth.sky = around.seen(self.seen.seconds());
             }
@@ -228,20 +229,18 @@ impl SpatialPlant {
         displacements.zip(shapes).fold(Vector::zeros(), |sum, (q, shape)| sum + shape * q)
     }
 
-    /// What there is to measure at the first sensor where modes do not act back, and the elastic part of the rates (rad/s).
-    fn one_way(&self) -> (Truth, Vector) {
-        let rigid = self.rigid.rate(&self.state.turn);
-        let elastic = self.elastic.rate_at(&self.sensed, &self.state.modes);
+    /// Views a body whose modes do not act back.
+    fn view_one_way(&mut self) {
+        let (turn, modes) = (&self.state.turn, &self.state.modes);
+        let (rigid, elastic) = (self.rigid.rate(turn), self.elastic.rate_at(&self.sensed, modes));
         let angle = self.turned(&self.sensed);
-        let truth = Truth {
-            orientation: Orientation::Attitude(self.state.turn.attitude),
-            elastic: angle.into(),
-            rate: (rigid + elastic).into(),
-            rigid: rigid.into(),
-            turned: (Rigid::turned(&self.state.turn) + angle).into(),
-            sky: SkySight::default(),
-        };
-        (truth, elastic)
+        let truth = &mut self.truth;
+        truth.orientation = Orientation::Attitude(turn.attitude);
+        truth.elastic = angle.into();
+        truth.rate = (rigid + elastic).into();
+        truth.rigid = rigid.into();
+        truth.turned = (Rigid::turned(turn) + angle).into();
+        self.rates = (rigid, elastic);
     }
 
     /// Begins a new motion at the instant seen last, under what acts from now on.
