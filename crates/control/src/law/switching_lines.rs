@@ -63,7 +63,7 @@ impl SwitchingLines {
 
     /// The rate that the body shall have at an angle (rad/s).
     pub fn wanted(&self, angle: f64) -> f64 {
-        -libm::copysign(self.returning(angle.abs() - self.edge), angle)
+        -self.returning(angle.abs() - self.edge).copysign(angle)
     }
 
     /// Rate of the return from so far beyond the edge (rad/s).

@@ -50,7 +50,6 @@ impl Simulation {
         let sensed = [truth.seen()[0], truth.rate[0]];
         self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.depart(record)?;
-        let torque = self.drive.actuator.asked(0);
-        self.tell_switching(before, cause, sensed, torque, record)
+        self.tell_switching(before, cause, sensed, record)
     }
 }

@@ -55,6 +55,7 @@ impl Loads {
         drive
     }
 
+    #[inline]
     fn next(&self) -> Option<Instant> {
         let drawn = self.disturbances.iter().filter_map(Disturbing::due).min();
         [self.edges.last().copied(), self.actuator.due(), drawn].into_iter().flatten().min()

@@ -101,9 +101,10 @@ impl Simulation {
 
     /// The states of the laws, if their switchings count.
     pub(super) fn states(&self) -> Vec<Phase> {
-        let counts = self.meter.as_ref().is_some_and(|meter| meter.objective == Objective::Switchings);
-        let axes = if counts { self.beliefs.len() } else { 0 };
-        (0..axes).map(|axis| self.laws.about(axis).state()).collect()
+        if self.meter.as_ref().is_none_or(|meter| meter.objective != Objective::Switchings) {
+            return Vec::new();
+        }
+        (0..self.beliefs.len()).map(|axis| self.laws.about(axis).state()).collect()
     }
 
     /// Counts the laws whose states are no longer these.

@@ -204,6 +204,7 @@ impl Simulation {
     }
 
     /// The next instant at which anything is due.
+    #[inline]
     fn next(&self) -> Instant {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
@@ -228,6 +229,7 @@ impl Simulation {
     }
 
     /// Measures and estimates what is due now; tells what has come up for laws.
+    #[inline]
     fn perceive(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
         self.expose(record)?;
         let now = self.now;

@@ -179,7 +179,6 @@ impl Simulation {
         before: Phase,
         cause: Option<Cause>,
         [angle_rad, rate_rad_s]: [f64; 2],
-        torque_nm: f64,
         record: &mut dyn Record,
     ) -> Result<(), SimulationError> {
         let (now, state) = (self.now, self.laws.about(0).state());
@@ -194,7 +193,7 @@ impl Simulation {
             time_fs,
             state,
             cause: if cause == Some(Cause::Timeout) { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm,
+            torque_nm: self.drive.actuator.asked(0),
             angle_rad,
             rate_rad_s,
             gain: self.laws.about(0).tuned(),

@@ -62,6 +62,7 @@ impl Plant {
     }
 
     /// What there is to measure at an instant, to which the body is brought.
+    #[inline]
     pub fn view(&mut self, now: Instant) -> Result<&Truth, SimulationError> {
         let truth = match self {
             Self::Planar(plant) => plant.measurable(now),
@@ -71,6 +72,7 @@ impl Plant {
     }
 
     /// What there was to measure at the instant viewed last.
+    #[inline]
     pub fn viewed(&self) -> &Truth {
         match self {
             Self::Planar(plant) => plant.viewed(),
@@ -100,6 +102,7 @@ impl Plant {
     }
 
     /// The instant and index of the guard that trips first on this motion, within a span; known in closed form alone.
+    #[inline]
     pub fn trip(
         &mut self,
         guards: &[Guard],
