@@ -37,6 +37,7 @@ impl Simulation {
     }
 
     /// Counts angles from the target of now: what is believed of them changes with it.
+    #[inline]
     pub(super) fn turn_to_target(&mut self, now: Instant) {
         if self.next_target.is_none_or(|begins| now < begins) {
             return;

@@ -224,29 +224,32 @@ impl Simulation {
 
     /// Does what is due now.
     fn serve(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let event = self.perceive(record)?;
+        let event = self.event();
+        self.perceive(record)?;
         self.answer(event, record)
     }
 
-    /// Measures and estimates what is due now; tells what has come up for laws.
-    #[inline]
-    fn perceive(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
+    /// What comes up for laws now.
+    fn event(&self) -> Event {
+        match self.trip {
+            _ if self.samples() || self.read.is_some() => Event::Due { sampled: true },
+            Some((at, guard)) if at == self.now => Event::Guard(guard),
+            _ => Event::Due { sampled: false },
+        }
+    }
+
+    /// Measures and estimates what is due now.
+    fn perceive(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.expose(record)?;
         let now = self.now;
-        let mut event = Event::Due { sampled: false };
-        if let Some((_, guard)) = self.trip.filter(|(at, _)| *at == now) {
-            event = Event::Guard(guard);
-        }
-        if self.sensing.next == Some(now) || self.read.is_some() {
+        if self.samples() || self.read.is_some() {
             self.sense(record)?;
-            event = Event::Due { sampled: true };
         }
         if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
             self.close_window(record)?;
         }
         self.close_objective(record)?;
-        self.tell_arrival(record)?;
-        Ok(event)
+        self.tell_arrival(record)
     }
 
     /// Laws decide on what has come up, and the actuator acts.

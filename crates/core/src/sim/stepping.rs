@@ -109,7 +109,8 @@ impl Simulation {
         let mut came = self.resume(occasion, record)?;
         while !came && self.arrive(until, record)? {
             let closes = self.monitor.as_ref().is_some_and(|monitor| monitor.closes == self.now);
-            let event = self.perceive(record)?;
+            let event = self.event();
+            self.perceive(record)?;
             came = match occasion {
                 Some(Occasion::Sample) => event == Event::Due { sampled: true },
                 Some(Occasion::Decision) => self.concerns(event),
