@@ -124,9 +124,10 @@ pub fn rotation(by: &Vector) -> Quaternion<f64> {
 
 /// How far an attitude is turned beyond a goal: 2 vec(goal* o q), in the body's axes and on the shorter way (rad for
 /// small angles, exactly twice the sine of half the angle along its axis).
+#[inline]
 pub fn beyond(goal: &Quaternion<f64>, q: &Quaternion<f64>) -> Vector {
     let difference = goal.conjugate() * q;
-    difference.vector() * libm::copysign(2.0, difference.w)
+    difference.vector() * 2.0_f64.copysign(difference.w)
 }
 
 /// The vector by which a [`rotation`] turns one attitude into another, in the body's axes and on the shorter way (rad).

@@ -17,12 +17,12 @@ pub struct GivenRecord {
 impl GivenRecord {
     /// Takes over the reduced moments (rad/s²) from now on.
     pub fn change(&mut self, now: Instant, moments: [f64; 3]) {
-        let duration = now.since(self.since).seconds();
-        let start = self.since.since(self.began).seconds();
-        for (input, acceleration) in self.moments.into_iter().enumerate() {
-            if acceleration != 0.0 && duration > 0.0 {
-                self.pulses.push(Pulse { input, acceleration, start, duration });
-            }
+        if now > self.since && self.moments != [0.0; 3] {
+            let duration = now.since(self.since).seconds();
+            let start = self.since.since(self.began).seconds();
+            let pulse = |(input, acceleration)| Pulse { input, acceleration, start, duration };
+            let given = self.moments.into_iter().enumerate().filter(|(_, acceleration)| *acceleration != 0.0);
+            self.pulses.extend(given.map(pulse));
         }
         (self.moments, self.since) = (moments, now);
     }

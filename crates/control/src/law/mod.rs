@@ -275,7 +275,9 @@ pub struct Goal {
 impl Goal {
     /// Angle and rate at an instant.
     pub fn at(&self, now: Instant) -> (f64, f64) {
-        (self.angle + self.rate * now.since(self.from).seconds(), self.rate)
+        // At rest the time that has passed is nothing to it.
+        let travel = if self.rate == 0.0 { self.rate } else { self.rate * now.since(self.from).seconds() };
+        (self.angle + travel, self.rate)
     }
 }
 

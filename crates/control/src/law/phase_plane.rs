@@ -212,9 +212,11 @@ impl Control for InPhasePlane {
         let (angle, rate) = goal.at(now);
         let angle = belief.angle - angle;
         let excess = belief.rate - rate + belief.queued - self.lines.wanted(angle);
-        let allowed = self.lines.allowed(angle);
+        // On the side to which the rate exceeds what it should be.
+        let allowed = self.lines.allowed_above(if excess < 0.0 { -angle } else { angle });
         let mut change = self.relay(excess, allowed);
         if let Some(damping) = &mut self.damping {
+            let allowed = self.lines.allowed(angle);
             let free = !self.firing && !is_beyond(excess, allowed);
             self.damped = damping.decide(belief, free, (excess, allowed));
             change += self.damped.change;
@@ -268,10 +270,10 @@ impl InPhasePlane {
         self.lines = SwitchingLines::new(&self.spec, &self.authority);
     }
 
-    fn relay(&mut self, excess: f64, allowed: [f64; 2]) -> f64 {
-        if is_beyond(excess, allowed) {
+    fn relay(&mut self, excess: f64, allowed: f64) -> f64 {
+        if excess.abs() > allowed {
             self.firing = true;
-        } else if excess.abs() < self.lines.release(allowed[usize::from(excess < 0.0)]) {
+        } else if excess.abs() < self.lines.release(allowed) {
             self.firing = false;
         }
         if !self.firing {

@@ -63,7 +63,7 @@ impl SwitchingLines {
 
     /// The rate that the body shall have at an angle (rad/s).
     pub fn wanted(&self, angle: f64) -> f64 {
-        -libm::copysign(self.returning(angle.abs() - self.edge), angle)
+        -self.returning(angle.abs() - self.edge).copysign(angle)
     }
 
     /// Rate of the return from so far beyond the edge (rad/s).
@@ -77,12 +77,16 @@ impl SwitchingLines {
 
     /// How far the rate may be above, and below, the one that it shall have at an angle (rad/s).
     pub fn allowed(&self, angle: f64) -> [f64; 2] {
-        [angle, -angle].map(|ahead| {
-            let beyond = ahead - self.edge;
-            let allowed =
-                if beyond > 0.0 { 0.5 * self.returning(beyond) } else { f64::sqrt(-self.parabola * beyond) };
-            allowed.clamp(self.least, self.on)
-        })
+        [angle, -angle].map(|ahead| self.allowed_above(ahead))
+    }
+
+    /// How far the rate may be above the one that it shall have at an angle (rad/s).
+    #[inline]
+    pub fn allowed_above(&self, angle: f64) -> f64 {
+        let beyond = angle - self.edge;
+        let allowed =
+            if beyond > 0.0 { 0.5 * self.returning(beyond) } else { f64::sqrt(-self.parabola * beyond) };
+        allowed.clamp(self.least, self.on)
     }
 
     /// Below which excess of the rate the jets end to fire, where so much is allowed (rad/s).

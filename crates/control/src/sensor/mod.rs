@@ -109,6 +109,7 @@ pub enum Orientation {
 
 impl Orientation {
     /// How far it is turned beyond another, about each axis (rad); about the first alone for one angle.
+    #[inline]
     pub fn beyond(&self, other: &Self) -> [f64; 3] {
         match (self, other) {
             (Self::Attitude(q), Self::Attitude(goal)) => beyond(goal, q).into(),
@@ -120,6 +121,7 @@ impl Orientation {
 
     /// The orientation that is seen as these angles: one angle itself, or small rotations of this attitude (rad).
     #[must_use]
+    #[inline]
     pub fn at(&self, angles: [f64; 3]) -> Self {
         match self {
             Self::Angle(_) => Self::Angle(angles[0]),
@@ -146,7 +148,18 @@ pub struct Truth {
 }
 
 impl Truth {
+    /// Nothing is known of a body at rest.
+    pub const UNKNOWN: Self = Self {
+        orientation: Orientation::Angle(0.0),
+        elastic: [0.0; 3],
+        rate: [0.0; 3],
+        rigid: [0.0; 3],
+        turned: [0.0; 3],
+        sky: SkySight { field: None, sun: None },
+    };
+
     /// What a sensor of angles sees: one angle, or the small rotations by which its place differs from the attitude (rad).
+    #[inline]
     pub fn seen(&self) -> [f64; 3] {
         match self.orientation {
             Orientation::Angle(angle) => [angle, 0.0, 0.0],

@@ -255,15 +255,16 @@ impl Rotation {
 /// The integral of time times the absolute value over a stretch that begins at a time and is so long (s).
 fn integral(value: &Polynomial, begins: f64, length: f64) -> f64 {
     let (low, high) = value.bounds();
-    let mut edges = vec![0.0];
-    if low < 0.0 && high > 0.0 {
-        value.roots(0.0, &mut edges);
-    }
-    edges.push(1.0);
     let piece = |ends: &[f64]| {
         let [plain, weighted] = value.integrals(ends[0], ends[1]);
         (length * (begins * plain + length * weighted)).abs()
     };
+    if !(low < 0.0 && high > 0.0) {
+        return piece(&[0.0, 1.0]);
+    }
+    let mut edges = vec![0.0];
+    value.roots(0.0, &mut edges);
+    edges.push(1.0);
     edges.windows(2).map(piece).sum()
 }
 

@@ -3,14 +3,14 @@
 use super::{Simulation, SimulationError};
 use crate::estimator::Taken;
 use crate::record::Record;
-use crate::sensor::Truth;
 use crate::time::Instant;
 
 impl Simulation {
     /// Takes a sample, which the estimator makes a belief of.
-    pub(super) fn sense(&mut self, truth: &Truth, record: &mut dyn Record) -> Result<(), SimulationError> {
+    pub(super) fn sense(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
-        let measured = self.read.take().unwrap_or_else(|| self.measure(truth));
+        self.plant.view(now)?;
+        let measured = self.read.take().unwrap_or_else(|| self.measure());
         if self.sensing.next.is_some() {
             let (from, to) = (self.given.seconds(), now.seconds());
             self.estimator.pushed(self.drive.actuator.waveform_impulse(from, to));
@@ -37,6 +37,7 @@ impl Simulation {
     }
 
     /// Counts angles from the target of now: what is believed of them changes with it.
+    #[inline]
     pub(super) fn turn_to_target(&mut self, now: Instant) {
         if self.next_target.is_none_or(|begins| now < begins) {
             return;

@@ -5,7 +5,6 @@ use super::{Simulation, SimulationError};
 use crate::body::Lent;
 use crate::estimator::kalman::KalmanFilter;
 use crate::record::Record;
-use crate::sensor::Truth;
 use crate::time::Instant;
 
 impl Simulation {
@@ -49,10 +48,9 @@ impl Simulation {
     }
 
     /// Measures what there is.
-    pub(super) fn measure(&mut self, truth: &Truth) -> bool {
+    pub(super) fn measure(&mut self) -> bool {
         self.turn_to_target(self.now);
-        let plant = &self.plant;
-        self.sensing.read(self.now, |sensor| plant.at_sensor(sensor, truth), &self.origin)
+        self.sensing.read(self.now, &self.plant, &self.origin)
     }
 
     /// Where it is in time.
@@ -70,8 +68,8 @@ impl Simulation {
     /// # Errors
     /// As a run.
     pub(crate) fn read_ahead(&mut self) -> Result<Option<f64>, SimulationError> {
-        let truth = self.plant.view(self.now)?;
-        let measured = self.measure(&truth);
+        self.plant.view(self.now)?;
+        let measured = self.measure();
         self.read = Some(measured);
         Ok(measured.then(|| self.sensing.measured[0][0]))
     }

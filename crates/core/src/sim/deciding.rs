@@ -29,10 +29,11 @@ impl Simulation {
         if self.decisions > MOST_DECISIONS {
             return Err(SimulationError::Chatter { at: now, count: self.decisions });
         }
-        let truth = self.plant.view(now)?;
+        self.plant.view(now)?;
         self.turn_to_target(now);
         if self.sensing.next.is_none() {
             // What is continuous is as it is.
+            let truth = self.plant.viewed();
             let angles = truth.orientation.at(truth.seen()).beyond(&self.origin);
             for (axis, belief) in self.beliefs.iter_mut().enumerate() {
                 (belief.angle, belief.rate) = (angles[axis], truth.rate[axis]);
@@ -44,10 +45,11 @@ impl Simulation {
         let states = self.states();
         let cause = self.ask(event);
         self.count_switchings(states);
-        self.feel(&truth);
+        self.feel();
+        let truth = self.plant.viewed();
+        let sensed = [truth.seen()[0], truth.rate[0]];
         self.drive.command(now, self.laws.commands(), &self.beliefs, truth.rigid);
         self.depart(record)?;
-        let torque = self.drive.actuator.asked(0);
-        self.tell_switching(before, cause, [truth.seen()[0], truth.rate[0]], torque, record)
+        self.tell_switching(before, cause, sensed, record)
     }
 }

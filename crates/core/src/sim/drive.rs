@@ -20,6 +20,8 @@ pub struct Loads {
     /// The instants, latest first, at which the waveform breaks, a disturbance or what is around changes, the drift has a kink, or
     /// drives have turned so far that other modes carry the motion on.
     edges: Vec<Instant>,
+    /// The next of them, or of what disturbances draw.
+    edge: Option<Instant>,
     /// The next instant at which anything changes by itself.
     pub due: Option<Instant>,
     wrench: Wrench,
@@ -48,16 +50,19 @@ impl Loads {
                 .map(|(index, of)| Disturbing::new(of, scenario.model.spatial(), stream(index)))
                 .collect(),
             edges,
+            edge: None,
             due: None,
             wrench: Wrench::default(),
         };
-        drive.due = drive.next();
+        drive.look_ahead();
         drive
     }
 
-    fn next(&self) -> Option<Instant> {
+    /// Finds what is due next.
+    fn look_ahead(&mut self) {
         let drawn = self.disturbances.iter().filter_map(Disturbing::due).min();
-        [self.edges.last().copied(), self.actuator.due(), drawn].into_iter().flatten().min()
+        self.edge = self.edges.last().copied().into_iter().chain(drawn).min();
+        self.due = self.edge.into_iter().chain(self.actuator.due()).min();
     }
 
     /// Takes over what laws command from now on, of a body that is believed to move so, and turns at these rigid rates
@@ -66,7 +71,7 @@ impl Loads {
         let actuator = &mut self.actuator;
         let demands = self.distribution.demands(commands, beliefs, || actuator.stored(now));
         actuator.command(now, &demands, rigid);
-        self.due = self.next();
+        self.due = self.edge.into_iter().chain(actuator.due()).min();
     }
 
     /// Does what is due now, after laws have decided, for a body that turns at these rigid rates (rad/s).
@@ -76,7 +81,7 @@ impl Loads {
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.serve(now));
         self.actuator.serve(now, rigid);
-        self.due = self.next();
+        self.look_ahead();
     }
 
     /// All that acts from now on.

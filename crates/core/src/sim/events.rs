@@ -111,7 +111,7 @@ impl Events {
         &mut self,
         now: Instant,
         target: (Frame, Quaternion<f64>),
-        error: [f64; 3],
+        error: impl FnOnce() -> [f64; 3],
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let manoeuvre = (LogLevel::Info, "manoeuvre");
@@ -124,7 +124,7 @@ impl Events {
             self.journal.tell(now, manoeuvre, line, record)?;
             self.travelling = true;
         }
-        if self.travelling && error.iter().zip(self.zones).all(|(error, zone)| error.abs() <= zone) {
+        if self.travelling && error().iter().zip(self.zones).all(|(error, zone)| error.abs() <= zone) {
             self.travelling = false;
             let line = "the attitude is within the dead zone about its target".to_owned();
             self.journal.tell(now, manoeuvre, line, record)?;

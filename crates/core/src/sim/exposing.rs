@@ -111,9 +111,9 @@ impl Simulation {
         for (t, lasts) in quadrature::nodes(now.since(from).seconds(), fastest) {
             let at = from + Span::from_seconds(t);
             plant.approach(at, record)?;
-            let truth = plant.view(at)?;
+            plant.view(at)?;
             for shutter in shutters.iter_mut().filter(|shutter| shutter.is_open) {
-                let truth = plant.at_sensor(shutter.sensor, &truth);
+                let truth = plant.at_sensor(shutter.sensor);
                 if let Orientation::Attitude(attitude) = truth.orientation.at(truth.seen()) {
                     shutter.exposure.see(attitude, lasts);
                 }

@@ -1,7 +1,7 @@
 //! Runs that a flight makes from their start on: the kernel of runs in lanes, with one number in the place of lanes.
 //!
-//! What it comes to, and what it tells, is to the bit what the loop of plain runs comes to, which takes the run over at the last
-//! departure before its end.
+//! What it comes to, and what it tells, is to the bit what the loop comes to, which takes the run over at the last departure
+//! before its end.
 
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
@@ -34,10 +34,10 @@ impl Simulation {
             Course::Beyond(band) if band > 0.0 => band,
             Course::Beyond(_) | Course::All => return Ok(()),
         };
-        if self.now != Instant::START || self.decisions > 0 || !self.goes_plainly() {
+        if self.now != Instant::START || self.decisions > 0 || !self.is_left_alone() {
             return Ok(());
         }
-        let Some(setup) = self.quick.flight.take() else { return Ok(()) };
+        let Some(setup) = self.flight.take() else { return Ok(()) };
         let setup = Setup { end: until.parts(), band, ..*setup };
         let listens = record.switchings();
         let (failed, rest) = (None, LaneRest::default());
@@ -46,6 +46,18 @@ impl Simulation {
         let Alone { failed, rest, .. } = crew;
         self.land(&rest, record)?;
         failed.map_or(Ok(()), Err)
+    }
+
+    /// Whether nobody looks at the run on its way, or steers it.
+    fn is_left_alone(&self) -> bool {
+        self.telling.due().is_none()
+            && self.telling.scene.is_none()
+            && self.drive.due.is_none()
+            && self.sensing.next.is_none()
+            && self.next_target.is_none()
+            && self.meter.is_none()
+            && self.read.is_none()
+            && !(self.met || self.steered || self.laws.are_steered())
     }
 
     /// Takes the run over at a departure.
@@ -177,5 +189,92 @@ impl Crew for Alone<'_> {
 
     fn take_back(&mut self, rest: LaneRest) {
         self.rest = rest;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use crate::record::{Detail, Trace};
+    use crate::time::{Instant, Span};
+    use crate::{Scenario, Simulation};
+
+    fn shipped(name: &str, changes: &[(&str, &str)]) -> Scenario {
+        let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));
+        let mut document = crate::Document::load(path.as_ref()).expect("shipped");
+        for (key, value) in changes.iter().chain(&[("log.period", "500.0")]) {
+            document.set_text(key, value).expect("a key");
+        }
+        Scenario::from_document(&document).expect("valid")
+    }
+
+    /// What a run in pieces tells of its events, and the motion at its end, as text, whose digits are those of all bits.
+    fn told(scenario: &Scenario, detail: Detail, pieces: u32) -> String {
+        let mut trace = Trace::new(detail);
+        let mut simulation = Simulation::new(scenario, 3);
+        for piece in 1..=pieces {
+            let until = scenario.duration.seconds() * f64::from(piece) / f64::from(pieces);
+            simulation.run_until(Instant::START + Span::from_seconds(until), &mut trace).expect("a run");
+        }
+        let topics = ["/command", "/envelope_mean", "/adaptation"].map(|topic| trace.topic(topic).cloned());
+        let sensed = simulation.laws.about(0).state();
+        format!("{topics:?} {:?} {sensed:?} {:?}", simulation.state(), simulation.beliefs)
+    }
+
+    /// A record of rows at fixed times has the loop from the start on.
+    fn compare(scenario: &Scenario, name: &str) {
+        let expected = told(scenario, Detail::Full, 1);
+        for pieces in [1, 7] {
+            assert!(told(scenario, Detail::Events, pieces) == expected, "{name} in {pieces}");
+        }
+    }
+
+    #[test]
+    fn flights_tell_what_the_loop_tells() {
+        for name in ["relay-fixed", "relay-quiet", "relay-adaptive", "relay-no-freeze"] {
+            for gain in ["0.3389", "0.31", "0.29", "0.28", "0.4"] {
+                let scenario = shipped(name, &[("law.relay.k_t", gain)]);
+                assert!(Simulation::new(&scenario, 0).flight.is_some(), "{name}");
+                compare(&scenario, name);
+            }
+        }
+    }
+
+    #[test]
+    fn so_do_those_of_damped_modes() {
+        let one = "[{ frequency = 0.44, gain = 0.0213, damping = 0.01 }]";
+        let three = "[{ frequency = 0.44, gain = 0.0213, damping = 0.002, displacement = 2.75e-6 }, \
+                     { frequency = 0.755, gain = 0.0216 }, { frequency = 3.4, gain = 0.01, damping = 0.4 }]";
+        let other = "{ window = 500.0, modes = [{ frequency = 0.5, gain = 0.02, damping = 0.01 }] }";
+        // A light build has no kernels for damped modes.
+        let flies = cfg!(feature = "damped-flights");
+        for name in ["relay-fixed", "relay-adaptive"] {
+            for modes in [one, three] {
+                let scenario = shipped(name, &[("body.planar.modes", modes)]);
+                assert_eq!(Simulation::new(&scenario, 0).flight.is_some(), flies, "{name} {modes}");
+                compare(&scenario, &format!("{name} {modes}"));
+            }
+        }
+        let scenario = shipped("relay-fixed", &[("estimator.envelope", other)]);
+        assert_eq!(Simulation::new(&scenario, 0).flight.is_some(), flies);
+        compare(&scenario, "a model of its own");
+    }
+
+    #[test]
+    fn so_do_those_that_cannot_fly() {
+        let critical = "[{ frequency = 0.44, gain = 0.0213, damping = 1.0 }]";
+        let other = "{ window = 500.0, modes = [{ frequency = 0.5, gain = 0.02, damping = 0.01 }] }";
+        let damped =
+            "[{ frequency = 0.44, gain = 0.0213, damping = 0.01 }, { frequency = 0.755, gain = 0.0 }]";
+        for changes in [
+            &[("law.relay.sides", "one")][..],
+            &[("body.planar.modes", damped)],
+            &[("body.planar.modes", damped), ("estimator.envelope.form", "trigonometric")],
+            &[("estimator.envelope.form", "truth")],
+            &[("body.planar.modes", critical), ("estimator.envelope", other)],
+        ] {
+            let scenario = shipped("relay-fixed", changes);
+            assert!(Simulation::new(&scenario, 0).flight.is_none(), "{changes:?}");
+            compare(&scenario, &format!("{changes:?}"));
+        }
     }
 }

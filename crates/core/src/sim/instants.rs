@@ -41,14 +41,15 @@ impl Simulation {
     /// # Errors
     /// A state that is no longer finite, and a record that cannot be kept.
     pub fn tell_now(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (now, truth) = (self.now, self.plant.view(self.now)?);
+        let now = self.now;
+        self.plant.view(now)?;
         match &self.plant {
             Plant::Planar(_) => {
                 self.tell_motion(record)?;
                 record.record(now, Sample::Law(&self.law_row()))?;
             }
             Plant::Spatial(plant) => {
-                record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant, &truth)))?;
+                record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant)))?;
             }
         }
         Ok(())

@@ -8,7 +8,6 @@ use crate::attitude::Vector;
 use crate::estimator::{Beside, Meter, Monitor, Searching, WindowEnd, WindowMeans};
 use crate::law::Phase;
 use crate::record::{Record, RecordError, Sample};
-use crate::sensor::Truth;
 use crate::time::Instant;
 
 impl Simulation {
@@ -61,7 +60,7 @@ impl Simulation {
     }
 
     /// Measures three axes at the start of a control cycle.
-    pub(super) fn measure_cycle(&mut self, truth: &Truth) {
+    pub(super) fn measure_cycle(&mut self) {
         if let (Some(monitor), Plant::Spatial(plant)) = (&mut self.monitor, &self.plant) {
             monitor.see(self.now, || plant.swings());
         }
@@ -69,6 +68,7 @@ impl Simulation {
         if self.beliefs.len() == 1 {
             return;
         }
+        let truth = self.plant.viewed();
         let error = || truth.orientation.beyond(&self.origin);
         let norm = |v: [f64; 3]| Vector::from(v).norm();
         let value = match meter.objective {
@@ -101,9 +101,10 @@ impl Simulation {
 
     /// The states of the laws, if their switchings count.
     pub(super) fn states(&self) -> Vec<Phase> {
-        let counts = self.meter.as_ref().is_some_and(|meter| meter.objective == Objective::Switchings);
-        let axes = if counts { self.beliefs.len() } else { 0 };
-        (0..axes).map(|axis| self.laws.about(axis).state()).collect()
+        if self.meter.as_ref().is_none_or(|meter| meter.objective != Objective::Switchings) {
+            return Vec::new();
+        }
+        (0..self.beliefs.len()).map(|axis| self.laws.about(axis).state()).collect()
     }
 
     /// Counts the laws whose states are no longer these.
@@ -119,7 +120,7 @@ impl Simulation {
         self.plant.view(self.now)?;
         let gain = self.tuned();
         let Some(monitor) = &mut self.monitor else { return Ok(()) };
-        let closed = monitor.close(self.now, &self.plant.swings(&self.origin), gain);
+        let closed = monitor.close(self.now, &self.plant.swings(), gain);
         if let (Some((row, _)), Some(search)) = (&closed.step, monitor.search()) {
             self.laws.tune(search.tunes().0, row.gain);
         }

@@ -20,7 +20,6 @@ mod instants;
 mod journal;
 mod metering;
 mod own;
-mod plain;
 mod plant;
 mod reference;
 mod sensing;
@@ -32,6 +31,7 @@ mod telling;
 
 use crate::belief::Belief;
 use crate::estimator::{self, Estimate, Meter, Monitor};
+use crate::flight::{self, Setup};
 use crate::law::{Controls, Event};
 use crate::random::Seed;
 use crate::record::Record;
@@ -46,7 +46,6 @@ pub(crate) use plant::Exerted;
 pub use sight::{LookField, LookGroup};
 pub use stepping::Occasion;
 
-use plain::Quick;
 use plant::Plant;
 use reference::Reference;
 use sensing::Sensing;
@@ -96,8 +95,8 @@ pub struct Simulation {
     steered: bool,
     /// Whether parts of it are a program's own.
     own: bool,
-    /// Which quicker loops suit it.
-    quick: Quick,
+    /// The start of a flight of its own, if it can make one.
+    flight: Option<Box<Setup>>,
 }
 
 impl Simulation {
@@ -131,7 +130,7 @@ impl Simulation {
             unanswered: None,
             steered: false,
             own: scenario.has_own_parts(),
-            quick: Quick::new(scenario),
+            flight: flight::alone(scenario).map(Box::new),
             telling: Telling::new(scenario, &reference, run),
             reference,
         }
@@ -152,7 +151,7 @@ impl Simulation {
         let until = until.min(self.end);
         self.open(record)?;
         self.resume(None, record)?;
-        self.run_quickly(until, record)?;
+        self.fly(until, record)?;
         while self.arrive(until, record)? {
             self.serve(record)?;
         }
@@ -180,12 +179,13 @@ impl Simulation {
     }
 
     fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let truth = self.plant.view(self.now)?;
+        self.plant.view(self.now)?;
         self.ask(Event::Start);
-        self.feel(&truth);
-        self.drive.command(self.now, self.laws.commands(), &self.beliefs, truth.rigid);
+        self.feel();
+        let rigid = self.plant.viewed().rigid;
+        self.drive.command(self.now, self.laws.commands(), &self.beliefs, rigid);
         self.steered = false;
-        self.drive.serve(self.now, truth.rigid);
+        self.drive.serve(self.now, rigid);
         self.depart(record)?;
         self.name_tuned();
         self.turned(self.now);
@@ -204,6 +204,7 @@ impl Simulation {
     }
 
     /// The next instant at which anything is due.
+    #[inline]
     fn next(&self) -> Instant {
         let trip = self.trip.map(|(at, _)| at);
         let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
@@ -223,29 +224,32 @@ impl Simulation {
 
     /// Does what is due now.
     fn serve(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let event = self.perceive(record)?;
+        let event = self.event();
+        self.perceive(record)?;
         self.answer(event, record)
     }
 
-    /// Measures and estimates what is due now; tells what has come up for laws.
-    fn perceive(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
+    /// What comes up for laws now.
+    fn event(&self) -> Event {
+        match self.trip {
+            _ if self.samples() || self.read.is_some() => Event::Due { sampled: true },
+            Some((at, guard)) if at == self.now => Event::Guard(guard),
+            _ => Event::Due { sampled: false },
+        }
+    }
+
+    /// Measures and estimates what is due now.
+    fn perceive(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.expose(record)?;
         let now = self.now;
-        let mut event = Event::Due { sampled: false };
-        if let Some((_, guard)) = self.trip.filter(|(at, _)| *at == now) {
-            event = Event::Guard(guard);
-        }
-        if self.sensing.next == Some(now) || self.read.is_some() {
-            let truth = self.plant.view(now)?;
-            self.sense(&truth, record)?;
-            event = Event::Due { sampled: true };
+        if self.samples() || self.read.is_some() {
+            self.sense(record)?;
         }
         if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
             self.close_window(record)?;
         }
         self.close_objective(record)?;
-        self.tell_arrival(record)?;
-        Ok(event)
+        self.tell_arrival(record)
     }
 
     /// Laws decide on what has come up, and the actuator acts.
@@ -256,9 +260,9 @@ impl Simulation {
         }
         let met = std::mem::take(&mut self.met);
         if met || self.drive.due == Some(now) {
-            let truth = self.plant.view(now)?;
-            self.feel(&truth);
-            self.drive.serve(now, truth.rigid);
+            self.plant.view(now)?;
+            self.feel();
+            self.drive.serve(now, self.plant.viewed().rigid);
             self.depart(record)?;
         }
         self.check_own_parts()?;

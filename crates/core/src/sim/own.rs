@@ -5,6 +5,7 @@ use crate::estimator::{Meter, Monitor, Searching};
 
 impl Simulation {
     /// Ends a run with a part of a program's own that cannot go on.
+    #[inline]
     pub(super) fn check_own_parts(&self) -> Result<(), SimulationError> {
         if !self.own {
             return Ok(());

@@ -1,6 +1,7 @@
 //! The sensors of a run: when each is due, and what their readings come to about each axis.
 
 use super::Simulation;
+use super::plant::Plant;
 use crate::attitude::Vector;
 use crate::environment::into;
 use crate::own::Halt;
@@ -77,29 +78,29 @@ impl Sensing {
         }
     }
 
-    /// Reads what is due now, of what there is to measure at each sensor, with angles beyond an origin; tells whether
+    /// Reads what is due now, of a body that was viewed now, with angles beyond an origin; tells whether
     /// anything was measured.
-    pub fn read(&mut self, now: Instant, truth: impl Fn(usize) -> Truth, origin: &Orientation) -> bool {
+    pub fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         let mut any = false;
         for (index, due) in self.sensors.iter_mut().enumerate() {
-            self.fresh[index] = None;
+            let fresh = &mut self.fresh[index];
+            *fresh = None;
             if now > Instant::START && due.next.is_some_and(|next| next != now) {
                 continue;
             }
-            let truth = truth(index);
-            let reading = due.sensor.read(now, &truth, due.last.as_ref());
+            let truth = plant.at_sensor(index);
+            *fresh = due.sensor.read(now, &truth, due.last.as_ref());
             if let Some(period) = due.period.filter(|_| now > Instant::START) {
                 due.next = Some(due.sensor.after(now, period));
             }
-            let Some(reading) = reading else { continue };
+            let Some(reading) = fresh else { continue };
             any = true;
-            self.fresh[index] = Some(reading);
             if let Some(sight) = reading.sight.filter(|_| due.feels) {
                 let before = self.field.replace((now, sight.vector)).filter(|(then, _)| *then < now);
                 self.field_rate =
                     before.map(|(then, field)| (sight.vector - field) / now.since(then).seconds());
             }
-            let rates = reading.rate.or_else(|| due.differences(now, &reading, &truth));
+            let rates = reading.rate.or_else(|| due.differences(now, reading, &truth));
             if due.orients {
                 let angles = reading.at.beyond(origin);
                 self.measured.iter_mut().zip(angles).for_each(|(measured, angle)| measured[0] = angle);
@@ -107,13 +108,12 @@ impl Sensing {
             if let Some(rates) = rates {
                 self.measured.iter_mut().zip(rates).for_each(|(measured, rate)| measured[1] = rate);
             }
-            due.last = Some(reading);
-            let before = self.reading.unwrap_or(reading);
-            self.reading = Some(Reading {
-                at: if due.orients { reading.at } else { before.at },
-                rate: reading.rate.or(before.rate),
-                sight: None,
-            });
+            due.last = Some(*reading);
+            let all = self.reading.get_or_insert(Reading { sight: None, ..*reading });
+            if due.orients {
+                all.at = reading.at;
+            }
+            all.rate = reading.rate.or(all.rate);
         }
         self.next = self.sensors.iter().filter_map(|due| due.next).min();
         any
@@ -137,7 +137,8 @@ impl Sensing {
 
 impl Simulation {
     /// Lets the actuator have the magnetic field as it was measured last, or as it is where nothing measures it.
-    pub(super) fn feel(&mut self, truth: &Truth) {
+    pub(super) fn feel(&mut self) {
+        let truth = self.plant.viewed();
         let measured = self.sensing.field.map(|(_, field)| field);
         let here = || match (truth.orientation, truth.sky.field) {
             (Orientation::Attitude(attitude), Some(field)) => Some(into(&attitude, &field)),

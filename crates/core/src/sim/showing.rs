@@ -27,12 +27,13 @@ impl Simulation {
         }
         let now = self.now;
         let stamp = self.telling.events.stamp(now);
-        let truth = self.plant.view(now)?;
+        self.plant.view(now)?;
         let frames = self.telling.next_frames == Some(now);
         let Some(scene) = &mut self.telling.scene else { return Ok(()) };
         if frames {
             self.telling.next_frames = Some(now + scene.period());
         }
+        let truth = self.plant.viewed();
         let plumes = match (&mut **scene, &self.plant) {
             (Scene::Planar(scene), Plant::Planar(plant)) => {
                 let state = plant.state();

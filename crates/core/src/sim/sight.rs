@@ -122,7 +122,8 @@ impl Simulation {
     /// The row has another width than its fields.
     pub fn look(&mut self, row: &mut [f64]) -> Result<(), SimulationError> {
         let now = self.now;
-        let truth = self.plant.view(now)?;
+        self.plant.view(now)?;
+        let truth = self.plant.viewed();
         let mut row = Row(row);
         let origin = self.reference.origin(now);
         match &self.plant {
@@ -131,7 +132,7 @@ impl Simulation {
                 row.put(&[truth.seen()[0], truth.rate[0], state.rigid_angle, state.rigid_rate]);
                 row.put_all(state.modes.iter().map(|mode| mode.displacement));
                 row.put_all(plant.mode_rates());
-                row.put(&[self.torque(0, &truth)]);
+                row.put(&[self.torque(0, truth)]);
                 row.put_all(self.drive.actuator.wheel(0, truth.rigid[0]).map(|wheel| wheel.speed_rad_s));
             }
             Plant::Spatial(plant) => {
@@ -143,7 +144,7 @@ impl Simulation {
                 row.put_all(plant.state().modes.iter().map(|mode| mode.displacement));
                 row.put_all(plant.mode_rates());
                 let magnetic = plant.magnetic();
-                row.put(&[0, 1, 2].map(|axis| magnetic[axis] + self.torque(axis, &truth)));
+                row.put(&[0, 1, 2].map(|axis| magnetic[axis] + self.torque(axis, truth)));
                 let wheels = self.drive.actuator.wheels(now, truth.rate);
                 row.put_all(wheels.iter().map(|wheel| wheel.speed_rad_s));
                 if let Some(gimbals) = self.drive.actuator.gimbals(now) {

@@ -55,8 +55,7 @@ impl Simulation {
     /// As a run.
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.telling.open(self.now, record)? {
-            let truth = self.plant.view(self.now)?;
-            self.sense(&truth, record)?;
+            self.sense(record)?;
             self.unanswered = Some(Event::Start);
         }
         Ok(())
@@ -110,7 +109,8 @@ impl Simulation {
         let mut came = self.resume(occasion, record)?;
         while !came && self.arrive(until, record)? {
             let closes = self.monitor.as_ref().is_some_and(|monitor| monitor.closes == self.now);
-            let event = self.perceive(record)?;
+            let event = self.event();
+            self.perceive(record)?;
             came = match occasion {
                 Some(Occasion::Sample) => event == Event::Due { sampled: true },
                 Some(Occasion::Decision) => self.concerns(event),

@@ -8,14 +8,13 @@ use super::plant::{Plant, SpatialPlant};
 use super::reference::Reference;
 use super::{Simulation, SimulationError};
 use crate::law::{Cause, Phase};
-use crate::motion::turning::{Slip, SlippedRotor};
+use crate::motion::turning::Slip;
 use crate::record::{
     self, AxisRate, Command, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
     SpatialCycle, SpatialMotion, Torques, Trigger, Wheels,
 };
 use crate::scenario::Scenario;
 use crate::scene::Scene;
-use crate::sensor::Truth;
 use crate::time::{Instant, Span};
 
 /// What is told of a run, and when.
@@ -34,7 +33,7 @@ pub struct Telling {
     /// The cycles of a body with three axes.
     cycle: Option<Span>,
     /// How wheels slipped when it was told last.
-    slips: Vec<Slip>,
+    pub slips: Vec<Slip>,
     /// Pulses of jets that were told.
     pulses: u64,
     next_cycle: Option<Instant>,
@@ -147,11 +146,11 @@ impl Simulation {
         }
         if self.telling.next_dense == Some(now) {
             self.telling.next_dense = Some(now + self.telling.log_period);
-            let truth = self.plant.view(now)?;
+            self.plant.view(now)?;
             match &self.plant {
                 Plant::Planar(_) => self.tell_motion(record)?,
                 Plant::Spatial(plant) => {
-                    record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant, &truth)))?;
+                    record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant)))?;
                 }
             }
             if now >= self.telling.next_law {
@@ -168,8 +167,8 @@ impl Simulation {
     pub(super) fn tell_arrival(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         let Some(arrival) = self.telling.arrival.take_if(|arrival| arrival.at == now) else { return Ok(()) };
-        let truth = self.plant.view(now)?;
-        let row = arrival.row(&truth, &self.plant.about(0, &self.origin));
+        self.plant.view(now)?;
+        let row = arrival.row(self.plant.viewed(), &self.plant.about(0, &self.origin));
         record.record(now, Sample::Arrival(&row))?;
         Ok(self.telling.events.arrived(now, &row, record)?)
     }
@@ -180,7 +179,6 @@ impl Simulation {
         before: Phase,
         cause: Option<Cause>,
         [angle_rad, rate_rad_s]: [f64; 2],
-        torque_nm: f64,
         record: &mut dyn Record,
     ) -> Result<(), SimulationError> {
         let (now, state) = (self.now, self.laws.about(0).state());
@@ -195,7 +193,7 @@ impl Simulation {
             time_fs,
             state,
             cause: if cause == Some(Cause::Timeout) { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm,
+            torque_nm: self.drive.actuator.asked(0),
             angle_rad,
             rate_rad_s,
             gain: self.laws.about(0).tuned(),
@@ -259,19 +257,20 @@ impl Simulation {
     /// A cycle of a body with three axes, or of adaptive observers.
     fn tell_cycle(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
-        let truth = self.plant.view(now)?;
+        self.plant.view(now)?;
         // A law that is never asked aims at the targets all the same.
         self.turn_to_target(now);
         let origin = self.origin;
-        self.measure_cycle(&truth);
+        self.measure_cycle();
         if let Plant::Spatial(plant) = &self.plant {
+            let truth = plant.viewed();
             let error = truth.orientation.beyond(&origin);
             let (rigid, elastic) = plant.rates();
             let jets = self.drive.actuator.cycle();
-            let none = || ([0.0; 3], f64::NAN, 0, Vec::new());
-            let (on, fuel_kg, pulses, thrusters) =
-                jets.map_or_else(none, |cycle| (cycle.on, cycle.fuel, cycle.pulses, cycle.each));
-            let [roll_on_s, pitch_on_s, yaw_on_s] = on;
+            let [roll_on_s, pitch_on_s, yaw_on_s] = jets.as_ref().map_or([0.0; 3], |cycle| cycle.on);
+            let fuel_kg = jets.as_ref().map_or(f64::NAN, |cycle| cycle.fuel);
+            let pulses = jets.as_ref().map_or(0, |cycle| cycle.pulses);
+            let thrusters = jets.map_or_else(Vec::new, |cycle| cycle.each);
             // Jets may have cycles of their own, which are longer.
             let pulses = pulses - std::mem::replace(&mut self.telling.pulses, pulses);
             let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
@@ -290,7 +289,7 @@ impl Simulation {
             };
             record.record(now, Sample::Cycle(&cycle))?;
             if let Some(written) = self.reference.written(now) {
-                let error = truth.orientation.beyond(&self.reference.target(now));
+                let error = || truth.orientation.beyond(&self.reference.target(now));
                 self.telling.events.target(now, written, error, record)?;
             }
             if self.estimates {
@@ -307,56 +306,8 @@ impl Simulation {
         Ok(())
     }
 
-    /// The bearings of wheels, if they have any.
-    fn bearings(&self, plant: &SpatialPlant) -> Option<record::Bearings> {
-        let of = |(wheel, known_rad_s): (SlippedRotor, f64)| record::BearingMotion {
-            sliding: wheel.slip.into(),
-            friction_nm: wheel.friction,
-            heat_j: wheel.heat,
-            known_rad_s,
-        };
-        let wheels: Vec<_> =
-            plant.borne().into_iter().zip(self.drive.actuator.known_speeds()).map(of).collect();
-        (!wheels.is_empty()).then_some(record::Bearings { wheels })
-    }
-
-    /// How wheels slip at the start.
-    pub(super) fn tell_first_slips(&mut self) {
-        if let Plant::Spatial(plant) = &self.plant {
-            self.telling.slips = plant.slips().to_vec();
-        }
-    }
-
-    /// What wheels do otherwise than at the last instant: they pass through zero speed, stick, or slip again.
-    pub(super) fn tell_slips(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (Plant::Spatial(plant), now) = (&self.plant, self.now) else { return Ok(()) };
-        let slips = plant.slips();
-        if self.telling.slips == slips {
-            return Ok(());
-        }
-        let before = std::mem::replace(&mut self.telling.slips, slips.to_vec());
-        let wheels = self.drive.actuator.wheels(now, [0.0; 3]);
-        let (time_s, time_whole_s, time_fs) = Command::times(now);
-        for (index, (before, after)) in before.iter().zip(plant.slips()).enumerate() {
-            if before == after {
-                continue;
-            }
-            let event = record::WheelEvent {
-                time_s,
-                time_whole_s,
-                time_fs,
-                wheel: index as u64,
-                before: (*before).into(),
-                after: (*after).into(),
-                torque_nm: wheels.get(index).map_or(0.0, |wheel| wheel.torque_nm),
-            };
-            record.record(now, Sample::WheelEvent(&event))?;
-            self.telling.events.slipped(now, &event, record)?;
-        }
-        Ok(())
-    }
-
-    pub(super) fn spatial_motion(&self, plant: &SpatialPlant, truth: &Truth) -> SpatialMotion {
+    pub(super) fn spatial_motion(&self, plant: &SpatialPlant) -> SpatialMotion {
+        let truth = plant.viewed();
         let (rigid, elastic) = plant.rates();
         let axis = |axis: usize| AxisRate {
             rate_rad_s: rigid[axis] + elastic[axis],

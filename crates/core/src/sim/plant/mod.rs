@@ -9,10 +9,10 @@ use std::borrow::Cow;
 
 use super::SimulationError;
 use crate::body::{Axes, Wrench};
-use crate::environment::SkySight;
+use crate::estimator::Monitor;
 use crate::guard::Guard;
+use crate::motion::State;
 use crate::motion::turning::SlippedRotor;
-use crate::motion::{Sensed, State};
 use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};
@@ -62,30 +62,29 @@ impl Plant {
     }
 
     /// What there is to measure at an instant, to which the body is brought.
-    pub fn view(&mut self, now: Instant) -> Result<Truth, SimulationError> {
+    #[inline]
+    pub fn view(&mut self, now: Instant) -> Result<&Truth, SimulationError> {
         let truth = match self {
-            Self::Planar(plant) => {
-                let Sensed { angle, rate, .. } = plant.view(now);
-                let is_finite = angle.is_finite() && rate.is_finite();
-                is_finite.then(|| Truth {
-                    orientation: Orientation::Angle(angle),
-                    elastic: [0.0; 3],
-                    rate: [rate, 0.0, 0.0],
-                    rigid: [plant.state().rigid_rate, 0.0, 0.0],
-                    turned: [angle, 0.0, 0.0],
-                    sky: SkySight::default(),
-                })
-            }
-            Self::Spatial(plant) => plant.view(),
+            Self::Planar(plant) => plant.measurable(now),
+            Self::Spatial(plant) => plant.measurable(),
         };
         truth.ok_or(SimulationError::NonFinite { at: now })
     }
 
-    /// The same at a sensor other than the first, which may be elsewhere.
-    pub fn at_sensor(&self, sensor: usize, truth: &Truth) -> Truth {
+    /// What there was to measure at the instant viewed last.
+    #[inline]
+    pub fn viewed(&self) -> &Truth {
         match self {
-            Self::Spatial(plant) if sensor > 0 => plant.at_sensor(sensor, truth),
-            _ => *truth,
+            Self::Planar(plant) => plant.viewed(),
+            Self::Spatial(plant) => plant.viewed(),
+        }
+    }
+
+    /// The same at a sensor other than the first, which may be elsewhere.
+    pub fn at_sensor(&self, sensor: usize) -> Cow<'_, Truth> {
+        match self {
+            Self::Spatial(plant) if sensor > 0 => Cow::Owned(plant.at_sensor(sensor)),
+            _ => Cow::Borrowed(self.viewed()),
         }
     }
 
@@ -103,6 +102,7 @@ impl Plant {
     }
 
     /// The instant and index of the guard that trips first on this motion, within a span; known in closed form alone.
+    #[inline]
     pub fn trip(
         &mut self,
         guards: &[Guard],
@@ -128,10 +128,25 @@ impl Plant {
 
     /// The modes as the monitor of the envelope takes them: those of one angle, or the rotations that those of three axes give the
     /// first sensor.
-    pub fn swings(&self, target: &Orientation) -> Cow<'_, State> {
+    pub fn swings(&self) -> Cow<'_, State> {
         match self {
-            Self::Planar(_) => self.about(0, target),
+            Self::Planar(plant) => Cow::Borrowed(plant.state()),
             Self::Spatial(plant) => Cow::Owned(plant.swings()),
+        }
+    }
+
+    /// Lets the monitor of the envelope know what acts on the modes from now on: a torque (N m) on those of one angle, what is
+    /// commanded on those of three axes.
+    pub fn push_monitor(
+        &self,
+        monitor: &mut Monitor,
+        now: Instant,
+        torque: f64,
+        commanded: impl FnOnce() -> Wrench,
+    ) {
+        match self {
+            Self::Planar(plant) => monitor.command(now, plant.state(), torque),
+            Self::Spatial(plant) => monitor.push(now, &plant.swings(), &plant.modal_forces(&commanded())),
         }
     }
 

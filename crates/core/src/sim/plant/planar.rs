@@ -9,6 +9,7 @@ use crate::motion::crossing::locate;
 use crate::motion::{Sensed, State};
 use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use crate::scenario::Scenario;
+use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 
 /// The body, the motion that it is in, and the trip that lies ahead.
@@ -20,6 +21,8 @@ pub struct PlanarPlant {
     state: State,
     sight: Sensed,
     seen: Instant,
+    /// What there is to measure, once it was asked for.
+    truth: Truth,
     /// State, sight and instant of the next trip, found ahead of time.
     ahead: (State, Sensed, Instant),
     frequencies: Vec<f64>,
@@ -67,6 +70,7 @@ impl PlanarPlant {
             departed: Instant::START,
             sight,
             seen: Instant::START,
+            truth: Truth::UNKNOWN,
             ahead: (state.clone(), Sensed::default(), Instant::START),
             frequencies: body.modes.iter().map(|mode| mode.frequency.get()).collect(),
             outputs: body.outputs.clone(),
@@ -88,6 +92,9 @@ impl PlanarPlant {
     /// done.
     pub fn approach(&mut self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         record.poll()?;
+        if matches!(self.motion, Motion::Planar(_) | Motion::Lent(_)) {
+            return Ok(());
+        }
         let h = now.since(self.departed).seconds();
         loop {
             let is_there = match &mut self.motion {
@@ -122,6 +129,23 @@ impl PlanarPlant {
             }
         }
         self.sight
+    }
+
+    /// What there is to measure at an instant, to which the body is brought; none if the motion is no longer finite.
+    pub fn measurable(&mut self, now: Instant) -> Option<&Truth> {
+        let Sensed { angle, rate, .. } = self.view(now);
+        if !(angle.is_finite() && rate.is_finite()) {
+            return None;
+        }
+        let truth = &mut self.truth;
+        truth.orientation = Orientation::Angle(angle);
+        (truth.rate[0], truth.rigid[0], truth.turned[0]) = (rate, self.state.rigid_rate, angle);
+        Some(truth)
+    }
+
+    /// What there was to measure when that was asked last.
+    pub fn viewed(&self) -> &Truth {
+        &self.truth
     }
 
     /// Lets someone else compute the motion from now on; none but that of coupled or drifting modes between departures.
@@ -183,6 +207,7 @@ impl PlanarPlant {
     }
 
     /// The instant and index of the guard that trips first on this motion, within a span.
+    #[inline]
     pub fn trip(
         &mut self,
         guards: &[Guard],

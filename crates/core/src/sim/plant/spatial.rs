@@ -6,10 +6,10 @@ use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
 use crate::body::Wrench;
 use crate::body::spatial::{DriftingModes, Elastic, Periodic, Rigid, SpatialState};
-use crate::environment::{Around, SkySight};
+use crate::environment::Around;
 use crate::motion::turning::{Flexible, Rotor, Slip, SlippedRotor, Surroundings};
 use crate::motion::{Phase, State};
-use crate::record::{Energy, Pointing, Position, Record, RecordError};
+use crate::record::{Record, RecordError};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
@@ -54,8 +54,9 @@ pub struct SpatialPlant {
     /// The state at the instant seen last, and what there is to measure, once it was asked for.
     seen: Instant,
     state: SpatialState,
-    truth: Option<Truth>,
-    /// Rigid rates, and their elastic part at the sensor (rad/s), as far as `truth` is known.
+    truth: Truth,
+    is_viewed: bool,
+    /// Rigid rates, and their elastic part at the sensor (rad/s), of the same instant as `truth`.
     rates: (Vector, Vector),
 }
 
@@ -106,7 +107,8 @@ impl SpatialPlant {
             two_way,
             seen: Instant::START,
             state: origin.clone(),
-            truth: None,
+            truth: Truth::UNKNOWN,
+            is_viewed: false,
             rates: (Vector::zeros(), Vector::zeros()),
             origin,
         }
@@ -162,7 +164,7 @@ impl SpatialPlant {
                 }
             }
             self.seen = met.unwrap_or(now);
-            self.truth = None;
+            self.is_viewed = false;
         }
         Ok(met)
     }
@@ -184,22 +186,34 @@ impl SpatialPlant {
     }
 
     /// What there is to measure at the instant reached; none if the state is no longer finite.
-    pub fn view(&mut self) -> Option<Truth> {
-        if self.truth.is_none() && self.state.is_finite() {
-            let (truth, elastic) = match self.two_way.as_deref() {
-                None => self.measurable(),
-                Some(two_way) => two_way.measurable(&self.sensed),
-            };
-            self.rates = (truth.rigid.into(), elastic);
-            let sky = self.around.as_ref().map(|around| around.seen(self.seen.seconds())).unwrap_or_default();
-            self.truth = Some(Truth { sky, ..truth });
+    pub fn measurable(&mut self) -> Option<&Truth> {
+        if !self.is_viewed {
+            if !self.state.is_finite() {
+                return None;
+            }
+            if let Some(two_way) = self.two_way.as_deref() {
+                let (truth, elastic) = two_way.measurable(&self.sensed);
+                self.rates = (truth.rigid.into(), elastic);
+                self.truth = truth;
+            } else {
+                self.view_one_way();
+            }
+            if let Some(around) = &self.around {
+                self.truth.sky = around.seen(self.seen.seconds());
+            }
+            self.is_viewed = true;
         }
-        self.truth
+        Some(&self.truth)
     }
 
-    /// What there is to measure at another sensor, beside what there is at the first.
-    pub fn at_sensor(&self, sensor: usize, first: &Truth) -> Truth {
-        let shapes = &self.elsewhere[sensor - 1];
+    /// What there was to measure when that was asked last.
+    pub fn viewed(&self) -> &Truth {
+        &self.truth
+    }
+
+    /// What there was to measure then at another sensor than the first.
+    pub fn at_sensor(&self, sensor: usize) -> Truth {
+        let (first, shapes) = (&self.truth, &self.elsewhere[sensor - 1]);
         let (angle, rate) = (self.turned(shapes), self.elastic.rate_at(shapes, &self.state.modes));
         Truth {
             elastic: (Vector::from(first.elastic) + angle).into(),
@@ -215,20 +229,18 @@ impl SpatialPlant {
         displacements.zip(shapes).fold(Vector::zeros(), |sum, (q, shape)| sum + shape * q)
     }
 
-    /// What there is to measure at the first sensor, and the elastic part of the rates (rad/s).
-    fn measurable(&self) -> (Truth, Vector) {
-        let rigid = self.rigid.rate(&self.state.turn);
-        let elastic = self.elastic.rate_at(&self.sensed, &self.state.modes);
+    /// Views a body whose modes do not act back.
+    fn view_one_way(&mut self) {
+        let (turn, modes) = (&self.state.turn, &self.state.modes);
+        let (rigid, elastic) = (self.rigid.rate(turn), self.elastic.rate_at(&self.sensed, modes));
         let angle = self.turned(&self.sensed);
-        let truth = Truth {
-            orientation: Orientation::Attitude(self.state.turn.attitude),
-            elastic: angle.into(),
-            rate: (rigid + elastic).into(),
-            rigid: rigid.into(),
-            turned: (Rigid::turned(&self.state.turn) + angle).into(),
-            sky: SkySight::default(),
-        };
-        (truth, elastic)
+        let truth = &mut self.truth;
+        truth.orientation = Orientation::Attitude(turn.attitude);
+        truth.elastic = angle.into();
+        truth.rate = (rigid + elastic).into();
+        truth.rigid = rigid.into();
+        truth.turned = (Rigid::turned(turn) + angle).into();
+        self.rates = (rigid, elastic);
     }
 
     /// Begins a new motion at the instant seen last, under what acts from now on.
@@ -340,10 +352,14 @@ impl SpatialPlant {
     /// Energy of the elastic modes at the instant seen last (J), and of those that the sensor sees: the slow ones that it
     /// hardly sees keep theirs whatever the law does.
     pub fn elastic_energies(&self) -> (f64, f64) {
-        let energies = self.energies();
-        energies.into_iter().zip(&self.visible).fold((-0.0, -0.0), |(all, visible), (energy, seen)| {
+        let sum = |(all, visible): (f64, f64), (energy, seen): (f64, &bool)| {
             (all + energy, if *seen { visible + energy } else { visible })
-        })
+        };
+        let none = (-0.0, -0.0);
+        if self.two_way.is_none() && self.drifting.is_none() {
+            return self.elastic.energies(&self.state.modes).zip(&self.visible).fold(none, sum);
+        }
+        self.energies().into_iter().zip(&self.visible).fold(none, sum)
     }
 
     /// The energy of each mode at the instant seen last (J).
@@ -354,43 +370,6 @@ impl SpatialPlant {
                 Some(drifting) => drifting.energies(self.seen.seconds(), &self.state.modes),
                 None => self.elastic.energies(&self.state.modes).collect(),
             },
-        }
-    }
-
-    /// The energies, as logged.
-    pub fn energy(&self) -> Energy {
-        let one_way = || {
-            let momentum = Rigid::momentum(&self.state.turn);
-            let whole = self.rotors(self.seen).map_or(momentum, |(rotors, _)| momentum + rotors);
-            (self.rigid.energy(&self.state.turn), whole.norm())
-        };
-        let (rotational_j, momentum_nm_s) = self.two_way.as_deref().map_or_else(one_way, TwoWay::energy);
-        let (elastic_j, visible_j) = self.elastic_energies();
-        Energy { rotational_j, elastic_j, visible_j, momentum_nm_s }
-    }
-
-    /// Where the first point is, as logged; none of a body that nothing pushes, or whose mass nobody knows.
-    pub fn position(&self) -> Option<Position> {
-        let [at, speed] = self.two_way.as_deref()?.place()?;
-        Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
-    }
-
-    /// The attitude, as logged, with the angles by which it is beyond its target (rad).
-    pub fn pointing(&self, error: [f64; 3]) -> Pointing {
-        let q = self.attitude();
-        let [roll_rad, pitch_rad, yaw_rad] = crate::attitude::angles(q);
-        let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
-        Pointing {
-            q_w: q.w,
-            q_x: q.i,
-            q_y: q.j,
-            q_z: q.k,
-            roll_rad,
-            pitch_rad,
-            yaw_rad,
-            roll_error_rad,
-            pitch_error_rad,
-            yaw_error_rad,
         }
     }
 }

@@ -48,15 +48,16 @@ impl Elastic {
     /// none): a mode turns about the equilibrium f/w².
     pub fn advance(&mut self, phases: &mut [Phase], forces: &[f64], h: f64) {
         let known = self.learn(h);
-        for (index, (phase, flow)) in phases.iter_mut().zip(&self.flows).enumerate() {
-            let [a, b, c, d] = match known {
-                Some(first) => self.transitions[first + index],
-                None => flow.transition(h),
-            };
-            let force = forces.get(index).copied().unwrap_or(0.0);
-            let centre = force / (flow.frequency * flow.frequency);
-            let (x, y) = (phase.displacement - centre, phase.quadrature);
-            *phase = Phase { displacement: centre + a * x + b * y, quadrature: c * x + d * y };
+        let force = |index: usize| forces.get(index).copied().unwrap_or(0.0);
+        let modes = phases.iter_mut().zip(&self.flows).enumerate();
+        if let Some(first) = known {
+            for ((index, (phase, flow)), transition) in modes.zip(&self.transitions[first..]) {
+                turn(phase, flow, transition, force(index));
+            }
+        } else {
+            for (index, (phase, flow)) in modes {
+                turn(phase, flow, &flow.transition(h), force(index));
+            }
         }
     }
 
@@ -102,4 +103,12 @@ impl Elastic {
             0.5 * flow.frequency * flow.frequency * (x * x + y * y)
         })
     }
+}
+
+/// Turns a mode about its equilibrium under a modal force (N/sqrt(kg)), by its transition over a span.
+#[inline]
+fn turn(phase: &mut Phase, flow: &ModeFlow, &[a, b, c, d]: &[f64; 4], force: f64) {
+    let centre = force / (flow.frequency * flow.frequency);
+    let (x, y) = (phase.displacement - centre, phase.quadrature);
+    *phase = Phase { displacement: centre + a * x + b * y, quadrature: c * x + d * y };
 }

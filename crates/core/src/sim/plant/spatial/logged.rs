@@ -1,14 +1,54 @@
-//! Drives, hinges, modes and orbit of a body with three axes, as logged.
+//! Attitude, energy, place, drives, hinges, modes and orbit of a body with three axes, as logged.
 
+use super::super::two_way::TwoWay;
 use super::SpatialPlant;
 use crate::attitude::Vector;
+use crate::body::spatial::Rigid;
 use crate::environment::into;
 use crate::motion::Phase;
 use crate::record::{
-    DriveMotion, DrivenMode, DrivesMotion, HingeMotion, Hinges, Orbit, OrbitAxis, Vibration, Vibrations,
+    DriveMotion, DrivenMode, DrivesMotion, Energy, HingeMotion, Hinges, Orbit, OrbitAxis, Pointing, Position,
+    Vibration, Vibrations,
 };
 
 impl SpatialPlant {
+    /// The energies, as logged.
+    pub fn energy(&self) -> Energy {
+        let one_way = || {
+            let momentum = Rigid::momentum(&self.state.turn);
+            let whole = self.rotors(self.seen).map_or(momentum, |(rotors, _)| momentum + rotors);
+            (self.rigid.energy(&self.state.turn), whole.norm())
+        };
+        let (rotational_j, momentum_nm_s) = self.two_way.as_deref().map_or_else(one_way, TwoWay::energy);
+        let (elastic_j, visible_j) = self.elastic_energies();
+        Energy { rotational_j, elastic_j, visible_j, momentum_nm_s }
+    }
+
+    /// Where the first point is, as logged; none of a body that nothing pushes, or whose mass nobody knows.
+    pub fn position(&self) -> Option<Position> {
+        let [at, speed] = self.two_way.as_deref()?.place()?;
+        Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
+    }
+
+    /// The attitude, as logged, with the angles by which it is beyond its target (rad).
+    pub fn pointing(&self, error: [f64; 3]) -> Pointing {
+        let q = self.attitude();
+        let [roll_rad, pitch_rad, yaw_rad] = crate::attitude::angles(q);
+        let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
+        Pointing {
+            q_w: q.w,
+            q_x: q.i,
+            q_y: q.j,
+            q_z: q.k,
+            roll_rad,
+            pitch_rad,
+            yaw_rad,
+            roll_error_rad,
+            pitch_error_rad,
+            yaw_error_rad,
+        }
+    }
+
     /// The drives of appendages and the frequencies of the modes, which change with them, as logged; none without drives.
     pub fn drives(&self) -> Option<DrivesMotion> {
         let two_way = self.two_way.as_deref()?;

@@ -66,7 +66,7 @@ fn at(seconds: f64) -> Instant {
 
 fn seen(plant: &mut SpatialPlant, seconds: f64) -> Truth {
     plant.approach(at(seconds), &mut ()).expect("nothing stops it");
-    plant.view().expect("finite")
+    *plant.measurable().expect("finite")
 }
 
 fn apart(a: &Truth, b: &Truth) -> f64 {
