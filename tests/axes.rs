@@ -4,7 +4,7 @@
 
 use std::fmt::Write as _;
 
-use flexsc_core::body::spatial::Rigid;
+use flexsc_core::flow::Rigid;
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 

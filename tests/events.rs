@@ -3,7 +3,8 @@
 use std::convert::Infallible;
 
 use flexsc_core::belief::Belief;
-use flexsc_core::body::{ForcedInput, Planar, Segment};
+use flexsc_core::body::Planar;
+use flexsc_core::flow::{ForcedInput, Segment};
 use flexsc_core::guard::Guard;
 use flexsc_core::law::{Cause, Command, Goal};
 use flexsc_core::motion::State;

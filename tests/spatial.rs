@@ -3,7 +3,8 @@
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::spatial::{Elastic, Rigid, RigidTurn, Spatial, SpatialState};
+use flexsc_core::body::spatial::Spatial;
+use flexsc_core::flow::{Elastic, Rigid, RigidTurn, SpatialState};
 use flexsc_core::quantity::Finite;
 use flexsc_core::{Document, Scenario};
 

@@ -2,7 +2,7 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, a loop of its own by Runge-Kutta steps.
 
-use flexsc_core::body::spatial::Elastic;
+use flexsc_core::flow::Elastic;
 use flexsc_core::metrics::Gather;
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::time::{Instant, Span};

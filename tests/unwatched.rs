@@ -1,6 +1,6 @@
 //! Nothing that watches a run changes it, and a copy of a run goes on as the run itself, whatever parts it is made of.
 
-use flexsc_core::body::spatial::SpatialState;
+use flexsc_core::flow::SpatialState;
 use flexsc_core::motion::{State, Stretch};
 use flexsc_core::record::{Course, Detail, Record, RecordError, Sample, Trace};
 use flexsc_core::time::{Instant, Span};

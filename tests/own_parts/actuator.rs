@@ -1,8 +1,8 @@
 //! An actuator from outside: a servo that gives torques in whole steps up to a limit, about each axis.
 
 use flexsc_core::actuator::{Actuate, Demand, Effector, TorquerSetting};
-use flexsc_core::body::Wrench;
 use flexsc_core::time::Instant;
+use flexsc_core::wrench::Wrench;
 
 /// The servo: its largest torque and its step (N m).
 #[derive(Copy, Clone, Debug)]

@@ -18,4 +18,4 @@ pub mod sensor;
 use flexsc_formats::{count, document};
 use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};
 use flexsc_output::record;
-use flexsc_spacecraft::{axes, body, environment, manoeuvre, sine};
+use flexsc_spacecraft::{axes, body, environment, flow, manoeuvre, sine, wrench};

@@ -55,7 +55,7 @@ pub use flexsc_control::{actuator, adaptation, belief, estimator, law, outage, o
 pub use flexsc_formats::{count, document, structure};
 pub use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};
 pub use flexsc_output::{record, whole};
-pub use flexsc_spacecraft::{axes, body, disturbance, environment, manoeuvre, sine};
+pub use flexsc_spacecraft::{axes, body, disturbance, environment, flow, manoeuvre, sine, wrench};
 
 pub use document::{Document, LONGEST, Mistake, ScenarioError, nearest};
 pub use scenario::Scenario;

@@ -5,12 +5,13 @@ use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Vector, vector};
 use crate::axes::Axis;
-use crate::body::{Push, Spatial, Wrench};
+use crate::body::Spatial;
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Stream;
 use crate::sine::Sine;
 use crate::time::{Instant, Span};
+use crate::wrench::{Push, Wrench};
 
 /// A disturbance: a torque about an axis, or a force at a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

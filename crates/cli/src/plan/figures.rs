@@ -4,7 +4,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
 
-use flexsc_core::body::{Drive, Forced, ForcedInput, Planar, Segment};
+use flexsc_core::body::{Drive, Planar};
+use flexsc_core::flow::{Forced, ForcedInput, Segment};
 use flexsc_core::manoeuvre::Plan;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour, name_and_unit};
 

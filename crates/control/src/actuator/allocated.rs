@@ -7,10 +7,10 @@
 use super::valves::Valves;
 use super::{Actuate, Demand, FiringGroup, JetCycle, Jets, OpenThruster, PulseWidth};
 use crate::attitude::Vector;
-use crate::body::{Push, Wrench};
 use crate::document::Fault;
 use crate::numerics::simplex::LinearProgramme;
 use crate::time::{Instant, Span};
+use crate::wrench::{Push, Wrench};
 
 /// Jets at work.
 #[derive(Clone, Debug)]

@@ -8,11 +8,11 @@ use super::failure::Failing;
 use super::steering::{self, GyroAxes, Robustness};
 use super::{Actuate, Demand, TorquerSetting};
 use crate::attitude::Vector;
-use crate::body::Wrench;
 use crate::motion::turning::Gimbal;
 use crate::quantity::Positive;
 use crate::record::{self, Steered};
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 /// The control moment gyros of a body.
 #[derive(Clone, Debug)]

@@ -6,7 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuate, Failure, TorquerSetting};
-use crate::body::Forced;
+use crate::flow::Forced;
 use crate::time::Instant;
 use crate::waveform::Waveform;
 

@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use super::AxisActuate;
 use super::failure::{Failing, Failure, Lasting};
-use crate::body::Forced;
+use crate::flow::Forced;
 use crate::outage::Outage;
 use crate::quantity::Time;
 use crate::record::WheelMotion;

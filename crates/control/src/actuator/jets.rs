@@ -5,11 +5,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{Actuate, Allocated, Failure, PulseWidth, Pulsing, allocated};
 use crate::attitude::{AXES, vector};
-use crate::body::Push;
 use crate::body::spatial::Spatial;
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::time::Span;
+use crate::wrench::Push;
 
 /// Standard acceleration of free fall (m/s²), by which the specific impulse counts.
 const G_0: f64 = 9.806_65;

@@ -9,10 +9,10 @@ use super::failure::{Failing, Lasting};
 use super::{Actuate, Demand, Failure, TorquerSetting};
 use crate::attitude::Vector;
 use crate::axes::Each;
-use crate::body::Wrench;
 use crate::quantity::Positive;
 use crate::record;
 use crate::time::Instant;
+use crate::wrench::Wrench;
 
 /// Magnetorquers along the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -35,12 +35,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
-use crate::body::Wrench;
 use crate::motion::turning::SlippedRotor;
 use crate::own::{Halt, Own};
 use crate::quantity::{Share, Time};
 use crate::record::{self, Steered, WheelMotion};
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 pub use allocated::Allocated;
 pub use allocation::{Allocation, Choice};

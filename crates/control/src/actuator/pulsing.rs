@@ -3,8 +3,8 @@
 use super::valves::Valves;
 use super::{Actuate, Demand, FiringGroup, JetCycle, Jets, OpenThruster, PulseWidth};
 use crate::attitude::Vector;
-use crate::body::Wrench;
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 /// A pulse of thrusters, as one that was executed or is about to be.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -3,11 +3,11 @@
 use super::unloading::Unloader;
 use super::{Actuate, Actuator, ActuatorTask, Demand, JetCycle, Pulse};
 use crate::attitude::Vector;
-use crate::body::Wrench;
 use crate::motion::turning::SlippedRotor;
 use crate::own::Halt;
 use crate::record::{self, WheelMotion};
 use crate::time::Instant;
+use crate::wrench::Wrench;
 
 /// The actuators at work.
 #[derive(Clone, Debug)]

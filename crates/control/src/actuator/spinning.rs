@@ -9,13 +9,13 @@ use super::failure::Failing;
 use super::wheels::{Compensation, SpeedBias, Wheels};
 use super::{Actuate, Demand, TorquerSetting};
 use crate::attitude::Vector;
-use crate::body::Wrench;
 use crate::motion::turning::{Rotor, SlippedRotor};
 use crate::quantity::Positive;
 use crate::random::Seed;
 use crate::record;
 use crate::sensor::{Counting, Tachometer};
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 /// A wheel with friction is at its limit if it misses it by this part of it.
 const AT_LIMIT: f64 = 1e-12;

@@ -7,11 +7,12 @@ use super::failure::Lasting;
 use super::impaired::Impaired;
 use super::{Actuate, Actuator, Demand};
 use crate::attitude::Vector;
-use crate::body::{Forced, Wrench};
+use crate::flow::Forced;
 use crate::record::WheelMotion;
 use crate::sine::Sine;
 use crate::time::{Instant, Span};
 use crate::waveform::Waveform;
+use crate::wrench::Wrench;
 
 /// What an actuator of one axis knows of what is around it.
 #[derive(Clone, Debug)]

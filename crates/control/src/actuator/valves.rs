@@ -2,9 +2,9 @@
 
 use super::failure::{Added, Failing, Failure, Lasting};
 use super::{Jets, OpenThruster, Thruster};
-use crate::body::{Push, Wrench};
 use crate::quantity::Finite;
 use crate::time::Instant;
+use crate::wrench::{Push, Wrench};
 
 /// The thrusters of a body, each with its failures.
 #[derive(Clone, Debug)]

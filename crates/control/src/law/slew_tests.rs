@@ -7,10 +7,10 @@ use super::{AttitudeLaw, Authority, Cause, Control, Goal, Itinerary, Rule, Torqu
 use crate::actuator::{Actuate, PulseWidth, Spinning, TorquerSetting, Wheels};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::belief::Belief;
-use crate::body::Wrench;
 use crate::manoeuvre::{Profile, Slew};
 use crate::motion::turning::{Acting, Bearing, Flexible, FreeMode, Slip, Turning};
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 const MODES: &str = include_str!("../../../../tests/golden/turning/modes.csv");
 /// t, attitude, rate, speeds of the wheels, angle beyond the reference.

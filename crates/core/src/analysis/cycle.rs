@@ -7,7 +7,8 @@
 
 use nalgebra::{DMatrix, RowDVector, Schur};
 
-use crate::body::{ForcedInput, Planar, Segment};
+use crate::body::Planar;
+use crate::flow::{ForcedInput, Segment};
 use crate::law::Phase;
 use crate::motion::{self, State};
 use crate::record::{Command, Record, RecordError, Sample, Trigger};

@@ -7,8 +7,9 @@ use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 
 use crate::attitude::{AXES, Vector};
-use crate::body::{Axes, Coupled, Drift, Drive, Planar, Spatial};
+use crate::body::{Axes, Drift, Drive, Planar, Spatial};
 use crate::document::Fault;
+use crate::flow::Coupled;
 use crate::random::Seed;
 use crate::scenario::Scenario;
 use crate::time::Instant;

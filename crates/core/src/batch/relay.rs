@@ -4,12 +4,12 @@
 mod tests;
 
 use super::{Batch, Job};
-use crate::body::{ForcedInput, Segment};
 use crate::estimator::Monitor;
 use crate::flight::{
     Crew, CyclePlace, LaneSight, MOST, Searched, Setup, Structure, flies, fly_beside, guards, instant, phase,
     searched, see, setup, structure,
 };
+use crate::flow::{ForcedInput, Segment};
 use crate::guard::Guard;
 use crate::lanes::Processor;
 use crate::law::Phase;

@@ -7,7 +7,7 @@ mod filters;
 mod motions;
 
 use super::{Batch, Job};
-use crate::body::Lent;
+use crate::flow::Lent;
 use crate::lanes::{LaneWork, Mask, Processor, Real};
 use crate::law::Law;
 use crate::metrics::{Gather, Metrics, MotionMetrics, Passed};

@@ -3,8 +3,9 @@
 use std::sync::Arc;
 
 use super::Scenario;
-use crate::body::{Coupled, Coupling, Planar};
+use crate::body::Planar;
 use crate::document::Fault;
+use crate::flow::{Coupled, Coupling};
 use crate::motion::linear::LinearFlow;
 use crate::structure::TOO_FAR_APART;
 

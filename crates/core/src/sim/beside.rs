@@ -2,8 +2,8 @@
 
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
-use crate::body::Lent;
 use crate::estimator::kalman::KalmanFilter;
+use crate::flow::Lent;
 use crate::record::Record;
 use crate::time::Instant;
 

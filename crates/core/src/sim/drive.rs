@@ -2,13 +2,14 @@
 
 use crate::actuator::Actuate;
 use crate::belief::Belief;
-use crate::body::{Drift, Wrench};
+use crate::body::Drift;
 use crate::disturbance::{Disturbance, Disturbing};
 use crate::environment::Around;
 use crate::law::{Command, TorqueDistribution};
 use crate::random::Seed;
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 /// All that acts on the body.
 #[derive(Clone, Debug)]

@@ -2,7 +2,7 @@
 
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
-use crate::body::spatial::SpatialState;
+use crate::flow::SpatialState;
 use crate::record::{Record, Sample};
 use crate::scene::{PlanarView, Scene};
 

@@ -2,7 +2,7 @@
 
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
-use crate::body::spatial::SpatialState;
+use crate::flow::SpatialState;
 use crate::motion::State;
 use crate::scenario::Scenario;
 use crate::sensor::Truth;

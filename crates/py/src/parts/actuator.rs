@@ -4,9 +4,9 @@ use std::any::Any;
 
 use flexsc_core::actuator::{Actuate, Demand, Effector, TorquerSetting as EngineSetting};
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::Wrench;
 use flexsc_core::own::Halt;
 use flexsc_core::time::{Instant as Exact, Span};
+use flexsc_core::wrench::Wrench;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

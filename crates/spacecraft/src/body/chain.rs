@@ -11,25 +11,20 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::forced::{Forced, ForcedInput};
 use super::{Mode, Planar};
-use crate::motion::stretch::{Expansion, REACH};
-use crate::motion::{Sensed, State};
-use crate::numerics::extrapolation::{RightHandSide, Trajectory};
-use crate::numerics::polynomial::{Series, TERMS};
 use crate::structure::Structure;
 
 /// The equations of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
     /// A, K and C above.
-    inertia: DMatrix<f64>,
-    stiffness: DMatrix<f64>,
-    damping: DMatrix<f64>,
+    pub(crate) inertia: DMatrix<f64>,
+    pub(crate) stiffness: DMatrix<f64>,
+    pub(crate) damping: DMatrix<f64>,
     /// Rows that give the rigid angle and the displacement of each linear mode for small angles.
-    modal: DMatrix<f64>,
-    frequencies: Vec<f64>,
-    tolerance: f64,
+    pub(crate) modal: DMatrix<f64>,
+    pub(crate) frequencies: Vec<f64>,
+    pub(crate) tolerance: f64,
 }
 
 impl Chain {
@@ -66,7 +61,7 @@ impl Chain {
     }
 
     /// Angles, then rates, of a chain that is not bent.
-    fn start(&self, angle: f64, rate: f64) -> Vec<f64> {
+    pub(crate) fn start(&self, angle: f64, rate: f64) -> Vec<f64> {
         let n = self.inertia.nrows();
         [vec![angle; n], vec![rate; n]].concat()
     }
@@ -91,237 +86,4 @@ fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &Planar) -> DMatrix<f64> {
     let rows: Vec<_> =
         std::iter::once(rigid.into_owned()).chain(model.modes.iter().enumerate().map(of)).collect();
     DMatrix::from_rows(&rows)
-}
-
-/// The equations under one input.
-struct Driven<'a> {
-    chain: &'a Chain,
-    input: &'a ForcedInput,
-}
-
-impl Driven<'_> {
-    /// The accelerations of all angles, `t` seconds after the input began.
-    fn acceleration(&self, t: f64, y: &[f64]) -> DVector<f64> {
-        let Chain { inertia, stiffness, damping, .. } = self.chain;
-        let n = inertia.nrows();
-        let (angle, rate) = (DVector::from_column_slice(&y[..n]), DVector::from_column_slice(&y[n..]));
-        let mut force = -(stiffness * &angle) - damping * &rate;
-        let waveform = self.input.waveform.as_ref().map_or(0.0, |forced| forced.at(t));
-        force[0] += self.input.constant + waveform;
-        let mut coupling = inertia.clone();
-        for i in 0..n {
-            for j in 0..i {
-                let (sin, cos) = libm::sincos(angle[i] - angle[j]);
-                let centrifugal = inertia[(i, j)] * sin;
-                force[i] -= centrifugal * rate[j] * rate[j];
-                force[j] += centrifugal * rate[i] * rate[i];
-                coupling[(i, j)] *= cos;
-                coupling[(j, i)] *= cos;
-            }
-        }
-        // The kinetic energy is positive at all angles; what is not a number stays so.
-        coupling.cholesky().map_or_else(|| DVector::repeat(n, f64::NAN), |factor| factor.solve(&force))
-    }
-}
-
-impl RightHandSide for Driven<'_> {
-    fn rate(&self, t: f64, y: &[f64], rate: &mut [f64]) {
-        let n = y.len() / 2;
-        rate[..n].copy_from_slice(&y[n..]);
-        rate[n..].copy_from_slice(self.acceleration(t, y).as_slice());
-    }
-}
-
-/// The motion of a chain under one input.
-#[derive(Clone, Debug)]
-pub struct ChainMotion {
-    chain: Chain,
-    input: ForcedInput,
-    /// Angles and rates.
-    trajectory: Trajectory,
-    /// The same at departure.
-    start: Vec<f64>,
-}
-
-impl ChainMotion {
-    /// A chain at rest at an angle, or turning at a rate, under no input.
-    pub fn new(chain: &Chain, angle: f64, rate: f64) -> Self {
-        let step = 0.05 / chain.frequencies.iter().copied().fold(1e-3, f64::max);
-        let trajectory = Trajectory::new(chain.tolerance, chain.start(angle, rate), step);
-        let start = trajectory.here().to_vec();
-        Self { chain: chain.clone(), input: ForcedInput::default(), trajectory, start }
-    }
-
-    /// Begins a motion under another input, from where the chain was seen last.
-    pub fn depart(&mut self, input: &ForcedInput) {
-        self.input = input.clone();
-        self.trajectory.depart();
-        self.start.copy_from_slice(self.trajectory.here());
-    }
-
-    /// Takes one step towards `h` seconds after departure; whether no more are needed.
-    pub fn approach(&mut self, h: f64) -> bool {
-        self.trajectory.approach(&Driven { chain: &self.chain, input: &self.input }, h)
-    }
-
-    /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor at the hub sees.
-    pub fn at(&mut self, h: f64, state: &mut State) -> Sensed {
-        self.trajectory.at(&Driven { chain: &self.chain, input: &self.input }, h);
-        self.see(h, state)
-    }
-
-    fn see(&self, h: f64, state: &mut State) -> Sensed {
-        let n = self.chain.inertia.nrows();
-        let (angle, rate) = self.trajectory.here().split_at(n);
-        let modal = &self.chain.modal * DVector::from_column_slice(angle);
-        let modal_rate = &self.chain.modal * DVector::from_column_slice(rate);
-        (state.rigid_angle, state.rigid_rate) = (modal[0], modal_rate[0]);
-        for (index, (phase, w)) in state.modes.iter_mut().zip(&self.chain.frequencies).enumerate() {
-            (phase.displacement, phase.quadrature) = (modal[index + 1], modal_rate[index + 1] / w);
-        }
-        let driven = Driven { chain: &self.chain, input: &self.input };
-        Sensed {
-            angle: angle[0],
-            rate: rate[0],
-            acceleration: driven.acceleration(h, self.trajectory.here())[0],
-        }
-    }
-
-    /// Value and rate of each output: the angle of each section relative to the hub.
-    pub fn outputs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
-        let n = self.chain.inertia.nrows();
-        let y = self.trajectory.here();
-        (1..n).map(move |k| (y[k] - y[0], y[n + k] - y[n]))
-    }
-
-    /// How many angles it has, which may be more than the modes that are kept.
-    pub fn coordinates(&self) -> usize {
-        self.chain.inertia.nrows()
-    }
-
-    /// The motion from its departure on.
-    pub fn unfold(&self) -> Flown<'_> {
-        let (angles, rates) = self.start.split_at(self.chain.inertia.nrows());
-        let begin = |(angle, rate): (&f64, &f64)| {
-            let mut series = [0.0; TERMS];
-            (series[0], series[1]) = (*angle, *rate);
-            series
-        };
-        Flown { flight: self, begins: 0.0, angles: angles.iter().zip(rates).map(begin).collect() }
-    }
-
-    /// Energy of motion and deformation (J).
-    pub fn energy(&self) -> f64 {
-        let Chain { inertia, stiffness, .. } = &self.chain;
-        let n = inertia.nrows();
-        let (angle, rate) = self.trajectory.here().split_at(n);
-        let angles = DVector::from_column_slice(angle);
-        let mut twice = (stiffness * &angles).dot(&angles);
-        for i in 0..n {
-            for j in 0..n {
-                twice += inertia[(i, j)] * libm::cos(angle[i] - angle[j]) * rate[i] * rate[j];
-            }
-        }
-        0.5 * twice
-    }
-}
-
-/// A chain's motion as Taylor series of its angles, each coefficient from those before it.
-#[derive(Debug)]
-pub struct Flown<'a> {
-    flight: &'a ChainMotion,
-    /// When the series begin, after departure (s).
-    begins: f64,
-    angles: Vec<Series>,
-}
-
-impl Flown<'_> {
-    /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, with a waveform that has
-    /// no break until twice `middle` seconds after it, and returns how far they reach (s).
-    pub fn expand(&mut self, h: f64, middle: f64, into: &mut Expansion) -> f64 {
-        let after = h - self.begins;
-        for angle in &mut self.angles {
-            let (x, v) = angle.iter().rev().fold((0.0, 0.0), |(x, v), c| (x * after + c, v * after + x));
-            (angle[0], angle[1]) = (x, v);
-        }
-        self.begins = h;
-        if let Some(forced) = &self.flight.input.waveform {
-            into.command = forced.series(middle, h);
-        }
-        let mut torque = into.command;
-        torque[0] += self.flight.input.constant;
-        self.fill(&torque);
-        into.coordinates.copy_from_slice(&self.angles);
-        let command = self.flight.input.waveform.as_ref().map_or(0.0, Forced::fastest);
-        let fastest = self.flight.chain.frequencies.iter().copied().fold(command, f64::max);
-        reach(&self.angles, fastest)
-    }
-
-    /// Finds the series from their first two terms, under a torque at the hub.
-    fn fill(&mut self, torque: &Series) {
-        let Chain { inertia, stiffness, damping, .. } = &self.flight.chain;
-        let (n, angles) = (inertia.nrows(), &mut self.angles);
-        let zero = vec![[0.0; TERMS]; n];
-        // Of each pair the sine and the cosine of the angle between them; squares of the rates; accelerations.
-        let (mut sines, mut cosines) = (vec![zero.clone(); n], vec![zero.clone(); n]);
-        let (mut squares, mut accelerations) = (zero.clone(), zero);
-        let mut mass = inertia.clone();
-        for i in 0..n {
-            for j in 0..n {
-                let (sin, cos) = libm::sincos(angles[i][0] - angles[j][0]);
-                (sines[i][j][0], cosines[i][j][0]) = (sin, cos);
-                mass[(i, j)] *= cos;
-            }
-        }
-        let Some(factor) = mass.cholesky() else { return };
-        let mut force = DVector::zeros(n);
-        for k in 0..TERMS - 2 {
-            let rate = |angle: &Series, m: usize| (m + 1) as f64 * angle[m + 1];
-            for (square, angle) in squares.iter_mut().zip(angles.iter()) {
-                square[k] = (0..=k).map(|m| rate(angle, m) * rate(angle, k - m)).sum();
-            }
-            for i in 0..n {
-                for j in (0..n).filter(|j| *j != i && k > 0) {
-                    let (mut sin, mut cos) = (0.0, 0.0);
-                    for m in 1..=k {
-                        let turn = m as f64 * (angles[i][m] - angles[j][m]) / k as f64;
-                        sin += turn * cosines[i][j][k - m];
-                        cos -= turn * sines[i][j][k - m];
-                    }
-                    (sines[i][j][k], cosines[i][j][k]) = (sin, cos);
-                }
-            }
-            for i in 0..n {
-                let mut sum = if i == 0 { torque[k] } else { 0.0 };
-                for j in 0..n {
-                    sum -= stiffness[(i, j)] * angles[j][k] + damping[(i, j)] * rate(&angles[j], k);
-                    let (sine, cosine) = (&sines[i][j], &cosines[i][j]);
-                    let turned: f64 = (0..=k).map(|m| sine[m] * squares[j][k - m]).sum();
-                    let carried: f64 = (1..=k).map(|m| cosine[m] * accelerations[j][k - m]).sum();
-                    sum -= inertia[(i, j)] * (turned + carried);
-                }
-                force[i] = sum;
-            }
-            factor.solve_mut(&mut force);
-            for (i, (angle, acceleration)) in angles.iter_mut().zip(&mut accelerations).enumerate() {
-                acceleration[k] = force[i];
-                angle[k + 2] = force[i] / ((k + 1) * (k + 2)) as f64;
-            }
-        }
-    }
-}
-
-/// How far series reach (s) before what they leave out shows: so many radians of the fastest mode or command, and where
-/// large angles make them faster, a part of the radius by their last terms, as of bodies whose frequencies drift.
-fn reach(angles: &[Series], fastest: f64) -> f64 {
-    const SAFETY: f64 = 7.389_056_098_930_65;
-    let largest = |n: usize| angles.iter().map(|c| c[n].abs()).fold(0.0, f64::max);
-    // Of all terms: a chain may begin at rest, under a torque that begins at 0.
-    let (size, _) =
-        (0..TERMS).fold((0.0_f64, 1.0), |(size, unit), n| (size.max(largest(n) * unit), unit / fastest));
-    let radius = |n: usize| match largest(n) {
-        0.0 => f64::INFINITY,
-        term => libm::pow(size / term, 1.0 / n as f64),
-    };
-    (radius(TERMS - 1).min(radius(TERMS - 2)) / SAFETY).min(REACH / fastest)
 }

@@ -1,15 +1,9 @@
-//! What is controlled: the ways to describe a body, and its exact flow under a constant input.
+//! What is controlled: the ways to describe a body.
 
-mod abreast;
 mod chain;
-mod coupled;
 pub mod craft;
 mod damping;
 mod drift;
-mod drifting;
-mod forced;
-#[cfg(test)]
-mod guess_tests;
 mod hub;
 mod matrices;
 mod mode;
@@ -18,11 +12,8 @@ mod output;
 mod panels;
 mod planar;
 mod reduction;
-mod segment;
-mod series;
 pub mod spatial;
 mod weights;
-mod wheeled;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -32,25 +23,18 @@ use serde::{Deserialize, Serialize};
 
 use crate::document::Fault;
 
-pub use chain::{Chain, ChainMotion, Flown};
-pub use coupled::Coupled;
+pub use chain::Chain;
 pub use craft::Craft;
 pub use damping::Damping;
 pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
-pub use drifting::Drifting;
-pub use forced::{Forced, ForcedInput, Push, Wrench};
 pub use matrices::{Matrices, Sum};
 pub use mode::Mode;
-pub use mode::ModeFlow;
 pub use model::{Axes, Model};
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
 pub use planar::{Drive, Planar};
-pub use segment::Segment;
-pub use series::{Ratio, Springs};
 pub use spatial::Spatial;
 pub use weights::Weights;
-pub use wheeled::{Constant, Coupling, Lent, Unfolding};
 
 /// The kinds of body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

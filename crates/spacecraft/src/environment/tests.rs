@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Quaternion};
 use super::{Around, Environment, Sky};
 use crate::attitude::{Vector, beyond, rotation};
 use crate::body::Spatial;
-use crate::body::spatial::{Rigid, RigidTurn};
+use crate::flow::{Rigid, RigidTurn};
 use crate::motion::turning::{Acting, Flexible, FreeMode, Rotor, Surroundings, Turning};
 use crate::time::{Instant, Span};
 

@@ -16,7 +16,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Feeds;
-use crate::body::{Coupled, Mode, Planar};
+use crate::body::{Mode, Planar};
+use crate::flow::Coupled;
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Stream;
 

@@ -6,7 +6,8 @@
 
 use nalgebra::DMatrix;
 
-use crate::body::{Mode, ModeFlow};
+use crate::body::Mode;
+use crate::flow::ModeFlow;
 
 /// The model.
 #[derive(Clone, Debug)]
@@ -234,8 +235,8 @@ fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Coupled;
     use crate::body::Planar;
+    use crate::flow::Coupled;
 
     const WIDE: [f64; 2] = [0.1, 3.0];
 

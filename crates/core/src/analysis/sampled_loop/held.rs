@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::{ClosedLoop, Loop};
-use crate::body::Coupled;
+use crate::flow::Coupled;
 use crate::law::Differentiation;
 
 /// A loop's body in discrete time, z+ = Ad z + sum of B_i u_{k-n-i}.

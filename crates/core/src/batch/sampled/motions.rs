@@ -1,7 +1,8 @@
 //! The motions of bodies side by side, from one departure to the next: of drifting frequencies, or of constant ones.
 
 use super::Run;
-use crate::body::{Constant, Coupled, Ratio, SERIES, Springs};
+use crate::body::SERIES;
+use crate::flow::{Constant, Coupled, Ratio, Springs};
 use crate::lanes::Real;
 use crate::motion::stretch::REACH;
 use crate::numerics::polynomial::TERMS;

@@ -8,7 +8,7 @@ mod two_way;
 use std::borrow::Cow;
 
 use super::SimulationError;
-use crate::body::{Axes, Wrench};
+use crate::body::Axes;
 use crate::estimator::Monitor;
 use crate::guard::Guard;
 use crate::motion::State;
@@ -17,6 +17,7 @@ use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 pub use planar::{Exerted, PlanarPlant};
 pub use spatial::SpatialPlant;

@@ -3,7 +3,8 @@
 mod course;
 
 use super::lent::Elsewhere;
-use crate::body::{ChainMotion, Coupling, ForcedInput, Lent, Output, Planar, Segment, Wrench};
+use crate::body::{Output, Planar};
+use crate::flow::{ChainMotion, Coupling, ForcedInput, Lent, Segment};
 use crate::guard::Guard;
 use crate::motion::crossing::locate;
 use crate::motion::{Sensed, State};
@@ -11,6 +12,7 @@ use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Re
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 /// The body, the motion that it is in, and the trip that lies ahead.
 #[derive(Clone, Debug)]

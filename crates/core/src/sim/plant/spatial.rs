@@ -4,15 +4,16 @@ use nalgebra::Quaternion;
 
 use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
-use crate::body::Wrench;
-use crate::body::spatial::{DriftingModes, Elastic, Periodic, Rigid, SpatialState};
+use crate::body::spatial::Periodic;
 use crate::environment::Around;
+use crate::flow::{DriftingModes, Elastic, Rigid, SpatialState};
 use crate::motion::turning::{Flexible, Rotor, Slip, SlippedRotor, Surroundings};
 use crate::motion::{Phase, State};
 use crate::record::{Record, RecordError};
 use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 mod fastest;
 mod logged;

@@ -5,10 +5,10 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::attitude::{Vector, rotation, vector};
-use crate::body::Wrench;
 use crate::body::craft::Moving;
-use crate::body::spatial::{Elastic, Periodic, Rigid, Spatial, SpatialState};
+use crate::body::spatial::{Periodic, Spatial};
 use crate::environment::{Around, SkySight};
+use crate::flow::{Elastic, Rigid, SpatialState};
 use crate::motion::Phase;
 use crate::motion::turning::{
     Acting, Angles, Bearing, CommonSteps, Driving, Flexible, Heated, Slip, SlippedRotor, Surroundings,
@@ -17,6 +17,7 @@ use crate::motion::turning::{
 use crate::scenario::{Courses, Drives};
 use crate::sensor::{Orientation, Truth};
 use crate::sine::Sine;
+use crate::wrench::Wrench;
 
 /// The motion, and what the plant needs to turn what acts and what is seen into its terms.
 #[derive(Clone, Debug)]

@@ -6,11 +6,7 @@
 //! The modes do not act back on the rigid motion. Q turns vectors of the body into inertial ones: v = Q o v_body o Q*.
 
 mod disturbance;
-mod drifting;
-mod elastic;
 mod modes;
-mod rigid;
-mod state;
 
 use std::collections::BTreeMap;
 
@@ -24,11 +20,7 @@ use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
 
 pub use disturbance::Periodic;
-pub use drifting::DriftingModes;
-pub use elastic::Elastic;
 pub use modes::SpatialModes;
-pub use rigid::{LONGEST_TURN, Rigid, RigidTurn};
-pub use state::SpatialState;
 
 /// A spatial body: three axes and elastic modes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

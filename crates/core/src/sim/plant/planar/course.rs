@@ -1,7 +1,8 @@
 //! The motion of one angle as records take it: stretch by stretch, in expansions that are exact to rounding.
 
 use super::{Exerted, Motion, PlanarPlant};
-use crate::body::{Flown, Output, Segment, Unfolding};
+use crate::body::Output;
+use crate::flow::{Flown, Segment, Unfolding};
 use crate::guard::Guard;
 use crate::motion::crossing::locate;
 use crate::motion::{Expansion, State, Stretch};

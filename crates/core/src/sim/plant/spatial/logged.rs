@@ -3,8 +3,8 @@
 use super::super::two_way::TwoWay;
 use super::SpatialPlant;
 use crate::attitude::Vector;
-use crate::body::spatial::Rigid;
 use crate::environment::into;
+use crate::flow::Rigid;
 use crate::motion::Phase;
 use crate::record::{
     DriveMotion, DrivenMode, DrivesMotion, Energy, HingeMotion, Hinges, Orbit, OrbitAxis, Pointing, Position,

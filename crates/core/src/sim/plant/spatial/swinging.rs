@@ -2,9 +2,11 @@
 
 use super::SpatialPlant;
 use crate::attitude::Vector;
-use crate::body::spatial::{DriftingModes, Spatial};
-use crate::body::{Drift, Wrench};
+use crate::body::Drift;
+use crate::body::spatial::Spatial;
+use crate::flow::DriftingModes;
 use crate::motion::{Phase, State};
+use crate::wrench::Wrench;
 
 impl SpatialPlant {
     /// The same with modes whose frequencies drift.

@@ -3,7 +3,6 @@
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::attitude::{Vector, rotation};
-use crate::body::Wrench;
 use crate::body::spatial::Spatial;
 use crate::motion::Phase;
 use crate::motion::turning::{Flexible, FreeMode, Rotor};
@@ -12,6 +11,7 @@ use crate::scenario::Study;
 use crate::sensor::{Orientation, Truth};
 use crate::sim::plant::SpatialPlant;
 use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
 
 /// Two modes, which turn the hub by these angles or not at all, and a bench a little further.
 fn body(disturbed: bool, coupled: bool) -> Spatial {

@@ -1,7 +1,7 @@
 //! The motion of a body whose frequencies drift, from step to step of its Taylor series.
 
 use super::series::{Ratio, SAFETY, Springs};
-use super::{Drift, Planar, SERIES};
+use crate::body::{Drift, Planar, SERIES};
 use crate::numerics::polynomial::Series;
 
 /// Steps that are taken at a time.

@@ -1,6 +1,7 @@
 //! Every trip that is guessed and certified is the one that the certified search finds.
 
-use super::{ForcedInput, Mode, Planar, Segment};
+use super::{ForcedInput, Segment};
+use crate::body::{Mode, Planar};
 use crate::guard::Guard;
 use crate::motion::State;
 use crate::motion::crossing::locate;

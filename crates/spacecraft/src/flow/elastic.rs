@@ -1,9 +1,9 @@
 //! The elastic modes of a spatial body: their exact flow under constant modal forces, their energy, what a gyro sees.
 
-use super::{Spatial, SpatialMode};
+use super::ModeFlow;
 use crate::attitude::Vector;
 use crate::body::Mode;
-use crate::body::mode::ModeFlow;
+use crate::body::spatial::{Spatial, SpatialMode};
 use crate::motion::Phase;
 use crate::quantity::Finite;
 

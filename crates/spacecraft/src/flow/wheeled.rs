@@ -7,7 +7,8 @@ use std::sync::Arc as Shared;
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::{Coupled, Drift, Drifting, Planar};
+use super::{Coupled, Drifting};
+use crate::body::{Drift, Planar};
 use crate::guard::Guard;
 use crate::motion::crossing::{Trip, locate};
 use crate::motion::linear::{GuardLevel, LinearFlow, LinearSegment, LinearSight, Modal};

@@ -1,9 +1,8 @@
 //! The elastic modes of a spatial body whose frequencies drift: each by the Taylor series of its own equation, exact to rounding.
 
-use super::Spatial;
-use crate::body::drift::Drift;
-use crate::body::drifting::Drifting;
-use crate::body::{Mode, Planar};
+use super::Drifting;
+use crate::body::spatial::{Spatial, SpatialMode};
+use crate::body::{Drift, Mode, Planar};
 use crate::motion::Phase;
 use crate::quantity::Finite;
 
@@ -21,7 +20,7 @@ impl DriftingModes {
     /// The modes at the start, under no force.
     pub fn new(body: &Spatial, drift: &Drift) -> Self {
         let gain = Finite::new(1.0).unwrap_or_default();
-        let alone = |(index, mode): (usize, &super::SpatialMode)| {
+        let alone = |(index, mode): (usize, &SpatialMode)| {
             let own = match drift {
                 Drift::Common(profile) => Drift::Common(profile.clone()),
                 Drift::Each(profiles) => Drift::Each(profiles.get(index).cloned().into_iter().collect()),

@@ -7,7 +7,7 @@ use nalgebra::DVector;
 use super::abreast::Abreast;
 use super::forced::{Forced, ForcedInput, ForcedResponse};
 use super::mode::ModeFlow;
-use super::{Drive, Planar};
+use crate::body::{Drive, Planar};
 use crate::guard::Guard;
 use crate::motion::crossing::{Approach, first_root};
 use crate::motion::stretch::{Expansion, REACH};

@@ -8,8 +8,8 @@
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::{Periodic, Spatial};
 use crate::attitude::Vector;
+use crate::body::spatial::{Periodic, Spatial};
 use crate::motion::turning::Surroundings;
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
 

@@ -1,7 +1,8 @@
 //! The state of a spatial body.
 
-use super::{Elastic, Rigid, RigidTurn, Spatial};
+use super::{Elastic, Rigid, RigidTurn};
 use crate::attitude::vector;
+use crate::body::Spatial;
 use crate::motion::Phase;
 
 /// Where a spatial body is.

@@ -3,7 +3,7 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use super::Mode;
+use crate::body::Mode;
 use crate::lanes::{Four, LaneWork, Real};
 use crate::motion::Phase;
 use crate::motion::damping::{Damping, Undamped};

@@ -4,7 +4,7 @@
 //! themselves: each coefficient follows from those before it. The series have order 20, and the step keeps what they leave
 //! out at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
 
-use super::{Drift, Planar, SERIES};
+use crate::body::{Drift, Mode, Planar, SERIES};
 use crate::lanes::Real;
 
 /// e²: the step over the radius of convergence at which the series of this order leaves out the last bit of a double.
@@ -79,7 +79,7 @@ impl Springs<f64> {
     /// Those of a body. A wheel takes back-EMF a (1/s) from the total rate, or from the rigid one.
     pub fn new(body: &Planar, back_emf: f64, total: bool) -> Self {
         let frequencies = || body.modes.iter().map(|mode| mode.frequency.get());
-        let with = |rigid: f64, of: &dyn Fn(&super::Mode) -> f64| {
+        let with = |rigid: f64, of: &dyn Fn(&Mode) -> f64| {
             std::iter::once(rigid).chain(body.modes.iter().map(of)).collect::<Vec<f64>>()
         };
         let drag = with(0.0, &|mode| 2.0 * mode.damping.get() * mode.frequency.get());

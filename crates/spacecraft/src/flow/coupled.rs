@@ -5,7 +5,7 @@
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
-use super::Planar;
+use crate::body::Planar;
 use crate::motion::linear::{LinearFlow, System};
 use crate::numerics::exponential::{exponential, exponentials};
 
