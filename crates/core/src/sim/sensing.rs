@@ -79,8 +79,7 @@ impl Sensing {
         }
     }
 
-    /// Reads what is due now, of a body that was viewed now, with angles beyond an origin; tells whether
-    /// anything was measured.
+    /// Reads what is due now, of a body that was viewed now, with angles beyond an origin; tells whether anything was measured.
     pub fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         let mut any = false;
         for (index, due) in self.sensors.iter_mut().enumerate() {
