@@ -275,7 +275,7 @@ pub struct Goal {
 impl Goal {
     /// Angle and rate at an instant.
     pub fn at(&self, now: Instant) -> (f64, f64) {
-        // At rest the time that has passed is nothing to it.
+        // Of a goal at rest the time that has passed does not count.
         let travel = if self.rate == 0.0 { self.rate } else { self.rate * now.since(self.from).seconds() };
         (self.angle + travel, self.rate)
     }

@@ -148,7 +148,7 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Nothing is known of a body at rest.
+    /// Before anything is looked at.
     pub const UNKNOWN: Self = Self {
         orientation: Orientation::Angle(0.0),
         elastic: [0.0; 3],

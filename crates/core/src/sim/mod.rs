@@ -11,6 +11,7 @@ mod beside;
 mod deciding;
 mod departing;
 mod drive;
+mod ends;
 mod error;
 mod events;
 mod exposing;
@@ -136,11 +137,6 @@ impl Simulation {
         }
     }
 
-    /// Makes the run draw its scene for records that want it; before it begins.
-    pub fn draw(&mut self, scenario: &Scenario) {
-        self.telling.draw(scenario);
-    }
-
     /// Runs to the end of the scenario.
     pub fn run(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.run_until(Instant::END, record)
@@ -176,31 +172,6 @@ impl Simulation {
             self.plant.view(until)?;
         }
         Ok(next <= until)
-    }
-
-    fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        self.plant.view(self.now)?;
-        self.ask(Event::Start);
-        self.feel();
-        let rigid = self.plant.viewed().rigid;
-        self.drive.command(self.now, self.laws.commands(), &self.beliefs, rigid);
-        self.steered = false;
-        self.drive.serve(self.now, rigid);
-        self.depart(record)?;
-        self.name_tuned();
-        self.turned(self.now);
-        self.tell_first_slips();
-        self.check_own_parts()?;
-        self.tell_begin(record)
-    }
-
-    /// Ends the run, if this is its end and it has not ended yet.
-    fn finish(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if self.now == self.end && self.telling.close() {
-            self.plant.tell_course(self.now, &self.exerted, record)?;
-            self.telling.journal_end(self.now, record)?;
-        }
-        Ok(())
     }
 
     /// The next instant at which anything is due.

@@ -36,6 +36,7 @@ struct Due {
     orients: bool,
     period: Option<Span>,
     next: Option<Instant>,
+    /// What it read before what is fresh.
     last: Option<Reading>,
     /// Whether it is the magnetometer whose field counts.
     feels: bool,
@@ -78,13 +79,14 @@ impl Sensing {
         }
     }
 
-    /// Reads what is due now, of a body that was viewed now, with angles beyond an origin; tells whether
-    /// anything was measured.
+    /// Reads what is due now, of a body that was viewed now, with angles beyond an origin; tells whether anything was measured.
     pub fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         let mut any = false;
         for (index, due) in self.sensors.iter_mut().enumerate() {
             let fresh = &mut self.fresh[index];
-            *fresh = None;
+            if fresh.is_some() {
+                due.last = fresh.take();
+            }
             if now > Instant::START && due.next.is_some_and(|next| next != now) {
                 continue;
             }
@@ -108,7 +110,6 @@ impl Sensing {
             if let Some(rates) = rates {
                 self.measured.iter_mut().zip(rates).for_each(|(measured, rate)| measured[1] = rate);
             }
-            due.last = Some(*reading);
             let all = self.reading.get_or_insert(Reading { sight: None, ..*reading });
             if due.orients {
                 all.at = reading.at;

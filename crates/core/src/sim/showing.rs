@@ -4,9 +4,15 @@ use super::plant::Plant;
 use super::{Simulation, SimulationError};
 use crate::flow::SpatialState;
 use crate::record::{Record, Sample};
+use crate::scenario::Scenario;
 use crate::scene::{PlanarView, Scene};
 
 impl Simulation {
+    /// Makes the run draw its scene for records that want it; before it begins.
+    pub fn draw(&mut self, scenario: &Scenario) {
+        self.telling.draw(scenario);
+    }
+
     /// What the scene consists of; a scene that no record wants is dropped.
     pub(super) fn set_the_scene(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (now, telling) = (self.now, &mut self.telling);

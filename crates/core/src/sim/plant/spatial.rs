@@ -22,8 +22,8 @@ mod swinging;
 /// A mode is seen by a sensor that it turns by at least such a part of what the mode does that turns it most.
 const VISIBLE: f64 = 0.1;
 
-/// A motion under what is constant begins anew after so long (s): looking at it is then soon done.
-const LONGEST: f64 = 20.0;
+/// A motion under what is constant begins anew after so long (fs): looking at it is then soon done.
+const LONGEST: i64 = 20_000_000_000_000_000;
 
 /// The body, and what pushes it.
 #[derive(Clone, Debug)]
@@ -126,7 +126,7 @@ impl SpatialPlant {
         if self.two_way.is_some() {
             return self.go(now, record);
         }
-        let longest = Span::from_seconds(LONGEST);
+        let longest = Span::from_femtoseconds(LONGEST);
         while now > self.departed + longest {
             self.go(self.departed + longest, record)?;
             self.origin.clone_from(&self.state);
