@@ -2,6 +2,7 @@
 
 mod course;
 
+use super::UNSEEN;
 use super::lent::Elsewhere;
 use crate::body::{ChainMotion, Coupling, ForcedInput, Lent, Output, Planar, Segment, Wrench};
 use crate::guard::Guard;
@@ -70,7 +71,7 @@ impl PlanarPlant {
             departed: Instant::START,
             sight,
             seen: Instant::START,
-            truth: Truth::UNKNOWN,
+            truth: UNSEEN,
             ahead: (state.clone(), Sensed::default(), Instant::START),
             frequencies: body.modes.iter().map(|mode| mode.frequency.get()).collect(),
             outputs: body.outputs.clone(),
