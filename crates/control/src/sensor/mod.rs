@@ -148,16 +148,6 @@ pub struct Truth {
 }
 
 impl Truth {
-    /// Before anything is looked at.
-    pub const UNKNOWN: Self = Self {
-        orientation: Orientation::Angle(0.0),
-        elastic: [0.0; 3],
-        rate: [0.0; 3],
-        rigid: [0.0; 3],
-        turned: [0.0; 3],
-        sky: SkySight { field: None, sun: None },
-    };
-
     /// What a sensor of angles sees: one angle, or the small rotations by which its place differs from the attitude (rad).
     #[inline]
     pub fn seen(&self) -> [f64; 3] {

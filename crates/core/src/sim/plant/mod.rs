@@ -9,6 +9,7 @@ use std::borrow::Cow;
 
 use super::SimulationError;
 use crate::body::Axes;
+use crate::environment::SkySight;
 use crate::estimator::Monitor;
 use crate::guard::Guard;
 use crate::motion::State;
@@ -22,6 +23,16 @@ use crate::wrench::Wrench;
 pub use planar::{Exerted, PlanarPlant};
 pub use spatial::SpatialPlant;
 pub use two_way::Mount;
+
+/// What there is to measure before anything is looked at.
+const UNSEEN: Truth = Truth {
+    orientation: Orientation::Angle(0.0),
+    elastic: [0.0; 3],
+    rate: [0.0; 3],
+    rigid: [0.0; 3],
+    turned: [0.0; 3],
+    sky: SkySight { field: None, sun: None },
+};
 
 /// A body that moves.
 #[derive(Clone, Debug)]

@@ -2,6 +2,7 @@
 
 mod course;
 
+use super::UNSEEN;
 use super::lent::Elsewhere;
 use crate::body::{Output, Planar};
 use crate::flow::{ChainMotion, Coupling, ForcedInput, Lent, Segment};
@@ -72,7 +73,7 @@ impl PlanarPlant {
             departed: Instant::START,
             sight,
             seen: Instant::START,
-            truth: Truth::UNKNOWN,
+            truth: UNSEEN,
             ahead: (state.clone(), Sensed::default(), Instant::START),
             frequencies: body.modes.iter().map(|mode| mode.frequency.get()).collect(),
             outputs: body.outputs.clone(),

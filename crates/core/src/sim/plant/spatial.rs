@@ -2,6 +2,7 @@
 
 use nalgebra::Quaternion;
 
+use super::UNSEEN;
 use super::two_way::{Mount, TwoWay};
 use crate::attitude::{Vector, beyond};
 use crate::body::spatial::Periodic;
@@ -108,7 +109,7 @@ impl SpatialPlant {
             two_way,
             seen: Instant::START,
             state: origin.clone(),
-            truth: Truth::UNKNOWN,
+            truth: UNSEEN,
             is_viewed: false,
             rates: (Vector::zeros(), Vector::zeros()),
             origin,
