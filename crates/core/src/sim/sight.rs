@@ -4,6 +4,7 @@ use super::plant::Plant;
 use super::{Simulation, SimulationError};
 use crate::flow::SpatialState;
 use crate::motion::State;
+use crate::record::Hinges;
 use crate::scenario::Scenario;
 use crate::sensor::Truth;
 
@@ -103,6 +104,11 @@ impl Simulation {
             fields.push(state("gimbal_angles", "rad", count));
             fields.push(state("gimbal_rates", "rad/s", count));
         }
+        if let Some(hinges) = self.hinges() {
+            let count = Some(hinges.hinges.len());
+            fields.push(state("hinge_angles", "rad", count));
+            fields.push(state("hinge_rates", "rad/s", count));
+        }
         let count = (self.beliefs.len() > 1).then_some(3);
         let angle = if count.is_some() { "error" } else { "angle" };
         for group in [LookGroup::Measured, LookGroup::Believed] {
@@ -151,6 +157,10 @@ impl Simulation {
                     row.put_all(gimbals.gyros.iter().map(|gyro| gyro.angle_rad));
                     row.put_all(gimbals.gyros.iter().map(|gyro| gyro.rate_rad_s));
                 }
+                if let Some(Hinges { hinges }) = plant.hinges() {
+                    row.put_all(hinges.iter().map(|hinge| hinge.angle_rad));
+                    row.put_all(hinges.iter().map(|hinge| hinge.rate_rad_s));
+                }
             }
         }
         let axes = self.beliefs.len();
@@ -170,6 +180,11 @@ impl Simulation {
         row.put_all(self.beliefs.iter().map(|belief| belief.angle));
         row.put_all(self.beliefs.iter().map(|belief| belief.rate));
         Ok(())
+    }
+
+    /// The hinges of appendages; none without hinges.
+    fn hinges(&self) -> Option<Hinges> {
+        if let Plant::Spatial(plant) = &self.plant { plant.hinges() } else { None }
     }
 
     /// The torque that the actuator gives about an axis (N m).

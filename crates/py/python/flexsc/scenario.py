@@ -87,6 +87,7 @@ __all__ = [
     "Groups",
     "Gyro",
     "Harmonic",
+    "Hinge",
     "Hold",
     "Ideal",
     "Imbalance",
@@ -321,6 +322,10 @@ class Appendage(Part):
     """Rotation of its axes relative to those of the body."""
     drive: AppendageDrive | None = None
     """Drive that turns it about an axis through its root during a run; default: none."""
+    hinge: Hinge | None = None
+    """Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default:
+    none.
+    """
     plate: Literal["x", "y"] | None = None
     """For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments
     then follow from the participations in rotation.
@@ -1114,6 +1119,22 @@ class Harmonic(Part):
     """Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase). Default: 0.0."""
     phase: float | None = None
     """Its phase (rad). Default: 0.0."""
+
+
+@dataclass(frozen=True, kw_only=True)
+class Hinge(Part):
+    """A hinge: a spring and a damper about one axis at the root."""
+
+    about: Vector
+    """Axis through the root, in the axes of the appendage, of any nonzero length."""
+    stiffness: float
+    """Stiffness of its spring (N m/rad)."""
+    damping: float | None = None
+    """Viscous damping (N m s/rad). Default: 0.0."""
+    angle: float | None = None
+    """Angle at the start (rad); at 0 the spring is relaxed. Default: 0.0."""
+    rate: float | None = None
+    """Its rate at the start (rad/s). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)

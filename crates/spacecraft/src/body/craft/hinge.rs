@@ -14,7 +14,7 @@ use crate::motion::turning;
 use crate::quantity::{Finite, Frequency, NonNegative, Positive};
 use crate::structure::Shape;
 
-/// A hinge.
+/// A hinge: a spring and a damper about one axis at the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Hinge {
