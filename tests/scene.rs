@@ -243,9 +243,11 @@ fn panels_visibly_bend() {
     let names =
         shipped.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned));
     for name in names {
-        // A rigid body has nothing to bend, drives turn the wings by far more than they bend, and disturbances of 1e-4 N m
-        // bend nothing beside what its wheels could.
-        if ["detumble-and-point", "sun-tracking", "adaptive-bandwidth"].contains(&name.as_str()) {
+        // A rigid body has nothing to bend, drives and hinges turn the wings by far more than they bend, and disturbances of
+        // 1e-4 N m bend nothing beside what its wheels could.
+        if ["detumble-and-point", "sun-tracking", "panel-deployment", "adaptive-bandwidth"]
+            .contains(&name.as_str())
+        {
             continue;
         }
         let dir = Dir::with(&[&name]);
@@ -269,6 +271,24 @@ fn panels_visibly_bend() {
         // A loop that is unstable bends as far as anything is drawn.
         let most = if name == "wheel-unstable-band" { 1.51 } else { 1.0 };
         assert!(largest < most, "{name} bends by {largest} rad");
+    }
+}
+
+/// Wings unfold with the hinges of their panels, each about its own axis.
+#[test]
+fn wings_swing_on_their_hinges() {
+    let dir = Dir::with(&["panel-deployment"]);
+    let log = log(&dir, "panel-deployment", "--set duration=60 --set log.scene.period=1");
+    let frames = Frames::of(&log);
+    let about_x = |message: usize, wing: &str| {
+        let [x, y, z, w] = frames.rotations[frames.at(message, wing)];
+        assert!(y.abs() < 1e-12 && z.abs() < 1e-12, "{wing} turns about x alone");
+        2.0 * x.atan2(w)
+    };
+    let last = frames.times.len() - 1;
+    for (wing, way) in [("wing_1/1", 1.0), ("wing_2/1", -1.0)] {
+        assert!((about_x(0, wing) - 1.4 * way).abs() < 1e-12, "{}", about_x(0, wing));
+        assert!(about_x(last, wing).abs() < 0.02, "{}", about_x(last, wing));
     }
 }
 

@@ -1,4 +1,4 @@
-"""A spacecraft with two panels on hinges, far from their rest, and one on a drive: hinged.toml and hinged.csv.
+"""Two panels on hinges, far from their rest, and one on a drive: hinged.toml and hinged.csv.
 
     pip install numpy scipy
     python3 tests/golden/hinged_oracle.py tests/golden
@@ -11,6 +11,7 @@ hinged.csv has a line each half second: t, Q (4), w (3), angles (2), rates of th
 the hub's point O from the start (3).
 """
 
+import itertools
 import sys
 from pathlib import Path
 
@@ -84,7 +85,7 @@ def placed(panel, angle):
 
 
 def residual(t, w, angles, speeds, torque, force, moves):
-    """What force, moment about O and the hinges' torques lack, for accelerations of O, rotation and hinges."""
+    """What forces, moments about O and torques of hinges lack, for these accelerations."""
     a, alpha, bends = moves[:3], moves[3:6], moves[6:]
     centre = HUB["centre"]
     moved = HUB["mass"] * (a + np.cross(alpha, centre) + np.cross(w, np.cross(w, centre)))
@@ -141,7 +142,7 @@ def main():
     folder = Path(sys.argv[1])
     times = np.linspace(0, DURATION, 81)
     edges, y, lines = [0.0, *FORCED, DURATION], start(), []
-    for began, ends in zip(edges[:-1], edges[1:], strict=True):
+    for began, ends in itertools.pairwise(edges):
         within = times[(times >= began) & (times < ends)]
         forced = began == FORCED[0]
         ways = {"method": "DOP853", "rtol": 1e-13, "atol": 1e-15, "t_eval": [*within, ends]}
@@ -161,7 +162,7 @@ def listed(v):
 
 
 def scenario():
-    text = f"""# Two panels on hinges, far from their rest, and an antenna on a drive: made by hinged_oracle.py.
+    text = f"""# Two panels on hinges, far from their rest, and an antenna on a drive: by hinged_oracle.py.
 duration = {DURATION}
 [spacecraft]
 mass = {HUB["mass"]}

@@ -18,9 +18,7 @@ def swinging(angle: float, hub: float = 1e9) -> flexsc.Scenario:
     )
     return flexsc.Scenario(
         duration=30.0,
-        spacecraft=Spacecraft(
-            mass=hub, inertia=np.diag([hub] * 3).tolist(), points=[NamedPoint(name="hub")]
-        ),
+        spacecraft=Spacecraft(mass=hub, inertia=np.diag([hub] * 3).tolist(), points=[NamedPoint(name="hub")]),
         appendage=[panel],
         law=Open(),
         log=Log(period=0.5),

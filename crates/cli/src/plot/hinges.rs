@@ -8,11 +8,6 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// Whether a scenario has hinges.
-pub fn of(story: &Story) -> bool {
-    story.scenario.study.drives.as_ref().is_some_and(|drives| drives.driven.hinges() > 0)
-}
-
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let hinges = cycles.hinges.first().map_or(0, |(_, row)| row.hinges.len());
     let lines = |of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {

@@ -107,10 +107,8 @@ impl What {
             Self::Orbit => spatial && orbit::of(story),
             Self::Gimbals => gimbals::of(story),
             Self::Magnetorquers => magnetorquers::of(story),
-            Self::Drives => {
-                story.scenario.study.drives.as_ref().is_some_and(|drives| drives.courses.count() > 0)
-            }
-            Self::Hinges => hinges::of(story),
+            Self::Drives => story.scenario.study.driven().is_some(),
+            Self::Hinges => story.scenario.study.hinges() > 0,
             Self::Accelerations => accelerations::of(story),
             Self::Consistency if spatial => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.attitude().is_some())

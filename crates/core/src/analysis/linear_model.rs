@@ -54,7 +54,7 @@ impl LinearModel {
     /// # Errors
     /// A body that is no linear system: its key, and why.
     pub fn of(scenario: &Scenario, at: f64) -> Result<Self, Fault> {
-        if scenario.study.drives.as_ref().is_some_and(|drives| drives.driven.drives() > 0) {
+        if scenario.study.driven().is_some() {
             let why = "turn appendages, so the body changes with time and is not a linear system";
             return Err(Fault::new("appendage", format!("has drives that {why}")));
         }

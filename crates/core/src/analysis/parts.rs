@@ -119,13 +119,7 @@ impl ModalParts {
             damping_coupling: craft.damping_coupling,
             clamped: clamped.collect(),
             points: points.collect(),
-            turned: scenario
-                .study
-                .drives
-                .as_ref()
-                .filter(|drives| drives.courses.count() > 0)
-                .map(|drives| turned(drives, scenario))
-                .unwrap_or_default(),
+            turned: scenario.study.driven().map(|drives| turned(drives, scenario)).unwrap_or_default(),
         }
     }
 }

@@ -135,9 +135,8 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
         add(scenario.sensor.accelerometers().next().is_some(), "/accelerations", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
-        let drives = scenario.study.drives.as_ref();
-        add(drives.is_some_and(|drives| drives.courses.count() > 0), "/drives", Full);
-        add(drives.is_some_and(|drives| drives.driven.hinges() > 0), "/hinges", Full);
+        add(scenario.study.driven().is_some(), "/drives", Full);
+        add(scenario.study.hinges() > 0, "/hinges", Full);
         add(!scenario.study.bearings.is_empty(), "/bearings", Full);
         add(scenario.study.bearings.iter().any(Bearing::grips), "/wheel_events", Events);
         for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {

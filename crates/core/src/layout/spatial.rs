@@ -63,24 +63,9 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         motion.push(plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
         motion.push(LayoutPanel::states("sliding", "Which way wheels turn", each("sliding")));
     }
-    if let Some(drives) = scenario.study.drives.as_ref().filter(|drives| drives.courses.count() > 0) {
-        let of =
-            |drive: usize| line(format!("/drives.drives[{drive}].angle_rad"), format!("drive {}", drive + 1));
-        let angles = (0..drives.courses.count().min(MOST_LINES)).map(of).collect();
-        motion.push(plot("drives", "Angles of the drives (rad)", angles));
-    }
-    let hinges = scenario.study.drives.as_ref().map_or(0, |drives| drives.driven.hinges());
-    if hinges > 0 {
-        let of =
-            |hinge: usize| line(format!("/hinges.hinges[{hinge}].angle_rad"), format!("hinge {}", hinge + 1));
-        motion.push(plot(
-            "hinges",
-            "Angles of the hinges (rad)",
-            (0..hinges.min(MOST_LINES)).map(of).collect(),
-        ));
-    }
+    motion.extend(turning(scenario));
     let mut elastic = vec![plot("energy", "Elastic energy (J)", energies(scenario, body))];
-    if scenario.study.drives.as_ref().is_some_and(|drives| drives.courses.count() > 0) {
+    if scenario.study.driven().is_some() {
         let of = |mode: usize| line(format!("/drives.modes[{mode}].frequency_rad_s"), format!("mode {mode}"));
         let each = (0..body.modes.len().min(MOST_LINES)).map(of).collect();
         elastic.push(plot("drifting", "Natural frequencies (rad/s)", each));
@@ -114,6 +99,30 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         elastic.push(LayoutPanel::states("trusted", "Observers", channels("trusted")));
     }
     together(scenario, motion, elastic)
+}
+
+/// The angles of what turns appendages: drives, and hinges.
+fn turning(scenario: &Scenario) -> Vec<LayoutPanel> {
+    let lines = |topic: &str, name: &str, count: usize| -> Vec<PlotLine> {
+        let of = |index: usize| {
+            line(format!("/{topic}.{topic}[{index}].angle_rad"), format!("{name} {}", index + 1))
+        };
+        (0..count.min(MOST_LINES)).map(of).collect()
+    };
+    let mut panels = Vec::new();
+    if let Some(drives) = scenario.study.driven() {
+        let angles = lines("drives", "drive", drives.courses.count());
+        panels.push(LayoutPanel::plot("drives", "Angles of the drives (rad)", angles));
+    }
+    let hinges = scenario.study.hinges();
+    if hinges > 0 {
+        panels.push(LayoutPanel::plot(
+            "hinges",
+            "Angles of the hinges (rad)",
+            lines("hinges", "hinge", hinges),
+        ));
+    }
+    panels
 }
 
 /// The panels of control moment gyros, if there are any.

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::{Scenario, Written};
+use super::{Scenario, Study, Written};
 use crate::attitude::Vector;
 use crate::body::Model;
 use crate::body::craft::{Appendage, Drive, Piece, Track};
@@ -124,6 +124,18 @@ impl Courses {
     /// How many drives there are.
     pub fn count(&self) -> usize {
         self.each.len()
+    }
+}
+
+impl Study {
+    /// The drives, if any turns: hinges alone have none.
+    pub fn driven(&self) -> Option<&Drives> {
+        self.drives.as_ref().filter(|drives| drives.courses.count() > 0)
+    }
+
+    /// How many appendages swing on hinges.
+    pub fn hinges(&self) -> usize {
+        self.drives.as_ref().map_or(0, |drives| drives.driven.hinges())
     }
 }
 

@@ -69,8 +69,8 @@ pub struct SpatialScene {
     groups: [[Vec<usize>; 2]; 3],
     plumes: Burning,
     frames: FrameTransforms,
-    /// The drive of each wing, and which way it turns the wing about y.
-    drives: [Option<(usize, f64)>; 2],
+    /// What turns each wing, a drive or one of the hinges behind them, and about which axis.
+    turned: [Option<(usize, Vector)>; 2],
 }
 
 impl SpatialScene {
@@ -116,7 +116,7 @@ impl SpatialScene {
             }),
             plumes: Burning::new(nozzles.collect(), 0.3 * size),
             frames: FrameTransforms { transforms: Vec::new() },
-            drives: wings(scenario),
+            turned: wings(scenario),
             points,
         };
         made.frames.transforms = made.at_rest();
@@ -195,13 +195,13 @@ impl SpatialScene {
         scene(entities)
     }
 
-    /// Where the frames are, at an attitude, with modes of these phases and drives at these angles (rad).
+    /// Where the frames are, at an attitude, with modes of these phases, and drives and hinges at these angles (rad).
     pub fn frames(
         &mut self,
         stamp: Stamp,
         q: &Quaternion<f64>,
         modes: &[Phase],
-        drives: &[f64],
+        angles: &[f64],
     ) -> &FrameTransforms {
         let moved: Vec<_> = self.points.iter().map(|point| self.drawn(point, modes)).collect();
         let still = (Vector::zeros(), Vector::zeros());
@@ -227,8 +227,8 @@ impl SpatialScene {
             (0..SECTIONS).map(|section| shape(section) - if section == 0 { 0.0 } else { shape(section - 1) });
         let steps: Vec<_> = steps.map(|step| about(tip * step)).collect();
         let root = |wing: usize| {
-            let turned = self.drives[wing].and_then(|(drive, way)| Some(way * drives.get(drive)?));
-            about(Vector::y() * turned.unwrap_or(0.0)) * steps[0]
+            let turned = self.turned[wing].and_then(|(by, axis)| Some(axis * *angles.get(by)?));
+            about(turned.unwrap_or_default()) * steps[0]
         };
         let roots = [root(0), root(1)];
         let turned = roots.iter().flat_map(|root| std::iter::once(root).chain(&steps[1..]));
@@ -261,18 +261,25 @@ impl SpatialScene {
     }
 }
 
-/// The drives that turn the wings: the first two, or the only one turns both.
-fn wings(scenario: &Scenario) -> [Option<(usize, f64)>; 2] {
+/// What turns the wings: the first drives or hinges on their sides, or the only one turns both. Drives turn them about y.
+fn wings(scenario: &Scenario) -> [Option<(usize, Vector)>; 2] {
     let Some(drives) = &scenario.study.drives else { return [None; 2] };
-    let axis = |panel: &DrivenPanel| {
-        let (about, drive) = panel.drive?;
-        Some((drive, if (panel.axes * about).y < 0.0 { -1.0 } else { 1.0 }, panel.root.y))
+    let mut hinges = drives.driven.drives();
+    let mut axis = |panel: &DrivenPanel| {
+        let (by, axis) = if let Some(hinge) = &panel.hinge {
+            hinges += 1;
+            (hinges - 1, panel.axes * hinge.about)
+        } else {
+            let (about, drive) = panel.drive?;
+            (drive, Vector::y() * if (panel.axes * about).y < 0.0 { -1.0 } else { 1.0 })
+        };
+        Some((by, axis, panel.root.y))
     };
-    let turned: Vec<_> = drives.driven.panels.iter().filter_map(axis).collect();
+    let turned: Vec<_> = drives.driven.panels.iter().filter_map(&mut axis).collect();
     // The first wing is that to y.
     let of = |side: f64| {
         let own = turned.iter().find(|(.., root)| root * side > 0.0).or(turned.first());
-        own.map(|(drive, way, _)| (*drive, *way))
+        own.map(|(by, axis, _)| (*by, *axis))
     };
     [of(1.0), of(-1.0)]
 }

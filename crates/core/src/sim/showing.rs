@@ -3,7 +3,7 @@
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
 use crate::flow::SpatialState;
-use crate::record::{Record, Sample};
+use crate::record::{Hinges, Record, Sample};
 use crate::scenario::Scenario;
 use crate::scene::{PlanarView, Scene};
 
@@ -61,10 +61,17 @@ impl Simulation {
             (Scene::Spatial(scene), Plant::Spatial(plant)) => {
                 if frames {
                     let SpatialState { turn, modes } = plant.state();
-                    let drives: Vec<f64> = plant
+                    let mut angles: Vec<f64> = plant
                         .drives()
                         .map_or_else(Vec::new, |of| of.drives.iter().map(|drive| drive.angle_rad).collect());
-                    let frames = scene.frames(stamp, &turn.attitude, modes, &drives);
+                    let frames = match plant.hinges() {
+                        // Hinges move by any angle, and beside them modes are not drawn.
+                        Some(Hinges { hinges }) => {
+                            angles.extend(hinges.iter().map(|hinge| hinge.angle_rad));
+                            scene.frames(stamp, plant.attitude(), &[], &angles)
+                        }
+                        None => scene.frames(stamp, &turn.attitude, modes, &angles),
+                    };
                     record.record(now, Sample::Frames(frames))?;
                 }
                 let cycle = self.drive.actuator.cycle();
