@@ -194,5 +194,5 @@ fn panels_unfold() {
     let angles = within(&trace, "/hinges", "hinges", "angle_rad");
     let rates = within(&trace, "/hinges", "hinges", "rate_rad_s");
     assert!((angles[0] - 1.4).abs() < 1e-15 && angles[180..].iter().all(|angle| angle.abs() < 0.05));
-    assert!((most(&rates) - 0.0655).abs() < 1e-4, "{}", most(&rates));
+    assert!((most(rates) - 0.0655).abs() < 1e-4, "{}", most(rates));
 }
