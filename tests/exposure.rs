@@ -133,7 +133,13 @@ fn a_reading_is_the_mean_of_the_motion_over_its_exposure() {
     let crossing = (2..600).map(|k| 0.5 * f64::from(k)).find(near).expect("a wheel that passes through zero");
     // Panels that turn.
     let drives = shipped("sun-tracking", &[(noise, "exposure = 1.0"), known]);
+    // Gimbals at work, and panels on hinges.
+    let gathers = ("exposure = 0.2, noise = [2.4e-5, 2.4e-5, 1.5e-4]", "exposure = 0.4");
+    let gimbals = shipped("agile-observer", &[gathers, known]);
+    let hinges = shipped("panel-deployment", &[silent, known]);
     for (scenario, point, of, most) in [
+        (&gimbals, "bench", [24.0, 0.4, 0.2], 1e-9),
+        (&hinges, "bus", [2.0, 0.4, 0.2], 1e-9),
         (&boom, "head", [31.0, 0.4, 0.2], 1e-9),
         (&boom, "head", [33.5, 0.4, 0.2], 1e-9),
         (&friction, "bench", [3.0, 0.4, 0.2], 1e-9),

@@ -46,8 +46,7 @@ impl Scenario {
             return at("", "has no modes to follow: the body has none");
         }
         if self.study.drives.is_some() {
-            let why =
-                "needs constant modes, and an appendage that turns, on a drive or a hinge, changes them";
+            let why = "needs constant modes, and an appendage that turns changes them";
             return at("", why);
         }
         if self.actuator.control_moment_gyros().is_some() {

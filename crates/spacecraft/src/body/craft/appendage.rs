@@ -1,12 +1,14 @@
 //! An appendage of a spacecraft, as a scenario writes it: a panel, an antenna, a mass on a spring.
 
+use std::borrow::Cow;
+
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::clamped::{ClampedMode, rotation_of};
 use super::drive::Drive;
-use super::hinge::Hinge;
+use super::hinge::{Hinge, Swung};
 use super::mass::MassProperties;
 use super::results::Units;
 use super::thermal::Thermal;
@@ -14,6 +16,7 @@ use super::turned::Turned;
 use crate::attitude::{Vector, tensor, vector};
 use crate::body::Damping;
 use crate::body::spatial::NamedPoint;
+use crate::document::Fault;
 use crate::motion::turning::{DrivenPanel, PanelMode};
 use crate::quantity::{Finite, Positive};
 use crate::structure::mode_table::ModeTable;
@@ -91,6 +94,41 @@ impl Appendage {
         self.drive.as_ref().map_or(turned, |drive| turned * drive.turn(angle))
     }
 
+    /// Its clamped modes: those it is written with, or that of its hinge.
+    pub fn clamped_modes(&self) -> Cow<'_, [ClampedMode]> {
+        let hinged = self.hinge.as_ref().and_then(|hinge| hinge.mode(&self.swung()));
+        hinged.map_or(Cow::Borrowed(&self.modes), |mode| Cow::Owned(vec![mode]))
+    }
+
+    /// What it is to its hinge.
+    fn swung(&self) -> Swung<'_> {
+        Swung {
+            mass: self.mass.get(),
+            centre: vector(&self.centre),
+            inertia: tensor(&self.inertia),
+            points: &self.points,
+        }
+    }
+
+    /// What is wrong with its hinge, and what does not go with one.
+    ///
+    /// # Errors
+    /// A key, and why.
+    pub(super) fn check_hinge(&self) -> Result<(), Fault> {
+        let Some(hinge) = &self.hinge else { return Ok(()) };
+        let others = [
+            ("drive", self.drive.is_some()),
+            ("modes", self.modes.file().is_some() || !self.modes.is_empty()),
+            ("plate", self.plate.is_some()),
+            ("thermal", self.thermal.is_some()),
+        ];
+        if let Some((key, _)) = others.into_iter().find(|(_, there)| *there) {
+            let why = "must be left out: an appendage with a `hinge` is rigid, and swings on the hinge alone";
+            return Err(Fault::new(key, why));
+        }
+        hinge.check(&self.swung()).map_err(|fault| fault.within("hinge"))
+    }
+
     /// What it is to its drive, if it has one: the next of so many.
     pub(super) fn panel(&self, drives: usize) -> DrivenPanel {
         let mode = |mode: &ClampedMode| PanelMode {
@@ -107,7 +145,7 @@ impl Appendage {
             inertia: tensor(&self.inertia),
             modes: self.clamped_modes().iter().map(mode).collect(),
             drive: self.drive.as_ref().map(|drive| (drive.axis(), drives)),
-            hinge: self.hinge_of_motion(),
+            hinge: self.hinge.as_ref().map(|hinge| hinge.of_motion(&self.swung())),
         }
     }
 

@@ -1,14 +1,12 @@
 //! A hinge at the root of an appendage: the appendage is a rigid body that swings on it, at any angle, against a spring.
 
-use std::borrow::Cow;
-
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::appendage::Appendage;
 use super::clamped::ClampedMode;
-use crate::attitude::{Vector, tensor, vector};
+use crate::attitude::{Vector, vector};
+use crate::body::spatial::NamedPoint;
 use crate::document::Fault;
 use crate::motion::turning;
 use crate::quantity::{Finite, Frequency, NonNegative, Positive};
@@ -39,44 +37,37 @@ const MOST_ANGLE: f64 = 3.2;
 /// An appendage has at least such a part of its inertia about its hinge.
 const LEAST: f64 = 1e-9;
 
+/// What swings on a hinge, in the axes of the appendage.
+pub(super) struct Swung<'a> {
+    /// Mass (kg).
+    pub mass: f64,
+    /// Centre of mass from the root (m).
+    pub centre: Vector,
+    /// Inertia tensor about the centre of mass (kg m²).
+    pub inertia: Matrix3<f64>,
+    /// Named points.
+    pub points: &'a [NamedPoint],
+}
+
 impl Hinge {
     /// The unit vector along its axis, in the axes of the appendage.
     pub fn axis(&self) -> Vector {
         vector(&self.about).normalize()
     }
-}
 
-impl Appendage {
-    /// Its clamped modes: those it is written with, or that of its hinge.
-    pub fn clamped_modes(&self) -> Cow<'_, [ClampedMode]> {
-        match &self.hinge {
-            None => Cow::Borrowed(&self.modes),
-            Some(hinge) => self.swing(hinge).map_or(Cow::Borrowed(&[]), |mode| Cow::Owned(vec![mode])),
-        }
+    /// The hinge in terms of the motion.
+    pub(super) fn of_motion(&self, swung: &Swung<'_>) -> turning::Hinge {
+        turning::Hinge { about: self.axis(), inertia: swung.about(&self.axis()) }
     }
 
-    /// Its hinge in terms of the motion, if it has one.
-    pub(super) fn hinge_of_motion(&self) -> Option<turning::Hinge> {
-        let hinge = self.hinge.as_ref()?;
-        Some(turning::Hinge { about: hinge.axis(), inertia: self.about_root(&hinge.axis()) })
-    }
-
-    /// Moment of inertia about an axis through the root (kg m²).
-    fn about_root(&self, axis: &Vector) -> f64 {
-        let arm = axis.cross(&vector(&self.centre));
-        axis.dot(&(tensor(&self.inertia) * axis)) + self.mass.get() * arm.norm_squared()
-    }
-
-    /// The mode of a hinge: the appendage turns about it as a whole, by 1/sqrt(I) for a unit.
-    fn swing(&self, hinge: &Hinge) -> Option<ClampedMode> {
-        let (axis, centre) = (hinge.axis(), vector(&self.centre));
-        let inertia = self.about_root(&axis);
+    /// Its mode, in which the appendage turns as a whole, by 1/sqrt(I) for a unit; none if its frequency is out of range.
+    pub(super) fn mode(&self, swung: &Swung<'_>) -> Option<ClampedMode> {
+        let (axis, centre, own) = (self.axis(), swung.centre, &swung.inertia);
+        let inertia = swung.about(&axis);
         let unit = f64::sqrt(inertia);
-        let frequency = f64::sqrt(hinge.stiffness.get() / inertia);
-        let own = tensor(&self.inertia);
+        let frequency = f64::sqrt(self.stiffness.get() / inertia);
         // The integral of r r' dm, of which r (a x r)' is the product with [a]'.
-        let second =
-            0.5 * own.trace() * Matrix3::identity() - own + self.mass.get() * centre * centre.transpose();
+        let second = 0.5 * own.trace() * Matrix3::identity() - own + swung.mass * centre * centre.transpose();
         let moments = second * axis.cross_matrix().transpose() / unit;
         let three = |v: Vector| [v.x, v.y, v.z].map(|of| Finite::new(of).unwrap_or_default());
         let shape = |position: &[Finite; 3]| Shape {
@@ -85,60 +76,56 @@ impl Appendage {
         };
         Some(ClampedMode {
             frequency: Frequency::new(frequency)?,
-            damping: NonNegative::new(0.5 * hinge.damping.get() / (inertia * frequency))?,
-            translation: three(axis.cross(&centre) * (self.mass.get() / unit)),
+            damping: NonNegative::new(0.5 * self.damping.get() / (inertia * frequency))?,
+            translation: three(axis.cross(&centre) * (swung.mass / unit)),
             along: None,
             rotation: None,
             moments: Some([0, 1, 2].map(|row| three(moments.row(row).transpose()))),
-            displacement: Finite::new(hinge.angle.get() * unit)?,
-            rate: Finite::new(hinge.rate.get() * unit)?,
-            shapes: self.points.iter().map(|point| (point.name.clone(), shape(&point.position))).collect(),
+            displacement: Finite::new(self.angle.get() * unit)?,
+            rate: Finite::new(self.rate.get() * unit)?,
+            shapes: swung.points.iter().map(|point| (point.name.clone(), shape(&point.position))).collect(),
         })
     }
 
-    /// What is wrong with a hinge, and what does not go with one.
+    /// What single values cannot show to be wrong.
     ///
     /// # Errors
     /// A key within, and why.
-    pub(super) fn check_hinge(&self) -> Result<(), Fault> {
-        let Some(hinge) = &self.hinge else { return Ok(()) };
-        let others = [
-            ("drive", self.drive.is_some()),
-            ("modes", self.modes.file().is_some() || !self.modes.is_empty()),
-            ("plate", self.plate.is_some()),
-            ("thermal", self.thermal.is_some()),
-        ];
-        if let Some((key, _)) = others.into_iter().find(|(_, there)| *there) {
-            let why = "must be left out: an appendage with a `hinge` is rigid, and swings on the hinge alone";
-            return Err(Fault::new(key, why));
-        }
-        let length = vector(&hinge.about).norm();
+    pub(super) fn check(&self, swung: &Swung<'_>) -> Result<(), Fault> {
+        let length = vector(&self.about).norm();
         if !(1e-6..=1e6).contains(&length) {
-            let why = format!("must have a length of 1e-6 to 1e6, got {length}");
-            return Err(Fault::new("hinge.about", why));
+            return Err(Fault::new("about", format!("must have a length of 1e-6 to 1e6, got {length}")));
         }
-        let angle = hinge.angle.get();
+        let angle = self.angle.get();
         if angle.abs() > MOST_ANGLE {
             let why = format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {angle}");
-            return Err(Fault::new("hinge.angle", why));
+            return Err(Fault::new("angle", why));
         }
-        let (inertia, own) = (self.about_root(&hinge.axis()), tensor(&self.inertia));
-        let whole = 0.5 * own.trace() + self.mass.get() * vector(&self.centre).norm_squared();
+        let inertia = swung.about(&self.axis());
+        let whole = 0.5 * swung.inertia.trace() + swung.mass * swung.centre.norm_squared();
         if !(inertia > LEAST * whole && inertia.is_finite()) {
             let why = format!(
-                "must be an axis about which the appendage has inertia, got one of {inertia} kg m²: give it an `inertia`, or its `centre`"
+                "must be an axis about which the appendage has inertia, got one of {inertia} kg m²: give it an `inertia`, or its \
+                 `centre`"
             );
-            return Err(Fault::new("hinge.about", why));
+            return Err(Fault::new("about", why));
         }
-        if self.swing(hinge).is_none() {
+        if self.mode(swung).is_none() {
             let why = format!(
                 "must give a frequency of {} to {} rad/s, with an inertia of {inertia} kg m² about the hinge, got {}",
                 Frequency::SMALLEST,
                 Frequency::LARGEST,
-                f64::sqrt(hinge.stiffness.get() / inertia)
+                f64::sqrt(self.stiffness.get() / inertia)
             );
-            return Err(Fault::new("hinge.stiffness", why));
+            return Err(Fault::new("stiffness", why));
         }
         Ok(())
+    }
+}
+
+impl Swung<'_> {
+    /// Moment of inertia about an axis through the root (kg m²).
+    fn about(&self, axis: &Vector) -> f64 {
+        axis.dot(&(self.inertia * axis)) + self.mass * axis.cross(&self.centre).norm_squared()
     }
 }
