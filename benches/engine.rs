@@ -250,7 +250,7 @@ fn station(c: &mut Criterion) {
     group.finish();
 }
 
-/// The Earth observer of four wheels, gyro, star tracker and attitude filter: fine pointing, and its slew.
+/// The Earth observer of four wheels, gyro, star tracker and attitude filter: fine pointing, its slew, and more modes.
 fn observer(c: &mut Criterion) {
     let mut group = c.benchmark_group("spacecraft, 600 s");
     group.sample_size(20);
@@ -262,6 +262,29 @@ fn observer(c: &mut Criterion) {
     let pointing = scenario(&toml::to_string(&table).expect("TOML"));
     group.bench_function("slew", |b| b.iter(|| simulate(black_box(&slew), &mut ())));
     group.bench_function("fine pointing", |b| b.iter(|| simulate(black_box(&pointing), &mut ())));
+    for count in [8, 32, 128, 200] {
+        let panel = |lowest: f64| -> toml::Value {
+            let mode = |index: u32| {
+                let (frequency, part) =
+                    (lowest * (1.0 + 0.35 * f64::from(index)), 1.0 / f64::from(1 + index));
+                let mode = format!(
+                    "{{ frequency = {frequency}, damping = 0.005, translation = [0, 0, {}], rotation = [{}, 0, 0] }}",
+                    2.2 * part,
+                    3.2 * part
+                );
+                toml::from_str::<toml::Table>(&format!("mode = {mode}")).expect("a mode")["mode"].clone()
+            };
+            toml::Value::Array((0..count / 2).map(mode).collect())
+        };
+        let appendages = table["appendage"].as_array_mut().expect("appendages");
+        for (appendage, lowest) in appendages.iter_mut().zip([1.1, 1.13]) {
+            appendage.as_table_mut().expect("a table").insert("modes".to_owned(), panel(lowest));
+        }
+        let pointing = scenario(&toml::to_string(&table).expect("TOML"));
+        group.bench_function(format!("fine pointing with {count} modes"), |b| {
+            b.iter(|| simulate(black_box(&pointing), &mut ()));
+        });
+    }
     group.finish();
 }
 

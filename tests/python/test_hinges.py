@@ -37,7 +37,7 @@ def test_a_panel_swings_on_a_heavy_hub_as_an_oscillator() -> None:
 
 def test_steps_have_angles_and_rates() -> None:
     steps = flexsc.Simulator(swinging(0.3, hub=100.0))
-    steps.step(dt=2.0)
+    steps.step(np.zeros(3), dt=2.0)
     assert steps.state["hinge_angles"].shape == (1,)
     assert abs(steps.state["hinge_rates"][0]) > 0.01
 
