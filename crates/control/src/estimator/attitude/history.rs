@@ -44,55 +44,23 @@ impl Fix {
 /// A filter and its recent past.
 #[derive(Clone, Debug)]
 pub struct FilterHistory {
-    noise: GyroNoise,
+    between: Between,
     /// How late a measurement may be.
     reach: Span,
     entries: VecDeque<Entry>,
     /// Measurements of instants that no gyro reading covers yet.
     early: Vec<Fix>,
+}
+
+/// What carries a filter on between entries.
+#[derive(Clone, Debug)]
+struct Between {
+    noise: GyroNoise,
     /// Torques that act on the modes (N m), each from an instant on.
     torques: VecDeque<(Instant, Vector)>,
 }
 
-#[derive(Clone, Debug)]
-struct Entry {
-    at: Instant,
-    /// The gyro reading of the interval that ends here (rad/s).
-    reading: Vector,
-    fixes: Vec<Fix>,
-    filter: AttitudeFilterState,
-}
-
-impl FilterHistory {
-    /// The history of a filter that begins at an instant, to which nothing is later than `reach`.
-    pub fn new(at: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
-        let entry = Entry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
-        Self { noise, reach, entries: VecDeque::from([entry]), early: Vec::new(), torques: VecDeque::new() }
-    }
-
-    /// The filter after all that it was told.
-    pub fn latest(&self) -> &AttitudeFilterState {
-        // There is always an entry.
-        &self.entries[self.entries.len() - 1].filter
-    }
-
-    /// The last gyro reading (rad/s).
-    pub fn reading(&self) -> Vector {
-        self.entries[self.entries.len() - 1].reading
-    }
-
-    /// Takes over the torque that acts on the modes from now on (N m).
-    pub fn push(&mut self, now: Instant, torque: Vector) {
-        if self.torques.back().is_some_and(|(from, _)| *from == now) {
-            self.torques.pop_back();
-        }
-        self.torques.push_back((now, torque));
-        let oldest = self.entries[0].at;
-        while self.torques.get(1).is_some_and(|(from, _)| *from <= oldest) {
-            self.torques.pop_front();
-        }
-    }
-
+impl Between {
     /// The torques between two instants, each with how long it acts (s).
     fn pushed(&self, from: Instant, to: Instant) -> Vec<(f64, Vector)> {
         let mut pieces = Vec::new();
@@ -121,6 +89,48 @@ impl FilterHistory {
             filter.predict(reading, seconds, &self.noise);
         }
     }
+}
+
+#[derive(Clone, Debug)]
+struct Entry {
+    at: Instant,
+    /// The gyro reading of the interval that ends here (rad/s).
+    reading: Vector,
+    fixes: Vec<Fix>,
+    filter: AttitudeFilterState,
+}
+
+impl FilterHistory {
+    /// The history of a filter that begins at an instant, to which nothing is later than `reach`.
+    pub fn new(at: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
+        let entry = Entry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
+        let between = Between { noise, torques: VecDeque::new() };
+        Self { between, reach, entries: VecDeque::from([entry]), early: Vec::new() }
+    }
+
+    /// The filter after all that it was told.
+    pub fn latest(&self) -> &AttitudeFilterState {
+        // There is always an entry.
+        &self.entries[self.entries.len() - 1].filter
+    }
+
+    /// The last gyro reading (rad/s).
+    pub fn reading(&self) -> Vector {
+        self.entries[self.entries.len() - 1].reading
+    }
+
+    /// Takes over the torque that acts on the modes from now on (N m).
+    pub fn push(&mut self, now: Instant, torque: Vector) {
+        let torques = &mut self.between.torques;
+        if torques.back().is_some_and(|(from, _)| *from == now) {
+            torques.pop_back();
+        }
+        torques.push_back((now, torque));
+        let oldest = self.entries[0].at;
+        while torques.get(1).is_some_and(|(from, _)| *from <= oldest) {
+            torques.pop_front();
+        }
+    }
 
     /// Takes a gyro reading of the interval that ends now (rad/s); tells what measurements that waited for it made of it.
     pub fn read(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
@@ -128,9 +138,12 @@ impl FilterHistory {
         if now <= last.at {
             return Vec::new();
         }
-        let mut entry = Entry { at: now, reading, fixes: Vec::new(), filter: last.filter.clone() };
-        self.carry(&mut entry.filter, &reading, [last.at, now]);
-        self.entries.push_back(entry);
+        // It is carried on where it stays: filters are large.
+        let (from, filter) = (last.at, last.filter.clone());
+        self.entries.push_back(Entry { at: now, reading, fixes: Vec::new(), filter });
+        if let Some(entry) = self.entries.back_mut() {
+            self.between.carry(&mut entry.filter, &reading, [from, now]);
+        }
         let mut told = Vec::new();
         if !self.early.is_empty() {
             let waiting = std::mem::take(&mut self.early);
@@ -154,7 +167,7 @@ impl FilterHistory {
             let before = index.checked_sub(1)?;
             let (reading, from) = (self.entries[index].reading, &self.entries[before]);
             let mut filter = from.filter.clone();
-            self.carry(&mut filter, &reading, [from.at, fix.exposed]);
+            self.between.carry(&mut filter, &reading, [from.at, fix.exposed]);
             self.entries.insert(index, Entry { at: fix.exposed, reading, fixes: Vec::new(), filter });
         }
         let entry = &mut self.entries[index];
@@ -166,15 +179,16 @@ impl FilterHistory {
 
     /// Does again what the entries from this index on hold.
     fn again(&mut self, from: usize) {
-        for index in from..self.entries.len() {
-            let (mut filter, since) = (self.entries[index - 1].filter.clone(), self.entries[index - 1].at);
-            let (reading, at) = (self.entries[index].reading, self.entries[index].at);
-            self.carry(&mut filter, &reading, [since, at]);
-            let entry = &mut self.entries[index];
-            for fix in &entry.fixes {
-                fix.correct(&mut filter);
+        let entries = self.entries.make_contiguous();
+        for index in from..entries.len() {
+            let (before, after) = entries.split_at_mut(index);
+            let ([.., last], [entry, ..]) = (before, after) else { return };
+            let Entry { at, reading, fixes, filter } = entry;
+            filter.clone_from(&last.filter);
+            self.between.carry(filter, reading, [last.at, *at]);
+            for fix in &*fixes {
+                fix.correct(filter);
             }
-            entry.filter = filter;
         }
     }
 }
