@@ -194,9 +194,8 @@ impl SpatialPlant {
                 return None;
             }
             if let Some(two_way) = self.two_way.as_deref() {
-                let (truth, elastic) = two_way.measurable(&self.sensed);
-                self.rates = (truth.rigid.into(), elastic);
-                self.truth = truth;
+                let elastic = two_way.measure(&self.sensed, &mut self.truth);
+                self.rates = (self.truth.rigid.into(), elastic);
             } else {
                 self.view_one_way();
             }

@@ -7,7 +7,7 @@ use nalgebra::{Matrix3, Quaternion};
 use crate::attitude::{Vector, rotation, vector};
 use crate::body::craft::Moving;
 use crate::body::spatial::{Periodic, Spatial};
-use crate::environment::{Around, SkySight};
+use crate::environment::Around;
 use crate::flow::{Elastic, Rigid, SpatialState};
 use crate::motion::Phase;
 use crate::motion::turning::{
@@ -281,23 +281,20 @@ impl TwoWay {
         }
     }
 
-    /// What there is to measure where the modes make these rotations, and the elastic part of the rates (rad/s): the attitude
-    /// is that of the hub.
-    pub fn measurable(&self, sensed: &[Vector]) -> (Truth, Vector) {
+    /// Fills in what there is to measure but for the sky, where the modes make these rotations: the attitude is that of the hub.
+    /// Tells the elastic part of the rates (rad/s).
+    pub fn measure(&self, sensed: &[Vector], truth: &mut Truth) -> Vector {
         let seen = self.turning.seen();
         let sum = |shapes: &[Vector], of: &[f64]| -> Vector {
             shapes.iter().zip(of).fold(Vector::zeros(), |sum, (shape, q)| sum + shape * *q)
         };
         let elastic = sum(sensed, &seen.rates);
-        let truth = Truth {
-            orientation: Orientation::Attitude(seen.attitude),
-            elastic: sum(&self.sensed, &seen.displacements).into(),
-            rate: (seen.rigid + elastic).into(),
-            rigid: seen.rigid.into(),
-            turned: (seen.turned + sum(sensed, &seen.displacements)).into(),
-            sky: SkySight::default(),
-        };
-        (truth, elastic)
+        truth.orientation = Orientation::Attitude(seen.attitude);
+        truth.elastic = sum(&self.sensed, &seen.displacements).into();
+        truth.rate = (seen.rigid + elastic).into();
+        truth.rigid = seen.rigid.into();
+        truth.turned = (seen.turned + sum(sensed, &seen.displacements)).into();
+        elastic
     }
 
     /// Where the first point is that was at 0 at the start (m), and how fast it moves (m/s), if anything can push it.
