@@ -189,6 +189,15 @@ modes = [
 ]
 ";
 
+const HINGED: &str = "[[appendage]]
+name = \"boom\"
+mass = 5.0
+centre = [1.0, 0.0, 0.0]
+inertia = [[0.1, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 2.0]]
+at = [0.5, 0.0, 0.0]
+hinge = { about = [0, 1, 0], stiffness = 15.0, damping = 0.3, angle = 2e-3 }
+";
+
 /// A combination as a scenario.
 fn combined(
     body: &str,
@@ -263,12 +272,13 @@ fn run(scenario: &Scenario, name: &str) {
 #[test]
 fn parts_combine_as_the_documents_say() {
     let all = LAWS.len() * SENSORS.len() * ESTIMATORS.len() * ACTUATORS.len();
-    let turning = SPACECRAFT.replace("plate =", "drive = { about = [0, 1, 0], rate = 0.02 }\nplate =");
+    let turning =
+        SPACECRAFT.replace("plate =", "drive = { about = [0, 1, 0], rate = 0.02 }\nplate =") + HINGED;
     let bodies = [
         ("One angle", ONE_ANGLE, 912),
         ("Three axes", THREE_AXES, 3518),
         ("A spacecraft from parts", SPACECRAFT, 3747),
-        ("A spacecraft with a panel that turns", &turning, 3416),
+        ("A spacecraft with panels that turn, on a drive and on a hinge", &turning, 3416),
     ];
     let tables: Vec<_> = std::thread::scope(|scope| {
         let threads: Vec<_> = bodies.iter().map(|(_, body, _)| scope.spawn(|| table(body))).collect();

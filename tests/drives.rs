@@ -4,7 +4,7 @@ use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::Detail;
 use flexsc_core::scenario::Scenario;
 
-use crate::traces::{column, flown, traced, within};
+use crate::traces::{column, flown, golden_rows, traced, within};
 use crate::util::SCENARIOS;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
@@ -21,11 +21,7 @@ fn parsed(text: &str) -> Scenario {
 #[test]
 fn panels_of_point_masses_turn_as_the_oracle_says() {
     let trace = traced(&parsed(&golden()));
-    let text = std::fs::read_to_string(format!("{GOLDEN}/driven.csv")).expect("a file");
-    let rows: Vec<Vec<f64>> = text
-        .lines()
-        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
-        .collect();
+    let rows = golden_rows("driven.csv");
     let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| column(&trace, "/pointing", name));
     let rates = within(&trace, "/rates", "axes", "rate_rad_s");
     let [momentum, elastic, rotational] =

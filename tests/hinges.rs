@@ -1,11 +1,11 @@
-//! Appendages on hinges: against an oracle of rigid bodies, balances, every law and actuator on them, and what is refused.
+//! Appendages on hinges: against an oracle of rigid bodies, balances, shipped satellites on them, and what is refused.
 
 use flexsc_core::metrics::Value;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::traces::{column, flown, traced, within};
+use crate::traces::{column, flown, golden_rows, traced, within};
 use crate::util::SCENARIOS;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
@@ -22,11 +22,7 @@ fn parsed(text: &str) -> Scenario {
 #[test]
 fn panels_swing_as_rigid_bodies_do() {
     let trace = traced(&parsed(&golden()));
-    let text = std::fs::read_to_string(format!("{GOLDEN}/hinged.csv")).expect("a file");
-    let rows: Vec<Vec<f64>> = text
-        .lines()
-        .map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect())
-        .collect();
+    let rows = golden_rows("hinged.csv");
     let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| column(&trace, "/pointing", name));
     let rates = within(&trace, "/rates", "axes", "rate_rad_s");
     let [angles, speeds] = ["angle_rad", "rate_rad_s"].map(|name| within(&trace, "/hinges", "hinges", name));

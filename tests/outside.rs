@@ -86,15 +86,24 @@ fn a_hub_with_four_clamped_modes_moves_as_in_its_own_equations() {
     }
 }
 
+/// Rows and times (s) at which the problem `panels` is compared.
+const PUSHED: [(usize, f64); 3] = [(1, 2.5), (3, 7.5), (5, 12.5)];
+
+/// Place and angle of the hub with two panels, to these parts of them.
+#[track_caller]
+fn hub_is_near(trace: &Trace, row: usize, exact: &BTreeMap<String, f64>, [place, angle]: [f64; 2]) {
+    near(number(trace, "/position", "x_m", row), exact["x"], place);
+    near(number(trace, "/position", "y_m", row), exact["y"], place);
+    near(number(trace, "/pointing", "yaw_rad", row), exact["theta"], angle);
+}
+
 /// A hub that two forces push, and two panels on hinges, in the plane: against the whole kinematics of three rigid bodies.
 #[test]
 fn a_hub_with_two_hinged_panels_is_pushed_as_three_rigid_bodies_are() {
     let trace = traced(&scenario("two-panels"));
-    for (row, time) in [(1, 2.5), (3, 7.5), (5, 12.5)] {
+    for (row, time) in PUSHED {
         let exact = oracle("panels", time);
-        near(number(&trace, "/position", "x_m", row), exact["x"], 1e-10);
-        near(number(&trace, "/position", "y_m", row), exact["y"], 1e-10);
-        near(number(&trace, "/pointing", "yaw_rad", row), exact["theta"], 1e-9);
+        hub_is_near(&trace, row, &exact, [1e-10, 1e-9]);
         let angles = each(&trace, "/hinges", "hinges", "angle_rad", row);
         for side in 1..3 {
             near(angles[side - 1], exact[&format!("theta{side}")], 1e-8);
@@ -107,11 +116,9 @@ fn a_hub_with_two_hinged_panels_is_pushed_as_three_rigid_bodies_are() {
 fn modes_of_hinges_differ_by_their_own_angle() {
     let scenario = scenario("two-modes");
     let trace = traced(&scenario);
-    for (row, time) in [(1, 2.5), (3, 7.5), (5, 12.5)] {
+    for (row, time) in PUSHED {
         let exact = oracle("panels", time);
-        near(number(&trace, "/position", "x_m", row), exact["x"], 2e-8);
-        near(number(&trace, "/position", "y_m", row), exact["y"], 2e-8);
-        near(number(&trace, "/pointing", "yaw_rad", row), exact["theta"], 4e-7);
+        hub_is_near(&trace, row, &exact, [2e-8, 4e-7]);
         let modes = each(&trace, "/vibrations", "modes", "displacement", row);
         for side in 1..3 {
             let turned = against_hub(&scenario, &format!("panel {side}"), &modes)[5];

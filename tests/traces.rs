@@ -18,6 +18,14 @@ pub fn traced(scenario: &Scenario) -> Trace {
     trace
 }
 
+/// The lines of a table of numbers among the golden values.
+pub fn golden_rows(name: &str) -> Vec<Vec<f64>> {
+    let path = format!("{}/../../tests/golden/{name}", env!("CARGO_MANIFEST_DIR"));
+    let text = std::fs::read_to_string(&path).expect("a file");
+    let cells = |line: &str| line.split(',').map(|cell| cell.parse().expect("a number")).collect();
+    text.lines().map(cells).collect()
+}
+
 /// A column of numbers of a topic.
 pub fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
     let numbers = trace.topic(topic).and_then(|rows| rows.numbers(name));
