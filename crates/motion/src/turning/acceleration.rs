@@ -1,4 +1,4 @@
-//! How fast the rates of a turning body change at an instant, by its equations.
+//! Right-hand side of the equations of motion at an instant: the accelerations.
 
 use super::bearing::{Slip, Spin, Spun};
 use super::flow::Turning;
@@ -7,26 +7,26 @@ use super::model::{Surroundings, outward};
 use super::slipping::shapes;
 use crate::attitude::Vector;
 
-/// Accelerations at an instant.
+/// Accelerations of hub, modes and centre of mass at an instant.
 #[derive(Clone, Debug)]
 pub struct Accelerations {
-    /// Of the hub's rotation, in its axes (rad/s²).
+    /// Angular acceleration of the hub, in its axes (rad/s²).
     pub hub: Vector,
-    /// Of each mode (m sqrt(kg)/s²).
+    /// Acceleration of each mode (m sqrt(kg)/s²).
     pub modes: Vec<f64>,
-    /// Of the centre of mass by forces at points, in the hub's axes (m/s²).
+    /// Acceleration of the centre of mass by point forces, in the hub's axes (m/s²).
     pub centre: Vector,
-    /// The force of rotors out of balance on the whole, in the hub's axes (N).
+    /// Force of the rotors' imbalance on the body, in the hub's axes (N).
     pub shaking: Vector,
 }
 
 impl Turning {
-    /// Accelerations at the instant seen last, under what acts from then on.
+    /// Returns the accelerations at the current instant, under the loads of the segment.
     pub fn accelerations(&self, around: Option<(&dyn Surroundings, f64)>) -> Accelerations {
         self.accelerated(&self.slips, around)
     }
 
-    /// The same if rotors slip so.
+    /// Returns the accelerations at the current instant for given slip states of the rotors.
     pub(super) fn accelerated(
         &self,
         slips: &[Slip],
@@ -79,7 +79,7 @@ impl Turning {
             pushed += mode.rotation * modes[index];
         }
         let turning = torque - seen.rate.cross(&seen.momentum) - slipping - change * seen.rate;
-        // The rate of Gt, which modes feel, and that of the hub.
+        // Rate of Gt, which forces the modes, and acceleration of the hub.
         let (felt, hub) = model.rates(&turning, &pushed, &(shape + borne.locked()));
         for (acceleration, mode) in modes.iter_mut().zip(&model.modes) {
             *acceleration += mode.rotation.dot(&felt);

@@ -1,14 +1,16 @@
-//! Rotors as they are: friction in their bearings, imbalance, and what both exert at the stages of a step.
+//! Rotors with friction in their bearings and imbalance: their motion and the forces they exert at the stages of a
+//! step.
 //!
-//! A rotor turns against the body at Omega = h/I - a.w by th' = Omega. Its bearing takes c Omega + t sgn Omega from the torque of
-//! its motor while it slips; a rotor that is stuck turns with the body, h = I a.w, and adds I a a' to its inertia.
+//! A rotor turns against the body at Omega = h/I - a.w, and th' = Omega. While it slips, its bearing subtracts c
+//! Omega + t sgn Omega from the motor torque; a rotor that is stuck turns with the body, h = I a.w, and adds I a a'
+//! to the body's inertia.
 
 use nalgebra::Matrix3;
 
 use super::model::Rotor;
 use crate::attitude::Vector;
 
-/// What holds a rotor, and how well it is balanced.
+/// Bearing friction and imbalance of a rotor.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Bearing {
     /// Moment of inertia of the rotor about its axis (kg m²).
@@ -17,39 +19,39 @@ pub struct Bearing {
     pub viscous: f64,
     /// Coulomb friction (N m); 0 for none: such a rotor never sticks.
     pub coulomb: f64,
-    /// What a rotor at rest bears before it slips (N m), at least the Coulomb friction.
+    /// Torque that a rotor at rest withstands before it slips (N m), at least the Coulomb friction.
     pub breakaway: f64,
-    /// The imbalance.
+    /// Harmonics of the imbalance.
     pub lines: Vec<HarmonicLine>,
 }
 
-/// A harmonic of the imbalance: the body feels Omega² (c cos k th + s sin k th), k being its order.
+/// Harmonic of the imbalance: the load on the body is Omega² (c cos k th + s sin k th), where k is the order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HarmonicLine {
-    /// Periods in a turn.
+    /// Order k: periods per revolution.
     pub order: f64,
-    /// c and s of the torque on the hub (kg m²).
+    /// Coefficients c and s of the torque on the hub (kg m²).
     pub torque: [Vector; 2],
-    /// c and s of the force (kg m).
+    /// Coefficients c and s of the force (kg m).
     pub force: [Vector; 2],
-    /// c and s of the force on each mode, beside phi' times the torque (sqrt(kg) m).
+    /// Coefficients c and s of the modal forces other than phi' times the torque (sqrt(kg) m).
     pub forces: [Vec<f64>; 2],
 }
 
-/// Whether a rotor slips in its bearing, and which way.
+/// Stick or slip state of a rotor in its bearing, with the direction of slip.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Slip {
-    /// To positive speeds, or without Coulomb friction.
+    /// Slips towards positive speeds, or has no Coulomb friction.
     #[default]
     Forward,
-    /// To negative speeds.
+    /// Slips towards negative speeds.
     Backward,
-    /// It is at rest in the body.
+    /// At rest relative to the body.
     Stuck,
 }
 
 impl Slip {
-    /// Which way a rotor slips at a speed, or by a torque: not at all at 0.
+    /// Returns the slip state for the sign of a speed or a driving torque; `Stuck` at 0.
     pub fn of(speed: f64) -> Self {
         if speed > 0.0 {
             Self::Forward
@@ -60,7 +62,7 @@ impl Slip {
         }
     }
 
-    /// 1, -1, or 0 of one that is stuck.
+    /// Returns 1, -1, or 0 for a rotor that is stuck.
     pub fn sign(self) -> f64 {
         match self {
             Self::Forward => 1.0,
@@ -71,31 +73,31 @@ impl Slip {
 }
 
 impl Bearing {
-    /// The friction at a speed (rad/s) of a rotor that slips (N m).
+    /// Returns the friction torque of a slipping rotor at a speed in rad/s (N m).
     pub fn friction(&self, speed: f64, slip: Slip) -> f64 {
         self.viscous * speed + self.coulomb * slip.sign()
     }
 
-    /// Whether it can hold its rotor.
+    /// Returns true if the bearing can hold its rotor at rest.
     pub fn grips(&self) -> bool {
         self.breakaway > 0.0
     }
 
-    /// The highest order of its imbalance; 0 without any.
+    /// Returns the highest order of the imbalance; 0 without imbalance.
     pub fn highest(&self) -> f64 {
         self.lines.iter().map(|line| line.order).fold(0.0, f64::max)
     }
 }
 
-/// A rotor's momentum (N m s), its angle against the body since the start (rad) and the heat of its friction (J), and what
-/// rounding has left out of them.
+/// State of a rotor: momentum (N m s), angle against the body since the start (rad) and friction heat (J) in `sums`,
+/// and their rounding errors in `lost`.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub(super) struct Spin {
     pub sums: Vector,
     pub lost: Vector,
 }
 
-/// Rotors in bearings, from a departure on.
+/// Rotors in bearings during a segment.
 #[derive(Copy, Clone)]
 pub(super) struct Borne<'a> {
     pub bearings: &'a [Bearing],
@@ -103,21 +105,21 @@ pub(super) struct Borne<'a> {
     pub slips: &'a [Slip],
 }
 
-/// What rotors are at a stage, and what they exert there.
+/// Values of the rotors in bearings at the stages of a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Spun {
-    /// Momentum, angle and heat of each.
+    /// Momentum, angle and heat of each rotor at the current stage.
     pub at: Vec<Vector>,
-    /// Their rates.
+    /// Rates of `at` at the current stage.
     pub now: Vec<Vector>,
-    /// The same at the nodes of the step.
+    /// Rates of `at` at the nodes of the step.
     pub rates: Vec<[Vector; 3]>,
-    /// Omega² cos k th and Omega² sin k th of each line of each rotor.
+    /// Imbalance terms Omega² cos k th and Omega² sin k th of each harmonic of each rotor.
     pub waves: Vec<[f64; 2]>,
 }
 
 impl Spun {
-    /// Takes over the rates now as those at a node of a step of `h` seconds; tells by which part of the momenta they changed.
+    /// Stores the current rates as those at a node of a step of `h` (s); returns the relative change of the momenta.
     pub fn take_over(&mut self, node: usize, h: f64) -> f64 {
         let mut change = 0.0_f64;
         for ((rates, now), at) in self.rates.iter_mut().zip(&self.now).zip(&self.at) {
@@ -132,7 +134,7 @@ impl Spun {
 }
 
 impl Borne<'_> {
-    /// Momentum of the rotors that slip (N m s).
+    /// Returns the momentum of the rotors that slip (N m s).
     pub fn stored(&self, spins: impl Iterator<Item = f64>) -> Vector {
         let rotors = self.rotors.iter().zip(self.slips).zip(spins);
         rotors
@@ -140,12 +142,12 @@ impl Borne<'_> {
             .fold(Vector::zeros(), |sum, ((rotor, _), momentum)| sum + rotor.axis * momentum)
     }
 
-    /// Whether any rotor is stuck.
+    /// Returns true if any rotor is stuck.
     pub fn sticks(&self) -> bool {
         self.slips.contains(&Slip::Stuck)
     }
 
-    /// What those that are stuck add to the body's inertia (kg m²).
+    /// Returns the inertia that stuck rotors add to the body (kg m²).
     pub fn locked(&self) -> Matrix3<f64> {
         let stuck = self.rotors.iter().zip(self.bearings).zip(self.slips);
         stuck.filter(|(_, slip)| **slip == Slip::Stuck).fold(Matrix3::zeros(), |sum, ((rotor, of), _)| {
@@ -153,13 +155,14 @@ impl Borne<'_> {
         })
     }
 
-    /// The speed of a rotor of this momentum (N m s) against a body that turns at this rate (rad/s).
+    /// Returns the speed of a rotor of the given momentum (N m s) relative to a body with the angular rate `rate`
+    /// (rad/s).
     pub fn speed(&self, index: usize, momentum: f64, rate: &Vector) -> f64 {
         momentum / self.bearings[index].inertia - self.rotors[index].axis.dot(rate)
     }
 
-    /// Fills the rates of all rotors where `spun.at` says they are, and their waves, on a body that turns at this rate (rad/s);
-    /// tells the torque of the imbalance on the hub (N m).
+    /// Updates the rates of all rotors from `spun.at`, and the imbalance terms, for a body with the angular rate
+    /// `rate` (rad/s); returns the torque of the imbalance on the hub (N m).
     pub fn feel(&self, rate: &Vector, spun: &mut Spun) -> Vector {
         let mut torque = Vector::zeros();
         spun.waves.clear();
@@ -183,13 +186,13 @@ impl Borne<'_> {
         torque
     }
 
-    /// The force of the imbalance on a mode (N/sqrt(kg)).
+    /// Returns the force of the imbalance on a mode (N/sqrt(kg)).
     pub fn force(&self, mode: usize, waves: &[[f64; 2]]) -> f64 {
         let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
         lines.zip(waves).map(|(line, [c, s])| line.forces[0][mode] * c + line.forces[1][mode] * s).sum()
     }
 
-    /// The force of the imbalance (N).
+    /// Returns the force of the imbalance on the body (N).
     pub fn shaking(&self, waves: &[[f64; 2]]) -> Vector {
         let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
         lines
@@ -197,7 +200,7 @@ impl Borne<'_> {
             .fold(Vector::zeros(), |sum, (line, [c, s])| sum + line.force[0] * *c + line.force[1] * *s)
     }
 
-    /// Whether any rotor is out of balance.
+    /// Returns true if any rotor has imbalance.
     pub fn shakes(&self) -> bool {
         self.bearings.iter().any(|bearing| !bearing.lines.is_empty())
     }

@@ -1,30 +1,30 @@
-//! Bounds of the derivatives of the hub's rate over a step, from what its equations say of norms.
+//! Bounds of the derivatives of the hub's rate over a step, from norms in the equations of motion.
 //!
-//! A mode's amplitude sqrt(q'² + W² q²) grows by no more than what forces it; |H| by no more than the torque. With bounds of both
-//! and of |w|, each derivative of the equations of motion bounds the next derivative of w by Leibniz's rule. The bounds are
-//! enlarged until what they imply for the end of the step is within them.
+//! A mode's amplitude sqrt(q'² + W² q²) grows at most by its forcing; |H| at most by the torque. With bounds of both
+//! and of |w|, each derivative of the equations of motion bounds the next derivative of w by Leibniz's rule. The
+//! assumed bounds are enlarged until the values implied at the end of the step are within them.
 
 use super::flow::Turning;
 use super::model::{Surroundings, tensor};
 
-/// Bounds over a step.
+/// Bounds of derivatives over a step.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Bounds {
-    /// Of |w''| and |w'''| (rad/s³, rad/s⁴).
+    /// Bounds of |w''| and |w'''| (rad/s³, rad/s⁴).
     pub second: f64,
     pub third: f64,
-    /// Of |Omega''| that friction makes beside w'' (rad/s³), of each rotor.
+    /// Bound of the part of |Omega''| due to friction (rad/s³), in addition to |w''|, for each rotor.
     slowing: Vec<f64>,
 }
 
 impl Bounds {
-    /// The largest |Omega''| of a rotor (rad/s³).
+    /// Returns the bound of |Omega''| of a rotor (rad/s³).
     pub fn jerk_of(&self, index: usize) -> f64 {
         self.second + self.slowing[index]
     }
 }
 
-/// What is assumed over the step: amplitudes of the modes, |w| and speeds of the rotors.
+/// Assumed bounds over the step: amplitudes of the modes, |w| and speeds of the rotors.
 #[derive(Clone)]
 struct Assumed {
     modes: Vec<f64>,
@@ -32,11 +32,11 @@ struct Assumed {
     speeds: Vec<f64>,
 }
 
-/// Enlargements after which nothing is certain any more: the bounds are then infinite, and steps searched to their ticks.
+/// Limit on the enlargements; beyond it the bounds are infinite, and steps are searched down to their ticks.
 const ENLARGED: u32 = 40;
 
 impl Turning {
-    /// The bounds over a step of `h` seconds from the instant seen last.
+    /// Returns the bounds over a step of `h` (s) from the current instant.
     pub(super) fn bounds(&self, h: f64, around: Option<(&dyn Surroundings, f64)>) -> Bounds {
         let (model, seen) = (&self.model, &self.seen);
         let amplitude = |index: usize| {
@@ -70,7 +70,7 @@ impl Turning {
         Bounds { second: f64::INFINITY, third: f64::INFINITY, slowing }
     }
 
-    /// What follows from the assumed, and how large that becomes within `h` seconds.
+    /// Returns the bounds that follow from the assumed values, and the largest values then implied within `h` (s).
     fn implied(
         &self,
         assumed: &Assumed,
@@ -81,7 +81,7 @@ impl Turning {
         let model = &self.model;
         let rotors = self.borne_by(&self.slips);
         let [w0, locked] = [assumed.rate, rotors.locked().norm()];
-        // Torques, and how fast they change.
+        // Torques, and their rates of change.
         let [held, bound, slow] = [
             self.acting.torque.norm(),
             around.map_or(0.0, |(around, _)| around.bound()),
@@ -123,7 +123,7 @@ impl Turning {
         let still: Vec<f64> = (0..count).map(|of| assumed.modes[of] / modes[of].frequency).collect();
         let q1 = &assumed.modes;
         let [c0, c1] = [changed(&still), changed(q1)];
-        // The norm of (J_left + J1)^-1, and what an elastic momentum makes of a rate.
+        // Norm of (J_left + J1)^-1, and the momentum due to elastic rates.
         let stiff = 1.0 / ((model.inverse + model.bending).norm());
         let mobility = if c0 < 0.5 * stiff { 1.0 / (stiff - c0) } else { f64::INFINITY };
         let left = model.left.norm();
@@ -131,7 +131,7 @@ impl Turning {
             |of: &[f64]| left * modes.iter().zip(of).map(|(mode, p)| mode.rotation.norm() * p).sum::<f64>();
         let h0 = self.seen.momentum.norm() + h * torque[0];
         let h1 = torque[0] + w0 * h0;
-        // Gimbals turn what they have of momentum, again with each derivative.
+        // Each derivative multiplies the gimbals' momentum by the gimbal rate.
         let gimbals = &self.acting.gimbals;
         let swung = |of: fn(f64) -> f64| -> f64 {
             gimbals.iter().map(|gimbal| gimbal.momentum * of(gimbal.rate)).map(f64::abs).sum()
@@ -151,7 +151,7 @@ impl Turning {
         let w1 = mobility * (g1 + elastic(&p1) + c1 * w0);
         let turning = g1 + c1 * w0 + (c0 + locked) * w1;
         let q2: Vec<f64> = (0..count).map(|of| p1[of] + modes[of].rotation.norm() * turning).collect();
-        // Second ones.
+        // Second derivatives.
         let h2 = torque[1] + w1 * h0 + w0 * h1;
         let u1: Vec<f64> =
             each().zip(&u0).map(|(((of, _), _), u)| of.viscous * (u / of.inertia + w1)).collect();
@@ -163,7 +163,7 @@ impl Turning {
         let w2 = mobility * (g2 + elastic(&p2) + 2.0 * c1 * w1 + c2 * w0);
         let turning_2 = g2 + c2 * w0 + 2.0 * c1 * w1 + (c0 + locked) * w2;
         let q3: Vec<f64> = (0..count).map(|of| p2[of] + modes[of].rotation.norm() * turning_2).collect();
-        // Third ones.
+        // Third derivatives.
         let u2 = each().zip(&u1).map(|(((of, _), _), u)| of.viscous * (u / of.inertia + w2)).sum::<f64>();
         let g3 = torque[2] + w2 * h0 + 2.0 * w1 * h1 + w0 * h2 + u2 + swung(|rate| rate * rate * rate);
         let f2 =

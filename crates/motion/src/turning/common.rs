@@ -1,6 +1,6 @@
-//! What all runs of a scenario have in common: the constants of the body, its pace, and the responses of its modes over steps that
-//! any of them has taken. They are the same whoever computes them first, and thousands of runs side by side find them in the
-//! processor's cache.
+//! Data shared by all runs of a scenario: the constants of the body, its step levels, and the modes' responses over
+//! the step lengths used so far by any run. The values do not depend on which run computes them first, and thousands
+//! of parallel runs find them in the processor's cache.
 
 use std::sync::{Arc, Mutex, OnceLock};
 
@@ -8,30 +8,30 @@ use super::model::{Flexible, Model};
 use super::pace::Pace;
 use super::response::NodeResponse;
 
-/// So many lengths of steps are kept for all.
+/// Number of step lengths whose responses are kept.
 const KEPT: usize = 64;
 
-/// What runs have in common, from the first on.
+/// Handle to the shared data, initialised by the first run.
 #[derive(Clone, Debug, Default)]
 pub struct CommonSteps(Arc<OnceLock<(Flexible, Arc<KnownBody>)>>);
 
-/// What is known of a body.
+/// Constants, step levels and cached responses of a body.
 #[derive(Debug)]
 pub(super) struct KnownBody {
     pub model: Arc<Model>,
     pub pace: Arc<Pace>,
-    /// Those that were needed last, and the place of the next.
+    /// Cache of the last responses, and the index that is replaced next.
     responses: Mutex<(Vec<Regular>, usize)>,
 }
 
-/// A step: its length (s) and the responses over it.
+/// Step length (s) and the modes' responses over it.
 #[derive(Clone, Debug)]
 pub(super) struct Regular {
     pub h: f64,
     pub responses: Arc<[NodeResponse]>,
 }
 
-/// It is no part of what a scenario is.
+/// All handles are equal, because the cache does not belong to a scenario's definition.
 impl PartialEq for CommonSteps {
     fn eq(&self, _: &Self) -> bool {
         true
@@ -39,7 +39,7 @@ impl PartialEq for CommonSteps {
 }
 
 impl CommonSteps {
-    /// What is known of a body; of its own, if it is not the one that was first.
+    /// Returns the shared data for a body; unshared data if the first run had another body.
     pub(super) fn of(&self, body: &Flexible) -> Arc<KnownBody> {
         let (first, known) = self.0.get_or_init(|| (body.clone(), Arc::new(KnownBody::new(body))));
         if first == body { known.clone() } else { Arc::new(KnownBody::new(body)) }
@@ -56,7 +56,7 @@ impl KnownBody {
         }
     }
 
-    /// The responses over a step of `h` seconds.
+    /// Returns the responses over a step of `h` (s), from the cache if present.
     pub fn over(&self, h: f64) -> Regular {
         let Ok(mut kept) = self.responses.lock() else { return Regular::new(&self.model, h) };
         let (all, next) = &mut *kept;
@@ -75,7 +75,7 @@ impl KnownBody {
 }
 
 impl Regular {
-    /// The responses of a body's modes over a step of `h` seconds.
+    /// Computes the responses of a body's modes over a step of `h` (s).
     pub fn new(model: &Model, h: f64) -> Self {
         let modes = model.modes.iter();
         Self { h, responses: modes.map(|of| NodeResponse::new(of.frequency, of.damping, h)).collect() }

@@ -1,6 +1,6 @@
-//! Where the mean axes face at the nodes of a step, from their rates there.
+//! Attitude of the mean axes at the nodes of a step, from their rates there.
 //!
-//! Q' = 1/2 Q o (0, w) is linear: with the rates known, the stages of the attitude need no evaluation of anything else.
+//! Q' = 1/2 Q o (0, w) is linear in Q: with known rates, the stages of the attitude need no other evaluation.
 
 use nalgebra::Quaternion;
 
@@ -9,20 +9,22 @@ use super::step::weights;
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::MATRIX;
 
-/// Passes after which the stages are taken as they are.
+/// Limit on the fixed-point iterations; beyond it the stages are accepted as they are.
 const PASSES: u32 = 60;
 
-/// The largest sum of the weights' sizes at a node, and half of it: a pass leaves this part of |w| h of an error.
+/// Largest absolute row sum of the Gauss-Legendre matrix, times 1/2: an iteration reduces an error by this factor
+/// times |w| h.
 const LEAVES: f64 = 0.45;
 
-/// Q_m' at the nodes.
+/// Derivatives Q_m' of the mean attitude at the nodes.
 #[derive(Copy, Clone, Default)]
 pub(super) struct Facing {
     pub turns: [Quaternion<f64>; 3],
 }
 
 impl Facing {
-    /// Finds the turns of a step of `h` seconds from this attitude at the rates of the mean axes at the nodes.
+    /// Computes the derivatives over a step of `h` (s) from the attitude at its start and the rates of the mean axes
+    /// at the nodes.
     #[inline(always)]
     pub fn find(&mut self, from: &Quaternion<f64>, means: &[Vector; 3], h: f64) {
         let rates = means.map(|mean| mean * 0.5);
@@ -42,7 +44,7 @@ impl Facing {
         }
     }
 
-    /// Where the axes face at a node.
+    /// Returns the attitude of the mean axes at a node.
     #[inline(always)]
     pub fn at(&self, from: &Quaternion<f64>, node: usize, h: f64) -> Quaternion<f64> {
         let [a, b, c] = weights(&MATRIX[node], h);
@@ -50,12 +52,13 @@ impl Facing {
     }
 }
 
-/// A vector of the mean axes in inertial ones, by a quaternion that is of length 1 but for the error of a stage.
+/// Transforms a vector from the mean axes into inertial axes; the quaternion has unit length up to the error of a
+/// stage.
 pub(super) fn inertial(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
     (*attitude * Quaternion::from_imag(*v) * attitude.conjugate()).vector() / attitude.norm_squared()
 }
 
-/// Q o (0, w), of half a rate.
+/// Returns the quaternion product Q o (0, v), where `half` is v, half of an angular rate.
 #[inline(always)]
 fn spin(attitude: &Quaternion<f64>, half: &Vector) -> Quaternion<f64> {
     let (q, v) = (attitude, half);

@@ -1,4 +1,4 @@
-//! What the modes feel at a node of a step: Gt, and forces that vary.
+//! Forcing of the modes at a node of a step: Gt, and forces that vary over the step.
 
 use nalgebra::Matrix3;
 
@@ -7,7 +7,8 @@ use super::model::outward;
 use super::step::{Beside, FeltByModes, Memory, TurningStep};
 
 impl TurningStep<'_> {
-    /// Whether modes are forced by more than Gt and constants.
+    /// Returns true if modal forces depend on more than Gt and constants (change of inertia, drives, damping
+    /// coupling, heating, imbalance).
     pub(super) fn is_loud(&self) -> bool {
         self.model.stretches
             || self.driven.is_some()
@@ -16,13 +17,14 @@ impl TurningStep<'_> {
             || self.borne.is_some_and(|borne| borne.shakes())
     }
 
-    /// Whether the modes feel nothing but Gt, constants and what the rotation does to them.
+    /// Returns true if the modes are forced by Gt, constants and centrifugal terms only, so that the SIMD path
+    /// applies.
     pub(super) fn feels_motion_alone(&self) -> bool {
         let others = self.around.is_some() || self.model.beside.is_some();
         self.driven.is_none() && self.borne.is_none() && !(others && self.is_loud())
     }
 
-    /// Gives the modes what they feel at a node; tells by how much their forces changed.
+    /// Updates the forcing g and s of the modes at a node; returns the largest change of a modal force (N/sqrt(kg)).
     pub(super) fn feel(
         &self,
         felt: &FeltByModes,
@@ -39,7 +41,7 @@ impl TurningStep<'_> {
             let (given, swings) = (scratch.speeds.iter().zip(&scratch.p), driving.swings());
             for ((memory, (speed, p)), of) in modes.iter_mut().zip(given).zip(&self.model.modes) {
                 let turned = speed - p;
-                // What hinges do to the rates depends on how far they are turned, which passes find.
+                // Rates due to hinges depend on the hinge angles, which are found by the iteration.
                 if swings {
                     change = change.max((turned - memory.g[node]).abs() * of.frequency);
                 }
@@ -70,7 +72,8 @@ impl TurningStep<'_> {
         change
     }
 
-    /// The force on a mode of tides, waves, other modes' damping and warmth (N/sqrt(kg)); drives give the first and the last.
+    /// Returns the force on a mode by tides, rotor imbalance, damping coupling and heating (N/sqrt(kg)). For bodies
+    /// with drives, tides and heating are computed with the appendages instead.
     pub(super) fn other(
         &self,
         (index, node): (usize, usize),
@@ -96,7 +99,7 @@ impl TurningStep<'_> {
         force
     }
 
-    /// The force of what is warmed on a mode (N/sqrt(kg)) so many seconds after the start of the step.
+    /// Returns the thermal force on a mode (N/sqrt(kg)) `t` (s) after the start of the step.
     fn warmth(&self, mode: usize, t: f64) -> f64 {
         let Some((around, since)) = self.around else { return 0.0 };
         around.heated().iter().fold(0.0, |sum, heated| sum + heated.forces[mode] * heated.level(since + t))

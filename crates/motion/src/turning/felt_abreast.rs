@@ -1,24 +1,24 @@
-//! What modes feel at the start of a step, four of them side by side.
+//! Forcing of the modes at the start of a step, four modes per SIMD register.
 
 use super::model::Abreast;
 use super::step::Memory;
 use crate::attitude::Vector;
 use crate::lanes::{LaneWork, Real};
 
-/// What modes feel of Gt and of the rotation alone, four modes side by side.
+/// SIMD task that computes the modal forcing by Gt and by the centrifugal terms, four modes per register.
 pub(super) struct Feeling<'a> {
     pub abreast: &'a [Abreast],
     pub states: &'a [[f64; 4]],
-    /// Gt (N m s).
+    /// Rigid momentum Gt (N m s).
     pub turning: Vector,
-    /// What the rotation does by each number of a mode's moments (rad²/s²), where modes change the inertia.
+    /// Centrifugal terms of the rotation (rad²/s²), as `outward` returns them; `None` if no mode changes the inertia.
     pub spun: Option<[f64; 6]>,
-    /// Get g and s of the start.
+    /// Modes to fill: g and s at the start of the step are written.
     pub modes: &'a mut [Memory],
 }
 
 impl LaneWork for Feeling<'_> {
-    /// The largest rate of a mode, and the largest force on one.
+    /// Largest rate |q'| of a mode (m sqrt(kg)/s), and largest force on one (N/sqrt(kg)).
     type Output = [f64; 2];
 
     #[inline(always)]

@@ -1,4 +1,4 @@
-//! The motion from one departure to the next.
+//! Motion of the flexible body over a segment, during which the commanded loads are constant.
 
 use std::sync::Arc;
 
@@ -20,77 +20,80 @@ use super::state::{Ahead, TurningSight, TurningState};
 use super::step::TurningStep;
 use crate::attitude::Vector;
 
-/// Steps after which the motion asks whether it may go on.
+/// Number of steps between two calls of `go_on` (cancellation check).
 const STEPS: u64 = 256;
 
-/// Lengths of steps beside the grid whose responses are kept: those between samples and commands come again and again.
+/// Number of off-grid step lengths whose responses are kept, because lengths between samples and commands recur.
 const BESIDE: usize = 16;
 
-/// A flexible body that turns, and what acts on it since it departed.
+/// Three-axis motion of a flexible body, and the loads that act on it during the segment.
 #[derive(Clone, Debug)]
 pub struct Turning {
     pub(super) model: Arc<Model>,
     pub(super) pace: Arc<Pace>,
-    /// What it has in common with other runs, as long as it does.
+    /// Data shared with other runs; `None` once the body's constants are its own.
     pub(super) known: Option<Arc<KnownBody>>,
-    /// The state at the departure, at the instant of the grid that was reached last, and at the instant seen last.
+    /// States at the start of the segment, at the last instant of the step grid, and at the current instant.
     pub(super) departed: TurningState,
     pub(super) grid: TurningState,
     pub(super) here: TurningState,
-    /// Seconds since the departure of the last two.
+    /// Times of `grid` and of `here` since the start of the segment (s).
     pub(super) reached: f64,
     pub(super) now: f64,
     pub(super) seen: TurningSight,
     pub(super) acting: Acting,
-    /// The bearings of the rotors, if they have any, how each rotor slips, and whether it has just come to rest or let go.
+    /// Bearings of the rotors (or empty), how each rotor slips, and whether it has just stopped or broken away.
     pub(super) bearings: Vec<Bearing>,
     pub(super) slips: Vec<Slip>,
     pub(super) resting: Vec<bool>,
-    /// The step that follows, once it was looked at for rotors that come to rest.
+    /// Next step of the grid, if it has been searched for stick-slip events.
     pub(super) ahead: Option<Ahead>,
-    /// Responses over a step of the grid at each level, once they were needed.
+    /// Responses over a grid step at each level, computed on first use.
     pub(super) regular: Vec<Option<Regular>>,
-    /// Those over the last steps that were beside the grid, and the place of the next.
+    /// Responses over the last off-grid steps, and the index that is replaced next.
     pub(super) beside: Vec<Regular>,
     pub(super) next_beside: usize,
-    /// The level of the next step of the grid, once it is known.
+    /// Level of the next grid step, once it has been determined.
     next: Option<usize>,
-    /// The amplitude of each mode at the start of a step.
+    /// Amplitude of each mode at the start of the next step.
     amplitudes: Vec<Amplitude>,
     work: StepMemory,
     effort: FlowEffort,
-    /// Drives that turn appendages.
+    /// Driven appendages, if any.
     pub(super) driving: Option<Box<Driving>>,
 }
 
-/// What acts from a departure on.
+/// Loads that act from the start of a segment.
 #[derive(Clone, Debug, Default)]
 pub struct Acting {
     /// Torque on the hub in its axes (N m).
     pub torque: Vector,
-    /// Modal forces beside phi' times the torque, which the motion has of itself (N/sqrt(kg)); none at all if there are none.
+    /// Modal forces other than phi' times `torque`, which the motion adds itself (N/sqrt(kg)); empty if there are
+    /// none.
     pub forces: Vec<f64>,
-    /// What a unit of each mode adds to the torque, of forces whose places it moves (N/sqrt(kg)); none at all if there are none.
+    /// Torque on the hub per unit of each mode, by forces whose points of application move (N/sqrt(kg)); empty if
+    /// none.
     pub levers: Vec<Vector>,
-    /// The acceleration of the centre of mass, in the hub's axes (m/s²).
+    /// Acceleration of the centre of mass, in the hub's axes (m/s²).
     pub push: Vector,
-    /// The rotors. One that was not there before brings its momentum with it.
+    /// Rotors. One that was not present before adds its momentum to the body's.
     pub rotors: Vec<Rotor>,
-    /// Rotors in gimbals; the same holds of them.
+    /// Rotors in gimbals. One that was not present before adds its momentum to the body's.
     pub gimbals: Vec<Gimbal>,
 }
 
-/// What the motion took so far.
+/// Computational cost of the motion.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct FlowEffort {
-    /// Steps.
+    /// Number of steps.
     pub steps: u64,
-    /// Passes over the stages of these steps.
+    /// Number of iterations over the stages of these steps.
     pub passes: u64,
 }
 
 impl Flexible {
-    /// Length of the steps that resolve all modes while the body turns, and torques change, at such a rate (rad/s), in s.
+    /// Returns the step length (s) that resolves all modes while the body turns, and torques change, at the given
+    /// rate (rad/s).
     pub fn step(&self, rate: f64) -> f64 {
         let pace = Pace::new(&Model::new(self));
         pace.length(pace.level(Pose { rate, carried: rate, acceleration: 0.0, amplitudes: None }))
@@ -98,14 +101,14 @@ impl Flexible {
 }
 
 impl Acting {
-    /// Momentum of the rotors `t` seconds after the departure (N m s), and its rate (N m).
+    /// Returns the momentum of the rotors `t` (s) after the start of the segment (N m s), and its rate (N m).
     fn rotors(&self, t: f64) -> (Vector, Vector) {
         self.rotors.iter().fold((Vector::zeros(), Vector::zeros()), |(sum, rate), rotor| {
             (sum + rotor.axis * (rotor.momentum + rotor.torque * t), rate + rotor.axis * rotor.torque)
         })
     }
 
-    /// The step of `h` seconds that begins `t` seconds after the departure.
+    /// Creates the step of `h` (s) that begins `t` (s) after the start of the segment.
     fn step<'a>(
         &'a self,
         model: &'a Model,
@@ -124,7 +127,7 @@ impl Acting {
             h,
             torque: self.torque,
             push: (self.push != Vector::zeros()).then_some(self.push),
-            // Of a body with drives what acts follows from the force alone.
+            // With driven appendages, modal forces follow from the force alone.
             forces: if driving.is_some() { &[] } else { &self.forces },
             levers: &self.levers,
             rotors: if is_borne { (Vector::zeros(), Vector::zeros()) } else { self.rotors(t) },
@@ -137,13 +140,13 @@ impl Acting {
 }
 
 impl Turning {
-    /// A body whose mean axes have an attitude, with these rates as if it were rigid (rad/s), and q and q' of each mode
-    /// (m sqrt(kg), and per second), at rest if they are left out; nothing acts.
+    /// Creates the motion of a body from the attitude of its mean axes, its rigid rate (rad/s), and q and q' of each
+    /// mode (m sqrt(kg), m sqrt(kg)/s; zero if missing). Nothing acts.
     pub fn new(body: &Flexible, attitude: Quaternion<f64>, rigid: Vector, modes: &[[f64; 2]]) -> Self {
         Self::sharing(&CommonSteps::default(), body, (attitude, rigid), modes)
     }
 
-    /// The same with what runs of this body have in common.
+    /// Creates the motion as [`Turning::new`] does, with data shared by the runs of this body.
     pub fn sharing(
         common: &CommonSteps,
         body: &Flexible,
@@ -204,7 +207,7 @@ impl Turning {
         turning
     }
 
-    /// Gives the rotors bearings, one each, before the first departure.
+    /// Sets the bearings of the rotors, one each, before the first segment.
     pub fn bear(&mut self, bearings: Vec<Bearing>) {
         for state in [&mut self.departed, &mut self.grid, &mut self.here] {
             state.spins = vec![Spin::default(); bearings.len()];
@@ -214,7 +217,8 @@ impl Turning {
         self.bearings = bearings;
     }
 
-    /// Begins a new motion at the instant seen last, under what acts from now on; rotors in bearings have to `settle` then.
+    /// Begins a segment at the current instant, under the given loads; call `settle` next if there are rotors in
+    /// bearings.
     pub fn depart(&mut self, acting: &Acting) {
         let counts = |acting: &Acting| (acting.rotors.len(), acting.gimbals.len());
         let same = counts(acting) == counts(&self.acting);
@@ -233,18 +237,19 @@ impl Turning {
         self.departed.copy_from(&self.here);
         self.grid.copy_from(&self.here);
         (self.reached, self.now) = (0.0, 0.0);
-        // The same state with the same momentum in the rotors was looked at on arrival.
+        // Skip the update if the same state with the same rotor momentum is already in view.
         let bits = |of: Vector| of.data.0[0].map(f64::to_bits);
         if stored.is_none_or(|stored| bits(stored) != bits(self.acting.rotors(0.0).0)) {
             self.look();
         }
     }
 
-    /// Brings the body to `t` seconds after the departure, which was so long after the start of the run (s), as long as it
-    /// may `go_on`, or to the first instant before at which a rotor comes to rest or lets go, which it tells (s).
+    /// Advances the body to `t` (s) after the start of the segment, while `go_on` permits; `around` holds the
+    /// environment and the segment's start time since the start of the run (s). Stops at an earlier stick-slip event
+    /// and then returns its time (s).
     ///
     /// # Errors
-    /// What `go_on` says.
+    /// The error of `go_on`.
     pub fn advance<E>(
         &mut self,
         t: f64,
@@ -295,13 +300,13 @@ impl Turning {
         Ok(None)
     }
 
-    /// What is known of the start of the next step holds no longer.
+    /// Invalidates the data cached for the start of the next step.
     pub(super) fn move_on(&mut self) {
         self.work.move_on();
         self.next = None;
     }
 
-    /// Takes a state of the grid a step further, of this level; tells how long it is (s).
+    /// Advances a state on the grid by one step of the given level; returns the step length (s).
     pub(super) fn take_step(
         &mut self,
         level: usize,
@@ -316,7 +321,7 @@ impl Turning {
         Some(*h)
     }
 
-    /// Brings the body to `h` seconds after the instant of the grid, and looks.
+    /// Sets the current state to `h` (s) after the last grid instant, by one off-grid step, and updates the view.
     pub(super) fn step_beside(&mut self, h: f64, around: Option<(&dyn Surroundings, f64)>) {
         self.here.copy_from(&self.grid);
         self.now = self.reached + h;
@@ -330,14 +335,14 @@ impl Turning {
         self.look();
     }
 
-    /// Brings the body to `t` seconds after the departure, an instant within a tick of that at which it stopped, and remembers that
-    /// a rotor comes to rest there, or lets go.
+    /// Advances the body to a stick-slip event at `t` (s) after the start of the segment, within a tick of where the
+    /// motion stopped, and marks the event's rotor for `settle`.
     pub fn reach(&mut self, t: f64, around: Option<(&dyn Surroundings, f64)>) {
         self.step_beside(t - self.reached, around);
         self.meet();
     }
 
-    /// The inertia tensor of the body as it is bent at the instant seen last (kg m²).
+    /// Returns the inertia tensor of the deformed body at the current instant (kg m²).
     pub fn inertia(&self) -> Matrix3<f64> {
         if let Some(inertia) = &self.seen.inertia {
             return *inertia;
@@ -364,12 +369,12 @@ impl Turning {
         }
     }
 
-    /// The body at the instant seen last.
+    /// Returns the view of the body at the current instant.
     pub fn seen(&self) -> &TurningSight {
         &self.seen
     }
 
-    /// Energy of motion and deformation of each mode at the instant seen last (J): (q'² + W² q²)/2.
+    /// Returns the energy of each mode at the current instant (J): (q'² + W² q²)/2.
     pub fn energies(&self) -> impl Iterator<Item = f64> + '_ {
         let seen = self.seen.displacements.iter().zip(&self.seen.rates);
         seen.zip(self.model.modes.iter().enumerate()).map(|((q, rate), (index, mode))| {
@@ -378,12 +383,12 @@ impl Turning {
         })
     }
 
-    /// What the motion took so far.
+    /// Returns the computational cost so far.
     pub fn effort(&self) -> FlowEffort {
         self.effort
     }
 
-    /// Makes it walk at another pace.
+    /// Replaces the step levels.
     #[cfg(test)]
     pub(super) fn set_pace(&mut self, pace: Pace) {
         self.pace = Arc::new(pace);

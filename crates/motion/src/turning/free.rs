@@ -1,14 +1,15 @@
-//! The modes of a spacecraft whose hub is free, from those of its appendages with their roots held.
+//! Free modes of a spacecraft from the clamped modes of its appendages.
 //!
-//! With the centre of mass eliminated, the clamped modes eta have the mass matrix E = 1 - t' t/m and are coupled to the rate of
-//! the hub by delta (\[Likins70\]). Elimination of that rate leaves S = E - delta' J⁻¹ delta, and O² y = W² S y with Y' S Y = 1
-//! are the free modes, eta = Y q. As eigenvalues W⁻² of O⁻¹ S O⁻¹ they keep their digits, and no rigid mode takes part.
+//! With the centre of mass eliminated, the clamped modes eta have the mass matrix E = 1 - t' t/m and are coupled to
+//! the rate of the hub by delta (\[Likins70\]). Elimination of that rate leaves S = E - delta' J⁻¹ delta, and O² y =
+//! W² S y with Y' S Y = 1 gives the free modes, eta = Y q. Computed as eigenvalues W⁻² of O⁻¹ S O⁻¹, they keep their
+//! digits, and no rigid mode takes part.
 
 use nalgebra::{Cholesky, DMatrix, Matrix3, Matrix3xX, SymmetricEigen};
 
 use crate::attitude::Vector;
 
-/// Clamped modes as the free hub sees them, a column each.
+/// Clamped modes and their coupling to a free hub, one column per mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClampedModes {
     /// Total mass m (kg).
@@ -23,12 +24,12 @@ pub struct ClampedModes {
     pub rotations: Matrix3xX<f64>,
 }
 
-/// Free modes, a column each.
+/// Free modes, one column per mode.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Free {
     /// Natural frequencies W (rad/s), increasing.
     pub frequencies: Vec<f64>,
-    /// The clamped modes that each consists of: eta = Y q. The largest of a column is positive.
+    /// Composition from clamped modes, eta = Y q. The largest element of a column is positive.
     pub shapes: DMatrix<f64>,
     /// Rotation phi = -J⁻¹ delta Y of the hub (rad/(m sqrt(kg))).
     pub rotations: Matrix3xX<f64>,
@@ -37,20 +38,20 @@ pub struct Free {
 }
 
 impl ClampedModes {
-    /// Mass matrix E of the clamped modes while the centre of mass rests.
+    /// Returns the mass matrix E of the clamped modes with the centre of mass at rest.
     pub fn mass_matrix(&self) -> DMatrix<f64> {
         let order = self.frequencies.len();
         DMatrix::identity(order, order) - self.translations.tr_mul(&self.translations) / self.mass
     }
 
-    /// Inertia left to the hub and to what no mode carries, J - delta E⁻¹ delta' (kg m²), if there is mass left.
+    /// Returns the residual inertia J - delta E⁻¹ delta' (kg m²), which no mode carries, if E is positive definite.
     pub fn residual_inertia(&self) -> Option<Matrix3<f64>> {
         let mass = Cholesky::new(self.mass_matrix())?;
         let carried = &self.rotations * mass.solve(&self.rotations.transpose());
         Some(self.inertia - Matrix3::from_fn(|row, column| carried[(row, column)]))
     }
 
-    /// The free modes, if the mass matrix is positive definite.
+    /// Returns the free modes, if the mass matrix is positive definite.
     pub fn free(&self) -> Option<Free> {
         let (order, hub) = (self.frequencies.len(), Cholesky::new(self.inertia)?);
         let mass = self.mass_matrix() - self.rotations.tr_mul(&hub.solve(&self.rotations));
@@ -61,7 +62,7 @@ impl ClampedModes {
         if compliance.iter().any(|element| !element.is_finite()) {
             return None;
         }
-        // A rigid body has no modes.
+        // Special case: a rigid body has no modes.
         let (values, vectors) = if order == 0 {
             (Vec::new(), DMatrix::zeros(0, 0))
         } else {
@@ -90,7 +91,8 @@ impl ClampedModes {
         })
     }
 
-    /// What the free modes are at the start, for clamped ones: q = Y⁻¹ eta, with Y⁻¹ = Y' S = W⁻² Y' O².
+    /// Returns the coordinates of the free modes for those of the clamped modes: q = Y⁻¹ eta, with Y⁻¹ = Y' S = W⁻²
+    /// Y' O².
     pub fn to_free(&self, free: &Free, eta: &[f64]) -> Vec<f64> {
         let column = |(column, frequency): (usize, &f64)| {
             let parts = eta.iter().zip(&self.frequencies).enumerate();
@@ -103,12 +105,12 @@ impl ClampedModes {
 }
 
 impl Free {
-    /// Rotation of the hub in a mode (rad/(m sqrt(kg))).
+    /// Returns the rotation of the hub in a mode (rad/(m sqrt(kg))).
     pub fn rotation(&self, mode: usize) -> Vector {
         self.rotations.column(mode).into_owned()
     }
 
-    /// Displacement of the point of the hub at the centre of mass in a mode (1/sqrt(kg)).
+    /// Returns the displacement of the hub's point at the centre of mass in a mode (1/sqrt(kg)).
     pub fn translation(&self, mode: usize) -> Vector {
         self.translations.column(mode).into_owned()
     }

@@ -1,18 +1,19 @@
-//! Forces on modes that warm up and cool down: each approaches its aim exponentially, from one change of the aim to the next.
+//! Thermal forces on the modes: their common level approaches a target exponentially, and the target changes
+//! stepwise.
 
-/// Forces on modes that are warmed together.
+/// Thermal forces on the modes with one common level and time constant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Heated {
-    /// The force on each mode at a level of 1 (N/sqrt(kg)).
+    /// Force on each mode at a level of 1 (N/sqrt(kg)).
     pub forces: Vec<f64>,
     /// Time constant (s).
     time_constant: f64,
-    /// When the aim changes (s), the level then, and the aim from then on.
+    /// Changes of the target: time (s), level at that time, and target from then on.
     changes: Vec<[f64; 3]>,
 }
 
 impl Heated {
-    /// Forces whose level is 0 until the first of these changes of the aim, each a time since the start (s) and the aim.
+    /// Creates the forces at level 0; `aims` gives the time since the start (s) and the target of each change.
     pub fn new(forces: Vec<f64>, time_constant: f64, aims: impl IntoIterator<Item = [f64; 2]>) -> Self {
         let mut heated = Self { forces, time_constant, changes: Vec::new() };
         for [from, aim] in aims {
@@ -22,7 +23,7 @@ impl Heated {
         heated
     }
 
-    /// The level at a time since the start (s).
+    /// Returns the level at a time `t` since the start (s).
     pub fn level(&self, t: f64) -> f64 {
         let past = self.changes.partition_point(|[from, ..]| *from <= t);
         past.checked_sub(1).map_or(0.0, |last| {

@@ -1,9 +1,9 @@
-//! One step: Gauss-Legendre of order 6 for momentum and attitude in mean axes, the modes exact.
+//! One step: Gauss-Legendre of order 6 for momentum and attitude in mean axes, exact solutions for the modes.
 //!
-//! With th = sum phi q, Q = Q_m o exp(th) and H = exp(-\[th\]) H_m, the rate of the mean axes is
-//! w_m = exp(\[th\]) (J^-1 Gt + (1 - Gr) phi q'), in which the elastic rate has left but for products with th. The stages are
-//! found by fixed-point passes; what modes need of a stage is Gt, three numbers, and s where there is any. The attitude follows
-//! from the rates of the mean axes afterwards, and is part of the passes only where the surroundings look at it.
+//! With th = sum phi q, Q = Q_m o exp(th) and H = exp(-\[th\]) H_m, the rate of the mean axes is w_m = exp(\[th\])
+//! (J^-1 Gt + (1 - Gr) phi q'), which contains the elastic rate only in products with th. The stages are found by
+//! fixed-point iteration; the modes need only Gt (three numbers) and, if present, s of a stage. The attitude follows
+//! from the rates of the mean axes afterwards; it takes part in the iteration only if the environment depends on it.
 
 use nalgebra::Vector2;
 
@@ -21,18 +21,19 @@ use super::vectors::vector;
 use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::{NODES, WEIGHTS, exact_sum};
 
-/// The memory of steps: what they keep of each mode, and of rotors in bearings.
+/// Working memory of steps: values of the modes, of the nodes, and of rotors and appendages.
 #[derive(Clone, Debug)]
 pub(super) struct StepMemory {
     modes: Vec<Memory>,
     nodes: Nodes,
     beside: Beside,
-    /// The stage at the start of the last step, if other steps begin there too, and the largest rate of a mode and force on one.
+    /// Stage at the start of the last step, reused while steps begin at the same state; with the largest rate of a
+    /// mode and the largest force on one.
     start: Option<(StepStage, [f64; 2])>,
 }
 
 impl StepMemory {
-    /// Memory for so many modes.
+    /// Creates the memory for `modes` modes.
     pub fn new(modes: usize) -> Self {
         Self {
             modes: vec![Memory::default(); modes],
@@ -42,14 +43,14 @@ impl StepMemory {
         }
     }
 
-    /// The next step begins elsewhere, or under something else.
+    /// Invalidates the stage at the start: the next step begins at another state, or under other loads.
     pub fn move_on(&mut self) {
         self.start = None;
     }
 }
 
 impl TurningStep<'_> {
-    /// Takes the step; tells the number of passes.
+    /// Advances the state over the step; returns the number of iterations.
     pub fn take(&self, state: &mut TurningState, work: &mut StepMemory) -> u32 {
         let StepMemory { modes, nodes, beside, start } = work;
         if let Some((driving, t)) = self.driven {
@@ -79,7 +80,7 @@ impl TurningStep<'_> {
         passes
     }
 
-    /// The stage at the start, and the largest rate of a mode and force on one.
+    /// Computes the stage at the start, and the largest rate of a mode and the largest force on one.
     fn start(
         &self,
         state: &TurningState,
@@ -124,7 +125,7 @@ impl TurningStep<'_> {
         (stage, most)
     }
 
-    /// Position and velocity of the centre of mass at the end, by the quadrature of the nodes.
+    /// Advances position and velocity of the centre of mass to the end of the step by Gauss-Legendre quadrature.
     fn move_on(&self, state: &mut TurningState, nodes: &Nodes, facing: &Facing) {
         let [position, velocity] = &mut state.moved;
         *position += *velocity * self.h;
@@ -138,7 +139,7 @@ impl TurningStep<'_> {
         }
     }
 
-    /// The state at the end.
+    /// Advances the state to the end of the step from the converged stages.
     fn end(
         &self,
         state: &mut TurningState,
@@ -160,7 +161,7 @@ impl TurningStep<'_> {
         (attitude.coords, lost.0.coords) = exact_sum(attitude.coords, turn.coords + lost.0.coords);
         (*momentum, lost.1) = exact_sum(*momentum, push + lost.1);
         (*turned, lost.2) = exact_sum(*turned, rigid + lost.2);
-        // The method keeps the length but for rounding, of which this removes what is left.
+        // The method preserves the norm up to rounding; the accumulated rounding is removed here.
         let excess = attitude.norm_squared() - 1.0;
         if excess.abs() > 4.0 * f64::EPSILON {
             *attitude *= 1.0 - 0.5 * excess;
@@ -174,7 +175,8 @@ impl TurningStep<'_> {
             if loud {
                 end += sum(&by.of_force, &memory.s);
             }
-            // What was left out moves on with the mode, with what the rounded transition makes too long.
+            // The rounding errors propagate with the mode, corrected for the norm error of the rounded transition
+            // matrix.
             let left = by.free[0] * mode[2] + by.free[1] * mode[3];
             let (end, left) = exact_sum(end, left - end * response.excess);
             *mode = [end.x, end.y, left.x, left.y];

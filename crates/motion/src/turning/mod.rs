@@ -1,18 +1,7 @@
-//! The turning flow: a flexible body with rotors about three axes, where body and modes act on each other.
+//! Three-axis dynamics of a flexible body with rotors, with two-way coupling between body and modes.
 //!
-//! With free modes W, phi, the total angular momentum H about the centre of mass in the body's axes, rotors a h, changes J1 of
-//! the inertia and the canonical rates P of the modes, out of which torques, rotors and w x H drop:
-//!
-//! ```text
-//! G = H - sum a h,   Gt = G - J1(q) w,   w = J^-1 Gt + phi q',   H' = T - w x H,
-//! q' = P + phi' Gt,   P' = -W² q - D q' + 1/2 [w' J1_i w] + f.
-//! ```
-//!
-//! What rotors in gimbals have of momentum is part of sum a h, a known function of time (`gimbal.rs`).
-//!
-//! `method.rs` has the method: Gauss-Legendre of order 6 in mean axes, which keeps |H| and |Q|, with the modes as exact
-//! oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends on the departure alone, and what is
-//! seen between is one shorter step beside it, so that looking changes nothing.
+//! With free modes W, phi, the total angular momentum H about the centre of mass in the body's axes, rotors a h, the
+//! change J1 of the inertia and the canonical rates P of the modes, in which torques, rotors and w x H do not appear:
 
 mod acceleration;
 mod bearing;

@@ -1,4 +1,4 @@
-//! What a turning flexible body is: its inertia, free modes and rotors, and the constants that follow.
+//! Properties of a rotating flexible body: inertia, free modes and rotors, and the constants derived from them.
 
 use super::heated::Heated;
 use nalgebra::{DMatrix, Matrix3, Quaternion};
@@ -7,96 +7,96 @@ use super::vectors::Vectors;
 use crate::attitude::Vector;
 use crate::lanes::{Four, Real};
 
-/// A free mode: of the whole body, in axes that follow its total momentum, mass-normalised.
+/// Free mode of the whole body, in axes that follow its total momentum, mass-normalised.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeMode {
     /// Natural frequency W (rad/s).
     pub frequency: f64,
     /// Damping ratio.
     pub damping: f64,
-    /// Rotation of the hub for a unit of the mode (rad/(m sqrt(kg))).
+    /// Rotation of the hub per unit of the mode (rad/(m sqrt(kg))).
     pub rotation: Vector,
-    /// Change of the inertia tensor for a unit of the mode (sqrt(kg) m).
+    /// Change of the inertia tensor per unit of the mode (sqrt(kg) m).
     pub moments: Matrix3<f64>,
 }
 
-/// A flexible body that turns.
+/// Flexible body in three-axis rotation.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Flexible {
-    /// Inertia tensor about the centre of mass (kg m²), without what rotors have about their axes.
+    /// Inertia tensor about the centre of mass (kg m²), without the spin inertia of the rotors.
     pub inertia: Matrix3<f64>,
-    /// The free modes.
+    /// Free modes.
     pub modes: Vec<FreeMode>,
-    /// The damping matrix of all modes (1/s) where what is beside its diagonal counts; the diagonal then replaces the modes'
+    /// Damping matrix of all modes (1/s) if its off-diagonal entries matter; its diagonal then replaces the modes'
     /// damping ratios.
     pub damping: Option<DMatrix<f64>>,
 }
 
-/// A rotor under way: h' = u.
+/// Ideal rotor, with h' = u.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Rotor {
-    /// Its axis, a unit vector of the body.
+    /// Spin axis, a unit vector in the body's axes.
     pub axis: Vector,
-    /// Angular momentum about the axis, with what the body's rate gives it (N m s).
+    /// Absolute angular momentum about the axis, including the part due to the body's rate (N m s).
     pub momentum: f64,
-    /// Torque on the rotor about its axis, of motor and bearing together (N m), until the next departure.
+    /// Torque on the rotor about its axis, of motor and bearing together (N m), constant during a segment.
     pub torque: f64,
 }
 
-/// What the surroundings do to a body.
+/// Environment that acts on a body.
 pub trait Surroundings {
-    /// The torque in the body's axes (N m) at a time since the start (s), where the hub faces this way and the body has this
-    /// inertia (kg m²).
+    /// Returns the torque in the body's axes (N m) at a time `t` since the start (s), for the attitude of the hub and
+    /// the present inertia of the body (kg m²).
     fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
 
-    /// The tensor (1/s²) whose product with what a unit of a mode adds to the inertia, element by element, is the force on the
-    /// mode; none if there is no such force.
+    /// Returns the tidal tensor (1/s²), whose elementwise product with the change of inertia per unit of a mode sums
+    /// to the force on the mode; `None` without such a force.
     fn tide(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
 
-    /// Forces on the modes that are warmed.
+    /// Returns the thermal forces on the modes.
     fn heated(&self) -> &[Heated] {
         &[]
     }
 
-    /// No torque is larger (N m).
+    /// Returns an upper bound of the torque's magnitude (N m).
     fn bound(&self) -> f64;
 
-    /// How fast it changes by itself (rad/s).
+    /// Returns the rate at which the torque varies by itself, for a body at rest (rad/s).
     fn frequency(&self) -> f64;
 }
 
-/// The constants of the motion.
+/// Constants of a body used by the integrator.
 #[derive(Clone, Debug)]
 pub(super) struct Model {
-    /// J.
+    /// Inertia J (kg m²).
     pub inertia: Matrix3<f64>,
-    /// J^-1.
+    /// Inverse inertia J^-1.
     pub inverse: Matrix3<f64>,
-    /// The inertia that is left to the hub, the inverse of J^-1 + sum phi phi'.
+    /// Residual inertia J_left of the hub, the inverse of J^-1 + sum phi phi'.
     pub left: Matrix3<f64>,
-    /// sum phi phi'.
+    /// Sum of phi phi' over the modes.
     pub bending: Matrix3<f64>,
-    /// No rigid rate is larger for a unit of angular momentum (1/(kg m²)).
+    /// Largest rigid rate per unit of angular momentum (1/(kg m²)).
     pub mobility: f64,
     pub modes: Vec<Constants>,
-    /// The same, four modes side by side, and so that a vector of a mode fills a register.
+    /// Mode constants in groups of four, and padded so that a vector of a mode fills a register.
     pub abreast: Vec<Abreast>,
     pub filled: Vec<Filled>,
-    /// The damping matrix without its diagonal (1/s).
+    /// Off-diagonal part of the damping matrix (1/s).
     pub beside: Option<DMatrix<f64>>,
-    /// Whether any mode changes the inertia.
+    /// True if any mode changes the inertia.
     pub stretches: bool,
-    /// Sum of |phi|, |sum phi phi'| and the largest |J1| of a mode.
+    /// Sum of |phi|, |sum phi phi'|, and the largest |J1| of a mode.
     pub reach: f64,
     pub bendable: f64,
     pub stretchable: f64,
-    /// The frequencies of modes that turn the hub or change the inertia (rad/s).
+    /// Frequencies of the modes that rotate the hub or change the inertia (rad/s).
     pub felt: Vec<f64>,
-    /// By which instructions the stages of a step are found.
+    /// SIMD instruction set used for the stages of a step.
     pub lanes: Four,
 }
 
-/// The constants of four modes side by side; places without one have a mode that nothing moves.
+/// Constants of four modes in SIMD lanes; unused lanes have a mode without coupling.
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 pub(super) struct Abreast {
@@ -118,14 +118,14 @@ impl Abreast {
         }
     }
 
-    /// The products of the modes' rotations with a vector.
+    /// Returns the scalar products of the modes' rotations with a vector.
     #[inline(always)]
     pub fn along<R: Real>(&self, kind: R, v: &Vector) -> R {
         let [x, y, z] = &self.rotation;
         Vectors { x: kind.load(x), y: kind.load(y), z: kind.load(z) }.along(v)
     }
 
-    /// What the rotation does to the modes by each number of their moments.
+    /// Returns the modal forces by centrifugal terms (as [`outward`] returns them).
     #[inline(always)]
     pub fn moved<R: Real>(&self, kind: R, [a, b, c, d, e, f]: &[f64; 6]) -> R {
         let [xx, yy, zz, yz, zx, xy] = &self.moments;
@@ -134,7 +134,7 @@ impl Abreast {
     }
 }
 
-/// The constants of a mode in registers of four: nothing fills what is left.
+/// Constants of one mode, padded with zeros to registers of four.
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 pub(super) struct Filled {
@@ -154,25 +154,25 @@ impl Filled {
     }
 }
 
-/// The constants of a mode.
+/// Constants of a mode.
 #[derive(Clone, Debug)]
 pub(super) struct Constants {
     pub frequency: f64,
     pub damping: f64,
     pub rotation: Vector,
-    /// xx, yy, zz, yz, zx and xy of the change of the inertia tensor.
+    /// Change of the inertia tensor per unit of the mode: xx, yy, zz, yz, zx and xy.
     pub moments: [f64; 6],
 }
 
 impl Constants {
-    /// The force of accelerations that grow outward, as [`outward`] gives them (N/sqrt(kg)).
+    /// Returns the centrifugal force on the mode for the terms of [`outward`] (N/sqrt(kg)).
     pub fn moved(&self, outward: &[f64; 6]) -> f64 {
         let [xx, yy, zz, yz, zx, xy] = self.moments;
         let [a, b, c, d, e, f] = outward;
         (xx * a + yy * b + zz * c) + (yz * d + zx * e + xy * f)
     }
 
-    /// The force of a tide (N/sqrt(kg)).
+    /// Returns the tidal force on the mode (N/sqrt(kg)).
     pub fn pulled(&self, tide: &Matrix3<f64>) -> f64 {
         let [xx, yy, zz, yz, zx, xy] = self.moments;
         let across = yz * tide.m23 + zx * tide.m31 + xy * tide.m12;
@@ -180,19 +180,20 @@ impl Constants {
     }
 }
 
-/// What a rate's centrifugal acceleration does by each number of a mode's moments: 1/2 w' J1 w is their product (rad²/s²).
+/// Returns the factors of xx, yy, zz, yz, zx and xy of a mode's change of inertia in the centrifugal force 1/2 w' J1
+/// w (rad²/s²).
 pub(super) fn outward(rate: &Vector) -> [f64; 6] {
     let [x, y, z] = [rate.x, rate.y, rate.z];
     [0.5 * x * x, 0.5 * y * y, 0.5 * z * z, y * z, z * x, x * y]
 }
 
-/// Rotations and moments below this part of what a mode can have are rounding.
+/// Fraction of a mode's possible rotation and moments below which they are rounding errors.
 const ROUNDING: f64 = 1e-9;
 
 impl Model {
-    /// The constants of a body.
+    /// Computes the constants of a body.
     pub fn new(body: &Flexible) -> Self {
-        // A body that was checked has an inverse.
+        // A validated body has an invertible inertia.
         let inverted = |m: Matrix3<f64>| symmetric(m.try_inverse().unwrap_or_else(Matrix3::identity));
         let inverse = inverted(body.inertia);
         let bending = body.modes.iter().fold(Matrix3::zeros(), |sum: Matrix3<f64>, mode| {
@@ -237,8 +238,8 @@ impl Model {
         }
     }
 
-    /// The momentum Gt that turns the body as if it were rigid, and the rate of the hub, under a change of the inertia:
-    /// (J_left + J1) w = G + J_left phi P and Gt = G - J1 w.
+    /// Returns the rigid momentum Gt and the rate of the hub for a change of the inertia: (J_left + J1) w = G +
+    /// J_left phi P and Gt = G - J1 w.
     pub fn rates(&self, momentum: &Vector, elastic: &Vector, changed: &Matrix3<f64>) -> (Vector, Vector) {
         let rate = solved(&(self.left + changed), &(momentum + self.left * elastic));
         (momentum - changed * rate, rate)
@@ -246,7 +247,8 @@ impl Model {
 }
 
 impl Model {
-    /// As [`Model::rates`], in lanes, by changes xx, yy, zz, yz, zx and xy of the inertia.
+    /// Returns Gt and the hub's rate as [`Model::rates`] does, in lanes, for changes xx, yy, zz, yz, zx and xy of the
+    /// inertia.
     #[inline(always)]
     pub fn rates_of<R: Real>(
         &self,
@@ -263,7 +265,7 @@ impl Model {
         let zx = kind.of(m.m31) + changed[4];
         let xy = kind.of(m.m21) + changed[5];
         let v = momentum + elastic.through(m);
-        // Cramer's rule.
+        // Solution by Cramer's rule.
         let first = Vectors { x: yy * zz - yz * yz, y: yz * zx - xy * zz, z: xy * yz - yy * zx };
         let (second, third, across) = (zz * xx - zx * zx, xx * yy - xy * xy, xy * zx - xx * yz);
         let one = kind.of(1.0) / (xx * first.x + xy * first.y + zx * first.z);
@@ -276,12 +278,12 @@ impl Model {
     }
 }
 
-/// Symmetric to the last bit, so that energies are quadratic forms.
+/// Symmetrises a matrix to the last bit, so that energies are quadratic forms.
 fn symmetric(matrix: Matrix3<f64>) -> Matrix3<f64> {
     (matrix + matrix.transpose()) * 0.5
 }
 
-/// The solution of M x = v of a symmetric matrix by Cramer's rule; not finite if there is none.
+/// Solves M x = v for a symmetric matrix by Cramer's rule; not finite if M is singular.
 #[inline]
 fn solved(m: &Matrix3<f64>, v: &Vector) -> Vector {
     let (xx, yy, zz, yz, zx, xy) = (m.m11, m.m22, m.m33, m.m32, m.m31, m.m21);
@@ -296,7 +298,7 @@ fn solved(m: &Matrix3<f64>, v: &Vector) -> Vector {
     )
 }
 
-/// The tensor of xx, yy, zz, yz, zx and xy.
+/// Returns the symmetric tensor of xx, yy, zz, yz, zx and xy.
 pub(super) fn tensor([xx, yy, zz, yz, zx, xy]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }

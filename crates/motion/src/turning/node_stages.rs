@@ -1,10 +1,10 @@
-//! The stages of a step at its nodes, side by side.
+//! Stage values at the three nodes of a step, stored as structure of arrays for SIMD.
 
 use super::step::StepStage;
 use super::vectors::{StoredVectors, vector};
 use crate::attitude::Vector;
 
-/// The stages of a step at its nodes.
+/// Stage values at the nodes of a step: each component has a lane per node; the fourth lane is unused.
 #[derive(Clone, Debug, Default)]
 #[repr(align(32))]
 pub(super) struct Nodes {
@@ -16,7 +16,7 @@ pub(super) struct Nodes {
 }
 
 impl Nodes {
-    /// The stage at a node.
+    /// Returns the stage at a node.
     pub fn stage(&self, node: usize) -> StepStage {
         StepStage {
             push: vector(&self.push, node),
@@ -27,12 +27,12 @@ impl Nodes {
         }
     }
 
-    /// All of them.
+    /// Returns the stages at all three nodes.
     pub fn stages(&self) -> [StepStage; 3] {
         [self.stage(0), self.stage(1), self.stage(2)]
     }
 
-    /// Takes over stages that were found one by one.
+    /// Overwrites the values with stages that were computed node by node.
     pub fn keep(&mut self, stages: &[StepStage; 3]) {
         for (node, stage) in stages.iter().enumerate() {
             for axis in 0..3 {
@@ -45,12 +45,12 @@ impl Nodes {
         }
     }
 
-    /// The sums of H_m' and J^-1 Gt by these weights.
+    /// Returns the weighted sums of H_m' and J^-1 Gt over the nodes.
     pub fn sums(&self, [a, b, c]: [f64; 3]) -> [Vector; 2] {
         [&self.push, &self.rigid].map(|of| vector(of, 0) * a + vector(of, 1) * b + vector(of, 2) * c)
     }
 
-    /// The rates of the mean axes.
+    /// Returns the rates of the mean axes at the nodes (rad/s).
     pub fn means(&self) -> [Vector; 3] {
         [vector(&self.mean, 0), vector(&self.mean, 1), vector(&self.mean, 2)]
     }

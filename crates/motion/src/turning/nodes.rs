@@ -1,6 +1,7 @@
-//! The stages of a step side by side: a pass finds all three at once, each in a lane, from those of the last pass.
+//! Stages of a step at all three nodes at once: each iteration computes them from those of the last one, a node per
+//! SIMD lane.
 //!
-//! The fourth lane is the end of the step; nothing reads it, it only fills the register.
+//! The fourth lane holds the end of the step; it only fills the register and is never read.
 
 use nalgebra::{Matrix3, Quaternion};
 
@@ -16,17 +17,18 @@ use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS};
 use crate::turning::model::{outward, tensor};
 use crate::turning::rotation::Bends;
 
-/// So many passes among momentum and rates follow each pass.
+/// Inner iterations between momentum and rates in each iteration.
 const AMONG: usize = 2;
 
-/// The weights of each stage at all nodes, and at the end.
+/// Columns of the Gauss-Legendre matrix: the weights of each stage at all nodes, and at the end.
 static COLUMNS: [[f64; 4]; 3] = [column(0), column(1), column(2)];
 
 const fn column(stage: usize) -> [f64; 4] {
     [MATRIX[0][stage], MATRIX[1][stage], MATRIX[2][stage], WEIGHTS[stage]]
 }
 
-/// The first guess of a step: what modes come to by themselves, and stages like the start, but for the growth of what turns.
+/// SIMD task that predicts the stages of a step: free response of the modes, and stages extrapolated from the start
+/// by the growth rate of Gt.
 pub(super) struct Guess<'a> {
     pub step: &'a TurningStep<'a>,
     pub state: &'a TurningState,
@@ -41,7 +43,7 @@ impl LaneWork for Guess<'_> {
     #[inline(always)]
     fn run<R: Real>(self, kind: R) {
         let Self { step, state, start, modes, nodes } = self;
-        // It grows as the torque and the rotors have it: most of what a first pass would find.
+        // Gt grows by the torque and the rotors' reaction; this captures most of the first iteration.
         let mut grows = if step.driven.is_some() { Vector::zeros() } else { start.push - step.rotors.1 };
         if let Some(swung) = step.swung.as_ref().filter(|_| step.driven.is_none()) {
             grows -= swung.start.1;
@@ -74,13 +76,13 @@ impl LaneWork for Guess<'_> {
     }
 }
 
-/// The nodes of a step of `h` seconds, and its end (s).
+/// Returns the times of the nodes and of the end (s) for a step of `h` (s).
 #[inline(always)]
 fn times<R: Real>(kind: R, h: f64) -> R {
     kind.load(&[NODES[0], NODES[1], NODES[2], 1.0]) * h
 }
 
-/// The momentum at the nodes that follows from its rates there.
+/// Returns the momentum at the nodes, integrated from its rates `push` at the nodes.
 #[inline(always)]
 fn momentum<R: Real>(kind: R, from: &Vector, push: &StoredVectors, h: f64) -> Vectors<R> {
     let mut momentum = Vectors::of(kind, from);
@@ -90,18 +92,19 @@ fn momentum<R: Real>(kind: R, from: &Vector, push: &StoredVectors, h: f64) -> Ve
     momentum
 }
 
-/// The passes of a step in which nothing but modes, momentum, forces and surroundings take part.
+/// SIMD task that iterates the stages of a step without rotors in bearings and driven appendages; returns the number
+/// of iterations.
 pub(super) struct Passes<'a> {
     pub step: &'a TurningStep<'a>,
     pub state: &'a TurningState,
     pub modes: &'a mut [Memory],
     pub nodes: &'a mut Nodes,
     pub facing: &'a mut Facing,
-    /// What rates of modes are measured by.
+    /// Scale of the modes' rates, against which changes of modal forces are compared (m sqrt(kg)/s).
     pub speed: f64,
 }
 
-/// How the modes are at the nodes.
+/// Modal sums at the nodes: sum phi q, sum phi P, change of the inertia, and torque of moving points of application.
 struct Shapes<R> {
     bent: Vectors<R>,
     elastic: Vectors<R>,
@@ -109,7 +112,7 @@ struct Shapes<R> {
     levered: Vectors<R>,
 }
 
-/// Gt and the hub's rate at the nodes, and the tides there.
+/// Gt, the hub's rate and the environment's tidal tensor at the nodes.
 struct Felt<R> {
     turning: Vectors<R>,
     rate: Vectors<R>,
@@ -117,7 +120,7 @@ struct Felt<R> {
 }
 
 impl LaneWork for Passes<'_> {
-    /// The number of passes.
+    /// Number of iterations.
     type Output = u32;
 
     #[inline(always)]
@@ -152,7 +155,7 @@ impl LaneWork for Passes<'_> {
     }
 }
 
-/// The largest of the nodes.
+/// Returns the largest of the values at the three nodes.
 #[inline(always)]
 fn most<R: Real>(of: R) -> f64 {
     let mut all = [0.0; 4];
@@ -160,14 +163,15 @@ fn most<R: Real>(of: R) -> f64 {
     all[0].max(all[1]).max(all[2])
 }
 
-/// The largest square of the norms of tensors.
+/// Returns the largest squared norm of the symmetric tensors at the three nodes.
 #[inline(always)]
 fn size_of<R: Real>(of: &[R; 6]) -> f64 {
     let [xx, yy, zz, yz, zx, xy] = *of;
     most(xx * xx + yy * yy + zz * zz + (yz * yz + zx * zx + xy * xy) * 2.0)
 }
 
-/// How the modes are at the nodes; with what they add to the torque where forces have levers.
+/// Computes q and P of all modes at the nodes and returns their sums; with `LEVERED`, also the torque by moving
+/// points of application.
 #[inline(always)]
 fn shapes<R: Real, const LEVERED: bool>(
     kind: R,
@@ -210,7 +214,7 @@ fn shapes<R: Real, const LEVERED: bool>(
     Shapes { bent, elastic, changed, levered }
 }
 
-/// How the body turns at the nodes.
+/// Computes the motion of the body at the nodes and writes it to `nodes`; returns the modal forcing and the changes.
 #[inline(always)]
 fn turn<R: Real>(
     kind: R,
@@ -245,8 +249,8 @@ fn turn<R: Real>(
     let mut mean = bend.forward(rigid + bend.excess(rate - rigid));
     let pull = bend.forward(torque);
     let mut push = pull - mean.cross(momentum);
-    // The momentum follows from these rates, and the rates from it, nearly as those of a rigid body: cheap passes among them alone
-    // spare passes of all.
+    // The momentum follows from these rates, and the rates from the momentum nearly as for a rigid body: cheap inner
+    // iterations between the two save whole iterations.
     let (at, mut more) = (mean, Vectors::of(kind, &Vector::zeros()));
     for _ in 0..AMONG {
         let mut kept = [[0.0; 4]; 3];
@@ -278,7 +282,7 @@ fn turn<R: Real>(
     (Felt { turning, rate, tides }, found)
 }
 
-/// The torque of the surroundings at the nodes (N m), and the tides there.
+/// Returns the environment torque at the nodes (N m) and stores the tidal tensors there in `tides`.
 #[inline(always)]
 fn surround<R: Real>(
     kind: R,
@@ -304,7 +308,7 @@ fn surround<R: Real>(
     Vectors::load(kind, &torque)
 }
 
-/// Gives the modes what they feel at the nodes; tells by how much their forces changed.
+/// Updates the forcing g and s of the modes at the nodes; returns the largest change of a modal force (N/sqrt(kg)).
 #[inline(always)]
 fn feel<R: Real>(
     kind: R,
@@ -343,7 +347,7 @@ fn feel<R: Real>(
 }
 
 impl TurningStep<'_> {
-    /// Forces modes at the nodes by more than the centrifugal acceleration; tells by how much their forces changed.
+    /// Updates modal forces that include tides, damping coupling or heating; returns the largest change (N/sqrt(kg)).
     fn force(&self, rate: &StoredVectors, tides: &[Option<Matrix3<f64>>; 3], modes: &mut [Memory]) -> f64 {
         let mut change = 0.0_f64;
         for node in 0..3 {
@@ -359,8 +363,8 @@ impl TurningStep<'_> {
         change
     }
 
-    /// The torque of the surroundings (N m) so many seconds after the start of the step, where the mean axes face this way and modes
-    /// bend the body and change its inertia so, and the tide on the modes.
+    /// Returns the environment torque (N m) and the tidal tensor `t` (s) after the start of the step, given the
+    /// attitude of the mean axes, the elastic rotation of the hub `bent` and the change of the inertia.
     pub(super) fn surrounded(
         &self,
         t: f64,

@@ -1,8 +1,8 @@
-//! The exact response of a mode over parts of a step, to what it departs with and to parabolas through the nodes.
+//! Exact response of a mode over parts of a step to its initial state and to forcing by parabolas through the nodes.
 //!
-//! In (q, P/W) a mode moves by x' = A x + b g + c s with A = W \[\[0, 1\], \[-1, -2 zeta\]\], b = (1, -2 zeta) and
-//! c = (0, 1/W): g is the rate that momentum gives the mode, s what forces it. A function of A is a + b B with
-//! B = A/W + zeta, B² = zeta² - 1: such pairs are complex numbers below critical damping.
+//! In x = (q, P/W) a mode follows x' = A x + b g + c s with A = W \[\[0, 1\], \[-1, -2 zeta\]\], b = (1, -2 zeta) and
+//! c = (0, 1/W): g = phi' Gt is the rate imposed by the momentum, s the modal force. A function of A is a + b B with
+//! B = A/W + zeta, B² = zeta² - 1; below critical damping such pairs are complex numbers.
 
 use nalgebra::Vector2;
 
@@ -10,40 +10,41 @@ use crate::numerics::gauss_legendre::{NODES, PARABOLAS};
 use crate::numerics::phasor::Phasor;
 use crate::numerics::phi;
 
-/// From this damping ratio on, poles are so near each other that functions of them are not separated.
+/// Damping ratio from which the two poles are too close for functions of them to be evaluated separately.
 const NEAR_CRITICAL: f64 = 0.99;
 
-/// The responses of a mode at the three nodes and at the end of a step.
+/// Responses of a mode at the three nodes and at the end of a step.
 #[derive(Clone, Debug)]
 #[repr(align(32))]
 pub struct NodeResponse {
-    /// Transitions of (q, P/W), row by row, each entry at the nodes and the end.
+    /// Transition matrix of (q, P/W), row by row, each entry at the nodes and the end.
     pub free: [[f64; 4]; 4],
-    /// By how much the squares of the last transition's columns exceed 1 by rounding, halved; 0 with damping.
+    /// Half of the excess of the squared column norms of the transition matrix at the end over 1, by rounding; 0 with
+    /// damping.
     pub excess: f64,
-    /// To g: of q and of P/W, for a unit at each of the nodes (s), at the nodes and the end.
+    /// Responses of q and of P/W to g: for a unit at each node (s), at the nodes and the end.
     pub of_rate: [[[f64; 4]; 3]; 2],
-    /// To s (s², s).
+    /// Responses of q and of P/W to s: for a unit at each node (s², s), at the nodes and the end.
     pub of_force: [[[f64; 4]; 3]; 2],
-    /// To an s that stays 1.
+    /// Responses of q and of P/W to s = 1 throughout (s², s), at the nodes and the end.
     pub of_constant: [[f64; 4]; 2],
-    /// Of (q, P/W) at the end alone: to q and P/W, to g and to s at the nodes.
+    /// Responses of (q, P/W) at the end only.
     pub end: End,
 }
 
-/// What (q, P/W) come to at the end of a step, side by side.
+/// Responses of the vector (q, P/W) at the end of a step.
 #[derive(Clone, Debug, Default)]
 pub struct End {
-    /// To q, and to P/W.
+    /// Responses to the initial q, and to the initial P/W.
     pub free: [Vector2<f64>; 2],
-    /// To g for a unit at each of the nodes (s).
+    /// Responses to g, for a unit at each node (s).
     pub of_rate: [Vector2<f64>; 3],
-    /// To s (s², s).
+    /// Responses to s, for a unit at each node (s², s).
     pub of_force: [Vector2<f64>; 3],
 }
 
 impl NodeResponse {
-    /// The responses of a mode with this frequency W (rad/s) and damping ratio over a step of `h` seconds.
+    /// Computes the responses of a mode with the frequency W (rad/s) and damping ratio over a step of `h` (s).
     pub fn new(frequency: f64, damping: f64, h: f64) -> Self {
         let mut response = Self {
             free: [[0.0; 4]; 4],
@@ -58,7 +59,7 @@ impl NodeResponse {
             for (entry, value) in response.free.iter_mut().zip(phis[0].matrix(damping)) {
                 entry[stage] = value;
             }
-            // To 1, x and x² of the step's fraction x.
+            // Responses to 1, x and x², where x is the fraction of the step.
             let powers = [part * h, part * part * h, 2.0 * part * part * part * h];
             let moments = [1, 2, 3].map(|n| phis[n].matrix(damping).map(|entry| entry * powers[n - 1]));
             for (node, parabola) in PARABOLAS.iter().enumerate() {
@@ -92,19 +93,19 @@ impl NodeResponse {
     }
 }
 
-/// a + b B.
+/// Function a + b B of the matrix A.
 #[derive(Copy, Clone, Debug)]
 struct Pair(f64, f64);
 
 impl Pair {
-    /// Row by row.
+    /// Returns the matrix row by row.
     fn matrix(self, damping: f64) -> [f64; 4] {
         let Self(a, b) = self;
         [a + b * damping, b, -b, a - b * damping]
     }
 }
 
-/// exp and phi_1 to phi_3 of A t, where W t is an `angle` (rad).
+/// Returns exp(A t) and phi_1 to phi_3 of A t, where `angle` is W t (rad).
 fn phis(angle: f64, damping: f64) -> [Pair; 4] {
     if damping < NEAR_CRITICAL {
         let root = f64::sqrt((1.0 - damping) * (1.0 + damping));
@@ -115,7 +116,8 @@ fn phis(angle: f64, damping: f64) -> [Pair; 4] {
     }
 }
 
-/// The same at and above critical damping, by series of a small part of the angle, which then is doubled.
+/// Returns exp(A t) and phi_1 to phi_3 of A t at and above critical damping: by series at a small fraction of the
+/// angle, followed by doublings.
 fn doubled(angle: f64, damping: f64) -> [Pair; 4] {
     let square = (damping - 1.0) * (damping + 1.0);
     let times = |Pair(a, b): Pair, Pair(c, d): Pair| Pair(a * c + b * d * square, a * d + b * c);
@@ -154,7 +156,7 @@ fn doubled(angle: f64, damping: f64) -> [Pair; 4] {
 mod tests {
     use super::*;
 
-    /// The phi functions by poles and by doubling, in every regime.
+    /// Compares the phi functions by poles and by doubling, in every damping regime.
     #[test]
     fn doubling_agrees_with_poles_and_with_the_equation_of_motion() {
         for angle in [1e-6, 0.3, 3.0, 20.0] {
@@ -173,7 +175,7 @@ mod tests {
         assert!((b - libm::exp(-3.0) * libm::sinh(1.5 * root) / root).abs() < 1e-14);
     }
 
-    /// Under g = a + b t + c t² and s alike the response is a polynomial and a free motion: against small steps.
+    /// Compares the response to parabolas g and s (an exact solution) with small Runge-Kutta steps.
     #[test]
     fn parabolas_are_answered_exactly() {
         let (w, zeta, h) = (3.0, 0.2, 0.7);

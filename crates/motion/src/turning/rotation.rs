@@ -1,21 +1,21 @@
-//! Finite rotations by a small vector, and the rate that a change of the vector makes.
+//! Finite rotations by a small vector, and the angular rate due to a change of the vector.
 
 use super::vectors::{Vectors, vector};
 use crate::attitude::Vector;
 use crate::lanes::{Mask, Real};
 
-/// Squares of an angle below which the coefficients come from their series (rad²).
+/// Squared angle below which the coefficients are computed by their series (rad²).
 const SMALL: f64 = 0.04;
 
-/// Squares below which three terms of them are enough (rad²).
+/// Squared angle below which three terms of the series suffice (rad²).
 const TINY: f64 = 1e-5;
 
-/// The coefficients of sin t/t, (1 - cos t)/t² and (t - sin t)/t³ by powers of t².
+/// Coefficients of sin t/t, (1 - cos t)/t² and (t - sin t)/t³ by powers of t².
 const FIRST: [f64; 7] = series(1);
 const SECOND: [f64; 7] = series(2);
 const THIRD: [f64; 7] = series(3);
 
-/// 1/n! for every other n from one on, with alternating signs.
+/// Returns 1/n! for every second n starting at `from`, with alternating signs.
 const fn series(from: usize) -> [f64; 7] {
     let mut of = [0.0; 7];
     let (mut factorial, mut n, mut k, mut sign) = (1.0, 1, 0, 1.0);
@@ -31,27 +31,27 @@ const fn series(from: usize) -> [f64; 7] {
     of
 }
 
-/// The sum of such a series at a small x.
+/// Evaluates such a series at a small x.
 #[inline]
 fn sum(of: &[f64; 7], x: f64) -> f64 {
     let tail = if x < TINY { of[2] } else { of[2] + x * (of[3] + x * (of[4] + x * (of[5] + x * of[6]))) };
     of[0] + x * (of[1] + x * tail)
 }
 
-/// The rotation by a vector th of length t (rad), from hub to mean axes.
+/// Rotation by a vector th of length t (rad), from the hub's axes to the mean axes.
 #[derive(Copy, Clone, Debug)]
 pub struct Bend {
     by: Vector,
-    /// sin t/t.
+    /// Coefficient sin t/t.
     first: f64,
-    /// (1 - cos t)/t².
+    /// Coefficient (1 - cos t)/t².
     second: f64,
-    /// (t - sin t)/t³.
+    /// Coefficient (t - sin t)/t³.
     third: f64,
 }
 
 impl Bend {
-    /// The rotation by a vector (rad).
+    /// Creates the rotation by a vector (rad).
     pub fn new(by: Vector) -> Self {
         let x = by.norm_squared();
         if x < SMALL {
@@ -63,27 +63,27 @@ impl Bend {
         Self { by, first: sin / t, second: (1.0 - cos) / x, third: (t - sin) / (x * t) }
     }
 
-    /// A vector of the hub in mean axes: exp(\[th\]) v.
+    /// Transforms a vector from the hub's axes into the mean axes: exp(\[th\]) v.
     pub fn forward(&self, v: &Vector) -> Vector {
         let once = self.by.cross(v);
         v + once * self.first + self.by.cross(&once) * self.second
     }
 
-    /// A vector of the mean axes in those of the hub: exp(-\[th\]) v.
+    /// Transforms a vector from the mean axes into the hub's axes: exp(-\[th\]) v.
     pub fn back(&self, v: &Vector) -> Vector {
         let once = self.by.cross(v);
         v - once * self.first + self.by.cross(&once) * self.second
     }
 
-    /// By how much th' = `v` exceeds the rate of the hub against the mean axes, in the hub's axes:
-    /// (1 - Gr) v = (1 - cos t)/t² th x v - (t - sin t)/t³ th x (th x v).
+    /// Returns the excess of th' = `v` over the rate of the hub against the mean axes, in the hub's axes: (1 - Gr) v
+    /// = (1 - cos t)/t² th x v - (t - sin t)/t³ th x (th x v).
     pub fn excess(&self, v: &Vector) -> Vector {
         let once = self.by.cross(v);
         once * self.second - self.by.cross(&once) * self.third
     }
 }
 
-/// The same by a vector in each of four lanes.
+/// Rotations by a small vector in each of four SIMD lanes, as [`Bend`].
 pub(super) struct Bends<R> {
     by: Vectors<R>,
     first: R,
@@ -91,14 +91,14 @@ pub(super) struct Bends<R> {
     third: R,
 }
 
-/// The first three terms of a series, which are enough below [`TINY`].
+/// Evaluates the first three terms of a series, which suffice below [`TINY`].
 #[inline(always)]
 fn short<R: Real>(of: &[f64; 7], x: R) -> R {
     (x * of[2] + of[1]) * x + of[0]
 }
 
 impl<R: Real> Bends<R> {
-    /// The rotations by vectors (rad).
+    /// Creates the rotations by vectors (rad).
     #[inline(always)]
     pub fn new(kind: R, by: Vectors<R>) -> Self {
         let x = by.dot(by);
@@ -114,21 +114,21 @@ impl<R: Real> Bends<R> {
         Self { by, first: kind.load(&all[0]), second: kind.load(&all[1]), third: kind.load(&all[2]) }
     }
 
-    /// As [`Bend::forward`].
+    /// Transforms vectors into the mean axes, as [`Bend::forward`].
     #[inline(always)]
     pub fn forward(&self, v: Vectors<R>) -> Vectors<R> {
         let once = self.by.cross(v);
         v + once.scaled(self.first) + self.by.cross(once).scaled(self.second)
     }
 
-    /// As [`Bend::back`].
+    /// Transforms vectors into the hub's axes, as [`Bend::back`].
     #[inline(always)]
     pub fn back(&self, v: Vectors<R>) -> Vectors<R> {
         let once = self.by.cross(v);
         v - once.scaled(self.first) + self.by.cross(once).scaled(self.second)
     }
 
-    /// As [`Bend::excess`].
+    /// Returns the rate corrections, as [`Bend::excess`].
     #[inline(always)]
     pub fn excess(&self, v: Vectors<R>) -> Vectors<R> {
         let once = self.by.cross(v);
@@ -151,7 +151,7 @@ mod tests {
             assert!((bend.second - 2.0 * libm::pow(libm::sin(0.5 * t) / t, 2.0)).abs() < 2e-15, "{t}");
             assert!(t < 0.1 || (bend.third - third).abs() < 2e-14, "{t}");
             assert!((bend.back(&bend.forward(&v)) - v).norm() < 1e-15, "{t}");
-            // The rate against the mean axes, by a difference quotient of exp(th).
+            // Checks the rate against the mean axes by a difference quotient of exp(th).
             let rate = Vector::new(-0.2, 0.4, 0.1);
             let step = 1e-5;
             let (later, sooner) = (Bend::new(by + rate * step), Bend::new(by - rate * step));

@@ -1,36 +1,37 @@
-//! When the stages of a step have settled: what a pass changed, and what the next one would.
+//! Convergence of the stage iteration: changes of an iteration, and a bound of the next ones.
 
 use super::model::Model;
 use super::step::{StepStage, TurningStep};
 
-/// Passes end when the next would change less than this part of the state.
+/// Relative change of the state by the next iteration below which the iteration has converged.
 pub(super) const SETTLED: f64 = 1e-18;
 
-/// What a pass changed, at most, and how large what it works with was; of vectors the squares.
+/// Largest changes of one iteration, and magnitudes of the quantities involved; for vectors, the squares of their
+/// norms.
 #[derive(Default)]
 pub(super) struct Change {
-    /// Of H_m' (N m), w_m (rad/s) and Gt (N m s).
+    /// Changes of H_m' (N m), w_m (rad/s) and Gt (N m s), squared.
     pub push: f64,
     pub mean: f64,
     pub turning: f64,
-    /// Of the forces on modes (N/sqrt(kg)).
+    /// Change of the modal forces (N/sqrt(kg)).
     pub forced: f64,
-    /// Of rotors in bearings, as a part of them.
+    /// Relative change of the momenta of rotors in bearings.
     pub spun: f64,
-    /// What modes change of the inertia (kg m²), and the rate of the hub (rad/s).
+    /// Change of the inertia by the modes (kg m²) and rate of the hub (rad/s), squared.
     pub stretched: f64,
     pub rate: f64,
 }
 
 impl Change {
-    /// Takes a stage into account.
+    /// Includes the change of a stage from its `last` value to the one `found`.
     pub fn see(&mut self, last: &StepStage, found: &StepStage) {
         self.push = self.push.max((found.push - last.push).norm_squared());
         self.mean = self.mean.max((found.mean - last.mean).norm_squared());
         self.turning = self.turning.max((found.turning - last.turning).norm_squared());
     }
 
-    /// The largest change, as a part of what changes.
+    /// Returns the largest relative change.
     #[inline(always)]
     pub fn most(&self, h: f64, size: f64, speed: f64) -> f64 {
         let mut most = self.spun.max(0.5 * h * f64::sqrt(self.mean));
@@ -45,16 +46,17 @@ impl Change {
 }
 
 impl TurningStep<'_> {
-    /// Whether the next pass would change nothing that counts: by the rate of the last two, or by what this one changed.
+    /// Returns true if the next iteration would change nothing significant: judged by the convergence rate of the
+    /// last two iterations (`before` is the change of the previous one), or by the bound of `leaves`.
     #[inline(always)]
     pub(super) fn settles(&self, change: &Change, size: f64, speed: f64, before: f64) -> bool {
         let most = change.most(self.h, size, speed);
         most <= SETTLED || most * most <= SETTLED * before || self.leaves(change, size, speed) <= SETTLED
     }
 
-    /// A bound of what the next pass changes, as a part of what changes, where nothing but modes, momentum and a constant torque
-    /// take part; none otherwise. Every pass begins with the rates, momenta and forces of the last, whose errors are about what
-    /// that changed.
+    /// Bounds the relative change of the next iteration if only modes, momentum and a constant torque are involved;
+    /// infinite otherwise. Each iteration starts from the rates, momenta and forces of the last, whose errors are
+    /// about the size of its changes.
     #[inline(always)]
     pub(super) fn leaves(&self, change: &Change, size: f64, speed: f64) -> f64 {
         let plain = self.around.is_none()
@@ -69,7 +71,8 @@ impl TurningStep<'_> {
         let Model { mobility, reach, bendable, stretchable, .. } = model;
         let [push, turning] = [change.push, change.turning].map(f64::sqrt);
         let [stretched, rate] = [change.stretched, change.rate].map(f64::sqrt);
-        // Errors of the elastic rate, how far the body is bent, and the momentum; by these of the hub's rate.
+        // Errors of the elastic rate, of the deformation and of the momentum; from these, the error of the hub's
+        // rate.
         let elastic = reach * h * change.forced + 2.0 * bendable * turning;
         let bent = h * elastic;
         let momentum = h * push + size * bent;
@@ -83,7 +86,7 @@ impl TurningStep<'_> {
             let forced = stretchable * rate * hub;
             next = next.max(h * forced / speed);
         }
-        // What the rate makes of Gt by the change of the inertia counts with the next pass.
+        // The effect of the rate error on Gt through the change of inertia appears one iteration later.
         next.max(h * (mobility + bendable) * (stretched * hub + momentum))
     }
 }

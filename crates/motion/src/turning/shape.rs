@@ -1,4 +1,4 @@
-//! How the modes of a body are at an instant, summed.
+//! Sums over the modes at an instant.
 
 use nalgebra::Matrix3;
 
@@ -6,16 +6,16 @@ use super::model::{Constants, tensor};
 use super::step::TurningStep;
 use crate::attitude::Vector;
 
-/// How the modes are at an instant: sum phi q, sum phi P, and the change of the inertia.
+/// Modal sums at an instant: sum phi q (rad), sum phi P (rad/s), and the change of the inertia (kg m²).
 pub(super) struct Deformation {
     pub bent: Vector,
     pub elastic: Vector,
     pub changed: Matrix3<f64>,
-    /// What the modes add to the torque on the hub (N m).
+    /// Torque on the hub by forces whose points of application the modes move (N m).
     pub levered: Vector,
 }
 
-/// Sums over the modes.
+/// Accumulator of modal sums.
 #[derive(Default)]
 pub(super) struct Sums {
     bent: Vector,
@@ -34,7 +34,7 @@ impl Sums {
         }
     }
 
-    /// What the mode adds to the torque.
+    /// Adds the torque of a mode's displacement by moving points of application.
     pub fn lever(&mut self, step: &TurningStep<'_>, index: usize, q: f64) {
         if let Some(lever) = step.levers.get(index) {
             self.levered += lever * q;

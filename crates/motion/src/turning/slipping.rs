@@ -1,8 +1,9 @@
-//! Which rotors slip and which stick: a linear complementarity problem at each instant at which that may change.
+//! Stick-slip of the rotors: a linear complementarity problem at each instant at which rotors may stick or break
+//! away.
 //!
-//! A rotor at rest sticks if its bearing can give the torque with which it turns with the body, else it slips the way it is
-//! driven. Rotors share the body that they turn against, so that all at rest are decided together: by changes of the first that
-//! is wrong, which end for a positive definite problem (\[Murty74\]).
+//! A rotor at rest sticks if its bearing can provide the torque with which it turns with the body; otherwise it slips
+//! in the direction in which it is driven. All rotors at rest are coupled by the body and decided together: the first
+//! that is inconsistent is changed, repeatedly, which terminates for a positive definite problem (\[Murty74\]).
 
 use super::bearing::{Borne, Slip, Spin};
 use super::flow::{Acting, Turning};
@@ -12,13 +13,14 @@ use super::state::TurningSight;
 use crate::attitude::Vector;
 use nalgebra::Matrix3;
 
-/// A rotor's bearing holds this part of its breakaway torque: rounding at the instant at which it lets go is less.
+/// Fraction of the breakaway torque up to which a rotor is held; the margin exceeds rounding at the instant of
+/// breakaway.
 const HOLDS: f64 = 1.0 - 1e-12;
 
-/// A rotor slower than this is at rest (rad/s).
+/// Speed below which a rotor is at rest (rad/s).
 const AT_REST: f64 = 1e-12;
 
-/// A rotor in a bearing, as seen at an instant.
+/// Motion of a rotor in a bearing at an instant.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct SlippedRotor {
     /// Absolute angular momentum about its axis (N m s).
@@ -27,27 +29,27 @@ pub struct SlippedRotor {
     pub speed: f64,
     /// Angle against the body since the start (rad).
     pub angle: f64,
-    /// Friction, which takes from what its motor gives (N m).
+    /// Friction torque, opposing the motor torque (N m).
     pub friction: f64,
-    /// Heat of the friction since the start (J).
+    /// Friction heat since the start (J).
     pub heat: f64,
-    /// Whether it slips.
+    /// Stick or slip state.
     pub slip: Slip,
 }
 
 impl Turning {
-    /// The rotors in bearings as they slip now.
+    /// Returns the rotors in bearings with the given slip states.
     pub(super) fn borne_by<'a>(&'a self, slips: &'a [Slip]) -> Borne<'a> {
         let count = self.acting.rotors.len().min(self.bearings.len());
         Borne { bearings: &self.bearings[..count], rotors: &self.acting.rotors, slips: &slips[..count] }
     }
 
-    /// Acceleration of the hub (rad/s²) at the instant seen last, if rotors slip so.
+    /// Returns the acceleration of the hub (rad/s²) at the current instant for given slip states.
     pub(super) fn acceleration(&self, slips: &[Slip], around: Option<(&dyn Surroundings, f64)>) -> Vector {
         self.accelerated(slips, around).hub
     }
 
-    /// Rotors and gimbals that were not there before bring their momenta with them.
+    /// Adds the momenta of rotors and gimbals that were not present before.
     pub(super) fn take_on(&mut self, acting: &Acting) {
         let bent = self
             .here
@@ -67,7 +69,7 @@ impl Turning {
         }
     }
 
-    /// Decides about the rotors at rest, under what acts since the departure just now.
+    /// Resolves stick or slip of the rotors at rest at the start of a segment, under its loads.
     pub fn settle(&mut self, around: Option<(&dyn Surroundings, f64)>) {
         if !self.watches() {
             return;
@@ -104,7 +106,7 @@ impl Turning {
         self.look();
     }
 
-    /// What a rotor at rest does instead, if it cannot do this under such an acceleration of the hub (rad/s²).
+    /// Returns the next slip state of a rotor at rest if `slip` is inconsistent with the hub's acceleration (rad/s²).
     fn wrong(&self, index: usize, slip: Slip, acceleration: &Vector) -> Option<(usize, Slip)> {
         let (bearing, rotor) = (&self.bearings[index], &self.acting.rotors[index]);
         let along = rotor.axis.dot(acceleration);
@@ -117,7 +119,7 @@ impl Turning {
         (back > bearing.breakaway * (1.0 - HOLDS)).then_some((index, Slip::Stuck))
     }
 
-    /// Whether a rotor of such a momentum (N m s) is at rest when it is there first, and how it slips.
+    /// Returns the slip state of a new rotor of the given momentum (N m s).
     pub(super) fn first_slip(&self, index: usize, axis: &Vector, momentum: f64) -> Slip {
         let bearing = &self.bearings[index];
         let speed = momentum / bearing.inertia - axis.dot(&self.seen.rate);
@@ -128,17 +130,17 @@ impl Turning {
         }
     }
 
-    /// How the rotors in bearings slip.
+    /// Returns the slip states of the rotors in bearings.
     pub fn slips(&self) -> &[Slip] {
         &self.slips
     }
 
-    /// Heat of the friction of all of them since the start (J), if there are any.
+    /// Returns the total friction heat since the start (J); `None` without bearings.
     pub fn friction_heat(&self) -> Option<f64> {
         (!self.bearings.is_empty()).then(|| self.here.spins.iter().map(|spin| spin.sums.z).sum())
     }
 
-    /// The rotors in bearings at the instant seen last.
+    /// Returns the motion of the rotors in bearings at the current instant.
     pub fn turned(&self, around: Option<(&dyn Surroundings, f64)>) -> Vec<SlippedRotor> {
         if self.bearings.is_empty() {
             return Vec::new();
@@ -168,7 +170,7 @@ impl Turning {
     }
 }
 
-/// What the modes change of the inertia (kg m²), and its rate (kg m²/s).
+/// Returns the change of the inertia by the modes (kg m²) and its rate (kg m²/s).
 pub(super) fn shapes(turning: &Turning, seen: &TurningSight) -> (Matrix3<f64>, Matrix3<f64>) {
     let sum = |of: &[f64]| {
         let modes = turning.model.modes.iter().zip(of);

@@ -1,4 +1,4 @@
-//! The stages of a step one by one: of the start, and of bodies with rotors in bearings or with drives.
+//! Stages of a step one after the other: for its start, and for bodies with rotors in bearings or driven appendages.
 
 use nalgebra::Quaternion;
 
@@ -13,7 +13,7 @@ use crate::attitude::{Vector, rotation};
 use crate::numerics::gauss_legendre::{MATRIX, NODES};
 
 impl TurningStep<'_> {
-    /// Finds the stages, each from those before it; tells the number of passes.
+    /// Iterates the stages node by node (Gauss-Seidel) until they converge; returns the number of iterations.
     pub(super) fn one_by_one(
         &self,
         state: &TurningState,
@@ -47,7 +47,7 @@ impl TurningStep<'_> {
         passes
     }
 
-    /// The stage at a node, where the mean axes face this way.
+    /// Evaluates the stage at a node, given the attitude of the mean axes there.
     fn stage(
         &self,
         node: usize,
@@ -72,7 +72,7 @@ impl TurningStep<'_> {
         stage
     }
 
-    /// How the modes are at a node.
+    /// Computes q and P of all modes at a node and returns their sums.
     fn shape(&self, node: usize, modes: &mut [Memory], beside: &mut Beside) -> Deformation {
         let mut sums = Sums::default();
         let loud = self.is_loud();
@@ -94,7 +94,8 @@ impl TurningStep<'_> {
         sums.shape()
     }
 
-    /// How the body turns `t` seconds after the start of the step.
+    /// Evaluates the motion of the body `t` (s) after the start of the step, given the modal sums, momentum and
+    /// attitude.
     pub(super) fn turning(
         &self,
         (stage, t): (usize, f64),

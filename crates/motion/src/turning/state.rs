@@ -1,4 +1,4 @@
-//! Where a turning body is, in mean axes, and what that looks like from the hub.
+//! State of the integrator in mean axes, and the motion of the body derived from it in the hub's axes.
 
 use nalgebra::{Matrix3, Quaternion};
 
@@ -8,27 +8,27 @@ use super::rotation::Bend;
 use super::summed::{Summed, Summing};
 use crate::attitude::{Vector, rotation};
 
-/// The state that steps carry on.
+/// Integrated state at an instant.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct TurningState {
-    /// Unit quaternion that turns vectors of the mean axes into inertial ones.
+    /// Unit quaternion that rotates vectors from the mean axes into inertial axes.
     pub attitude: Quaternion<f64>,
     /// Total angular momentum in mean axes (N m s), rotors included.
     pub momentum: Vector,
-    /// What the body turned by as if it were rigid: the integral of J^-1 Gt (rad).
+    /// Integral of the rigid rate J^-1 Gt (rad).
     pub turned: Vector,
-    /// Where the centre of mass is, from where it was at the start (m), and how fast it moves (m/s), in inertial axes.
+    /// Displacement of the centre of mass since the start (m) and its velocity (m/s), in inertial axes.
     pub moved: [Vector; 2],
-    /// What rounding has left out of the three before.
+    /// Rounding errors of `attitude`, `momentum` and `turned` (compensated summation).
     pub lost: (Quaternion<f64>, Vector, Vector),
-    /// q and P/W of each mode (m sqrt(kg)), and what rounding has left out of both.
+    /// q and P/W of each mode (m sqrt(kg)), and the rounding errors of both.
     pub modes: Vec<[f64; 4]>,
-    /// Rotors in bearings.
+    /// Momentum, angle and friction heat of each rotor in a bearing.
     pub spins: Vec<Spin>,
 }
 
 impl TurningState {
-    /// Takes over another state, without allocation.
+    /// Copies another state without allocation.
     pub fn copy_from(&mut self, other: &Self) {
         let Self { attitude, momentum, turned, moved, lost, modes, spins } = self;
         (*attitude, *momentum, *turned, *lost) = (other.attitude, other.momentum, other.turned, other.lost);
@@ -40,44 +40,45 @@ impl TurningState {
     }
 }
 
-/// A turning body as seen at an instant.
+/// Motion of the body at an instant, as observed from the hub.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TurningSight {
-    /// Unit quaternion that turns vectors of the hub into inertial ones.
+    /// Unit quaternion that rotates vectors from the hub's axes into inertial axes.
     pub attitude: Quaternion<f64>,
-    /// The same of the mean axes, which no mode turns: the attitude as if the body were rigid.
+    /// Unit quaternion that rotates vectors from the mean axes into inertial axes: the attitude of the body without
+    /// its elastic part.
     pub mean: Quaternion<f64>,
-    /// Rates of the hub, in its axes (rad/s).
+    /// Angular rate of the hub in its axes (rad/s).
     pub rate: Vector,
-    /// Rates of the body as if it were rigid (rad/s): those of the hub without their elastic part.
+    /// Rigid rate J^-1 Gt (rad/s): the hub's rate without its elastic part.
     pub rigid: Vector,
     /// Total angular momentum in the hub's axes (N m s), rotors included.
     pub momentum: Vector,
-    /// Energy of the rotation as if the body were rigid and bent as it is (J), without rotors.
+    /// Rotational energy (J) of the body frozen in its present deformation, without rotors.
     pub rotational: f64,
-    /// The integral of the rigid rates since the start (rad).
+    /// Integral of the rigid rate since the start (rad).
     pub turned: Vector,
-    /// Where the centre of mass is, from where it was at the start (m), and how fast it moves (m/s), in inertial axes.
+    /// Displacement of the centre of mass since the start (m) and its velocity (m/s), in inertial axes.
     pub moved: [Vector; 2],
     /// Displacements q of the modes (m sqrt(kg)).
     pub displacements: Vec<f64>,
-    /// Their rates q' (m sqrt(kg)/s).
+    /// Rates q' of the modes (m sqrt(kg)/s).
     pub rates: Vec<f64>,
-    /// Of a body with drives, the frequencies of its modes (rad/s), which change.
+    /// Present frequencies of the modes (rad/s) of a body with drives; empty otherwise.
     pub frequencies: Vec<f64>,
-    /// Of such a body, by how much a unit of each turns the hub (rad/(m sqrt(kg))).
+    /// Present hub rotation per unit of each mode (rad/(m sqrt(kg))) of a body with drives; empty otherwise.
     pub rotations: Vec<Vector>,
-    /// Of such a body by how much places of the hub are further from the centre of mass than at the start (m), and how fast that
-    /// changes (m/s).
+    /// Shift of the hub's points relative to the centre of mass since the start (m) and its rate (m/s), for a body
+    /// with drives.
     pub shift: Option<[Vector; 2]>,
-    /// Of such a body, its inertia as it is bent (kg m²).
+    /// Inertia tensor of the deformed body (kg m²), for a body with drives.
     pub inertia: Option<Matrix3<f64>>,
     /// Angle (rad) and rate (rad/s) of each hinge.
     pub hinges: Vec<[f64; 2]>,
 }
 
 impl TurningSight {
-    /// A view of so many modes, to be filled.
+    /// Creates a zero view for `modes` modes, to be filled by `look`.
     pub(super) fn empty(modes: usize) -> Self {
         let (one, zero) = (Quaternion::identity(), Vector::zeros());
         Self {
@@ -99,8 +100,8 @@ impl TurningSight {
         }
     }
 
-    /// Looks at a state, in which rotors have this momentum (N m s), and those that are stuck add such a tensor to the inertia
-    /// (kg m²).
+    /// Computes the view from a state, given the momentum of the rotors (N m s) and the inertia added by rotors that
+    /// are stuck in their bearings (kg m²).
     pub(super) fn look(
         &mut self,
         model: &Model,
@@ -129,13 +130,14 @@ impl TurningSight {
     }
 }
 
-/// The step that follows, and what happens on it.
+/// Next step of the grid, computed in advance to search it for stick-slip events.
 #[derive(Clone, Debug)]
 pub(super) struct Ahead {
-    /// Seconds from the departure to the start of the step.
+    /// Time of the start of the step since the start of the segment (s).
     pub from: f64,
-    /// The state at its end.
+    /// State at the end of the step.
     pub to: TurningState,
-    /// The first instant since the departure (s) at which a rotor comes to rest or lets go, and which one.
+    /// Time since the start of the segment (s) of the first stick-slip event (a rotor stops or breaks away), and the
+    /// rotor's index.
     pub meets: Option<(f64, usize)>,
 }

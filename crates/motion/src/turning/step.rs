@@ -1,4 +1,4 @@
-//! A step: what it is given, and what it keeps.
+//! Data of one integration step: inputs, stage values and working memory.
 
 use nalgebra::Matrix3;
 
@@ -11,95 +11,96 @@ use super::state::TurningState;
 use super::vectors::length;
 use crate::attitude::Vector;
 
-/// Passes after which the stages are taken as they are.
+/// Limit on the fixed-point iterations; beyond it the stages are accepted as they are.
 pub(super) const PASSES: u32 = 60;
 
-/// The part of the rotors' momenta below which none of the whole counts.
+/// Fraction of the rotors' momenta that counts in the momentum scale for convergence (see [`TurningStep::size`]).
 const ROTORS: f64 = 1e-2;
 
-/// A step: what moves, for how long, and what acts.
+/// One integration step: the body, the step length and the loads.
 pub(super) struct TurningStep<'a> {
     pub model: &'a Model,
-    /// The modes' responses over the step.
+    /// Exact responses of the modes over the step.
     pub responses: &'a [NodeResponse],
-    /// Length (s).
+    /// Step length (s).
     pub h: f64,
     /// Torque on the hub in its axes (N m).
     pub torque: Vector,
-    /// The acceleration of the centre of mass in the hub's axes (m/s²), if anything pushes it.
+    /// Acceleration of the centre of mass in the hub's axes (m/s²); `None` without an external force.
     pub push: Option<Vector>,
-    /// Modal forces, without what the torque gives (N/sqrt(kg)).
+    /// Modal forces other than those of `torque` (N/sqrt(kg)).
     pub forces: &'a [f64],
-    /// What a unit of each mode adds to the torque (N/sqrt(kg)).
+    /// Torque on the hub per unit of each mode, from forces whose points of application move (N/sqrt(kg)).
     pub levers: &'a [Vector],
-    /// Momentum of the rotors at the start of the step (N m s), and its rate (N m).
+    /// Momentum of ideal rotors at the start of the step (N m s), and its rate (N m).
     pub rotors: (Vector, Vector),
-    /// Rotors in bearings, which are not among them; their momenta are parts of the state.
+    /// Rotors with bearing friction or imbalance, not included in `rotors`; their momenta are part of the state.
     pub borne: Option<Borne<'a>>,
-    /// Rotors in gimbals.
+    /// Momentum of the rotors in gimbals over the step.
     pub swung: Option<Swung>,
-    /// The surroundings, and the time since the start of the run (s).
+    /// Environment, and the time of the start of the step since the start of the run (s).
     pub around: Option<(&'a dyn Surroundings, f64)>,
-    /// Drives that turn appendages, and the time since the departure (s).
+    /// Appendages with drives or hinges, and the time of the start of the step since the start of the segment (s).
     pub driven: Option<(&'a Driving, f64)>,
 }
 
-/// What steps keep of rotors in bearings and of drives.
+/// Working memory of a step for rotors in bearings and driven appendages.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Beside {
     pub spun: Spun,
     pub driven: Scratch,
 }
 
-/// What a step keeps of a mode, so that no register of four straddles two lines of the cache.
+/// Working memory of a step for one mode, aligned so that no register of four straddles two cache lines.
 #[derive(Clone, Debug, Default)]
 #[repr(align(32))]
 pub(super) struct Memory {
-    /// g and s at the start of the step.
+    /// Values of g and s at the start of the step.
     pub start: [f64; 2],
-    /// q and P/W at the nodes and the end, but for g and s.
+    /// Contributions to q and P/W at the nodes and the end that do not depend on g and s at the nodes.
     pub known: [[f64; 4]; 2],
-    /// phi' Gt, and the varying force s, at the nodes; the fourth is none.
+    /// Rate g = phi' Gt and varying force s at the nodes; the fourth entries are unused.
     pub g: [f64; 4],
     pub s: [f64; 4],
-    /// P at the nodes, then q'.
+    /// P at the nodes; q' once g has been added.
     pub rate: [f64; 4],
 }
 
-/// What a stage comes to.
+/// Values at one Gauss-Legendre stage.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct StepStage {
-    /// H_m'.
+    /// Rate H_m' of the total momentum in mean axes (N m).
     pub push: Vector,
-    /// w_m.
+    /// Rate w_m of the mean axes (rad/s).
     pub mean: Vector,
-    /// J^-1 Gt, and Gt.
+    /// Rigid rate J^-1 Gt (rad/s), and rigid momentum Gt (N m s).
     pub rigid: Vector,
     pub turning: Vector,
-    /// The acceleration of the centre of mass in mean axes (m/s²).
+    /// Acceleration of the centre of mass in mean axes (m/s²).
     pub pushed: Vector,
 }
 
-/// Gt, the hub's rate and the surroundings' tide, which modes feel.
+/// Quantities that force the modes at a stage: Gt, the hub's rate and the tidal tensor of the environment.
 pub(super) struct FeltByModes {
     pub turning: Vector,
     pub rate: Vector,
     pub tide: Option<Matrix3<f64>>,
-    /// Since the start of the step (s).
+    /// Time since the start of the step (s).
     pub t: f64,
-    /// The start of the step, and its nodes, from 0.
+    /// Index of the stage: 0 for the start of the step, then 1 to 3 for the nodes.
     pub stage: usize,
 }
 
 impl TurningStep<'_> {
-    /// What the momentum is measured by (N m s): sums of rotors' momenta are no more exact than a part of these.
+    /// Returns the momentum scale (N m s) against which changes of the momentum are compared. A hundredth of the
+    /// rotors' momenta is included, because their sums are exact only to rounding of these.
     pub(super) fn size(&self, state: &TurningState) -> f64 {
         let swung = self.swung.as_ref().map_or(0.0, |swung| length(&swung.start.0));
         let rotors = length(&self.rotors.0) + swung;
         length(&state.momentum) + self.h * length(&self.torque) + ROTORS * rotors
     }
 
-    /// Keeps q and P of a mode, where drives turn what the others make of them.
+    /// Stores q and P of a mode for the appendage terms of bodies with drives.
     #[inline]
     pub(super) fn keep(&self, index: usize, q: f64, p: f64, beside: &mut Beside) {
         if self.driven.is_some() {
@@ -108,18 +109,18 @@ impl TurningStep<'_> {
     }
 }
 
-/// The rates of the mean axes.
+/// Returns the rates of the mean axes at the stages.
 pub(super) fn means(stages: &[StepStage; 3]) -> [Vector; 3] {
     [stages[0].mean, stages[1].mean, stages[2].mean]
 }
 
-/// The weights of the stages in a step of `h` seconds.
+/// Scales Gauss-Legendre weights by the step length `h` (s).
 #[inline]
 pub(super) fn weights(of: &[f64; 3], h: f64) -> [f64; 3] {
     [of[0] * h, of[1] * h, of[2] * h]
 }
 
-/// What q and P/W make at a node, or the end, of numbers at all nodes.
+/// Returns the contributions to q and P/W at a node (or the end, 3) from values `by` at the three nodes.
 #[inline]
 pub(super) fn answer(of: &[[[f64; 4]; 3]; 2], by: &[f64; 4], node: usize) -> [f64; 2] {
     of.map(|of| of[0][node] * by[0] + of[1][node] * by[1] + of[2][node] * by[2])

@@ -1,17 +1,18 @@
-//! What the modes come to together where nothing is known of them but their states.
+//! Sums over the modes computed from their states alone, without node values.
 
 use super::model::Model;
 use crate::attitude::Vector;
 use crate::lanes::{LaneWork, Real};
 
-/// The states of the modes whose sums are wanted.
+/// SIMD task that sums the modes' contributions from their states.
 pub(super) struct Summing<'a> {
     pub model: &'a Model,
-    /// q and P/W of each.
+    /// q and P/W of each mode.
     pub states: &'a [[f64; 4]],
 }
 
-/// The sums: phi q, phi P, and the change of the inertia, as xx, yy, zz, yz, zx and xy.
+/// Modal sums: sum phi q (rad), sum phi P (rad/s), and the change of the inertia as xx, yy, zz, yz, zx and xy (kg
+/// m²).
 pub(super) struct Summed {
     pub bent: Vector,
     pub elastic: Vector,

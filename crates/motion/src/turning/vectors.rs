@@ -1,4 +1,4 @@
-//! Vectors in lanes.
+//! Vectors in SIMD lanes.
 
 use std::ops::{Add, Sub};
 
@@ -7,10 +7,10 @@ use nalgebra::Matrix3;
 use crate::attitude::Vector;
 use crate::lanes::Real;
 
-/// Four vectors as they are kept: along x, y and z, each.
+/// Four vectors stored as structure of arrays: the x, y and z components, four lanes each.
 pub(super) type StoredVectors = [[f64; 4]; 3];
 
-/// A vector in each lane.
+/// Vector in each SIMD lane.
 #[derive(Copy, Clone)]
 pub(super) struct Vectors<R> {
     pub x: R,
@@ -18,33 +18,33 @@ pub(super) struct Vectors<R> {
     pub z: R,
 }
 
-/// The vector in a lane of those that are kept.
+/// Returns the vector in a lane of stored vectors.
 #[inline]
 pub(super) fn vector([x, y, z]: &StoredVectors, lane: usize) -> Vector {
     Vector::new(x[lane], y[lane], z[lane])
 }
 
-/// The length of a vector. That of nalgebra takes the root by an instruction of SSE, which waits for registers of AVX
-/// that were used before it.
+/// Returns the length of a vector. nalgebra's `norm` takes the root by an SSE instruction, which stalls on registers
+/// of AVX used before it.
 #[inline(always)]
 pub(super) fn length(v: &Vector) -> f64 {
     f64::sqrt(v.norm_squared())
 }
 
 impl<R: Real> Vectors<R> {
-    /// The same vector in every lane.
+    /// Copies one vector into every lane.
     #[inline(always)]
     pub fn of(kind: R, v: &Vector) -> Self {
         Self { x: kind.of(v.x), y: kind.of(v.y), z: kind.of(v.z) }
     }
 
-    /// Those that were kept.
+    /// Loads stored vectors.
     #[inline(always)]
     pub fn load(kind: R, from: &StoredVectors) -> Self {
         Self { x: kind.load(&from[0]), y: kind.load(&from[1]), z: kind.load(&from[2]) }
     }
 
-    /// Keeps them.
+    /// Stores the vectors.
     #[inline(always)]
     pub fn store(self, to: &mut StoredVectors) {
         self.x.store(&mut to[0]);
@@ -76,13 +76,13 @@ impl<R: Real> Vectors<R> {
         Self { x: self.x * by, y: self.y * by, z: self.z * by }
     }
 
-    /// With `v` times a number of each lane.
+    /// Adds `v` times a factor per lane.
     #[inline(always)]
     pub fn with(self, v: &Vector, by: R) -> Self {
         Self { x: self.x + by * v.x, y: self.y + by * v.y, z: self.z + by * v.z }
     }
 
-    /// What a matrix makes of them.
+    /// Returns the products of a matrix with the vectors.
     #[inline(always)]
     pub fn through(self, m: &Matrix3<f64>) -> Self {
         Self {
@@ -92,7 +92,7 @@ impl<R: Real> Vectors<R> {
         }
     }
 
-    /// What the tensors of xx, yy, zz, yz, zx and xy make of them.
+    /// Returns the products of the symmetric tensors xx, yy, zz, yz, zx and xy (one per lane) with the vectors.
     #[inline(always)]
     pub fn stretched(self, [xx, yy, zz, yz, zx, xy]: &[R; 6]) -> Self {
         Self {

@@ -1,39 +1,40 @@
-//! The first instant at which a rotor comes to rest or lets go, by a search that can miss none.
+//! Search for the first instant at which a rotor stops or breaks away; no event is missed.
 //!
-//! Over a step of the grid the second derivative of a margin, a rotor's speed or what its bearing has left, is at most M
-//! (`bounds.rs`). Over a part d of the step the margin is therefore nowhere less than the smaller one at its ends less M d²/8.
-//! Where that is not positive the part is halved, until it is, or the margin falls all along it and has one zero. Steps are those of the
-//! grid, whatever is looked at, so that the instant does not depend on it.
+//! Over a grid step the second derivative of a margin (a rotor's speed, or the unused holding torque of its bearing)
+//! is bounded by M (`bounds.rs`). Over a part d of the step the margin is therefore at least the smaller of its end
+//! values less M d²/8. Where this is not positive the part is halved, until it is, or the margin is monotonic and has
+//! one zero. Steps are those of the grid, whatever is observed, so that the event's instant does not depend on
+//! observations.
 
 use super::bearing::Slip;
 use super::flow::Turning;
 use super::model::Surroundings;
 use super::state::Ahead;
 
-/// A rotor that lets go begins at a margin of 0, which this keeps apart from rounding (rad/s).
+/// Offset that separates the initial margin 0 of a rotor that breaks away from rounding (rad/s).
 const SPARE: f64 = 1e-12;
 
-/// No part of a step is shorter (s): an instant has so many.
+/// Shortest part of a step (s): the resolution of an event's instant.
 const TICK: f64 = 1e-15;
 
-/// What must stay positive.
+/// Event function that must stay positive.
 #[derive(Copy, Clone, Debug)]
 enum Margin {
-    /// The speed of a rotor, the way it slips.
+    /// Speed of a rotor (rad/s), in its direction of slip.
     Speed(usize, f64),
-    /// What the bearing of a rotor can hold beyond what it holds, one way.
+    /// Unused holding torque of a rotor's bearing (N m), in one direction.
     Grip(usize, f64),
 }
 
 type Around<'a> = Option<(&'a dyn Surroundings, f64)>;
 
 impl Turning {
-    /// Whether any rotor may stick.
+    /// Returns true if any rotor can stick.
     pub(super) fn watches(&self) -> bool {
         self.bearings.iter().zip(&self.acting.rotors).any(|(bearing, _)| bearing.grips())
     }
 
-    /// Looks at the step of the grid that follows, once.
+    /// Computes the next grid step and searches it for the first stick-slip event, unless this was done before.
     pub(super) fn foresee(&mut self, level: usize, around: Around) {
         if self.ahead.as_ref().is_some_and(|ahead| ahead.from == self.reached) {
             return;
@@ -58,7 +59,7 @@ impl Turning {
                 Margin::Speed(index, _) => (index, bounds.jerk_of(index)),
                 Margin::Grip(index, _) => (index, bounds.third * self.bearings[index].inertia),
             };
-            // One that has just let go turns back only if it does so by more than rounding.
+            // A rotor that has just broken away stops again only if its speed reverses by more than rounding.
             let spare = if let (Margin::Speed(..), true) = (margin, start < SPARE) { SPARE } else { 0.0 };
             let margin = (margin, spare, most);
             if let Some(t) = self.first(margin, (0.0, start + spare), (h, end + spare), around) {
@@ -81,7 +82,7 @@ impl Turning {
         gripped.flat_map(of).collect()
     }
 
-    /// A margin at the instant seen last.
+    /// Evaluates a margin at the current instant.
     fn margin(&self, margin: Margin, around: Around) -> f64 {
         let borne = self.borne_by(&self.slips);
         match margin {
@@ -96,7 +97,7 @@ impl Turning {
         }
     }
 
-    /// The first zero of a margin, whose second derivative is at most so much, between two instants of the step.
+    /// Returns the first zero of a margin between two instants of the step; `most` bounds its second derivative.
     fn first(
         &mut self,
         (margin, spare, most): (Margin, f64, f64),
@@ -110,7 +111,7 @@ impl Turning {
         }
         let (slope, bend) = ((high.1 - low.1) / width, most * width);
         if slope > bend || width <= TICK {
-            // It rises all along, from 0 where a rotor just let go.
+            // The margin rises throughout, from 0 where a rotor has just broken away.
             return (slope <= bend && high.1 <= 0.0).then_some(high.0);
         }
         if slope < -bend {
@@ -122,7 +123,7 @@ impl Turning {
         before.or_else(|| self.first((margin, spare, most), (middle, value), high, around))
     }
 
-    /// The zero of a margin that falls between two instants, by regula falsi (Illinois).
+    /// Returns the zero of a decreasing margin between two instants, by regula falsi (Illinois).
     fn zero(
         &mut self,
         margin: (Margin, f64),
@@ -165,7 +166,7 @@ impl Turning {
         self.margin(margin, around) + spare
     }
 
-    /// A rotor comes to rest, or lets go, at the instant seen last: the departure decides what it does.
+    /// Marks the rotor that stops or breaks away at the current instant; `settle` resolves its state.
     pub fn meet(&mut self) {
         if let Some((_, index)) = self.ahead.take().and_then(|ahead| ahead.meets) {
             self.resting[index] = true;

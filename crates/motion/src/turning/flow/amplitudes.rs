@@ -1,23 +1,23 @@
-//! The amplitudes of the modes at the start of a step, four modes side by side.
+//! Amplitudes of the modes at the start of a step, four modes per SIMD register.
 
 use crate::attitude::Vector;
 use crate::lanes::{LaneWork, Real};
 use crate::turning::model::Model;
 use crate::turning::pace::Amplitude;
 
-/// What the modes of a body are, and what acts on them.
+/// SIMD task that computes the amplitudes of the modes from their states and the loads.
 pub(super) struct Amplitudes<'a> {
     pub model: &'a Model,
     /// q and P/W of each.
     pub modes: &'a [[f64; 4]],
-    /// Forces beside those of the torque, of none at all or each (N/sqrt(kg)).
+    /// Modal forces other than those of the torque (N/sqrt(kg)); empty or one per mode.
     pub forces: &'a [f64],
-    /// Gt.
+    /// Rigid momentum Gt (N m s).
     pub turning: Vector,
-    /// The torque that turns the hub, and the same with what the rotation adds (N m).
+    /// Torque on the hub less the reaction of the rotors, without and with the gyroscopic torque (N m).
     pub pushed: Vector,
     pub net: Vector,
-    /// What the rotation does by each number of a mode's moments (rad²/s²).
+    /// Centrifugal terms of the rotation (rad²/s²), as `outward` returns them.
     pub spun: [f64; 6],
     pub found: &'a mut [Amplitude],
 }
@@ -44,7 +44,7 @@ impl LaneWork for Amplitudes<'_> {
             let held = (of.along(kind, &net) + of.moved(kind, &spun) + forced) / (w * w);
             let speed = (p + of.along(kind, &turning) / w).abs();
             let most = ((of.along(kind, &pushed) + forced).abs() / (w * w)).max(held.abs());
-            // At least the displacement, the rate, and what the torque or the rotation bends, each.
+            // Bounds each of the displacement, the rate and the static deflection by torque or rotation.
             let most = q.abs() + speed + most;
             let swings = most.min((q - held).abs() + speed);
             let mut kept = [[0.0; 4]; 2];

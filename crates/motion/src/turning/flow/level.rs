@@ -1,4 +1,4 @@
-//! The level of the next step, and the responses of the modes over it.
+//! Level (length) of the next step, and the modes' responses over it.
 
 use super::amplitudes::Amplitudes;
 use super::{BESIDE, Turning};
@@ -11,7 +11,7 @@ use crate::turning::pace::Pose;
 use crate::turning::state::TurningState;
 
 impl Turning {
-    /// The level of the next step.
+    /// Determines the level of the next grid step.
     pub(super) fn level(&mut self, around: Option<(&dyn Surroundings, f64)>) -> usize {
         let (exerted, slow) = around.map_or((0.0, 0.0), |(around, _)| (around.bound(), around.frequency()));
         let mut slow = slow + self.driving.as_ref().map_or(0.0, |driving| driving.angles.fastest());
@@ -23,23 +23,24 @@ impl Turning {
         if let Some((swung, by)) = gimbal::sum(&self.acting.gimbals, self.reached) {
             (rotors, change, slow) = (rotors + swung, change + by, slow + gimbals);
         }
-        // What wheels in bearings, gimbals, warmth and forces do to modes and place is not estimated: steps resolve all modes.
+        // Errors due to rotors in bearings, gimbals, heating and applied forces are not estimated: steps then resolve
+        // all modes.
         let known = self.bearings.is_empty()
             && gimbals == 0.0
             && self.driving.is_none()
             && self.acting.levers.is_empty()
             && self.acting.push == Vector::zeros()
             && around.is_none_or(|(around, _)| around.heated().is_empty());
-        // Gt but for how much the body is bent now.
+        // Gt without the present deformation.
         let turning = self.grid.momentum - rotors;
-        // A step turns a hinge by half of what it may turn the body.
+        // Within a step, a hinge turns by at most half of the angle allowed for the body.
         slow +=
             2.0 * self.driving.as_ref().map_or(0.0, |driving| driving.swinging(&self.grid.modes, &turning));
         let Self { model, grid, acting, amplitudes, .. } = self;
         let push = acting.torque.norm() + exerted + change.norm();
         let size = grid.momentum.norm();
         let rigid = model.inverse * turning;
-        // What holds the displacements that each mode swings about, and loses nothing of.
+        // Static deflections about which the modes oscillate; these do not contribute to the error.
         let pushed = acting.torque - change;
         let (net, spun) = (pushed - rigid.cross(&grid.momentum), outward(&rigid));
         let lanes = model.lanes;
@@ -55,7 +56,7 @@ impl Turning {
         self.pace.resolving(turns, self.shakes(&self.grid))
     }
 
-    /// The highest frequency at which wheels shake the body in a state (rad/s).
+    /// Returns the highest frequency of the rotors' imbalance in a state (rad/s).
     fn shakes(&self, state: &TurningState) -> f64 {
         let size = state.momentum.norm();
         let shakes = self.bearings.iter().zip(&state.spins).map(|(bearing, spin)| {
@@ -64,10 +65,10 @@ impl Turning {
         shakes.fold(0.0, f64::max)
     }
 
-    /// No part of the motion changes faster at the instant seen last (rad/s).
+    /// Returns an upper bound of the fastest rate of change in the motion at the current instant (rad/s).
     pub fn fastest(&self, around: Option<&dyn Surroundings>) -> f64 {
         let mode = |(index, mode): (usize, &Constants)| {
-            // Of a body with drives they change with the angles.
+            // With driven appendages, frequencies change with the drive angles.
             let frequency =
                 self.seen.frequencies.get(index).map_or(mode.frequency, |w| w.max(mode.frequency));
             frequency * (1.0 + 2.0 * mode.damping)
@@ -76,7 +77,7 @@ impl Turning {
         let slow = around.map_or(0.0, Surroundings::frequency)
             + self.driving.as_ref().map_or(0.0, |driving| driving.angles.fastest())
             + gimbal::fastest(&self.acting.gimbals);
-        // The body turns, and precesses with what its rotors store.
+        // The body turns, and precesses due to the momentum stored in its rotors.
         let stored = self.acting.rotors(self.now).0.norm()
             + self.here.spins.iter().map(|spin| spin.sums.x.abs()).sum::<f64>()
             + self.acting.gimbals.iter().map(|gimbal| gimbal.momentum).sum::<f64>();
@@ -84,7 +85,7 @@ impl Turning {
         modes + slow + turns + self.shakes(&self.here)
     }
 
-    /// Makes sure that there are responses over a step beside the grid, of `h` seconds; tells their place.
+    /// Ensures that responses over an off-grid step of `h` (s) exist; returns their index in `beside`.
     pub(super) fn prepare_beside(&mut self, h: f64) -> usize {
         if let Some(place) = self.beside.iter().position(|known| known.h.to_bits() == h.to_bits()) {
             return place;
@@ -100,7 +101,7 @@ impl Turning {
         place
     }
 
-    /// Makes sure that there are responses for a level.
+    /// Ensures that responses for the grid step of a level exist.
     pub(super) fn prepare(&mut self, level: usize) {
         if self.regular.len() <= level {
             self.regular.resize(level + 1, None);
@@ -111,7 +112,7 @@ impl Turning {
         }
     }
 
-    /// The responses of the modes over a step of `h` seconds.
+    /// Returns the responses of the modes over a step of `h` (s), shared if possible.
     fn responses(&self, h: f64) -> Regular {
         self.known.as_ref().map_or_else(|| Regular::new(&self.model, h), |known| known.over(h))
     }
