@@ -1,4 +1,4 @@
-//! Rotors in bearings: balances of momentum and energy over long runs, and rotors that stick, slip, and share a body.
+//! Rotors in bearings: balances of momentum and energy over long runs, stick-slip, and rotors coupled by the body.
 
 use nalgebra::{Matrix3, Quaternion};
 
@@ -13,7 +13,7 @@ fn axes() -> [Vector; 4] {
     [[1.0, 1.0], [-1.0, 1.0], [-1.0, -1.0], [1.0, -1.0]].map(|[x, y]| Vector::new(half * x, half * y, up))
 }
 
-/// A body of some 1000 kg m² with slow modes, undamped.
+/// Returns an undamped body of about 1000 kg m² with slow modes.
 fn body(modes: usize) -> Flexible {
     let rows = [(1.15, [-9e-4, -1.6e-3, 4.4e-4]), (2.07, [0.042, -5e-4, -0.02]), (4.4, [1e-4, 0.02, 3e-4])];
     let mode = |(frequency, rotation): (f64, [f64; 3])| FreeMode {
@@ -33,13 +33,13 @@ fn bearing(coulomb: f64, breakaway: f64) -> Bearing {
     Bearing { inertia: INERTIA, viscous: 5e-5, coulomb, breakaway, lines: Vec::new() }
 }
 
-/// A body that turns with its rotors, and what was done to it.
+/// Simulation of a body with rotors, with records of motor work and slip changes.
 struct Run {
     turning: Turning,
     rotors: Vec<Rotor>,
     /// Work of the motors (J).
     work: f64,
-    /// When each rotor changed, and to what.
+    /// Time and new slip state of each change of a rotor.
     events: Vec<(f64, usize, Slip)>,
     t: f64,
 }
@@ -98,7 +98,7 @@ impl Run {
         (seen.attitude * Quaternion::from_imag(seen.momentum) * seen.attitude.conjugate()).vector().into()
     }
 
-    /// Energy of body, modes and rotors (J).
+    /// Returns the energy of body, modes and rotors (J).
     fn energy(&self) -> f64 {
         let spins =
             self.turned().iter().map(|wheel| wheel.momentum * wheel.momentum / (2.0 * INERTIA)).sum::<f64>();
@@ -110,7 +110,7 @@ impl Run {
     }
 }
 
-/// Motors that push to and fro, and rotors that stick and slip, over 1e4 s of a flexible body that nothing else acts on.
+/// Runs alternating motor torques with stick-slip for 1e4 s on a flexible body without other loads.
 #[test]
 fn momentum_stays_and_energy_is_work_less_heat() {
     let mut run =
@@ -131,7 +131,7 @@ fn momentum_stays_and_energy_is_work_less_heat() {
     assert!(stuck > 0, "of {}", run.events.len());
 }
 
-/// Nothing acts, not even motors: |H| and energy of a flexible body with free wheels, over 1e4 s.
+/// Checks |H| and energy of a flexible body with frictionless wheels and no torques, over 1e4 s.
 #[test]
 fn free_wheels_keep_momentum_and_energy() {
     let free = Bearing { inertia: INERTIA, ..Bearing::default() };
@@ -143,8 +143,8 @@ fn free_wheels_keep_momentum_and_energy() {
     assert!((run.energy() / energy - 1.0).abs() < 1e-12, "{:e}", run.energy() / energy - 1.0);
 }
 
-/// A rotor that runs down on a rigid body at rest stops at a known instant: with s = 1/I + 1/J about its axis
-/// Omega = (O0 + t/c) exp(-c s T) - t/c.
+/// Checks the known instant at which a rotor running down on a rigid body at rest stops: with s = 1/I + 1/J about its
+/// axis, Omega = (O0 + t/c) exp(-c s T) - t/c.
 #[test]
 fn a_rotor_runs_down_and_sticks() {
     let body = Flexible { inertia: Matrix3::from_diagonal_element(200.0), ..Flexible::default() };
@@ -154,12 +154,12 @@ fn a_rotor_runs_down_and_sticks() {
     let stops = libm::log(1.0 + 10.0 * c / t) / (c * s);
     let [(at, 0, Slip::Stuck)] = run.events[..] else { panic!("{:?}", run.events) };
     assert!((at - stops).abs() < 1e-12, "{at} {stops}");
-    // What it had is in the body, which turns with it.
+    // Its momentum is now in the body, which turns with it.
     let turns = INERTIA * 10.0 * axes()[0] / (200.0 + INERTIA);
     assert!((run.turning.seen().rate - turns).norm() < 1e-16);
     assert_eq!(run.turned()[0].speed, 0.0);
     assert!((run.heat() - 0.5 * INERTIA * 100.0 / (1.0 + INERTIA / 200.0)).abs() < 1e-13, "{}", run.heat());
-    // Below the breakaway torque it stays, above it slips the way that it is driven.
+    // Below the breakaway torque it stays; above it, it slips in the driven direction.
     run.go(&[0.0099], 10.0);
     assert_eq!((run.events.len(), run.turned()[0].slip), (1, Slip::Stuck));
     let held = run.turned()[0].friction;
@@ -170,7 +170,8 @@ fn a_rotor_runs_down_and_sticks() {
     assert!((run.turned()[0].speed - speed).abs() < 1e-13);
 }
 
-/// A body that vibrates shakes a stuck rotor loose: when the torque that turns it with the body, I a.w', reaches the breakaway torque.
+/// Checks that a vibrating body breaks a stuck rotor loose when the torque that turns it with the body, I a.w',
+/// reaches the breakaway torque.
 #[test]
 fn a_vibration_shakes_a_rotor_loose() {
     let body = Flexible {
@@ -187,7 +188,7 @@ fn a_vibration_shakes_a_rotor_loose() {
     run.go(&[0.0], 0.0);
     run.go(&[0.009_798], 1.0);
     let at = run.events.iter().find(|(_, _, slip)| *slip == Slip::Forward).expect("it lets go").0;
-    // Stuck, w (1 + I/J) = phi q' and q'' (1 + I phi²/(1 + I/J)) = -W² q.
+    // While stuck, w (1 + I/J) = phi q' and q'' (1 + I phi²/(1 + I/J)) = -W² q.
     let (more, phi) = (1.0 + INERTIA / 200.0, 0.05);
     let square = 100.0 / (1.0 + INERTIA * phi * phi / more);
     let w = f64::sqrt(square);
@@ -198,7 +199,7 @@ fn a_vibration_shakes_a_rotor_loose() {
     assert!(holds(0.0) > 1e-6 && holds(at).abs() < 1e-15 && holds(at + 1e-4) < 0.0, "{at} {:e}", holds(at));
 }
 
-/// Rotors at rest on a light body are decided together: one that is driven drags the other with the body.
+/// Checks that rotors at rest on a light body are resolved together: a driven one drags the other with the body.
 #[test]
 fn rotors_share_the_body() {
     let body = Flexible { inertia: Matrix3::from_diagonal_element(0.02), ..Flexible::default() };
@@ -212,11 +213,11 @@ fn rotors_share_the_body() {
             slip => assert!(slip.sign() * wheel.speed > 0.0, "{wheel:?}"),
         }
     }
-    // The reaction of the first turns the body backwards: another lags behind forwards where its bearing gives way.
+    // The reaction of the first turns the body backwards: another slips forwards where its bearing yields.
     assert!(turned.iter().any(|wheel| wheel.slip == Slip::Stuck) || turned[1].slip == Slip::Forward);
 }
 
-/// Looking on the way does not move the instant at which a rotor passes through zero, nor anything after.
+/// Checks that observations between do not move the instant of a rotor's zero crossing, nor the motion after it.
 #[test]
 fn looking_moves_no_event() {
     let run = |looks: &[f64]| {

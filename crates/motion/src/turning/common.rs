@@ -1,5 +1,5 @@
 //! Data shared by all runs of a scenario: the constants of the body, its step levels, and the modes' responses over
-//! the step lengths used so far by any run. The values do not depend on which run computes them first, and thousands
+//! the step lengths that any run has used. The values do not depend on which run computes them first, and thousands
 //! of parallel runs find them in the processor's cache.
 
 use std::sync::{Arc, Mutex, OnceLock};

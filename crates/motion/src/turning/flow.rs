@@ -383,7 +383,7 @@ impl Turning {
         })
     }
 
-    /// Returns the computational cost so far.
+    /// Returns the computational cost since the start.
     pub fn effort(&self) -> FlowEffort {
         self.effort
     }

@@ -2,6 +2,18 @@
 //!
 //! With free modes W, phi, the total angular momentum H about the centre of mass in the body's axes, rotors a h, the
 //! change J1 of the inertia and the canonical rates P of the modes, in which torques, rotors and w x H do not appear:
+//!
+//! ```text
+//! G = H - sum a h,   Gt = G - J1(q) w,   w = J^-1 Gt + phi q',   H' = T - w x H,
+//! q' = P + phi' Gt,   P' = -W² q - D q' + 1/2 [w' J1_i w] + f.
+//! ```
+//!
+//! The momentum of rotors in gimbals is part of sum a h, a known function of time (`gimbal.rs`).
+//!
+//! The method (`method.rs`) is Gauss-Legendre of order 6 in mean axes, which preserves |H| and |Q|, with the modes as
+//! exact oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends only on the start of the
+//! segment; an instant between grid points is reached by one shorter off-grid step, so that observation does not change
+//! the motion.
 
 mod acceleration;
 mod bearing;

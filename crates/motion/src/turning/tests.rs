@@ -1,4 +1,5 @@
-//! The turning flow against two codes that share nothing: tests/golden/turning, made as tests/golden/turning_oracle.py says.
+//! Tests of the three-axis integrator against two independent codes: tests/golden/turning, made by
+//! tests/golden/turning_oracle.py.
 
 use nalgebra::{DMatrix, DVector, Matrix3, Matrix3x4, Quaternion};
 
@@ -18,14 +19,14 @@ macro_rules! golden {
 
 type Never = std::convert::Infallible;
 
-/// The rows of a file, but for lines of names; a name in a row is not a number.
+/// Returns the numeric rows of a table without its header lines; a name within a row becomes NaN.
 fn rows(text: &str) -> Vec<Vec<f64>> {
     let numbers =
         |line: &str| -> Vec<f64> { line.split(',').map(|v| v.parse().unwrap_or(f64::NAN)).collect() };
     text.lines().map(numbers).filter(|row| row.iter().filter(|v| v.is_nan()).count() <= 1).collect()
 }
 
-/// The reference spacecraft, the rotation of its bench in each mode, and the modal forces of jet 1.
+/// Reference spacecraft, with the rotation of its bench in each mode and the modal forces of jet 1.
 struct Craft {
     body: Flexible,
     bench: Vec<Vector>,
@@ -54,7 +55,7 @@ fn craft() -> Craft {
 }
 
 impl Craft {
-    /// Without what modes change of the inertia.
+    /// Removes the change of the inertia by the modes.
     fn stiff(mut self) -> Self {
         self.body.modes.iter_mut().for_each(|mode| mode.moments = Matrix3::zeros());
         self
@@ -65,20 +66,20 @@ impl Craft {
         self
     }
 
-    /// At rest but for these rates.
+    /// Returns the motion with the given initial rate and the modes at rest.
     fn turning(&self, rate: Vector) -> Turning {
         Turning::new(&self.body, Quaternion::identity(), rate, &[[0.0; 2]; 8])
     }
 }
 
-/// Rates at the start of the tumbles (rad/s), and momenta of the wheels (N m s).
+/// Initial rate of the tumbles (rad/s), and momenta of the wheels (N m s).
 const TUMBLE: Vector = Vector::new(0.04, 0.05, -0.03);
 const SPUN: [f64; 4] = [2.0, -1.0, 0.5, 1.5];
 
-/// Inertia of a wheel about its axis (kg m²).
+/// Spin inertia of a wheel (kg m²).
 const WHEEL: f64 = 0.04;
 
-/// The pyramid of wheels.
+/// Returns the wheels in their pyramid.
 fn rotors(momenta: [f64; 4], torques: [f64; 4]) -> Vec<Rotor> {
     let (rise, turn) = (35.0_f64.to_radians(), 90.0_f64.to_radians());
     let rotor = |k: usize| {
@@ -94,17 +95,17 @@ fn go(turning: &mut Turning, t: f64) {
     turning.advance(t, None, || Ok::<(), Never>(())).expect("nothing stops it");
 }
 
-/// The angle between two attitudes (rad).
+/// Returns the angle between two attitudes (rad).
 fn apart(a: &Quaternion<f64>, b: &Quaternion<f64>) -> f64 {
     2.0 * (a.conjugate() * b).vector().norm()
 }
 
-/// Energy without rotors (J).
+/// Returns the energy without rotors (J).
 fn energy(turning: &Turning) -> f64 {
     turning.seen().rotational + turning.energies().sum::<f64>()
 }
 
-/// A departure is looked at where it changes what is seen: rotors with another momentum leave the body another rate.
+/// Checks that the view is updated at the start of a segment: rotors with another momentum change the body's rate.
 #[test]
 fn a_jump_of_the_rotors_momenta_is_seen_at_once() {
     let craft = craft().stiff().undamped();
@@ -158,7 +159,8 @@ fn pulses_from_rest() {
     }
 }
 
-/// Tumbles with wheels against a table of attitude, rate, momentum and energy; tells the largest error of each.
+/// Compares a tumble with wheels with a table of attitude, rate, momentum and energy; returns the largest error of
+/// each.
 fn tumble(craft: &Craft, text: &str) -> [f64; 4] {
     let mut turning = craft.turning(TUMBLE);
     turning.depart(&Acting { rotors: rotors(SPUN, [0.0; 4]), ..Acting::default() });
@@ -191,7 +193,7 @@ fn tumbling_with_first_moments() {
     assert!(attitude < 1e-13 && rate < 1e-13 && momentum < 2e-12 && energy < 2e-12);
 }
 
-/// Each slow mode turns the hub by 1e-4 rad/s, each fast one by 2e-5 rad/s.
+/// Returns a motion in which each slow mode turns the hub by 1e-4 rad/s, each fast one by 2e-5 rad/s.
 fn vibrating(craft: &Craft) -> Turning {
     let speed = |mode: &FreeMode| if mode.frequency < 20.0 { 1e-4 } else { 2e-5 };
     let modes = craft.body.modes.iter().map(|mode| [0.0, speed(mode) / mode.rotation.norm()]);
@@ -215,12 +217,12 @@ fn a_tumble_of_1e4_s_keeps_momentum_and_energy() {
     assert!((space(&turning) - before).norm() / size < 2e-14);
     assert!((turning.seen().attitude.norm() - 1.0).abs() < 1e-15);
     assert!((energy(&turning) / energy_before - 1.0).abs() < 1e-12);
-    // Some four passes a step; the last step is beside the grid.
+    // About four iterations per step; the last step is off the grid.
     let effort = turning.effort();
     assert!(effort.steps == 619_726 && effort.passes < 4 * effort.steps, "{effort:?}");
 }
 
-/// A mode that turns nothing keeps its energy over 128 000 steps: rounded transitions alone would lose 1e-11 of it.
+/// Checks the energy of an uncoupled mode over 128 000 steps: uncorrected rounded transitions would lose 1e-11 of it.
 #[test]
 fn a_free_mode_rings_on() {
     let mut craft = craft().stiff().undamped();
@@ -256,7 +258,7 @@ fn looking_changes_nothing() {
     };
     let quiet = run(&[]);
     assert_eq!(quiet, run(&[0.0, 0.001, 0.3, 0.300_000_1, 5.0, 7.2999]));
-    // Back in time too.
+    // Going back in time gives the same motion.
     assert_eq!(quiet, run(&[7.0, 2.0, 6.9, 0.01]));
     let (mut there, mut back) = (craft.turning(TUMBLE), craft.turning(TUMBLE));
     go(&mut there, 2.0);
@@ -265,7 +267,8 @@ fn looking_changes_nothing() {
     assert_eq!(there.seen(), back.seen());
 }
 
-/// dE = T.w + f.q' - sum u a.w - q' D q' of the body without its rotors, all but the last known without quadrature.
+/// Checks dE = T.w + f.q' - sum u a.w - q' D q' for the body without its rotors; all terms but the last need no
+/// quadrature.
 #[test]
 fn energy_is_the_work_of_what_acts() {
     for damped in [false, true] {
@@ -299,7 +302,7 @@ fn energy_is_the_work_of_what_acts() {
     }
 }
 
-/// A slew of 60 degrees by four wheels and a law at 4 Hz.
+/// Compares a slew of 60 degrees by four wheels under a law at 4 Hz with a table.
 #[test]
 fn a_slew_by_wheels() {
     let craft = craft().stiff();

@@ -1,4 +1,4 @@
-//! The free modes of one angle, in which the state is carried for a while.
+//! Free modes at one configuration of the drives, in which the state is carried for some time.
 
 use nalgebra::{DMatrix, DVector, Matrix3};
 
@@ -7,30 +7,30 @@ use crate::attitude::Vector;
 use crate::turning::free::Free;
 use crate::turning::model::{Flexible, FreeMode};
 
-/// The free modes of one angle.
+/// Free modes at one configuration of the drives.
 #[derive(Clone, Debug)]
 pub struct Basis {
-    /// Inertia with the drives at this angle (kg m²), and where its centre of mass was at the start (m).
+    /// Inertia at this configuration (kg m²), and centre of mass at the start (m).
     pub inertia: Matrix3<f64>,
     pub first_centre: Vector,
-    /// W (rad/s), Y and Y⁻¹ = W⁻² Y' O².
+    /// Frequencies W (rad/s), shapes Y and inverse Y⁻¹ = W⁻² Y' O².
     pub frequencies: Vec<f64>,
     pub shapes: DMatrix<f64>,
     pub inverse: DMatrix<f64>,
-    /// phi.
+    /// Hub rotations phi per unit of each mode (rad/(m sqrt(kg))).
     pub rotations: Vec<Vector>,
-    /// J1 of the modes.
+    /// Changes J1 of the inertia per unit of each mode (sqrt(kg) m).
     moments: Vec<Matrix3<f64>>,
-    /// Y' D Y.
+    /// Modal damping matrix Y' D Y (1/s).
     damping: DMatrix<f64>,
-    /// Forces on the free modes of the start become forces on these.
+    /// Matrix that transforms forces on the free modes of the start into forces on these modes.
     pub from_start: DMatrix<f64>,
-    /// Y' of the start, inverted.
+    /// Inverse of Y' at the start.
     start: DMatrix<f64>,
 }
 
 impl Basis {
-    /// That of the start, as the body is written.
+    /// Computes the modes at the start of the run, with the drives at their initial angles.
     pub fn first(of: &DrivenSpacecraft, angles: &dyn Angles) -> Option<Self> {
         let mut posed = Posed::default();
         of.pose(|drive| angles.at(drive, 0.0), &[], &mut posed);
@@ -39,7 +39,7 @@ impl Basis {
         Some(Self::of(of, &posed, free, (posed.centre, start)))
     }
 
-    /// That of another time since the start (s), each mode the one that is most like it here.
+    /// Computes the modes at a time `t` since the start (s), ordered and signed like the modes here.
     pub fn at(&self, of: &DrivenSpacecraft, angles: &dyn Angles, t: f64) -> Option<Self> {
         let mut posed = Posed::default();
         of.pose(|drive| angles.at(drive, t), &[], &mut posed);
@@ -80,10 +80,10 @@ impl Basis {
         }
     }
 
-    /// Modes in the order and with the signs of those here that they are most like.
+    /// Reorders modes and flips their signs so that each corresponds to the most similar mode here.
     pub fn followed(&self, free: &Free) -> Free {
         let order = free.frequencies.len();
-        // Of modes of one body W⁻¹ Y' O² Y W⁻¹ = 1.
+        // For the modes of one body, W⁻¹ Y' O² Y W⁻¹ = 1.
         let likeness = &self.inverse * &free.shapes;
         let alike = |here: usize, there: usize| {
             likeness[(here, there)] * self.frequencies[here] / free.frequencies[there]
@@ -115,7 +115,7 @@ impl Basis {
         sorted
     }
 
-    /// The body with its drives at this angle.
+    /// Returns the body with its drives fixed at this configuration.
     pub fn flexible(&self) -> Flexible {
         let mode = |(index, frequency): (usize, &f64)| FreeMode {
             frequency: *frequency,
@@ -130,33 +130,33 @@ impl Basis {
         }
     }
 
-    /// eta of q.
+    /// Returns the clamped displacements eta = Y q.
     pub fn held(&self, q: &[f64]) -> Vec<f64> {
         (&self.shapes * DVector::from_column_slice(q)).as_slice().to_vec()
     }
 
-    /// pi of P.
+    /// Returns the clamped momenta pi for the canonical rates P.
     pub fn held_rates(&self, p: &[f64]) -> Vec<f64> {
         self.inverse.tr_mul(&DVector::from_column_slice(p)).as_slice().to_vec()
     }
 
-    /// q of eta.
+    /// Returns the free displacements q for eta.
     pub fn free(&self, eta: &[f64]) -> Vec<f64> {
         (&self.inverse * DVector::from_column_slice(eta)).as_slice().to_vec()
     }
 
-    /// P of pi, and modal forces of those on clamped modes.
+    /// Returns P for pi, or the forces on the free modes for those on clamped modes.
     pub fn forced(&self, pi: &[f64]) -> Vec<f64> {
         self.shapes.tr_mul(&DVector::from_column_slice(pi)).as_slice().to_vec()
     }
 
-    /// By how much displacements turn the hub from the mean axes (rad).
+    /// Returns the elastic rotation of the hub from the mean axes for displacements q (rad).
     pub fn bent(&self, q: &[f64]) -> Vector {
         self.rotations.iter().zip(q).fold(Vector::zeros(), |sum, (rotation, q)| sum + rotation * *q)
     }
 }
 
-/// Y⁻¹ = W⁻² Y' O².
+/// Computes Y⁻¹ = W⁻² Y' O².
 pub fn inverse(of: &DrivenSpacecraft, free: &Free) -> DMatrix<f64> {
     let held: Vec<f64> = of.modes().map(|mode| mode.frequency).collect();
     DMatrix::from_fn(held.len(), held.len(), |row, column| {

@@ -1,54 +1,56 @@
 //! Panels that swing on hinges, as rigid bodies at any angle.
 //!
-//! The mode of a hinge is the angle itself, eta = sqrt(I) th with I the panel's inertia about the axis a. Its participations
-//! turn with the panel, so that J, delta and E at the angle make the kinetic energy exact, and the spring's energy is that of the
-//! mode. What is left is dT/d eta. With the panel's points at b + r from the centre of mass, S = int r dm, K its inertia about
-//! the hinge, its rate u = w + th' a, and the momentum p of all that moves against the hub,
+//! The mode of a hinge is the angle itself, eta = sqrt(I) th with I the panel's inertia about the axis a. Its
+//! participations rotate with the panel, so that J, delta and E at the angle make the kinetic energy exact, and the
+//! spring's energy is that of the mode. The remaining force is dT/d eta. With the panel's points at b + r from the
+//! centre of mass, S = int r dm, K its inertia about the hinge, its rate u = w + th' a, and the momentum p of all
+//! parts that move relative to the hub,
 //!
 //! ```text
 //! dT/dth = (w x b - p/m) . (u x (a x S)) + u . (a x K u) - (w x (a x S)) . p1/m,
 //! ```
 //!
-//! in which p1 is the momentum that displacements of other modes have because the body turns.
+//! Here p1 is the momentum that displacements of other modes have because the body rotates.
 
 use nalgebra::Matrix3;
 
 use super::{Driving, Posed};
 use crate::attitude::Vector;
 
-/// A hinge at the root of a panel.
+/// Hinge at the root of a panel.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Hinge {
-    /// Unit vector along its axis, in the axes of the panel.
+    /// Unit vector along the hinge axis, in the axes of the panel.
     pub about: Vector,
     /// Moment of inertia of the panel about that axis (kg m²).
     pub inertia: f64,
 }
 
 impl Hinge {
-    /// The angle for a displacement of the mode (rad).
+    /// Returns the hinge angle for a displacement of its mode (rad).
     pub fn angle(&self, eta: f64) -> f64 {
         eta / f64::sqrt(self.inertia)
     }
 }
 
-/// A panel on a hinge as it is turned, in the body's axes.
+/// Panel on a hinge at its present angle, in the body's axes.
 #[derive(Clone, Debug)]
 pub struct Swinging {
-    /// Its mode.
+    /// Index of the hinge's mode.
     mode: usize,
-    /// sqrt(I).
+    /// Factor sqrt(I) from the angle to the mode's displacement.
     unit: f64,
-    /// a, and b (m).
+    /// Hinge axis a, and position b of the hinge from the centre of mass (m).
     about: Vector,
     from_centre: Vector,
-    /// a x S (kg m), and K (kg m²).
+    /// First moment a x S (kg m), and inertia K about the hinge (kg m²).
     across: Vector,
     inertia: Matrix3<f64>,
 }
 
 impl Swinging {
-    /// A panel whose hinge has this axis and is so far from the centre of mass, with this first moment and inertia about it.
+    /// Creates a panel from its hinge axis, the position of the hinge from the centre of mass, and its first moment
+    /// and inertia about the hinge.
     pub fn new(
         hinge: &Hinge,
         mode: usize,
@@ -63,7 +65,8 @@ impl Swinging {
 }
 
 impl Driving {
-    /// No hinge turns faster soon (rad/s), where modes have these q and P/W and the body this momentum Gt (N m s).
+    /// Returns an upper bound of the hinge rates (rad/s) during the next step, from q and P/W of the modes and the
+    /// momentum Gt of the body (N m s).
     pub fn swinging(&self, modes: &[[f64; 4]], turning: &Vector) -> f64 {
         let (basis, mut mode, mut fastest) = (&self.basis, 0, 0.0_f64);
         for panel in &self.of.panels {
@@ -85,14 +88,14 @@ impl Driving {
 }
 
 impl Posed {
-    /// Displacements of the clamped modes without those of hinges, which turn the panels.
+    /// Sets the displacements of the hinge modes to zero, because hinges rotate the panels instead.
     pub fn small(&self, eta: &mut [f64]) {
         for hinge in &self.hinges {
             eta[hinge.mode] = 0.0;
         }
     }
 
-    /// Angle (rad) and rate (rad/s) of each hinge, of displacements and rates of all modes.
+    /// Returns angle (rad) and rate (rad/s) of each hinge from the displacements and rates of all modes.
     pub fn hinged(&self, eta: &[f64], rates: &[f64]) -> Vec<[f64; 2]> {
         self.hinges
             .iter()
@@ -100,7 +103,8 @@ impl Posed {
             .collect()
     }
 
-    /// Gives the modes of hinges dT/d eta at this rate of the hub (rad/s), displacements of other modes, and rates of all.
+    /// Computes the forces dT/d eta on the hinge modes from the hub's rate (rad/s), the displacements of the other
+    /// modes, and the rates of all.
     pub fn swing(&self, rate: &Vector, small: &[f64], rates: &[f64], forces: &mut [f64]) {
         if self.hinges.is_empty() {
             return;

@@ -1,4 +1,4 @@
-//! What a driven body is at an instant: the coefficients of its kinetic energy.
+//! Configuration of an articulated body at an instant: the coefficients of its kinetic energy.
 
 use nalgebra::{Matrix3, Matrix3xX};
 
@@ -7,64 +7,64 @@ use super::{DrivenPanel, DrivenSpacecraft};
 use crate::attitude::Vector;
 use crate::turning::free::{ClampedModes, Free};
 
-/// The coefficients at an instant, all in the body's axes and about the centre of mass.
+/// Coefficients of the kinetic energy at an instant, in the body's axes and about the centre of mass.
 #[derive(Clone, Debug, Default)]
 pub struct Posed {
-    /// The centre of mass c (m).
+    /// Centre of mass c (m).
     pub centre: Vector,
-    /// J (kg m²).
+    /// Inertia J (kg m²).
     pub inertia: Matrix3<f64>,
-    /// t of each mode (sqrt(kg)).
+    /// Participation t of each mode in translation (sqrt(kg)).
     pub translations: Vec<Vector>,
-    /// delta of each mode (sqrt(kg) m).
+    /// Participation delta of each mode in rotation (sqrt(kg) m).
     pub rotations: Vec<Vector>,
-    /// J1 of each mode (sqrt(kg) m).
+    /// Change J1 of the inertia per unit of each mode (sqrt(kg) m).
     pub moments: Vec<Matrix3<f64>>,
-    /// b0 (N m s), and b1 of each mode (N s/sqrt(kg)).
+    /// Angular momentum b0 due to drive rates (N m s), and b1 of each mode (N s/sqrt(kg)).
     pub momentum: Vector,
     pub momenta: Vec<Vector>,
-    /// k of each mode (sqrt(kg) m/s).
+    /// Modal momentum k of each mode due to drive rates (sqrt(kg) m/s).
     pub kicks: Vec<f64>,
-    /// e0 (J), and a1 of each mode (N/sqrt(kg)).
+    /// Kinetic energy e0 due to drive rates (J), and generalised force a1 on each mode (N/sqrt(kg)).
     pub energy: f64,
     pub pulls: Vec<f64>,
-    /// Momentum of the panels that are turned (N s), and what a unit of each mode adds to it.
+    /// Linear momentum of the driven panels (N s), and its change per unit of each mode.
     pub push: Vector,
     pub pushes: Vec<Vector>,
     /// Total mass (kg).
     pub mass: f64,
-    /// (m - sum t t')⁻¹, of which E⁻¹ = 1 + t' (..) t.
+    /// Matrix (m - sum t t')⁻¹, with which E⁻¹ = 1 + t' (m - sum t t')⁻¹ t.
     pub share: Matrix3<f64>,
-    /// J - delta E⁻¹ delta': the inertia left to the hub.
+    /// Residual inertia J - delta E⁻¹ delta' of the hub (kg m²).
     pub left: Matrix3<f64>,
-    /// The panels on hinges.
+    /// Panels on hinges.
     pub hinges: Vec<Swinging>,
 }
 
-/// The rotation by an angle about a unit axis.
+/// Returns the rotation matrix for an angle (rad) about a unit axis.
 fn turn(axis: &Vector, angle: f64) -> Matrix3<f64> {
     let (sin, cos) = libm::sincos(angle);
     (1.0 - cos) * axis * axis.transpose() + cos * Matrix3::identity() + sin * axis.cross_matrix()
 }
 
-/// What first moments N add to the inertia tensor: 2 tr(N) 1 - N - N'.
+/// Returns the change of the inertia tensor by first moments N: 2 tr(N) 1 - N - N'.
 fn stretching(n: &Matrix3<f64>) -> Matrix3<f64> {
     2.0 * n.trace() * Matrix3::identity() - n - n.transpose()
 }
 
-/// The integral of r x phi dm, from that of r phi' dm.
+/// Returns the integral of r x phi dm from that of r phi' dm.
 fn rotation_of(n: &Matrix3<f64>) -> Vector {
     Vector::new(n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)])
 }
 
-/// The inertia tensor of a point mass at a distance.
+/// Returns the inertia tensor of a point mass at a position.
 fn of_point(mass: f64, at: &Vector) -> Matrix3<f64> {
     mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
 }
 
 impl DrivenSpacecraft {
-    /// Fills in what the body is where drives have these angles (rad) and rates (rad/s), and the modes of hinges these
-    /// displacements, all 0 if there are none.
+    /// Updates the configuration for drive angles (rad) and rates (rad/s) and displacements `eta` of the hinge modes
+    /// (empty for zero).
     pub fn pose(&self, at: impl Fn(usize) -> [f64; 2], eta: &[f64], posed: &mut Posed) {
         let (hub_mass, hub_centre, hub_inertia) = &self.hub;
         let mass = self.mass();
@@ -148,7 +148,7 @@ impl DrivenSpacecraft {
 }
 
 impl Posed {
-    /// The free modes, if there is mass left.
+    /// Returns the free modes; `None` if the mass matrix is not positive definite.
     pub fn free(&self, of: &DrivenSpacecraft) -> Option<Free> {
         let columns = |of: &[Vector]| Matrix3xX::from_fn(of.len(), |row, column| of[column][row]);
         let held = ClampedModes {
@@ -161,20 +161,21 @@ impl Posed {
         held.free()
     }
 
-    /// E⁻¹ v.
+    /// Multiplies a vector by E⁻¹ in place.
     pub fn freed(&self, v: &mut [f64]) {
         let sum = self.translations.iter().zip(&*v).fold(Vector::zeros(), |sum, (t, v)| sum + t * *v);
         let back = self.share * sum;
         v.iter_mut().zip(&self.translations).for_each(|(v, t)| *v += t.dot(&back));
     }
 
-    /// What the modes change of the inertia (kg m²).
+    /// Returns the change of the inertia by the modes (kg m²).
     pub fn changed(&self, eta: &[f64]) -> Matrix3<f64> {
         let modes = self.moments.iter().zip(eta);
         modes.fold(Matrix3::zeros(), |sum: Matrix3<f64>, (moments, eta)| sum + moments * *eta)
     }
 
-    /// The rate of the hub (rad/s), from its momentum without rotors; `rates` hold pi, and then eta'.
+    /// Returns the rate of the hub (rad/s) from its momentum without rotors; `rates` holds pi on entry and eta' on
+    /// return.
     pub fn rates(&self, free: &Vector, eta: &[f64], rates: &mut [f64]) -> Vector {
         rates.iter_mut().zip(&self.kicks).for_each(|(pi, kick)| *pi -= kick);
         self.freed(rates);
@@ -184,14 +185,14 @@ impl Posed {
         let turning = free - self.momentum - sum(&self.momenta, eta) - sum(&self.rotations, rates);
         let whole = self.left + self.changed(eta);
         let rate = whole.lu().solve(&turning).unwrap_or_else(|| Vector::repeat(f64::NAN));
-        // eta' = E⁻¹ (pi - k) - E⁻¹ delta' w, of which the first is there.
+        // Here eta' = E⁻¹ (pi - k) - E⁻¹ delta' w; `rates` already holds the first term.
         let mut turned: Vec<f64> = self.rotations.iter().map(|delta| -delta.dot(&rate)).collect();
         self.freed(&mut turned);
         rates.iter_mut().zip(turned).for_each(|(own, turned)| *own += turned);
         rate
     }
 
-    /// H without rotors, and pi, of a body that turns at this rate (rad/s).
+    /// Returns H without rotors (N m s), and pi, for a body with the given hub rate (rad/s) and modal rates.
     pub fn momenta(&self, rate: &Vector, eta: &[f64], rates: &[f64]) -> (Vector, Vec<f64>) {
         let sum = |of: &[Vector], by: &[f64]| -> Vector {
             of.iter().zip(by).fold(Vector::zeros(), |sum, (of, by)| sum + of * *by)
@@ -207,11 +208,11 @@ impl Posed {
         (momentum, rates.iter().enumerate().map(pi).collect())
     }
 
-    /// The kinetic energy (J).
+    /// Returns the kinetic energy (J).
     pub fn kinetic(&self, rate: &Vector, eta: &[f64], rates: &[f64]) -> f64 {
         let (momentum, pi) = self.momenta(rate, eta, rates);
         let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| a * b).sum::<f64>();
-        // Of T = T2 + T1 + T0 by degree in the rates, the momenta give 2 T2 + T1.
+        // With T = T2 + T1 + T0 by degree in the rates, the momenta give 2 T2 + T1.
         let first = rate.dot(&self.momentum)
             + dot(&self.kicks, rates)
             + self.momenta.iter().zip(eta).map(|(of, eta)| of.dot(rate) * eta).sum::<f64>();

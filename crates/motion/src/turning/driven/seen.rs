@@ -1,4 +1,4 @@
-//! A driven body as it looks at an instant, and its state in the modes of another angle.
+//! View of an articulated body at an instant, and transfer of its state between the modes of two configurations.
 
 use std::sync::Arc;
 
@@ -12,9 +12,9 @@ use crate::turning::pace::Pace;
 use crate::turning::rotation::Bend;
 use crate::turning::state::{TurningSight, TurningState};
 
-/// What a state is without its mean axes.
+/// State reduced to quantities that do not depend on the basis: hub attitude, momentum and clamped modes.
 struct Bare {
-    /// Attitude of the hub, and the total momentum in its axes (N m s).
+    /// Attitude of the hub, and total momentum in its axes (N m s).
     attitude: Quaternion<f64>,
     momentum: Vector,
     eta: Vec<f64>,
@@ -37,7 +37,8 @@ impl Driving {
         }
     }
 
-    /// Looks at a state `now` seconds after the departure, in which rotors have this momentum (N m s): in the modes of that instant.
+    /// Computes the view of a state `now` (s) after the start of the segment, given the momentum of the rotors (N m
+    /// s), in the free modes of that instant.
     pub(in crate::turning) fn look(
         &self,
         now: f64,
@@ -47,7 +48,7 @@ impl Driving {
     ) {
         let mut posed = Posed::default();
         let Bare { attitude, momentum, mut eta, mut pi, .. } = self.bare(state);
-        // The free modes are those with hinges at 0.
+        // The free modes are those with hinges at angle 0.
         self.posed(self.began + now, &[], &mut posed);
         let Some(free) = posed.free(&self.of) else { return };
         if self.swings {
@@ -83,13 +84,13 @@ impl Driving {
         seen.inertia = Some(posed.inertia + posed.changed(&eta));
     }
 
-    /// By how much modes turn the hub from the axes in which the state is carried (rad).
+    /// Returns the elastic rotation of the hub from the mean axes of the state (rad).
     fn bare_turn(&self, state: &TurningState) -> Vector {
         let q: Vec<f64> = state.modes.iter().map(|[q, ..]| *q).collect();
         self.basis.bent(&q)
     }
 
-    /// The state of a body whose hub and clamped modes are so.
+    /// Sets the state from the attitude and momentum of the hub and the clamped modes.
     fn carried(&self, bare: &Bare, state: &mut TurningState) {
         let (q, p) = (self.basis.free(&bare.eta), self.basis.forced(&bare.pi));
         let bent = self.basis.bent(&q);
@@ -105,7 +106,7 @@ impl Driving {
 }
 
 impl Turning {
-    /// Lets drives turn the appendages from the start on, before anything else.
+    /// Installs the articulated appendages at the start of the run, before any other call.
     pub fn drive(&mut self, driving: Driving) {
         let mut posed = Posed::default();
         let (eta, rates) =
@@ -113,7 +114,7 @@ impl Turning {
         driving.posed(0.0, &eta, &mut posed);
         let mut small = eta.clone();
         posed.small(&mut small);
-        // Where hinges are at the start turns the hub no further, and neither does how they swing.
+        // Initial hinge angles and rates do not contribute to the hub's initial attitude and rate.
         let swung = |all: &[f64]| {
             let mut others = all.to_vec();
             posed.small(&mut others);
@@ -134,14 +135,15 @@ impl Turning {
         self.look();
     }
 
-    /// Tells when the next departure is (s since the start).
+    /// Sets the start of the next segment, as time since the start of the run (s).
     pub fn begins(&mut self, at: f64) {
         if let Some(driving) = &mut self.driving {
             driving.began = at;
         }
     }
 
-    /// Carries the state on in the modes of another time since the start (s); a departure has to follow.
+    /// Changes the basis of the state to the free modes at a time `t` since the start (s); a new segment must begin
+    /// next.
     pub fn recast(&mut self, t: f64) {
         let Some(driving) = &mut self.driving else { return };
         let Some(basis) = driving.basis.at(&driving.of, &*driving.angles, t) else { return };
@@ -151,7 +153,7 @@ impl Turning {
         self.remodel();
     }
 
-    /// Takes over the modes in which the state is carried now.
+    /// Updates the integrator's constants to the modes in which the state is carried.
     fn remodel(&mut self) {
         let Some(driving) = &self.driving else { return };
         let model = Model::new(&driving.flexible());

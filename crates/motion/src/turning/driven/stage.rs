@@ -1,4 +1,4 @@
-//! A driven body at a stage of a step.
+//! Evaluation of an articulated body at a stage of a step.
 
 use nalgebra::Matrix3;
 
@@ -7,51 +7,51 @@ use crate::attitude::Vector;
 use crate::numerics::gauss_legendre::NODES;
 use crate::turning::Surroundings;
 
-/// The memory of the steps of a driven body.
+/// Working memory of the steps of an articulated body.
 #[derive(Clone, Debug, Default)]
 pub struct Scratch {
-    /// What it is at the start of the step and at its nodes, and when those are (s since the start).
+    /// Configurations at the start of the step and at its nodes, and their times since the start of the run (s).
     posed: [Posed; 4],
     times: [f64; 4],
-    /// q of the free modes, P.
+    /// Displacements q and canonical rates P of the free modes.
     pub q: Vec<f64>,
     pub p: Vec<f64>,
-    /// Displacements of the clamped modes but for those of hinges, and rates of all.
+    /// Displacements of the clamped modes without those of hinges, and rates of all clamped modes.
     eta: Vec<f64>,
     rates: Vec<f64>,
-    /// q', and the forces on the free modes.
+    /// Rates q', and forces on the free modes (N/sqrt(kg)).
     pub speeds: Vec<f64>,
     pub forces: Vec<f64>,
 }
 
-/// How a driven body turns.
+/// Motion of an articulated body at a stage.
 pub struct Turns {
-    /// The rate of the hub (rad/s), and what the modes make of it.
+    /// Rate of the hub (rad/s), and its elastic part (rad/s).
     pub rate: Vector,
     pub elastic: Vector,
-    /// Inertia of the body as it is bent (kg m²).
+    /// Inertia of the deformed body (kg m²).
     pub inertia: Matrix3<f64>,
-    /// What forces add to the torque on the hub, as places and the centre of mass move (N m).
+    /// Torque on the hub by forces, as their points of application and the centre of mass move (N m).
     pub levered: Vector,
 }
 
-/// What forces the modes of a driven body.
+/// Sources of modal forces on an articulated body.
 pub struct Pulls<'a> {
     pub around: Option<(&'a dyn Surroundings, f64)>,
     pub tide: Option<Matrix3<f64>>,
-    /// The acceleration of the centre of mass (m/s²).
+    /// Acceleration of the centre of mass (m/s²).
     pub push: Option<Vector>,
 }
 
 impl Driving {
-    /// Poses the body for a step of `h` seconds that begins `t` seconds after the departure.
+    /// Computes the configurations for a step of `h` (s) that begins `t` (s) after the start of the segment.
     pub fn prepare(&self, t: f64, h: f64, scratch: &mut Scratch) {
         let modes = self.basis.frequencies.len();
         scratch.q.resize(modes, 0.0);
         scratch.p.resize(modes, 0.0);
         let Scratch { posed, times, .. } = scratch;
         for ((posed, at), part) in posed.iter_mut().zip(times).zip([0.0].into_iter().chain(NODES)) {
-            // Angles are known from the departure on, whatever jumps there.
+            // Angles are continuous within the segment, even if they jump at its start.
             *at = self.began + (t + part * h);
             if !self.swings {
                 self.posed(*at, &[], posed);
@@ -59,7 +59,7 @@ impl Driving {
         }
     }
 
-    /// How the body turns at a stage with this momentum without rotors, where scratch holds q and P.
+    /// Evaluates the motion at a stage for the momentum `free` without rotors (N m s); `scratch` holds q and P.
     pub fn turns(&self, stage: usize, free: &Vector, push: Option<Vector>, scratch: &mut Scratch) -> Turns {
         scratch.eta = self.basis.held(&scratch.q);
         if self.swings {
@@ -82,13 +82,13 @@ impl Driving {
         }
     }
 
-    /// By how much places of the hub are further from the centre of mass than at the start (m).
+    /// Returns the shift of the hub's points relative to the centre of mass since the start (m).
     pub fn moved(&self, posed: &Posed, eta: &[f64]) -> Vector {
         let bent = posed.translations.iter().zip(eta).fold(Vector::zeros(), |sum, (t, eta)| sum + t * *eta);
         self.basis.first_centre - posed.centre - bent / posed.mass
     }
 
-    /// Fills in the forces on the modes at a stage, `t` seconds after the start of the step, at which the hub has this rate (rad/s).
+    /// Computes the forces on the modes at a stage, `t` (s) after the start of the step, for the hub's rate (rad/s).
     pub fn pull(&self, (stage, t): (usize, f64), rate: &Vector, pulls: &Pulls<'_>, scratch: &mut Scratch) {
         let posed = &scratch.posed[stage];
         let moved = |index: usize| {

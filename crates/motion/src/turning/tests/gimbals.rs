@@ -1,4 +1,4 @@
-//! Rotors in gimbals: balances of momentum and energy over a long run, and the same body by the other ways of taking a step.
+//! Rotors in gimbals: balances of momentum and energy over a long run, and comparison of both ways to compute a step.
 
 use nalgebra::Quaternion;
 
@@ -6,7 +6,7 @@ use super::super::{Acting, Bearing, Gimbal, Rotor, Turning};
 use super::{TUMBLE, apart, craft, energy, go};
 use crate::attitude::Vector;
 
-/// Four gimbals about the normals of a pyramid's faces.
+/// Returns four gimbals about the normals of a pyramid's faces.
 fn gimbals(angles: [f64; 4], rates: [f64; 4]) -> Vec<Gimbal> {
     let (sin, cos) = libm::sincos(0.955);
     let faces = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
@@ -23,18 +23,18 @@ fn gimbals(angles: [f64; 4], rates: [f64; 4]) -> Vec<Gimbal> {
     (0..4).map(gimbal).collect()
 }
 
-/// Gimbal rates of a stretch of a run (rad/s).
+/// Returns the gimbal rates during a segment of a run (rad/s).
 fn rates(stretch: u32) -> [f64; 4] {
     [0.0, 1.0, 2.0, 3.0].map(|k| 0.7 * libm::sin(1.3 * f64::from(stretch) + 2.1 * k))
 }
 
-/// The angular momentum in space (N m s).
+/// Returns the angular momentum in inertial axes (N m s).
 fn in_space(turning: &Turning) -> Vector {
     let seen = turning.seen();
     (seen.attitude * Quaternion::from_imag(seen.momentum) * seen.attitude.conjugate()).vector().into_owned()
 }
 
-/// A run in stretches of 7 s, of which each may be looked at first.
+/// Runs segments of 7 s; `look` is called before each.
 fn run(mut turning: Turning, stretches: u32, mut look: impl FnMut(&mut Turning, &[Gimbal], f64)) -> Turning {
     let mut angles = [0.2, -0.5, 1.1, 0.0];
     for stretch in 0..stretches {
@@ -58,7 +58,8 @@ fn momentum_is_kept_over_a_long_run() {
     assert!((after - before).norm() < 1e-12 * before.norm(), "{:e}", (after - before).norm() / before.norm());
 }
 
-/// The motor of a gimbal works against w x h about the gimbal's axis: -h d' (w . t).
+/// Checks the energy against the work of the gimbal motors, which act against w x h about the gimbal axis: -h d' (w .
+/// t).
 #[test]
 fn the_motors_of_gimbals_give_the_energy() {
     let (mut work, mut first) = (0.0, None);
@@ -99,7 +100,7 @@ fn a_gimbal_at_rest_is_a_rotor() {
     assert!(apart(&a.attitude, &b.attitude) < 1e-12 && (a.rate - b.rate).norm() < 1e-13);
 }
 
-/// A rotor in a bearing makes steps go through their stages one by one.
+/// Compares SIMD steps with steps node by node, which a rotor in a bearing enforces.
 #[test]
 fn both_ways_of_taking_a_step_agree() {
     let mut both = [craft().turning(TUMBLE), craft().turning(TUMBLE)];
@@ -112,7 +113,7 @@ fn both_ways_of_taking_a_step_agree() {
     }
     let [a, b] = [both[0].seen(), both[1].seen()];
     assert!(apart(&a.attitude, &b.attitude) < 1e-11, "{:e}", apart(&a.attitude, &b.attitude));
-    // The rate at an instant changes as the equations say.
+    // Compares the rate of change with the accelerations by the equations of motion.
     let told = both[0].accelerations(None).hub;
     let rate = |t: f64, turning: &mut Turning| {
         go(turning, t);

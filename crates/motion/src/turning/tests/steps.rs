@@ -1,4 +1,4 @@
-//! How much steps lose: by the rule of their lengths, and by halving them.
+//! Step errors: of the rule for step lengths, and of halved steps.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use super::*;
 use crate::lanes::Four;
 use crate::turning::CommonSteps;
 
-/// The step of the rule errs by less than 1e-10 rad in 1e4 s: against steps a quarter as long, over 200 s.
+/// Checks that the rule's steps err by less than 1e-10 rad in 1e4 s, against steps a quarter as long, over 200 s.
 #[test]
 fn the_rule_of_steps_meets_its_bound() {
     let craft = craft().stiff().undamped();
@@ -21,8 +21,8 @@ fn the_rule_of_steps_meets_its_bound() {
     assert!(worst < 2e-12, "{worst:e}");
 }
 
-/// A free body whose steps do not resolve all modes drifts no faster than 1e-14 rad/s, whether its rotation or the modes
-/// themselves turn the modes: against steps that resolve all.
+/// Checks that a free body whose steps do not resolve all modes drifts by less than 1e-14 rad/s, due to its rotation
+/// or to mutual rotation of the modes, against steps that resolve all.
 #[test]
 fn unresolved_modes_make_a_free_body_drift_no_faster_than_promised() {
     for (damping, rate, speed) in [
@@ -50,7 +50,8 @@ fn unresolved_modes_make_a_free_body_drift_no_faster_than_promised() {
     }
 }
 
-/// A body that begins to tumble with its modes at rest: the rotation makes them swing. Against steps an eighth as long.
+/// Compares a body that starts to tumble with its modes at rest, so that the rotation excites them, with steps an
+/// eighth as long.
 #[test]
 fn what_the_rotation_bends_counts_from_the_first_step_on() {
     let craft = craft().stiff().undamped();
@@ -72,7 +73,8 @@ fn what_the_rotation_bends_counts_from_the_first_step_on() {
     }
 }
 
-/// Of a body that is turned by its wheels, four commands a second, with first moments: against steps that resolve all modes.
+/// Compares a body driven by its wheels at four commands per second, with first moments, with steps that resolve all
+/// modes.
 #[test]
 fn steps_are_longer_where_modes_hardly_move() {
     let mut craft = craft();
@@ -83,7 +85,7 @@ fn steps_are_longer_where_modes_hardly_move() {
     let mut wheels = rotors(SPUN, [0.0; 4]);
     let mut worst = 0.0_f64;
     for command in 0..480 {
-        // Up to 9 mrad/s within 40 s, unevenly; a coast; and back.
+        // Profile: up to 9 mrad/s within 40 s, unevenly; a coast; and back.
         let push = match command {
             0..160 => 0.07,
             160..320 => 0.0,
@@ -107,7 +109,7 @@ fn steps_are_longer_where_modes_hardly_move() {
     assert!(5 * steps < 3 * fine, "{steps} {fine}");
 }
 
-/// With the six slow modes, which all steps here resolve, first moments and damping.
+/// Checks the order of the method with the six slow modes, which all steps here resolve, first moments and damping.
 #[test]
 fn halving_the_step_divides_the_error_by_64() {
     let mut craft = craft();
@@ -143,14 +145,14 @@ fn halving_the_step_divides_the_error_by_64() {
     };
     let (coarse, fine) = (error(1.0 / 4.0), error(1.0 / 8.0));
     for (index, (coarse, fine)) in coarse.into_iter().zip(fine).enumerate() {
-        // Of place and velocity hardly more than rounding is left.
+        // Position and velocity err by little more than rounding.
         let most = if index < 3 { 90.0 } else { f64::INFINITY };
         assert!(coarse / fine > 45.0 && coarse / fine < most, "{index}: {coarse:e} {fine:e}");
     }
 }
 
-/// Without first moments, wheels turn a body from rest as they were told: one pass finds the stages, which steps of a sixteenth
-/// of the length confirm.
+/// Checks that wheels without first moments turn a body from rest as commanded: one iteration suffices, confirmed by
+/// steps of a sixteenth of the length.
 #[test]
 fn one_pass_is_enough_where_nothing_acts_back() {
     let craft = craft().stiff().undamped();
@@ -175,7 +177,7 @@ fn one_pass_is_enough_where_nothing_acts_back() {
     assert_eq!(effort.passes, effort.steps);
 }
 
-/// Whatever registers the processor has, with bends small and large.
+/// Checks bit-equal results for all SIMD instruction sets, with small and large elastic rotations.
 #[test]
 fn no_bit_depends_on_the_processor() {
     for speed in [1e-4, 0.02] {
@@ -193,7 +195,7 @@ fn no_bit_depends_on_the_processor() {
     }
 }
 
-/// Runs that share responses move as one that computes its own, and another body has its own.
+/// Checks that runs with shared responses move as one that computes its own, and that another body gets its own.
 #[test]
 fn what_runs_have_in_common_changes_nothing() {
     let (craft, other) = (craft().undamped(), self::craft().undamped().stiff());
@@ -207,7 +209,7 @@ fn what_runs_have_in_common_changes_nothing() {
         }
         turning.seen().clone()
     };
-    // More lengths of steps than are kept.
+    // Uses more step lengths than the cache keeps.
     let many: Vec<f64> = (1..100).map(|step| f64::from(step) * 0.011).collect();
     for craft in [&craft, &other] {
         for _ in 0..2 {
