@@ -1,4 +1,4 @@
-//! Instants in lanes: whole seconds, and femtoseconds past them, both as whole numbers that doubles hold exactly.
+//! Instants in SIMD lanes: whole seconds and femtoseconds, both as whole numbers that doubles represent exactly.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
@@ -6,20 +6,20 @@ use flexsc_motion::lanes::Real;
 
 /// Femtoseconds in a second.
 const FEMTOSECONDS: f64 = 1e15;
-/// Spans below so many seconds are counted in femtoseconds.
+/// Length (s) below which spans are counted in femtoseconds.
 const SHORT: f64 = 9_000.0;
 
-/// An instant, or a span that is not negative.
+/// Instant, or span that is not negative.
 #[derive(Copy, Clone, Debug)]
 pub struct Clock<R> {
     /// Whole seconds.
     pub whole: R,
-    /// Femtoseconds past them, less than a second.
+    /// Femtoseconds past `whole`, less than a second.
     pub part: R,
 }
 
 impl<R: Real> Clock<R> {
-    /// A span of femtoseconds below 9000 s.
+    /// Creates a span from femtoseconds, below 9000 s.
     #[inline(always)]
     pub fn of_ticks(ticks: R) -> Self {
         let whole = (ticks / ticks.of(FEMTOSECONDS)).round();
@@ -28,7 +28,7 @@ impl<R: Real> Clock<R> {
         Self { whole: whole - borrow, part: part + borrow * FEMTOSECONDS }
     }
 
-    /// The instant a span later.
+    /// Returns the instant a span later.
     #[inline(always)]
     pub fn plus(self, span: Self) -> Self {
         let part = self.part + span.part;
@@ -36,7 +36,7 @@ impl<R: Real> Clock<R> {
         Self { whole: (self.whole + span.whole) + carry, part: part - carry * FEMTOSECONDS }
     }
 
-    /// The span since an instant that is not later.
+    /// Returns the span since an instant that is not later.
     #[inline(always)]
     pub fn since(self, earlier: Self) -> Self {
         let part = self.part - earlier.part;
@@ -44,7 +44,7 @@ impl<R: Real> Clock<R> {
         Self { whole: (self.whole - earlier.whole) - borrow, part: part + borrow * FEMTOSECONDS }
     }
 
-    /// In seconds, as a span or an instant rounds them.
+    /// Returns the time in seconds, rounded as spans and instants are.
     #[inline(always)]
     pub fn seconds(self) -> R {
         let short = self.whole.lt(self.whole.of(SHORT));
@@ -52,43 +52,44 @@ impl<R: Real> Clock<R> {
         R::select(short, self.whole.of(0.0), self.whole) + ticks / ticks.of(FEMTOSECONDS)
     }
 
-    /// Where it is not later than another.
+    /// Returns the lanes in which the instant is not later than another.
     #[inline(always)]
     pub fn not_after(self, other: Self) -> R::Mask {
         let same = self.whole.le(other.whole) & other.whole.le(self.whole);
         self.whole.lt(other.whole) | (same & self.part.le(other.part))
     }
 
-    /// One or the other.
+    /// Selects one of two instants per lane.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
         Self { whole: R::select(mask, yes.whole, no.whole), part: R::select(mask, yes.part, no.part) }
     }
 
-    /// In one lane, as whole numbers.
+    /// Returns the instant in one lane, as whole numbers.
     #[inline(always)]
     pub fn lane(self, lane: usize) -> (u64, u64) {
         (self.whole.lane(lane) as u64, self.part.lane(lane) as u64)
     }
 
-    /// Other than before in one lane.
+    /// Replaces the instant in one lane.
     #[inline(always)]
     pub fn with_lane(self, lane: usize, (whole, part): (u64, u64)) -> Self {
         Self { whole: self.whole.with_lane(lane, whole as f64), part: self.part.with_lane(lane, part as f64) }
     }
 }
 
-/// 1 where it is so, else 0. Products with it are exact, and no branch is guessed where one number has two of them to select.
+/// Returns 1 where the mask is set, else 0. Products with it are exact, and avoid mispredicted branches for a single
+/// number.
 #[inline(always)]
 fn one<R: Real>(is: R::Mask, kind: R) -> R {
     R::select(is, kind.of(1.0), kind.of(0.0))
 }
 
-/// The femtoseconds nearest to a time (s) that is not negative, of two the later one.
+/// Returns the femtoseconds nearest to a time (s) that is not negative; ties are rounded up.
 #[inline(always)]
 pub fn nearest_ticks<R: Real>(seconds: R) -> R {
     let ticks = seconds * FEMTOSECONDS;
-    // From 2^52 on all numbers are integers.
+    // All numbers from 2^52 on are integers.
     let all = ticks.of(4_503_599_627_370_496.0);
     let even = (ticks + all) - all;
     let rounded = R::select((ticks - even).lt(ticks.of(0.5)), even, even + 1.0);

@@ -1,20 +1,20 @@
-//! What a flight asks of who has the runs, and what it tells: plain numbers of one lane.
+//! Interface between the kernel and the host of the runs: plain numbers of one lane.
 
-/// What all runs of a flight have in common.
+/// Properties that all runs of a batch have in common.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Structure {
-    /// How many modes the body has.
+    /// Number of modes of the body.
     pub modes: usize,
-    /// How many modes the envelope's model has.
+    /// Number of modes of the envelope's model.
     pub tracks: usize,
-    /// Whether a mode of the body or of the envelope is damped.
+    /// True if a mode of the body or of the envelope is damped.
     pub is_damped: bool,
 }
 
-/// One run at its start, as plain numbers.
+/// Initial state and parameters of one run, as plain numbers.
 #[derive(Clone, Debug, Default)]
 pub struct Setup {
-    /// What it has in common with the other runs.
+    /// Properties in common with the other runs.
     pub structure: Structure,
     /// Rigid angle (rad).
     pub angle: f64,
@@ -22,30 +22,30 @@ pub struct Setup {
     pub rate: f64,
     /// Modes of the body: frequency (rad/s), excitability (s²), displacement and quadrature (rad), damping ratio.
     pub modes: Vec<[f64; 5]>,
-    /// Modes of the envelope's model: the same, with the phasor's imaginary part in place of the quadrature.
+    /// Modes of the envelope's model, as `modes`, with the phasor's imaginary part in place of the quadrature.
     pub tracks: Vec<[f64; 5]>,
-    /// Half the width of the dead zone (rad).
+    /// Half-width of the dead zone (rad).
     pub edge: f64,
-    /// Where the brake begins (rad).
+    /// Angle at which the brake begins (rad).
     pub back: f64,
     /// Strong and weak torque (N m).
     pub torques: [f64; 2],
-    /// Strong moment (rad/s²).
+    /// Angular acceleration by the strong torque (rad/s²).
     pub strong: f64,
-    /// Weak moment (rad/s²).
+    /// Angular acceleration by the weak torque (rad/s²).
     pub weak: f64,
     /// Braking gain.
     pub k_t: f64,
-    /// Half the width of the band about the goal (rad).
+    /// Half-width of the band about the target (rad).
     pub band: f64,
-    /// The end: whole seconds and femtoseconds.
+    /// End of the run: whole seconds and femtoseconds.
     pub end: (u64, u64),
-    /// The length of a window of the envelope: whole seconds and femtoseconds; none without one.
+    /// Length of a window of the envelope: whole seconds and femtoseconds; `None` without windows.
     pub window: Option<(u64, u64)>,
 }
 
 impl Setup {
-    /// The torque at a place of the cycle (N m).
+    /// Returns the torque at a phase of the cycle (N m).
     pub fn torque(&self, place: CyclePlace, side: f64) -> f64 {
         let [strong, weak] = self.torques;
         match place {
@@ -56,21 +56,21 @@ impl Setup {
     }
 }
 
-/// A place of the cycle.
+/// Phase of the limit cycle.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum CyclePlace {
     /// In the dead zone, under the weak torque.
     Coast,
-    /// Back from the right boundary.
+    /// Accelerating back from the right boundary.
     Push,
-    /// Against the push.
+    /// Decelerating after the push.
     Brake,
 }
 
-/// One lane at one instant, out of the mirror. Displacements are from 0, not from an equilibrium.
+/// State of one lane at one instant, without mirroring. Displacements are relative to 0, not to an equilibrium.
 #[derive(Clone, Debug, Default)]
 pub struct LaneSight {
-    /// Whole seconds and femtoseconds.
+    /// Time: whole seconds and femtoseconds.
     pub at: (u64, u64),
     /// Rigid angle (rad).
     pub angle: f64,
@@ -78,33 +78,33 @@ pub struct LaneSight {
     pub rate: f64,
     /// Displacement and quadrature of each mode (rad).
     pub modes: Vec<[f64; 2]>,
-    /// 1, or -1 in the mirror.
+    /// Side of the motion: 1, or -1 if it is mirrored.
     pub side: f64,
     /// Braking gain.
     pub gain: f64,
 }
 
-/// A run at a departure, as plain numbers, out of the mirror.
+/// State of a run at the start of a motion, as plain numbers, without mirroring; passed back to the host.
 #[derive(Clone, Debug, Default)]
 pub struct LaneRest {
-    /// The motion that begins.
+    /// Phase of the cycle that begins.
     pub place: Option<CyclePlace>,
-    /// The body.
+    /// State of the body.
     pub from: LaneSight,
-    /// When the last push began.
+    /// Start time of the last push.
     pub pushed: (u64, u64),
-    /// Until when the envelope was followed.
+    /// Time up to which the envelope is integrated.
     pub seen: (u64, u64),
-    /// The integral of the envelope since the last window closed.
+    /// Integral of the envelope since the end of the last window.
     pub integral: f64,
-    /// The phasors of the envelope: in the turning frame, that frame's axis, equilibrium, deviation.
+    /// Phasors of the envelope: in the rotating frame (2), axis of that frame (2), equilibrium, deviation (2).
     pub tracks: Vec<[f64; 7]>,
 }
 
-/// A trip that was searched.
+/// Threshold crossing found by the host's search.
 #[derive(Clone, Debug, Default)]
 pub struct Searched {
-    /// The span since departure: whole seconds and femtoseconds, and all of it in seconds.
+    /// Time since the start of the motion: whole seconds and femtoseconds, and in seconds.
     pub after: ((u64, u64), f64),
     /// Whether it is the right boundary, out of the mirror, or the only level.
     pub right: bool,
@@ -112,28 +112,30 @@ pub struct Searched {
     pub modes: Vec<[f64; 2]>,
 }
 
-/// Who has the runs.
+/// Host of the runs in the lanes: supplies setups, receives events.
 pub trait Crew {
-    /// Whether it wants switchings.
+    /// Returns true if `switched` must be called for every switching.
     fn listens(&self) -> bool;
-    /// Whether it wants to know where bounds do not keep the angle within the band.
+    /// Returns true if `strays` must be called where bounds do not keep the angle within the band.
     fn looks(&self) -> bool;
-    /// The next run for a lane, whose last run has ended.
+    /// Returns the next run for a lane whose last run has ended.
     fn next(&mut self, lane: usize) -> Option<&Setup>;
-    /// Looks for the first trip of a lane that departs here at this place, and answers whether there is one within the run.
+    /// Searches the first crossing of a lane for a motion from `from` at a phase of the cycle; returns true if there
+    /// is one within the run.
     fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, found: &mut Searched) -> bool;
-    /// A lane cannot go on here: its run has to be made alone.
+    /// Rejects a lane that the kernel cannot continue: its run must be computed singly.
     fn give_up(&mut self, lane: usize);
-    /// The law has switched to a place.
+    /// Receives a switching of the law to a phase of the cycle.
     fn switched(&mut self, lane: usize, to: CyclePlace, now: &LaneSight);
-    /// A window has closed, with this integral of the envelope; answers the braking gain from now on.
+    /// Receives the envelope integral of a window that has ended; returns the braking gain from then on.
     fn closed(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64;
-    /// On the motion that departed here, at this place, and ends at an instant, the angle may leave the band (rad).
+    /// Receives a motion from `from`, at a phase of the cycle, during which the angle may leave the band (rad) before
+    /// `until`.
     fn strays(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, until: (u64, u64));
-    /// Whether its run must not go on.
+    /// Returns true if the run must stop.
     fn stops(&self) -> bool {
         false
     }
-    /// Takes a run that was alone back at the last departure before its end, to go on with it elsewhere.
+    /// Receives a single run at the last switching before its end, to be continued by the host.
     fn take_back(&mut self, _rest: LaneRest) {}
 }

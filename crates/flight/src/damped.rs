@@ -8,7 +8,7 @@ use flexsc_motion::lanes::{LaneWork, Processor, Real};
 use crate::crew::{Crew, Structure};
 use crate::kernel::Flight;
 
-/// Runs of a crew.
+/// SIMD task that computes all runs of a host.
 struct Runs<'a> {
     structure: Structure,
     crew: &'a mut dyn Crew,
@@ -23,12 +23,12 @@ impl LaneWork for Runs<'_> {
     }
 }
 
-/// Makes all runs of a crew side by side.
+/// Computes all runs of a host in SIMD lanes.
 pub fn fly_beside(processor: Processor, structure: Structure, crew: &mut dyn Crew) {
     processor.run::<1, _>(Runs { structure, crew });
 }
 
-/// Makes the one run of a crew.
+/// Computes the single run of a host.
 pub fn fly_alone(processor: Processor, structure: Structure, crew: &mut dyn Crew) {
     processor.run_alone(Runs { structure, crew });
 }

@@ -1,8 +1,9 @@
-//! Runs of the relay law side by side: in phase, each with a clock of its own.
+//! Kernel of the relay law: runs in SIMD lanes, at the same phase of the cycle, each with its own time.
 //!
-//! The law's cycle is coast, push and brake in every run. The lanes of a [`Flight`] are at the same place of it, each at its
-//! own time; seen in a mirror wherever the left boundary is reached, all push back from the right. A run that ends gives its
-//! lane to the next one at the cycle's end. What a lane does depends on no other.
+//! The law's cycle is coast, push and brake in every run. The lanes of a [`Flight`] are at the same phase of it, each
+//! at its own time; coordinates are mirrored where the left boundary is reached, so that all push back from the
+//! right. A lane whose run has ended receives the next run at the end of the cycle. The results of a lane do not
+//! depend on other lanes.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
@@ -19,16 +20,16 @@ use flexsc_motion::guess::{Departure, GuessLevel, GuessOscillator, GuessedTrip, 
 use flexsc_motion::lanes::{Four, Mask, Real};
 use mode::LaneMode;
 
-/// Most lanes.
+/// Largest number of lanes.
 pub const MOST: usize = 16;
-/// Beyond every run (s).
+/// Time beyond every run (s).
 const NEVER: f64 = 1e17;
-/// Spans below so many seconds fit 64 bits of femtoseconds.
+/// Length (s) below which spans fit 64 bits of femtoseconds.
 const SHORT: f64 = 9_000.0;
-/// What is written of a lane beside its modes.
+/// Number of rows written per lane, without its modes.
 const ROWS: usize = 6;
 
-/// A number in the mirror, if there is one.
+/// Mirrors a number, if a mirror is given.
 #[inline(always)]
 fn seen<R: Real>(mirror: Option<R>, number: R) -> R {
     match mirror {
@@ -37,7 +38,7 @@ fn seen<R: Real>(mirror: Option<R>, number: R) -> R {
     }
 }
 
-/// Runs side by side.
+/// Kernel state: the runs in SIMD lanes.
 pub struct Flight<R: Real, D> {
     now: Clock<R>,
     end: Clock<R>,
@@ -45,7 +46,7 @@ pub struct Flight<R: Real, D> {
     angle: R,
     rate: R,
     modes: Vec<LaneMode<R, D>>,
-    /// The modes of a motion, where there are more or fewer than two.
+    /// Modes during a motion, for numbers of modes other than two.
     moved: Vec<GuessOscillator<R, D>>,
     fastest: R,
     longest: R,
@@ -55,7 +56,7 @@ pub struct Flight<R: Real, D> {
     weak: R,
     k_t: R,
     band: R,
-    /// When the push of a run alone began, and how long the last push lasted (s).
+    /// Start of the last push (single runs only), and duration of the last push (s).
     pushed: Clock<R>,
     lasted: R,
     tracks: Vec<PhasorTrack<R, D>>,
@@ -63,33 +64,34 @@ pub struct Flight<R: Real, D> {
     four: Four,
     /// Whether any run has windows.
     watches: bool,
-    /// What the crew wants to know: switchings, and where the angle may leave the band.
+    /// Events that the host requested: switchings, and possible exits from the band.
     listens: bool,
     looks: bool,
-    /// When the envelope was followed last, its integral, and when and after how long windows close.
+    /// Time up to which the envelope is integrated, its integral, end of the current window, and length of the
+    /// windows.
     seen: Clock<R>,
     integral: R,
     closes: Clock<R>,
     window: Clock<R>,
-    /// Which lanes have a run that goes on.
+    /// True for the lanes with an active run.
     active: [bool; MOST],
-    /// All lanes as plain numbers, and one of them.
+    /// State of all lanes as plain numbers, and of one of them.
     rows: Vec<[f64; MOST]>,
     sight: LaneSight,
-    /// What was searched last.
+    /// Result of the last search.
     found: Searched,
 }
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
-    /// A run alone is handed back where it ends.
+    /// True for a single run, which is handed back to the host where it ends.
     const IS_ALONE: bool = R::LANES == 1;
 
-    /// Makes all runs of a crew.
+    /// Computes all runs of a host.
     #[inline(always)]
     pub fn fly(kind: R, structure: Structure, crew: &mut dyn Crew) {
         let mut flight = Self::new(kind, structure.modes, structure.tracks);
         let mut place = CyclePlace::Brake;
-        // One place at a time, whose code is here once.
+        // One phase per iteration, so that its code is instantiated once.
         loop {
             place = match place {
                 CyclePlace::Coast if !Self::IS_ALONE || flight.active[0] => CyclePlace::Push,
@@ -105,7 +107,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
     }
 
-    /// The motion of one place, and the switching at its end.
+    /// Computes the motion of one phase, and the switching at its end.
     #[inline(always)]
     fn go(&mut self, crew: &mut dyn Crew, place: CyclePlace) {
         let one = self.angle.of(1.0);
@@ -131,7 +133,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         if place == CyclePlace::Push {
             self.lasted = span.1;
         }
-        // Seen in the mirror, what reaches the left boundary reaches the right one.
+        // After mirroring, the left boundary is the right one.
         let mirror = if place == CyclePlace::Coast { Some(R::select(right, one, -one)) } else { None };
         self.arrive(crew, place, moment, span, mirror);
         if Self::IS_ALONE && !self.active[0] {
@@ -147,7 +149,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         );
     }
 
-    /// The envelope in the mirror.
+    /// Mirrors the envelope.
     #[inline(always)]
     fn mirror(&mut self, mirror: R) {
         self.side = mirror * self.side;
@@ -161,11 +163,11 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
     }
 
-    /// The brake, which lasts as long as the law says.
+    /// Computes the brake, whose duration is given by the law.
     #[inline(always)]
     fn brake(&mut self, crew: &mut dyn Crew, moment: R) -> (Clock<R>, R) {
         let nearest = nearest_ticks(self.k_t * self.lasted);
-        // So long a brake is for a run alone.
+        // Longer brakes require a single run.
         let fits = nearest.lt(nearest.of(SHORT * 1e15));
         if !fits.all() {
             for lane in 0..R::LANES {
@@ -185,7 +187,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         (Clock::of_ticks(ticks), after)
     }
 
-    /// Finds the first trip: after how long, and of which level.
+    /// Finds the first crossing: its time, and which threshold is reached.
     #[inline(always)]
     fn guarded<const LEVELS: usize>(
         &mut self,
@@ -198,7 +200,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         let (fastest, longest) = (self.fastest, self.longest);
         let from = Departure { angle: self.angle, rate: self.rate, moment, fastest, longest };
         let found: GuessedTrip<R> = match &mut self.modes[..] {
-            // So many modes, which is usual, stay in registers.
+            // Two modes, the usual case, stay in registers.
             [first, second] if !D::IS_DAMPED => {
                 let mut two = [first.depart(moment), second.depart(moment)];
                 let found = locate(&from, levels, &mut two);
@@ -221,7 +223,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         if certain.all() {
             return ((Clock::of_ticks(found.ticks), found.after), found.first);
         }
-        // Lanes without a run stay where they are.
+        // Lanes without a certain crossing do not move yet.
         for mode in &mut self.modes {
             for part in 0..2 {
                 mode.end[part] = R::select(certain, mode.end[part], mode.at[part]);
@@ -240,7 +242,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             let side = self.sight.side;
             let found = &mut self.found;
             if !crew.search(lane, place, &self.sight, found) {
-                // Nothing within the run, whose end is before any trip that lies so far ahead.
+                // No crossing within the run: the end of the run comes first.
                 span = span.with_lane(lane, (NEVER as u64, 0));
                 continue;
             }
@@ -264,8 +266,8 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         ((span, after), zero.lt(first))
     }
 
-    /// Ends the motion that departed last, such a span after its departure: windows close on the way, and runs
-    /// that end do so. What comes of it is seen in the mirror, if there is one.
+    /// Ends the motion after `span`: closes windows on the way, and ends runs that are due. The resulting state is
+    /// mirrored if a mirror is given.
     #[inline(always)]
     fn arrive(
         &mut self,
@@ -283,7 +285,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             self.hand_back(crew, place);
             return;
         }
-        // Where no run ends, it takes as long as was found.
+        // If no run ends, the duration is the one found.
         let lasts = if ends.any() { None } else { Some(h) };
         if self.looks {
             let span = match lasts {
@@ -309,15 +311,15 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             for lane in 0..R::LANES {
                 if ended.lane(lane) > 0.0 {
                     self.active[lane] = false;
-                    // What is in the lane until another run comes moves without end or number.
+                    // The idle lane must keep moving with finite numbers until it receives another run.
                     self.closes = self.closes.with_lane(lane, (NEVER as u64, 0));
                 }
             }
         }
     }
 
-    /// Follows the envelope to an instant of each lane, by the windows that close on the way. It was followed last so many
-    /// seconds before, if that is known.
+    /// Integrates the envelope up to an instant of each lane, closing windows on the way. `whole` is the time since
+    /// the last update, if known (s).
     #[inline(always)]
     fn follow(&mut self, crew: &mut dyn Crew, until: Clock<R>, mut whole: Option<R>) {
         if !self.watches {
@@ -349,13 +351,13 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
     }
 
-    /// Follows the modes of the envelope one after the other, in the lanes that go on.
+    /// Integrates the modes of the envelope one after the other, in the lanes that continue.
     #[inline(always)]
     fn follow_each(&mut self, goes_on: R::Mask, time: R, span: R) {
         let zero = time.of(0.0);
         for track in &mut self.tracks {
             let (mut there, mut integral) = track.advance(time, span);
-            // As a rule all go on.
+            // Usually all lanes continue.
             if !goes_on.all() {
                 there = Turning::select(goes_on, &there, &track.now);
                 integral = R::select(goes_on, integral, zero);
@@ -365,7 +367,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
     }
 
-    /// Windows close now in the lanes that have a 1.
+    /// Closes the windows of the lanes in which `closing` is 1.
     fn close(&mut self, crew: &mut dyn Crew, closing: R) {
         for lane in 0..R::LANES {
             if closing.lane(lane) > 0.0 {

@@ -1,9 +1,10 @@
-//! Flights: runs of a relay law about a body with modes, with motions, crossings and envelopes of many in the lanes of a
-//! processor, or of one alone.
+//! Runs of a relay law on a body with modes: motions, crossings and envelopes of many runs in SIMD lanes, or of a
+//! single run.
 //!
-//! Nothing here knows a scenario or a log: who has the runs, a [`Crew`], gives them as plain numbers and is told what happens.
-//! What a lane comes to is, to the bit, what the loops of `flexsc-core` come to. The kernels are in a crate of their own because
-//! they take as long to compile as the rest of the engine, and can do so beside it.
+//! The kernel is independent of scenarios and logs: the host of the runs, a [`Crew`], supplies them as plain numbers
+//! and is notified of events. The results of a lane equal, to the bit, those of the run loop of `flexsc-core`. The
+//! kernels are a separate crate because they take as long to compile as the rest of the engine, and compile in
+//! parallel with it.
 
 mod clock;
 mod crew;
@@ -18,12 +19,12 @@ use flexsc_motion::lanes::Processor;
 pub use crew::{Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup, Structure};
 pub use kernel::MOST;
 
-/// Whether there is a kernel for runs of a structure.
+/// Returns true if there is a kernel for runs of a structure.
 pub fn flies(structure: Structure) -> bool {
     Processor::best().is_some() && (cfg!(feature = "damped") || !structure.is_damped)
 }
 
-/// Makes all runs of a crew, of a structure that [`flies`], side by side.
+/// Computes all runs of a host in SIMD lanes; the structure must be supported ([`flies`]).
 pub fn fly_beside(processor: Processor, structure: Structure, crew: &mut dyn Crew) {
     #[cfg(feature = "damped")]
     if structure.is_damped {
@@ -32,7 +33,7 @@ pub fn fly_beside(processor: Processor, structure: Structure, crew: &mut dyn Cre
     undamped::fly_beside(processor, structure, crew);
 }
 
-/// Makes the one run of a crew, of a structure that [`flies`].
+/// Computes the single run of a host; the structure must be supported ([`flies`]).
 pub fn fly_alone(structure: Structure, crew: &mut dyn Crew) {
     let Some(processor) = Processor::best() else { return };
     #[cfg(feature = "damped")]

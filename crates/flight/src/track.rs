@@ -1,4 +1,4 @@
-//! The envelope of modes in lanes: what `estimator::envelope` does, to the bit.
+//! Envelope of modes in SIMD lanes, equal to `estimator::envelope` to the bit.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
@@ -10,35 +10,35 @@ use flexsc_motion::numerics::swing_damped::damped;
 use flexsc_motion::numerics::swing_integral::undamped;
 use flexsc_motion::numerics::trig::sincos;
 
-/// Phasors that stand side by side.
+/// Number of phasors per register group.
 const SIDE: usize = Four::LANES;
 
-/// One mode's phasor. Its numbers do not straddle lines of the cache.
+/// Phasor of one mode. Aligned so that its numbers do not straddle cache lines.
 #[derive(Copy, Clone, Debug)]
 #[repr(align(64))]
 pub struct PhasorTrack<R, D> {
     /// Natural frequency (rad/s).
     pub frequency: R,
-    /// Static displacement for each unit of moment (s²).
+    /// Static displacement per unit of angular acceleration (s²).
     pub excitability: R,
-    /// The equilibrium, whose imaginary part follows from its damping.
+    /// Real part of the equilibrium; the imaginary part follows from the damping.
     pub equilibrium: R,
     pub damping: D,
     pub now: Turning<R>,
 }
 
-/// Where a phasor is at one instant.
+/// State of a phasor at one instant.
 #[derive(Copy, Clone, Debug)]
 pub struct Turning<R> {
-    /// The phasor in the turning frame; the axis of that frame.
+    /// Phasor in the rotating frame, and axis of that frame.
     pub frame: [R; 2],
     pub axis: [R; 2],
-    /// The deviation from the equilibrium.
+    /// Deviation from the equilibrium.
     pub deviation: [R; 2],
 }
 
 impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
-    /// Where the mode is at a time (s), a span (s) later, and the integral of its envelope over it.
+    /// Returns the phasor at `time` (s), a span (s) later than now, and the integral of its envelope over the span.
     #[inline(always)]
     pub fn advance(&self, time: R, span: R) -> (Turning<R>, R) {
         if D::IS_DAMPED {
@@ -53,7 +53,7 @@ impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
         (Turning { frame: [re, im], axis: [cos, sin], deviation }, integral)
     }
 
-    /// The same of modes that may be damped.
+    /// Advances a phasor as [`Self::advance`] does, for modes that may be damped.
     #[inline(always)]
     fn fade(&self, time: R, span: R) -> (Turning<R>, R) {
         let (Turning { frame: [re, im], axis: from, deviation: before }, decay) =
@@ -76,7 +76,7 @@ impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
         (Turning { frame: [re, im], axis: [cos, sin], deviation }, integral)
     }
 
-    /// The imaginary part of an equilibrium.
+    /// Returns the imaginary part of an equilibrium.
     #[inline(always)]
     fn imaginary(&self, equilibrium: R) -> R {
         if D::IS_DAMPED {
@@ -86,7 +86,7 @@ impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
         }
     }
 
-    /// Takes over a moment that holds from now on.
+    /// Sets the angular acceleration (rad/s²) that acts from now on.
     #[inline(always)]
     pub fn command(&mut self, moment: R) {
         let before = self.imaginary(self.equilibrium);
@@ -101,7 +101,7 @@ impl<R: Real, D: Damping<R>> PhasorTrack<R, D> {
 }
 
 impl<R: Real> Turning<R> {
-    /// One or the other.
+    /// Selects one of two states per lane.
     #[inline(always)]
     pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
         let mut one = *yes;
@@ -114,8 +114,8 @@ impl<R: Real> Turning<R> {
     }
 }
 
-/// Follows the undamped modes of one run to a time (s), over a span (s), side by side; adds the integrals of their envelopes to
-/// one.
+/// Advances the undamped modes of one run to a time (s), over a span (s), in groups of four; adds the integrals of
+/// their envelopes to `integral`.
 #[inline(always)]
 pub fn follow<R: Real, D: Damping<R>>(
     four: Four,
@@ -134,7 +134,7 @@ pub fn follow<R: Real, D: Damping<R>>(
     integral
 }
 
-/// At most four undamped modes of one run, which advance to a time (s), over a span (s).
+/// SIMD task that advances at most four undamped modes of one run to a time (s), over a span (s).
 struct Beside<'a, R, D> {
     tracks: &'a mut [PhasorTrack<R, D>],
     time: f64,
@@ -147,7 +147,7 @@ impl<R: Real, D: Damping<R>> LaneWork for Beside<'_, R, D> {
     #[inline(always)]
     fn run<K: Real>(self, kind: K) -> [f64; SIDE] {
         let last = self.tracks.len() - 1;
-        // Where there are fewer, the last one fills the lanes.
+        // Unused lanes repeat the last phasor.
         macro_rules! load {
             ($($part:tt)+) => {{
                 let mut each = [0.0; SIDE];

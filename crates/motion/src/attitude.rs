@@ -8,30 +8,30 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::quantity::Finite;
 
-/// Three numbers along the body's axes x, y and z, about which it rolls, pitches and yaws.
+/// Vector of three components along the body's axes x, y and z, about which it rolls, pitches and yaws.
 pub type Vector = nalgebra::Vector3<f64>;
 
-/// The names of rotations about the three axes, as in keys.
+/// Names of the rotations about the three axes, as in keys.
 pub const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
 
-/// An attitude as a scenario writes it: a unit quaternion \[w, x, y, z\].
+/// Attitude in a scenario: a unit quaternion \[w, x, y, z\].
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Attitude(Quaternion<f64>);
 
 impl Attitude {
-    /// The quaternion, of length 1.
+    /// Returns the quaternion, of length 1.
     pub const fn get(self) -> Quaternion<f64> {
         self.0
     }
 
-    /// Whether it leaves vectors as they are.
+    /// Returns true if the attitude is the identity.
     pub fn is_identity(&self) -> bool {
         *self == Self::default()
     }
 }
 
 impl Default for Attitude {
-    /// The body's axes are the inertial ones.
+    /// Returns the identity: the body's axes are the inertial ones.
     fn default() -> Self {
         Self(Quaternion::new(1.0, 0.0, 0.0, 0.0))
     }
@@ -48,9 +48,9 @@ impl<'de> Deserialize<'de> for Attitude {
         let [w, x, y, z] = <[f64; 4]>::deserialize(deserializer)?;
         let quaternion = Quaternion::new(w, x, y, z);
         let length = quaternion.norm();
-        // Decimals are rounded; what is further off is no attitude.
+        // Rounded decimals are accepted; larger deviations are not an attitude.
         if (length - 1.0).abs() <= 1e-6 {
-            // A quaternion that is read again stays what it is.
+            // A quaternion that was written by this program remains unchanged.
             let near = (length - 1.0).abs() <= 4.0 * f64::EPSILON;
             Ok(Self(if near { quaternion } else { quaternion / length }))
         } else {
@@ -71,8 +71,7 @@ impl JsonSchema for Attitude {
     }
 }
 
-/// The attitude that yaw, then pitch about the turned axis, then roll about the one turned twice make of the inertial
-/// one (rad; the sequence 3-2-1).
+/// Returns the attitude after rotations by yaw, then pitch, then roll about the rotated axes (rad; sequence 3-2-1).
 pub fn turned(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
     let about = |axis: usize, angle: f64| {
         let (sin, cos) = libm::sincos(0.5 * angle);
@@ -83,9 +82,9 @@ pub fn turned(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
     about(2, yaw) * about(1, pitch) * about(0, roll)
 }
 
-/// The attitude of a body whose axes x, y and z are these, right-handed unit vectors in inertial axes.
+/// Returns the attitude of a body with the axes x, y and z, right-handed unit vectors in inertial axes.
 pub fn of_axes([x, y, z]: &[Vector; 3]) -> Quaternion<f64> {
-    // Four times the square of each part; the largest is divided by.
+    // Four times the square of each component; the largest one is the divisor.
     let squares =
         [1.0 + x.x + y.y + z.z, 1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z];
     let largest = (1..4).fold(0, |best, part| if squares[part] > squares[best] { part } else { best });
@@ -101,7 +100,7 @@ pub fn of_axes([x, y, z]: &[Vector; 3]) -> Quaternion<f64> {
     parts / parts.norm()
 }
 
-/// Roll, pitch and yaw of an attitude (rad), in the same sequence.
+/// Returns roll, pitch and yaw of an attitude (rad; sequence 3-2-1).
 pub fn angles(q: &Quaternion<f64>) -> [f64; 3] {
     let (w, x, y, z) = (q.w, q.i, q.j, q.k);
     let sine = (2.0 * (w * y - z * x)).clamp(-1.0, 1.0);
@@ -112,7 +111,7 @@ pub fn angles(q: &Quaternion<f64>) -> [f64; 3] {
     ]
 }
 
-/// The rotation by a vector (rad).
+/// Returns the rotation by a rotation vector (rad).
 pub fn rotation(by: &Vector) -> Quaternion<f64> {
     let angle = by.norm();
     if angle == 0.0 {
@@ -122,15 +121,15 @@ pub fn rotation(by: &Vector) -> Quaternion<f64> {
     Quaternion::from_parts(cos, by * (sin / angle))
 }
 
-/// How far an attitude is turned beyond a goal: 2 vec(goal* o q), in the body's axes and on the shorter way (rad for
-/// small angles, exactly twice the sine of half the angle along its axis).
+/// Returns the attitude error of `q` relative to a goal, 2 vec(goal* o q), in the body's axes and on the shorter way
+/// (rad for small angles; exactly, twice the sine of half the angle along its axis).
 #[inline]
 pub fn beyond(goal: &Quaternion<f64>, q: &Quaternion<f64>) -> Vector {
     let difference = goal.conjugate() * q;
     difference.vector() * 2.0_f64.copysign(difference.w)
 }
 
-/// The vector by which a [`rotation`] turns one attitude into another, in the body's axes and on the shorter way (rad).
+/// Returns the rotation vector from one attitude to another, in the body's axes and on the shorter way (rad).
 pub fn turn(from: &Quaternion<f64>, to: &Quaternion<f64>) -> Vector {
     let difference = from.conjugate() * to;
     let sine = difference.vector().norm();
@@ -139,17 +138,17 @@ pub fn turn(from: &Quaternion<f64>, to: &Quaternion<f64>) -> Vector {
     difference.vector() * (twice * stretch)
 }
 
-/// The vector of a scenario's numbers.
+/// Converts a scenario's numbers to a vector.
 pub fn vector(of: &[Finite; 3]) -> Vector {
     Vector::new(of[0].get(), of[1].get(), of[2].get())
 }
 
-/// The tensor of a scenario's rows.
+/// Converts a scenario's rows to a tensor.
 pub fn tensor(of: &[[Finite; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| of[row][column].get())
 }
 
-/// Why a tensor is no symmetric one, if it is not.
+/// Returns an error message if a tensor is not symmetric.
 pub fn asymmetry(tensor: &Matrix3<f64>) -> Option<String> {
     let mut below = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));
     let (row, column) = below.find(|at| tensor[*at] != tensor[(at.1, at.0)])?;
@@ -179,19 +178,19 @@ mod tests {
         for (found, exact) in angles(&at).into_iter().zip([0.3, -0.7, 2.1]) {
             assert!((found - exact).abs() < 1e-15, "{found} {exact}");
         }
-        // Turned further by a small angle about the body's own y, whichever sign the quaternion has.
+        // Rotates further by a small angle about the body's y axis, with both signs of the quaternion.
         let further = at * turned(0.0, 1e-3, 0.0);
         for q in [further, -further] {
             let error = beyond(&at, &q);
             assert!((error - Vector::new(0.0, 2.0 * libm::sin(5e-4), 0.0)).norm() < 1e-15, "{error}");
         }
-        // The vector of a rotation, however long.
+        // Recovers the rotation vector, also for large angles.
         for by in [[1e-9, 0.0, -2e-9], [0.3, -0.1, 0.2], [1.8, 0.0, -2.4], [0.0; 3]].map(Vector::from) {
             for q in [at * rotation(&by), -(at * rotation(&by))] {
                 assert!((turn(&at, &q) - by).norm() < 4e-16 * by.norm().max(1.0), "{by}");
             }
         }
-        // Yaw first: a quarter turn brings the body's x to the inertial y.
+        // Yaw first: a quarter turn rotates the body's x to the inertial y.
         let quarter = turned(0.0, 0.0, std::f64::consts::FRAC_PI_2);
         let x = quarter * Quaternion::from_imag(Vector::x()) * quarter.conjugate();
         assert!((x.vector() - Vector::y()).norm() < 1e-15);

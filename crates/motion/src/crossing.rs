@@ -1,58 +1,58 @@
-//! The certified search for the instant at which a guard trips.
+//! Certified search for the first instant at which a guard trips.
 //!
-//! It strides only as far as the bounds on the motion prove that no guard can trip, so that no crossing is missed, however
-//! brief, and no tolerance exists. `docs/events.md` derives the stride.
+//! The search strides only as far as bounds on the motion prove that no guard can trip, so that no crossing is
+//! missed, however brief, and no tolerance is needed. `docs/events.md` derives the stride.
 
 use super::Sensed;
 use crate::time::Span;
 
-/// A guard that tripped.
+/// Guard that tripped, with the instant and the observation there.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Trip<S = Sensed> {
-    /// The span since departure.
+    /// Time since the start of the segment.
     pub after: Span,
-    /// The index of the guard.
+    /// Index of the guard.
     pub guard: usize,
-    /// What is seen there.
+    /// Observation at the instant of the trip.
     pub sight: S,
 }
 
-/// A motion in closed form whose derivatives are bounded.
+/// Motion in closed form with bounded derivatives, on which guards can be searched.
 pub trait Approach {
-    /// A level that is watched.
+    /// Threshold that is monitored.
     type Guard: Copy;
-    /// Where the motion is at one instant.
+    /// Scratch state of the motion at one instant, with its bounds.
     type State;
-    /// What is seen of it.
+    /// Observed quantities at one instant.
     type Sensed: Copy;
 
-    /// What is seen at departure.
+    /// Evaluates the start of the segment and returns the observation there.
     fn begin(&self, state: &mut Self::State) -> Self::Sensed;
-    /// The state `h` seconds after it, and what is seen.
+    /// Evaluates the motion `h` (s) after the start of the segment and returns the observation.
     fn go(&self, h: f64, state: &mut Self::State) -> Self::Sensed;
-    /// Whether it is a number.
+    /// Returns true if the evaluated motion is finite.
     fn is_finite(state: &Self::State, sensed: Self::Sensed) -> bool;
-    /// Whether a guard holds.
+    /// Returns true if the guard's condition holds.
     fn holds(guard: Self::Guard, state: &Self::State, sensed: Self::Sensed) -> bool;
-    /// For how long the bounds hold that are in use now (s).
+    /// Returns the time for which the current bounds are valid (s).
     fn window(state: &Self::State) -> f64;
-    /// A time after departure (s) before which the guard cannot trip, of a motion that lasts so long (s); 0 if it is not
-    /// known at once.
+    /// Returns a time (s) after the start of the segment before which the guard cannot trip, for a motion of length
+    /// `horizon`; 0 if none is known at once.
     fn earliest(&self, guard: Self::Guard, horizon: Span, state: &Self::State) -> f64;
-    /// A time (s) for which the guard cannot trip, given what is seen now.
+    /// Returns a time (s) for which the guard cannot trip, starting at the current instant.
     fn stride(&self, guard: Self::Guard, state: &Self::State, sensed: Self::Sensed) -> f64;
-    /// Whether the guard cannot trip within a time (s), given what is seen now.
+    /// Returns true if the guard cannot trip within `time` (s) from the current instant.
     fn is_clear(&self, guard: Self::Guard, state: &Self::State, sensed: Self::Sensed, time: f64) -> bool;
 }
 
-/// Strides after which a search asks whether it may go on.
+/// Number of strides between two calls of `go_on` (cancellation check).
 const STRIDES: u32 = 256;
 
-/// The first tick within `horizon` of departure at which one of the guards holds. The state there is put into
-/// `state`.
+/// Returns the first tick within `horizon` of the start of the segment at which one of the guards holds; the state
+/// there is left in `state`.
 ///
 /// # Errors
-/// What `go_on` answers ends the search, however small its strides: it is asked now and then.
+/// The error of `go_on`, which is called regularly, ends the search, however small its strides are.
 pub fn locate<M: Approach, E>(
     motion: &M,
     guards: &[M::Guard],
@@ -70,7 +70,7 @@ pub fn locate<M: Approach, E>(
         jump => jump,
     };
     let mut stride = guards.iter().map(first).fold(f64::INFINITY, f64::min);
-    // Ticks are counted in 64 bits, from the latest of a row of bases.
+    // Ticks are counted in 64 bits, relative to a base that advances.
     let mut base = Span::ZERO;
     let mut strides = 0_u32;
     loop {
@@ -81,7 +81,7 @@ pub fn locate<M: Approach, E>(
             if strides.is_multiple_of(STRIDES) {
                 go_on()?;
             }
-            // The tick before the stride's end is certain not to trip: the next one is the first that can.
+            // The tick before the stride's end cannot trip: the next one is the first that can.
             ticks = ticks.saturating_add((stride * 1e15) as i64).saturating_add(1).min(last);
             sensed = motion.go(base_s + ticks as f64 / 1e15, state);
             stride = M::window(state);
@@ -102,7 +102,7 @@ pub fn locate<M: Approach, E>(
     }
 }
 
-/// The first root t >= 0 of gap - speed t - acceleration t²/2 for a gap >= 0, or infinity.
+/// Returns the first root t >= 0 of gap - speed t - acceleration t²/2 for a gap >= 0, or infinity.
 #[inline]
 pub fn first_root(gap: f64, speed: f64, acceleration: f64) -> f64 {
     let discriminant = speed * speed + 2.0 * acceleration * gap;

@@ -1,6 +1,7 @@
-//! How a mode moves on about its equilibrium, undamped or below critical damping: the same arithmetic for one number and for lanes.
+//! Free motion of a mode about its equilibrium, undamped or below critical damping, for single numbers and SIMD lanes
+//! alike.
 //!
-//! A mode is damped or not by its type, so that an undamped one costs no more where others are damped.
+//! Damping is a type parameter, so that undamped modes cost no more in a program that also supports damped ones.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
@@ -10,66 +11,67 @@ use crate::lanes::Real;
 use crate::numerics::decay::{exp, exp_short};
 use crate::numerics::trig::{sincos, sincos_short};
 
-/// Below this angle (rad) a turn is a polynomial of order 5, exact to rounding.
+/// Angle (rad) below which a rotation is computed by a polynomial of order 5, exact to rounding.
 pub const TINY: f64 = 3e-3;
 
-/// What damping does to a mode, whose deviation is its displacement from equilibrium and its rate divided by the frequency (rad).
+/// Damping rule of a mode; its deviation is the displacement from equilibrium and the rate divided by the frequency
+/// (rad).
 pub trait Damping<R: Real>: Copy + Debug {
-    /// Whether modes of this kind may be damped.
+    /// True if modes of this kind can be damped.
     const IS_DAMPED: bool;
 
-    /// None; `kind` only says of which kind numbers are.
+    /// Returns no damping; `kind` only determines the number type.
     fn none(kind: R) -> Self;
 
-    /// Other than before in one lane: that of a mode of this frequency (rad/s) and damping ratio.
+    /// Sets the damping in one lane to that of a mode with the given frequency (rad/s) and damping ratio.
     #[must_use]
     fn with_lane(self, lane: usize, frequency: f64, ratio: f64) -> Self;
 
-    /// The deviation after a time (s).
+    /// Returns the deviation after the time `t` (s).
     fn go(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
 
-    /// The same after at most 3/4 of a radian, forwards or back.
+    /// Returns the deviation after `t` (s), for at most 3/4 rad of phase, forwards or backwards.
     fn go_short(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
 
-    /// The same after less than [`TINY`].
+    /// Returns the deviation after `t` (s), for a phase below [`TINY`].
     fn go_tiny(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
 
-    /// Of the displacement x: x', -x'', -x''' and x''''.
+    /// Returns the derivatives x', -x'', -x''' and x'''' of the displacement x.
     fn derivatives(self, frequency: R, deviation: [R; 2]) -> [R; 4];
 
-    /// Bound of |x''| for a unit distance from equilibrium (1/s²).
+    /// Returns a bound of |x''| per unit distance from equilibrium (1/s²).
     fn stiffness(self, frequency: R) -> R;
 
-    /// The frequency of the motion (rad/s).
+    /// Returns the frequency of the motion (rad/s), reduced by damping.
     fn turning(self, frequency: R) -> R;
 
-    /// The decay rate (1/s); `kind` only says of which kind numbers are.
+    /// Returns the decay rate (1/s); `kind` only determines the number type.
     fn decay(self, kind: R) -> R;
 }
 
-/// No damping.
+/// Rule of a mode without damping.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Undamped;
 
-/// Damping below the critical one, or none.
+/// Rule of a mode with damping below critical, or none.
 #[derive(Copy, Clone, Debug)]
 pub struct Damped<R> {
-    /// The decay rate, zeta w (1/s).
+    /// Decay rate, zeta w (1/s).
     pub decay: R,
-    /// The damped frequency, w sqrt(1 - zeta²) (rad/s).
+    /// Damped frequency, w sqrt(1 - zeta²) (rad/s).
     pub frequency: R,
-    /// zeta/sqrt(1 - zeta²).
+    /// Ratio zeta/sqrt(1 - zeta²).
     pub tilt: R,
-    /// 1/sqrt(1 - zeta²).
+    /// Ratio 1/sqrt(1 - zeta²).
     pub stretch: R,
-    /// Twice the decay rate.
+    /// Twice the decay rate (1/s).
     pub drag: R,
-    /// Bound of |x''| for a unit distance from equilibrium (1/s²).
+    /// Bound of |x''| per unit distance from equilibrium (1/s²).
     pub stiffness: R,
 }
 
 impl Damped<f64> {
-    /// The damping of a mode of this frequency (rad/s) and damping ratio below 1.
+    /// Creates the rule of a mode with the given frequency (rad/s) and damping ratio below 1.
     pub fn new(frequency: f64, ratio: f64) -> Self {
         let root = f64::sqrt((1.0 - ratio) * (1.0 + ratio));
         Self {
@@ -78,15 +80,15 @@ impl Damped<f64> {
             tilt: ratio / root,
             stretch: 1.0 / root,
             drag: 2.0 * ratio * frequency,
-            // x'' = -w² (x + 2 zeta y) in (x, y) of length 1.
+            // Here x'' = -w² (x + 2 zeta y) with (x, y) of length 1.
             stiffness: frequency * frequency * f64::sqrt(1.0 + 4.0 * ratio * ratio),
         }
     }
 }
 
 impl<R: Real> Damped<R> {
-    /// The 2 x 2 transition matrix of the deviation, row by row, by sine and cosine of the damped turn and by what is left of a
-    /// unit.
+    /// Returns the 2 x 2 transition matrix of the deviation, row by row, from sine and cosine of the damped phase and
+    /// the decay factor `left`.
     #[inline(always)]
     pub fn transition(&self, (sin, cos): (R, R), left: R) -> [R; 4] {
         let (c, s) = (left * cos, left * sin);
@@ -101,7 +103,7 @@ impl<R: Real> Damped<R> {
     }
 }
 
-/// Sine and cosine of an angle below [`TINY`].
+/// Returns sine and cosine of an angle below [`TINY`].
 #[inline(always)]
 fn tiny<R: Real>(x: R) -> (R, R) {
     let z = x * x;
@@ -110,7 +112,7 @@ fn tiny<R: Real>(x: R) -> (R, R) {
     (sin, x.of(1.0) - z * (half - z * x.of(1.0 / 24.0)))
 }
 
-/// The exponential of a number below [`TINY`].
+/// Returns the exponential of a number below [`TINY`].
 #[inline(always)]
 fn exp_tiny<R: Real>(x: R) -> R {
     let rest = x.of(1.0 / 6.0) + x * (x.of(1.0 / 24.0) + x * x.of(1.0 / 120.0));

@@ -1,6 +1,6 @@
-//! Guards: levels of the measured angle.
+//! Guards: thresholds of the measured angle.
 
-/// Which way a guard faces.
+/// Direction of a guard.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Side {
     /// Trips at or above its level.
@@ -10,7 +10,7 @@ pub enum Side {
 }
 
 impl Side {
-    /// The direction of motion that closes the gap: +1 or -1.
+    /// Returns the direction of motion that closes the gap: +1 or -1.
     pub const fn sign(self) -> f64 {
         match self {
             Self::AtLeast => 1.0,
@@ -19,12 +19,13 @@ impl Side {
     }
 }
 
-/// A level of the measured angle. It is level-sensitive: it trips at once if it already holds when armed.
+/// Threshold of the measured angle. The guard is level-sensitive: it trips at once if its condition already holds
+/// when armed.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Guard {
-    /// Which way it faces.
+    /// Direction from which the threshold is reached.
     pub side: Side,
-    /// The angle (rad).
+    /// Threshold angle (rad).
     pub level: f64,
 }
 
@@ -34,18 +35,18 @@ impl Guard {
         Self { side: Side::AtLeast, level }
     }
 
-    /// A guard that trips at or below an angle (rad).
+    /// Creates a guard that trips at or below an angle (rad).
     pub const fn at_most(level: f64) -> Self {
         Self { side: Side::AtMost, level }
     }
 
-    /// How far the angle is short of the level (rad): the guard holds at 0 and below.
+    /// Returns the distance of the angle from the threshold (rad): the guard holds at 0 and below.
     #[inline]
     pub fn gap(self, angle: f64) -> f64 {
         self.side.sign() * (self.level - angle)
     }
 
-    /// Whether the guard holds.
+    /// Returns true if the guard's condition holds.
     pub fn holds(self, angle: f64) -> bool {
         self.gap(angle) <= 0.0
     }

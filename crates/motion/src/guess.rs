@@ -1,9 +1,10 @@
-//! The instant at which a guard trips, of modes damped below critical damping or not at all: guessed, polished, and certified
-//! afterwards.
+//! Fast prediction of the instant at which a guard trips, for undamped modes or damping below critical: predicted,
+//! polished, and certified afterwards.
 //!
-//! The guess is the rigid parabola. One evaluation there gives four derivatives, whose reverted series makes a step; the modes turn
-//! by it, and a second step ends at the trip. What is found is certain if bounds show, without another evaluation, that nothing
-//! tripped before; else the certified search ([`super::crossing`]) has to tell. `docs/events.md` derives the bounds.
+//! The first prediction is that of the rigid parabola. One evaluation there gives four derivatives, whose reverted
+//! series gives a step; the modes are advanced by it, and a second step ends at the trip. The result is certain if
+//! bounds show, without another evaluation, that no guard tripped before; otherwise the certified search
+//! ([`super::crossing`]) must decide. `docs/events.md` derives the bounds.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
@@ -13,14 +14,14 @@ use crate::numerics::trig::FARTHEST;
 
 /// Femtoseconds in a second.
 const TICKS: f64 = 1e15;
-/// Ticks of longer spans (s) do not fit 64 bits.
+/// Time span (s) whose ticks fit in 64 bits.
 const LONGEST: f64 = 9_000.0;
-/// No turn that polishes a guess is longer, in radians of the fastest mode.
+/// Longest step that polishes a prediction, in radians of the fastest mode.
 pub const FARTHEST_TURN: f64 = 0.75;
-/// Most turns that polish a guess.
+/// Maximum number of steps that polish a prediction.
 const ROUNDS: usize = 3;
 
-/// A mode: its equilibrium, and its deviation from it at one instant.
+/// Elastic mode: equilibrium, and deviation from it at one instant.
 #[derive(Copy, Clone, Debug)]
 pub struct GuessOscillator<R, D = Undamped> {
     /// Natural frequency (rad/s).
@@ -31,11 +32,11 @@ pub struct GuessOscillator<R, D = Undamped> {
     pub displacement: R,
     /// Rate divided by the frequency (rad).
     pub quadrature: R,
-    /// Its damping.
+    /// Damping rule.
     pub damping: D,
 }
 
-/// A motion under a constant moment, from its departure on.
+/// Motion under a constant torque, at the start of its segment.
 #[derive(Copy, Clone, Debug)]
 pub struct Departure<R> {
     /// Rigid angle (rad).
@@ -46,57 +47,57 @@ pub struct Departure<R> {
     pub moment: R,
     /// The highest frequency of a mode (rad/s).
     pub fastest: R,
-    /// In how long that mode turns by [`FARTHEST_TURN`] (s).
+    /// Time in which the fastest mode advances by [`FARTHEST_TURN`] (s).
     pub longest: R,
 }
 
-/// A level of the angle that is watched.
+/// Threshold of the angle that is monitored.
 #[derive(Copy, Clone, Debug)]
 pub struct GuessLevel<R> {
-    /// The angle (rad).
+    /// Threshold angle (rad).
     pub angle: R,
-    /// 1 if it is reached from below, -1 from above.
+    /// Direction: 1 if the threshold is reached from below, -1 from above.
     pub towards: R,
 }
 
-/// What is found.
+/// Result of the prediction: the predicted trip.
 #[derive(Copy, Clone, Debug)]
 pub struct GuessedTrip<R: Real> {
-    /// Whether it is certain to be the first trip.
+    /// True if this is certainly the first trip.
     pub certain: R::Mask,
-    /// Whether it is the first level that is reached, of two.
+    /// True if the first of two thresholds is reached.
     pub first: R::Mask,
-    /// The time since departure: femtoseconds, and seconds.
+    /// Time since the start of the segment (fs).
     pub ticks: R,
-    /// The same in seconds.
+    /// Time since the start of the segment (s).
     pub after: R,
-    /// What is seen then: angle (rad), rate (rad/s), acceleration (rad/s²).
+    /// Observation at the trip: angle (rad), rate (rad/s), acceleration (rad/s²).
     pub seen: [R; 3],
 }
 
 impl<R: Real, D: Damping<R>> GuessOscillator<R, D> {
-    /// Moves on by a time (s).
+    /// Advances the mode by a time `t` (s).
     #[inline(always)]
     pub fn go(&mut self, t: R) {
         let deviation = [self.displacement, self.quadrature];
         [self.displacement, self.quadrature] = self.damping.go(self.frequency, deviation, t);
     }
 
-    /// The same by at most 3/4 of a radian, forwards or back.
+    /// Advances the mode by `t` (s), for at most 3/4 rad of phase, forwards or backwards.
     #[inline(always)]
     fn go_short(&mut self, t: R) {
         let deviation = [self.displacement, self.quadrature];
         [self.displacement, self.quadrature] = self.damping.go_short(self.frequency, deviation, t);
     }
 
-    /// The same by less than [`TINY`].
+    /// Advances the mode by `t` (s), for a phase below [`TINY`].
     #[inline(always)]
     fn go_tiny(&mut self, t: R) {
         let deviation = [self.displacement, self.quadrature];
         [self.displacement, self.quadrature] = self.damping.go_tiny(self.frequency, deviation, t);
     }
 
-    /// A bound of the distance from equilibrium, at most 8 % above it: an octagon's.
+    /// Returns a bound of the distance from equilibrium, at most 8 % above it, by an octagon.
     #[inline(always)]
     pub fn reach(&self) -> R {
         let (x, y) = (self.displacement.abs(), self.quadrature.abs());
@@ -105,7 +106,7 @@ impl<R: Real, D: Damping<R>> GuessOscillator<R, D> {
     }
 }
 
-/// The angle and its derivatives `t` seconds after departure, where the modes are.
+/// Returns the angle and its derivatives at `t` (s) since the start of the segment; `modes` are those at that time.
 #[inline(always)]
 fn derivatives<R: Real, D: Damping<R>>(from: &Departure<R>, t: R, modes: &[GuessOscillator<R, D>]) -> [R; 5] {
     let zero = t.of(0.0);
@@ -124,7 +125,7 @@ fn derivatives<R: Real, D: Damping<R>>(from: &Departure<R>, t: R, modes: &[Guess
     [angle, rate, acceleration, jerk, snap]
 }
 
-/// The time to a level of the angle, by the reverted series of order 4.
+/// Returns the time to a threshold of the angle (s), by the reverted series of order 4.
 #[inline(always)]
 fn step<R: Real>(level: R, [angle, rate, acceleration, jerk, snap]: [R; 5]) -> R {
     let inverse = rate.of(1.0) / rate;
@@ -138,7 +139,8 @@ fn step<R: Real>(level: R, [angle, rate, acceleration, jerk, snap]: [R; 5]) -> R
     e + e * e * (e * (third + e * fourth) - a)
 }
 
-/// The time at which the rigid parabola reaches a level (s), with the modes at rest; endless if it does not.
+/// Returns the time at which the rigid parabola reaches a threshold (s), with the modes at equilibrium; infinite if
+/// it does not.
 #[inline(always)]
 fn parabola<R: Real>(gap: R, speed: R, acceleration: R) -> R {
     let zero = gap.of(0.0);
@@ -149,17 +151,18 @@ fn parabola<R: Real>(gap: R, speed: R, acceleration: R) -> R {
     R::select(reached, (gap + gap) / below, gap.of(f64::INFINITY))
 }
 
-/// The next integer from a number that is not negative.
+/// Rounds a non-negative number up to an integer.
 #[inline(always)]
 fn above<R: Real>(x: R) -> R {
-    // From 2^52 on all numbers are integers.
+    // All numbers from 2^52 on are integers.
     let all = x.of(4_503_599_627_370_496.0);
     let near = (x + all) - all;
     let up = R::select(near.lt(x), near + x.of(1.0), near);
     R::select(x.lt(all), up, x)
 }
 
-/// The first trip of one of the levels, and the modes there. They are given at departure.
+/// Predicts the first trip of one of the thresholds; `modes` are those at the start of the segment, and at the trip
+/// on return.
 #[inline(always)]
 pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
     from: &Departure<R>,
@@ -178,7 +181,7 @@ pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
         angle = angle + (mode.equilibrium + mode.displacement);
         rate = rate + mode.frequency * mode.quadrature;
     }
-    // The guess, of the level that the rigid parabola reaches first.
+    // First prediction, for the threshold that the rigid parabola reaches first.
     let [mut level, mut guess] = [levels[0].angle, zero];
     let mut first = zero.le(one);
     for (index, of) in levels.iter().enumerate() {
@@ -199,12 +202,12 @@ pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
     let mut change = step(level, derivatives(from, t, modes));
     let mut goes_on = zero.le(one);
     for _ in 0..ROUNDS {
-        // No turn by more than the polynomials take, which is rare.
+        // Steps longer than the polynomials allow are limited, which is rare.
         let most = from.longest;
         if !change.abs().le(most).all() {
             change = R::select(change.lt(-most), -most, R::select(most.lt(change), most, change));
         }
-        // Where a guess is polished already, nothing turns, whatever the lanes beside it do.
+        // Lanes whose prediction is already polished do not move, whatever the other lanes do.
         let next = t + R::select(goes_on, change, zero);
         let turned = next - t;
         t = next;
@@ -224,7 +227,7 @@ pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
         mode.go_tiny(turned);
     }
     let seen = derivatives(from, after, modes);
-    // The trip is polished if nothing but rounding is left.
+    // The trip is polished if only rounding errors remain.
     let speed = seen[1].abs();
     let rounding = zero.of(1e-15) * (level.abs() + reach) + speed * (zero.of(4e-15) + zero.of(4e-16) * after);
     let mut certain = (level - seen[0]).abs().le(rounding)
@@ -232,7 +235,7 @@ pub fn locate<R: Real, D: Damping<R>, const LEVELS: usize>(
         & after.lt(zero.of(LONGEST))
         & (from.fastest * guess).lt(zero.of(FARTHEST))
         & zero.le(ticks);
-    // Both sides of each inequality are multiplied by the bound of |x''|, or its square.
+    // Both sides of each inequality are multiplied by the bound of |x''|, or by its square.
     for (index, of) in levels.iter().enumerate() {
         let is_it = if index == 0 { first } else { !first };
         let closing = of.towards * seen[1];

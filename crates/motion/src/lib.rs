@@ -1,12 +1,12 @@
-//! How a flexible body moves between events, in closed form, and the numbers that this is computed with.
+//! Motion of a flexible body between events, in closed form, and the numerical methods for it.
 //!
-//! Nothing here knows a law, a sensor or a scenario: `flexsc-core` puts them together.
+//! This crate is independent of laws, sensors and scenarios: `flexsc-core` combines them.
 //!
 //! - [`State`], [`Stretch`], [`crossing`]: modes in closed form, and the certified search for crossings;
-//! - [`linear`]: coupled linear motion by poles and residues; [`turning`]: bodies with three axes;
-//! - [`numerics`]: special functions, quadrature, roots; [`lanes`]: the same arithmetic on many runs side by side;
-//! - [`time`], [`quantity`], [`random`], [`attitude`], [`guard`], [`waveform`]: instants, valid numbers, seeded streams,
-//!   vectors and quaternions, conditions of events, commands as functions of time.
+//! - [`linear`]: coupled linear motion by poles and residues; [`turning`]: three-axis bodies;
+//! - [`numerics`]: special functions, quadrature, roots; [`lanes`]: the same arithmetic on many runs in SIMD lanes;
+//! - [`time`], [`quantity`], [`random`], [`attitude`], [`guard`], [`waveform`]: instants, validated numbers, seeded
+//!   streams, vectors and quaternions, conditions of events, commands as functions of time.
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 

@@ -1,11 +1,11 @@
-//! Numbers that are valid by construction: a scenario that deserialises holds no other.
+//! Numbers that are valid by construction: a deserialised scenario cannot contain others.
 
 use std::borrow::Cow;
 
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A number type with a range: its deserialiser refuses every other number, naming what it got.
+/// Defines a number type with a range: its deserialiser rejects every other number and reports the value.
 macro_rules! quantity {
     ($(#[$doc:meta])* $name:ident, $accepts:expr, $words:literal, $schema:tt) => {
         $(#[$doc])*
@@ -14,13 +14,13 @@ macro_rules! quantity {
         pub struct $name(f64);
 
         impl $name {
-            /// The number, if it is in range.
+            /// Returns the number if it is in range.
             pub fn new(value: f64) -> Option<Self> {
                 let accepts: fn(f64) -> bool = $accepts;
                 accepts(value).then_some(Self(value))
             }
 
-            /// The number itself.
+            /// Returns the number itself.
             pub const fn get(self) -> f64 {
                 self.0
             }
@@ -90,11 +90,11 @@ quantity!(
 );
 
 impl Tolerance {
-    /// Little more than what rounding makes.
+    /// Tolerance close to rounding errors.
     pub const TIGHT: Self = Self(1e-12);
 }
 
-/// The zero that a key left out stands for.
+/// Defines zero as the default value of an omitted key.
 macro_rules! zero_by_default {
     ($($name:ident),*) => {
         $(impl $name {
@@ -113,9 +113,9 @@ macro_rules! zero_by_default {
 zero_by_default!(Finite, NonNegative, Time);
 
 impl Frequency {
-    /// The lowest (rad/s).
+    /// Lowest natural frequency (rad/s).
     pub const SMALLEST: f64 = 1e-4;
-    /// The highest (rad/s).
+    /// Highest natural frequency (rad/s).
     pub const LARGEST: f64 = 1e3;
 }
 

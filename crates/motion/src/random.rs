@@ -1,19 +1,19 @@
-//! Seeded randomness: one independent stream for each (scenario seed, run, consumer).
+//! Seeded random numbers: one independent stream for each (scenario seed, run, consumer).
 
 use rand::rngs::ChaCha8Rng;
 use rand::{Rng, SeedableRng};
 
-/// The seed of one run: the scenario's, and the number of the run.
+/// Seed of one run: the scenario's seed and the number of the run.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Seed {
-    /// The scenario's seed.
+    /// Seed of the scenario.
     pub scenario: u64,
-    /// The number of the run, from 0.
+    /// Number of the run, from 0.
     pub run: u64,
 }
 
 impl Seed {
-    /// The stream of one named consumer. No other stream moves when a consumer is added.
+    /// Returns the stream of one named consumer. Adding a consumer does not change other streams.
     pub fn stream(self, consumer: &str) -> Stream {
         let mut key = [0_u8; 32];
         key[..8].copy_from_slice(&self.scenario.to_le_bytes());
@@ -23,21 +23,21 @@ impl Seed {
     }
 }
 
-/// FNV-1a: a published hash with fixed constants, the same everywhere.
+/// Computes FNV-1a, a published hash with fixed constants that is the same on all platforms.
 pub fn fnv1a(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
 
-/// A stream of random numbers, the same on every machine.
+/// Stream of random numbers, the same on every machine.
 #[derive(Debug)]
 pub struct Stream {
     source: ChaCha8Rng,
     spare: Option<f64>,
 }
 
-/// The generator cannot be cloned: another one of the same seed, at the same place, draws the same.
+/// The generator cannot be cloned: a clone has the same seed and position, and draws the same numbers.
 impl Clone for Stream {
     fn clone(&self) -> Self {
         let mut source = ChaCha8Rng::from_seed(self.source.get_seed());
@@ -47,17 +47,17 @@ impl Clone for Stream {
 }
 
 impl Stream {
-    /// Uniform on [0, 1), a multiple of 2^-53.
+    /// Draws a uniform number on [0, 1), a multiple of 2^-53.
     pub fn uniform(&mut self) -> f64 {
         (self.source.next_u64() >> 11) as f64 * (1.0 / 9_007_199_254_740_992.0)
     }
 
-    /// Uniform over `0..count`.
+    /// Draws a uniform index in `0..count`.
     pub fn index(&mut self, count: usize) -> usize {
         ((self.uniform() * count as f64) as usize).min(count - 1)
     }
 
-    /// Normal with mean 0 and standard deviation 1 (Box-Muller).
+    /// Draws a normal number with mean 0 and standard deviation 1 (Box-Muller).
     pub fn normal(&mut self) -> f64 {
         if let Some(spare) = self.spare.take() {
             return spare;
@@ -92,7 +92,8 @@ mod tests {
     #[test]
     fn a_clone_draws_what_the_stream_draws() {
         let mut stream = Seed { scenario: 7, run: 3 }.stream("sensor");
-        // More than the generator keeps at a time, whole numbers of its blocks or not, with a normal left over or not.
+        // Covers more draws than the generator buffers, at and between block boundaries, with and without a spare
+        // normal number.
         for _ in 0..300 {
             stream.normal();
             let (mut left, mut right) = (stream.clone(), stream.clone());
@@ -115,7 +116,7 @@ mod tests {
         let mean = draws.iter().sum::<f64>() / f64::from(n);
         let variance = draws.iter().map(|z| (z - mean) * (z - mean)).sum::<f64>() / f64::from(n);
         let kurtosis = draws.iter().map(|z| libm::pow(z - mean, 4.0)).sum::<f64>() / f64::from(n);
-        // Three standard errors: 1/sqrt(n), sqrt(2/n), sqrt(24/n) for variance one.
+        // Bounds of about three standard errors: 1/sqrt(n), sqrt(2/n), sqrt(24/n) for variance one.
         assert!(mean.abs() < 0.0095, "{mean}");
         assert!((variance - 1.0).abs() < 0.0135, "{variance}");
         assert!((kurtosis / (variance * variance) - 3.0).abs() < 0.05, "{kurtosis}");

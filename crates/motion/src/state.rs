@@ -1,41 +1,41 @@
-//! Where a body with one angle is, and what is measurable of it.
+//! State of a one-axis body, and its measurable motion.
 
 use nalgebra::DVector;
 
-/// Where a body is.
+/// State of a one-axis body: rigid angle, rigid rate and elastic modes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct State {
-    /// Angle of the body as if it were rigid (rad).
+    /// Angle of the rigid motion (rad).
     pub rigid_angle: f64,
-    /// Rate of the body as if it were rigid (rad/s).
+    /// Rate of the rigid motion (rad/s).
     pub rigid_rate: f64,
-    /// One phase for each elastic mode.
+    /// State of each elastic mode.
     pub modes: Vec<Phase>,
 }
 
-/// The phase of one elastic mode.
+/// State of one elastic mode.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Phase {
     /// Displacement (rad).
     pub displacement: f64,
-    /// Rate divided by the natural frequency (rad), so that an undamped mode runs on a circle.
+    /// Rate divided by the natural frequency (rad), so that an undamped mode moves on a circle.
     pub quadrature: f64,
 }
 
 impl State {
-    /// The angle that a sensor sees (rad): rigid angle and all modes.
+    /// Returns the angle that a sensor measures (rad): the rigid angle plus all modes.
     pub fn angle(&self) -> f64 {
         self.modes.iter().fold(self.rigid_angle, |sum, mode| sum + mode.displacement)
     }
 
-    /// Whether every number is finite.
+    /// Returns true if every number is finite.
     pub fn is_finite(&self) -> bool {
         self.rigid_angle.is_finite()
             && self.rigid_rate.is_finite()
             && self.modes.iter().all(|m| m.displacement.is_finite() && m.quadrature.is_finite())
     }
 
-    /// The state as one vector, of modes with these frequencies (rad/s).
+    /// Returns the state as one vector, for modes with the given frequencies (rad/s).
     pub fn to_vector(&self, frequencies: &[f64]) -> DVector<f64> {
         let mut z = vec![self.rigid_angle, self.rigid_rate];
         let modes = self.modes.iter().zip(frequencies);
@@ -43,7 +43,7 @@ impl State {
         DVector::from_vec(z)
     }
 
-    /// Takes the state from one vector.
+    /// Sets the state from one vector, for modes with the given frequencies (rad/s).
     pub fn set_vector(&mut self, z: &DVector<f64>, frequencies: &[f64]) {
         (self.rigid_angle, self.rigid_rate) = (z[0], z[1]);
         for (i, (mode, w)) in self.modes.iter_mut().zip(frequencies).enumerate() {
@@ -52,13 +52,13 @@ impl State {
     }
 }
 
-/// What is measurable at one instant.
+/// Measurable motion at one instant.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Sensed {
-    /// Angle, elastic part included (rad).
+    /// Angle, including the elastic part (rad).
     pub angle: f64,
-    /// Rate, elastic part included (rad/s).
+    /// Rate, including the elastic part (rad/s).
     pub rate: f64,
-    /// Acceleration, elastic part included (rad/s²).
+    /// Acceleration, including the elastic part (rad/s²).
     pub acceleration: f64,
 }

@@ -1,60 +1,61 @@
-//! A motion stretch by stretch: Taylor series of all coordinates, each over a time in which they are exact to rounding.
+//! Motion as a sequence of polynomial pieces: Taylor series of all coordinates, each over a time in which they are
+//! exact to rounding.
 //!
-//! The stretches depend on the motion alone, so that what is found on them is the same whoever else looks.
+//! The pieces depend on the motion alone, so that results found on them do not depend on other observers.
 
 use nalgebra::{DMatrix, DVector};
 
 use crate::numerics::polynomial::{Polynomial, Series, TERMS};
 
-/// A stretch is so many radians of the fastest motion long: what its series leave out is 1.5^22/22!, 7e-18.
+/// Length of a piece in radians of the fastest motion: the truncation error of its series is 1.5^22/22!, 7e-18.
 pub const REACH: f64 = 1.5;
 
-/// The series of all coordinates of a body, in the time since a stretch began (s).
+/// Taylor series of all coordinates of a body, in the time since the start of a piece (s).
 #[derive(Clone, Debug)]
 pub struct Expansion {
-    /// The rigid angle, then each mode's displacement; of a chain the angle of the hub, then of each section (rad).
+    /// Rigid angle, then each mode's displacement; for a chain, the angle of the hub, then of each section (rad).
     pub coordinates: Vec<Series>,
-    /// The waveform of the command (N m; rad/s² where the hub's motion is commanded).
+    /// Waveform of the command (N m; rad/s² if the hub's motion is commanded).
     pub command: Series,
 }
 
 impl Expansion {
-    /// Of so many coordinates that rest.
+    /// Creates series of `coordinates` coordinates at rest.
     pub fn new(coordinates: usize) -> Self {
         Self { coordinates: vec![[0.0; TERMS]; coordinates], command: [0.0; TERMS] }
     }
 }
 
-/// What is observed of a motion over a stretch: polynomials in its part that has passed, from 0 to 1.
+/// Observed motion over a piece: polynomials in the elapsed fraction of the piece, from 0 to 1.
 #[derive(Clone, Debug)]
 pub struct Stretch {
-    /// When it begins (s).
+    /// Start time of the piece (s).
     pub from: f64,
-    /// How long it is (s).
+    /// Length of the piece (s).
     pub length: f64,
-    /// The hub's angle (rad).
+    /// Angle of the hub (rad).
     pub angle: Polynomial,
-    /// The observed coordinates, each in its own unit.
+    /// Observed coordinates, each in its own unit.
     pub outputs: Vec<Polynomial>,
-    /// The actuator's torque (N m; rad/s² where the hub's motion is commanded).
+    /// Torque of the actuator (N m; rad/s² if the hub's motion is commanded).
     pub applied: Polynomial,
-    /// The torque that the law asks for (N m).
+    /// Torque requested by the law (N m).
     pub feedback: f64,
 }
 
-/// The motion of a linear system z' = A z + b.
+/// Taylor expansion of the motion of a linear system z' = A z + b.
 #[derive(Clone, Debug)]
 pub struct Linear {
     system: DMatrix<f64>,
     push: DVector<f64>,
-    /// When the series begin (s), and the series of z.
+    /// Start time of the series (s).
     begins: f64,
     series: Vec<Series>,
     reach: f64,
 }
 
 impl Linear {
-    /// The system at z, none of whose parts changes faster than this (rad/s).
+    /// Creates the expansion at z; `fastest` bounds the rates of change in the system (rad/s).
     pub fn new(system: &DMatrix<f64>, push: DVector<f64>, z: &DVector<f64>, fastest: f64) -> Self {
         let start = |z: &f64| {
             let mut series = [0.0; TERMS];
@@ -67,7 +68,8 @@ impl Linear {
         linear
     }
 
-    /// Expands about a time (s), not before an earlier one; returns how far the series reach (s).
+    /// Expands about the time `h` (s), not before an earlier one; returns the time for which the series are exact
+    /// (s).
     pub fn expand(&mut self, h: f64) -> f64 {
         if h > self.begins {
             let after = h - self.begins;
@@ -80,12 +82,12 @@ impl Linear {
         self.reach
     }
 
-    /// The series of z.
+    /// Returns the series of z.
     pub fn series(&self) -> &[Series] {
         &self.series
     }
 
-    /// Each term from the one before.
+    /// Computes each term from the previous one.
     fn fill(&mut self) {
         let Self { system, push, series, .. } = self;
         for n in 1..TERMS {

@@ -9,22 +9,22 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 const FEMTOSECONDS: i64 = 1_000_000_000_000_000;
 const FEMTOSECONDS_F64: f64 = 1e15;
-/// Spans below so many seconds fit 64 bits of femtoseconds.
+/// Limit in seconds below which spans fit 64 bits of femtoseconds.
 const SHORT_S: i64 = 9_000;
-/// No span is longer, whatever number it comes from: a thousand of the longest runs.
+/// Limit of any span (s), a thousand times the longest run.
 const FARTHEST_S: f64 = 1e16;
-/// The longest span that a scenario may name: 300 000 years.
+/// Longest span that a scenario may specify (s): 300 000 years.
 const LONGEST_S: f64 = 1e13;
 
-/// An instant of simulated time, counted from the start of the run.
+/// Instant of simulated time, counted from the start of the run.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Instant(Ticks);
 
-/// A length of simulated time.
+/// Length of simulated time.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Span(Ticks);
 
-/// Whole seconds, and 0 to 10^15 - 1 femtoseconds past them: an exact integer whose operations stay within 64 bits.
+/// Whole seconds, plus 0 to 10^15 - 1 femtoseconds: an exact integer whose operations stay within 64 bits.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord, Hash)]
 struct Ticks {
     whole: i64,
@@ -32,18 +32,18 @@ struct Ticks {
 }
 
 impl Ticks {
-    /// From femtoseconds that fit 64 bits.
+    /// Creates ticks from femtoseconds that fit 64 bits.
     fn short(femtoseconds: i64) -> Self {
         Self { whole: femtoseconds.div_euclid(FEMTOSECONDS), part: femtoseconds.rem_euclid(FEMTOSECONDS) }
     }
 
-    /// Nearest to a number of seconds.
+    /// Returns the ticks nearest to a number of seconds.
     fn from_seconds(seconds: f64) -> Self {
         let nearest = |seconds: f64| Self::short(libm::round(seconds * FEMTOSECONDS_F64) as i64);
         if seconds.abs() < SHORT_S as f64 {
             return nearest(seconds);
         }
-        // Beyond, sums would not fit.
+        // Beyond this, sums would overflow.
         let seconds = seconds.clamp(-FARTHEST_S, FARTHEST_S);
         let whole = libm::trunc(seconds);
         let part = nearest(seconds - whole);
@@ -72,38 +72,38 @@ impl Ticks {
 }
 
 impl Instant {
-    /// The start of every run.
+    /// Start of every run.
     pub const START: Self = Self(Ticks { whole: 0, part: 0 });
-    /// Beyond the end of every run.
+    /// Instant beyond the end of every run.
     pub const END: Self = Self(Ticks { whole: i64::MAX, part: 0 });
 
-    /// The instant in seconds, rounded to a double.
+    /// Returns the instant in seconds, rounded to a double.
     pub fn seconds(self) -> f64 {
         self.0.seconds()
     }
 
-    /// The instant of whole seconds and femtoseconds past them, less than a second.
+    /// Creates an instant from whole seconds and the femtoseconds past them, less than a second.
     pub fn of_parts(whole: u64, part: u64) -> Self {
         Self(Ticks { whole: whole as i64, part: part as i64 })
     }
 
-    /// Whole seconds, and the femtoseconds past them: the instant without rounding.
+    /// Returns whole seconds, and the femtoseconds past them: the instant without rounding.
     pub fn parts(self) -> (u64, u64) {
         (self.0.whole as u64, self.0.part as u64)
     }
 
-    /// The instant in nanoseconds, rounded down: the time base of logs.
+    /// Returns the instant in nanoseconds, rounded down: the time base of logs.
     pub fn nanoseconds(self) -> u64 {
         self.0.whole as u64 * 1_000_000_000 + self.0.part as u64 / 1_000_000
     }
 
-    /// The instant a span before.
+    /// Returns the instant a span earlier.
     #[must_use]
     pub fn before(self, span: Span) -> Self {
         Self(self.0.minus(span.0))
     }
 
-    /// The span since an earlier instant.
+    /// Returns the span since an earlier instant.
     #[inline]
     pub fn since(self, earlier: Self) -> Span {
         Span(self.0.minus(earlier.0))
@@ -111,36 +111,36 @@ impl Instant {
 }
 
 impl Span {
-    /// No time at all.
+    /// Span of length zero.
     pub const ZERO: Self = Self(Ticks { whole: 0, part: 0 });
-    /// The shortest span there is.
+    /// Shortest span, one femtosecond.
     pub const TICK: Self = Self(Ticks { whole: 0, part: 1 });
 
-    /// The span nearest to a number of seconds.
+    /// Returns the span nearest to a number of seconds.
     #[inline]
     pub fn from_seconds(seconds: f64) -> Self {
         Self(Ticks::from_seconds(seconds))
     }
 
-    /// The span of so many femtoseconds.
+    /// Creates a span from femtoseconds.
     #[inline]
     pub fn from_femtoseconds(femtoseconds: i64) -> Self {
         Self(Ticks::short(femtoseconds))
     }
 
-    /// The femtoseconds of the span, or of its first 9000 s.
+    /// Returns the femtoseconds of the span, or of its first 9000 s.
     pub fn leading_femtoseconds(self) -> i64 {
         let Ticks { whole, part } = self.0;
         if whole < SHORT_S { whole * FEMTOSECONDS + part } else { SHORT_S * FEMTOSECONDS }
     }
 
-    /// What is left of the span after another.
+    /// Returns the difference of the span and another.
     #[must_use]
     pub fn minus(self, other: Self) -> Self {
         Self(self.0.minus(other.0))
     }
 
-    /// The span in seconds, rounded to a double.
+    /// Returns the span in seconds, rounded to a double.
     #[inline]
     pub fn seconds(self) -> f64 {
         self.0.seconds()
@@ -168,7 +168,7 @@ impl Add for Span {
 }
 
 impl fmt::Display for Instant {
-    /// Seconds with all 15 decimals.
+    /// Formats seconds with all 15 decimals.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (whole, femtoseconds) = self.parts();
         write!(f, "{whole}.{femtoseconds:015}")

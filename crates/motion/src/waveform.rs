@@ -4,31 +4,31 @@ use crate::numerics::phasor::{Complex, Phasor};
 use crate::numerics::phi::{exp, moment, phi};
 use crate::numerics::polynomial::{Series, TERMS};
 
-/// A command over time: the sum of its terms. Units are those of the command (N m, or rad/s² where the hub's motion
-/// is commanded).
+/// Command over time: the sum of its terms, in the unit of the command (N m, or rad/s² if the hub's motion is
+/// commanded).
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Waveform {
-    /// The terms, in no order; they may overlap.
+    /// Terms, in no order; they may overlap.
     pub terms: Vec<Term>,
 }
 
-/// A term of a waveform: zero outside `from <= t < to`.
+/// Term of a waveform, zero outside `from <= t < to`.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Term {
-    /// When it begins (s).
+    /// Start time (s).
     pub from: f64,
-    /// When it ends (s).
+    /// End time (s).
     pub to: f64,
-    /// What it is in between.
+    /// Shape within the window.
     pub shape: TermShape,
 }
 
-/// The shape of a term, in the time t - from since it began.
+/// Shape of a term, as a function of the time t - from since its start.
 #[derive(Clone, Debug, PartialEq)]
 pub enum TermShape {
-    /// sum c\[n\] (t - from)^n.
+    /// Polynomial sum c\[n\] (t - from)^n.
     Polynomial(Vec<f64>),
-    /// cosine cos(frequency (t - from)) + sine sin(frequency (t - from)).
+    /// Harmonic cosine cos(frequency (t - from)) + sine sin(frequency (t - from)).
     Harmonic {
         /// Frequency (rad/s).
         frequency: f64,
@@ -37,28 +37,29 @@ pub enum TermShape {
         /// Amplitude of the sine.
         sine: f64,
     },
-    /// Re(exp(pole (t - from)) sum c\[n\] (t - from)^n).
+    /// Exponential Re(exp(pole (t - from)) sum c\[n\] (t - from)^n).
     Exponential {
         /// Growth (1/s) and frequency (rad/s).
         pole: Phasor,
-        /// The coefficients c.
+        /// Coefficients c.
         coefficients: Vec<Phasor>,
     },
 }
 
 impl Waveform {
-    /// The value at a time (s), right-continuous.
+    /// Returns the value at a time (s), right-continuous.
     pub fn at(&self, t: f64) -> f64 {
         self.on_piece(t, t)
     }
 
-    /// The value at a time (s) of the terms that are active around another: at a break, the limit from that side.
+    /// Returns the value at `t` (s) of the terms that are active at `middle` (s): at a break, the limit from that
+    /// side.
     pub fn on_piece(&self, middle: f64, t: f64) -> f64 {
         let active = self.terms.iter().filter(|term| term.from <= middle && middle < term.to);
         active.map(|term| term.value(t)).sum()
     }
 
-    /// The largest frequency of a term (rad/s).
+    /// Returns the largest frequency of a term (rad/s).
     pub fn fastest(&self) -> f64 {
         let frequency = |term: &Term| match &term.shape {
             TermShape::Polynomial(c) => (c.len() as f64 - 1.0).max(0.0) / (term.to - term.from),
@@ -68,7 +69,7 @@ impl Waveform {
         self.terms.iter().map(frequency).fold(0.0, f64::max)
     }
 
-    /// The times at which a term begins or ends (s), in order, each once.
+    /// Returns the times at which a term begins or ends (s), in order, each once.
     pub fn breaks(&self) -> Vec<f64> {
         let mut breaks: Vec<f64> = self.terms.iter().flat_map(|term| [term.from, term.to]).collect();
         breaks.sort_by(f64::total_cmp);
@@ -76,12 +77,12 @@ impl Waveform {
         breaks
     }
 
-    /// When the last term ends (s).
+    /// Returns the end time of the last term (s).
     pub fn end(&self) -> f64 {
         self.terms.iter().map(|term| term.to).fold(0.0, f64::max)
     }
 
-    /// Whether every number is finite.
+    /// Returns true if every number is finite.
     pub fn is_finite(&self) -> bool {
         self.terms.iter().all(|term| match &term.shape {
             TermShape::Polynomial(c) => c.iter().all(|c| c.is_finite()),
@@ -94,30 +95,30 @@ impl Waveform {
         })
     }
 
-    /// The integral of exp(pole (to - t)) u(t) from one time to another (s): what drives a mode of this pole.
+    /// Returns the integral of exp(pole (to - t)) u(t) over `from` to `to` (s), which drives a mode of this pole.
     ///
     /// A mode x'' + 2 zeta w x' + w² x = g u with pole s = -zeta w + i w_d, w_d = w sqrt(1 - zeta²), that rests at
-    /// `from` has x(to) = g Im(Z)/w_d and x'(to) = g Im(s Z)/w_d, Z being this integral.
+    /// `from` has x(to) = g Im(Z)/w_d and x'(to) = g Im(s Z)/w_d, where Z is this integral.
     pub fn response(&self, pole: Phasor, from: f64, to: f64) -> Phasor {
         self.terms.iter().fold(Phasor::default(), |sum, term| sum + term.response(pole, from, to))
     }
 
-    /// The integral of u(t) from one time to another (s).
+    /// Returns the integral of u(t) over `from` to `to` (s).
     pub fn impulse(&self, from: f64, to: f64) -> f64 {
         self.response(Phasor::default(), from, to).re
     }
 
-    /// The integral of (to - t) u(t) from one time to another (s): the angle that a unit inertia gains from it.
+    /// Returns the integral of (to - t) u(t) over `from` to `to` (s): the resulting angle of a unit inertia.
     pub fn travel(&self, from: f64, to: f64) -> f64 {
         self.terms.iter().map(|term| term.travel(from, to)).sum()
     }
 
-    /// The Taylor series at a time (s) of the terms that are active around another.
+    /// Returns the Taylor series at `t` (s) of the terms that are active at `middle` (s).
     pub fn series(&self, middle: f64, t: f64) -> Series {
         let mut series = [0.0; TERMS];
         for term in self.terms.iter().filter(|term| term.from <= middle && middle < term.to) {
             let (pole, coefficients) = term.about(t);
-            // exp(pole t) times each power of t.
+            // Product of exp(pole t) and each power of t.
             let mut factor = Phasor::new(1.0, 0.0);
             for k in 0..TERMS {
                 for (n, c) in coefficients.iter().enumerate().take(TERMS - k) {
@@ -129,7 +130,7 @@ impl Waveform {
         series
     }
 
-    /// The same command later (s) and larger.
+    /// Returns the command delayed by `delay` (s) and scaled by `factor`.
     #[must_use]
     pub fn shifted(&self, delay: f64, factor: f64) -> Self {
         let shift = |term: &Term| Term {
@@ -153,7 +154,7 @@ impl Waveform {
 }
 
 impl Term {
-    /// The value that the shape has at a time (s), within the window or not.
+    /// Returns the value of the shape at a time (s), whether or not within the window.
     pub fn value(&self, t: f64) -> f64 {
         let t = t - self.from;
         match &self.shape {
@@ -185,7 +186,7 @@ impl Term {
         let driven = if matches!(self.shape, TermShape::Polynomial(_)) {
             part(own, coefficients)
         } else {
-            // The real part of the shape is half the sum of it and its conjugate.
+            // The real part of the shape is half the sum of the shape and its conjugate.
             let conjugate = coefficients.iter().map(Phasor::conj).collect();
             (part(own, coefficients) + part(own.conj(), conjugate)) * 0.5
         };
@@ -216,13 +217,13 @@ impl Term {
         travel + impulse * (to - end)
     }
 
-    /// The part of an interval that lies within the term's window.
+    /// Returns the part of an interval that lies within the term's window.
     fn within(&self, from: f64, to: f64) -> Option<(f64, f64)> {
         let (start, end) = (from.max(self.from), to.min(self.to));
         (start < end).then_some((start, end))
     }
 
-    /// The shape as Re(exp(pole t) sum c\[n\] t^n) in the time t since another origin: its pole and c.
+    /// Returns the shape as Re(exp(pole t) sum c\[n\] t^n) in the time t since another origin: pole and c.
     fn about(&self, origin: f64) -> (Phasor, Vec<Phasor>) {
         let since = origin - self.from;
         let (pole, coefficients) = match &self.shape {
@@ -240,7 +241,7 @@ impl Term {
     }
 }
 
-/// The coefficients of a polynomial about another origin.
+/// Returns the coefficients of a polynomial about another origin.
 fn rebased(mut c: Vec<Phasor>, origin: f64) -> Vec<Phasor> {
     for low in 0..c.len() {
         for n in (low..c.len() - 1).rev() {

@@ -1,4 +1,4 @@
-//! Runs come into the lanes of a flight.
+//! Assignment of runs to the lanes of the kernel.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
@@ -13,7 +13,7 @@ use flexsc_motion::guess::{FARTHEST_TURN, GuessOscillator};
 use flexsc_motion::lanes::{Four, Real};
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
-    /// Lanes without runs, of bodies and envelopes with so many modes.
+    /// Creates lanes without runs, for bodies and envelopes with the given numbers of modes.
     #[inline(always)]
     pub(super) fn new(kind: R, modes: usize, tracks: usize) -> Self {
         let (zero, one) = (kind.of(0.0), kind.of(1.0));
@@ -76,7 +76,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         flight
     }
 
-    /// Gives lanes that have none the next runs; tells whether any has one.
+    /// Assigns the next runs to idle lanes; returns true if any lane is active.
     #[inline(always)]
     pub(super) fn fill(&mut self, crew: &mut dyn Crew) -> bool {
         let mut any = false;
@@ -88,12 +88,12 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             }
             any |= self.active[lane];
         }
-        // They may have changed with the runs.
+        // The host's requests may change with the runs.
         (self.listens, self.looks) = (crew.listens(), crew.looks());
         any
     }
 
-    /// Puts a run into a lane.
+    /// Initialises a lane with a run.
     #[inline(always)]
     fn begin(&mut self, lane: usize, setup: &Setup) {
         let put = |of: &mut R, value: f64| *of = of.with_lane(lane, value);

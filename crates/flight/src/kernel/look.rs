@@ -1,4 +1,4 @@
-//! What is seen of the lanes of a flight, one by one.
+//! Extraction of single lanes from the kernel, as plain numbers for the host.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
@@ -11,7 +11,7 @@ use flexsc_motion::damping::Damping;
 use flexsc_motion::lanes::{Mask, Real};
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
-    /// Where bounds do not keep the angle within the band on the motion that ends, the crew has to see for itself.
+    /// Notifies the host of lanes whose bounds do not keep the angle within the band during the motion that ends.
     #[inline(always)]
     pub(super) fn stray(
         &mut self,
@@ -30,7 +30,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
         let end = self.angle + span * (self.rate + span.of(0.5) * moment * span);
         let (mut low, mut high) = (self.angle.min(end), self.angle.max(end));
-        // The crest of the parabola, if it is on the way.
+        // Vertex of the parabola, if it lies within the motion.
         let crest = self.angle - span.of(0.5) * self.rate * (self.rate / moment);
         let turns = (self.rate * (self.rate + moment * span)).le(zero);
         low = R::select(turns, low.min(crest), low);
@@ -49,7 +49,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
     }
 
-    /// Tells a switching of each lane.
+    /// Notifies the host of a switching in each lane.
     #[inline(always)]
     pub(super) fn tell(&mut self, crew: &mut dyn Crew, to: CyclePlace) {
         if !self.listens {
@@ -64,7 +64,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
     }
 
-    /// Hands the run of the first lane back at its departure to this place.
+    /// Hands the run of the first lane back to the host, at the start of the motion at `place`.
     pub(super) fn hand_back(&mut self, crew: &mut dyn Crew, place: CyclePlace) {
         self.active[0] = false;
         self.write();
@@ -87,7 +87,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         });
     }
 
-    /// Writes down what there is to look at.
+    /// Writes the state of all lanes to plain rows.
     #[inline(always)]
     pub(super) fn write(&mut self) {
         let [whole, part, side, k_t, angle, rate, rest @ ..] = &mut self.rows[..] else { return };
@@ -104,7 +104,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
         }
     }
 
-    /// Looks at a lane of what was written down.
+    /// Copies the state of one lane from the rows.
     pub(super) fn look(&mut self, lane: usize) {
         let [whole, part, side, k_t, angle, rate, rest @ ..] = &self.rows[..] else { return };
         let sight = &mut self.sight;

@@ -1,4 +1,4 @@
-//! A mode of the body in the lanes of a flight.
+//! Elastic mode of the body in SIMD lanes.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
@@ -6,23 +6,23 @@ use flexsc_motion::damping::Damping;
 use flexsc_motion::guess::GuessOscillator;
 use flexsc_motion::lanes::Real;
 
-/// A mode: what it is, where it is at departure, and where the motion that departed ends. Its numbers do not straddle lines of
-/// the cache.
+/// Mode with its constants, its state at the start of the motion, and its state at the end. Aligned so that its
+/// numbers do not straddle cache lines.
 #[derive(Copy, Clone)]
 #[repr(align(64))]
 pub struct LaneMode<R, D> {
     /// Natural frequency (rad/s).
     pub frequency: R,
-    /// Static displacement for each unit of moment (s²).
+    /// Static displacement per unit of angular acceleration (s²).
     pub excitability: R,
     pub damping: D,
-    /// Displacement from 0 and quadrature (rad).
+    /// Displacement from 0 and quadrature (rad), at the start and at the end of the motion.
     pub at: [R; 2],
     pub end: [R; 2],
 }
 
 impl<R: Real, D: Damping<R>> LaneMode<R, D> {
-    /// The mode about its equilibrium under a moment.
+    /// Returns the mode about its equilibrium under an angular acceleration (rad/s²).
     #[inline(always)]
     pub fn depart(&self, moment: R) -> GuessOscillator<R, D> {
         let equilibrium = self.excitability * moment;
@@ -35,7 +35,7 @@ impl<R: Real, D: Damping<R>> LaneMode<R, D> {
         }
     }
 
-    /// Keeps where the motion ends.
+    /// Stores the state at the end of the motion.
     #[inline(always)]
     pub fn arrive(&mut self, moved: &GuessOscillator<R, D>) {
         self.end = [moved.equilibrium + moved.displacement, moved.quadrature];

@@ -1,4 +1,4 @@
-//! Four lanes on every processor: what belongs together in one run, side by side.
+//! Four SIMD lanes on every processor, for data within one run.
 
 use pulp::Simd;
 #[cfg(target_arch = "aarch64")]
@@ -9,7 +9,7 @@ use pulp::x86::V3;
 use super::real::LaneWork;
 use super::register::Vectorized;
 
-/// The instructions by which this processor does something to four numbers.
+/// Instruction set by which this processor operates on four numbers.
 #[derive(Copy, Clone, Debug)]
 pub struct Four(Instructions);
 
@@ -23,15 +23,15 @@ enum Instructions {
 }
 
 impl Four {
-    /// So many numbers stand side by side.
+    /// Number of lanes.
     pub const LANES: usize = 4;
 
-    /// The best that there are.
+    /// Returns the best available instruction set.
     pub fn best() -> Self {
         Self::wide().unwrap_or_else(Self::any)
     }
 
-    /// Those of more than one number at once, if there are any.
+    /// Returns the vector instruction set, if the processor has one.
     pub fn wide() -> Option<Self> {
         #[cfg(target_arch = "x86_64")]
         let wide = V3::try_new().map(Instructions::Avx2);
@@ -42,12 +42,12 @@ impl Four {
         wide.map(Self)
     }
 
-    /// Those that every processor has.
+    /// Returns the portable scalar implementation.
     pub fn any() -> Self {
         Self(Instructions::Any)
     }
 
-    /// Does some work over four lanes.
+    /// Runs a task on four lanes.
     pub fn run<W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(target_arch = "x86_64")]

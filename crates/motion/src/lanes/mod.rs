@@ -1,12 +1,14 @@
-//! Many runs side by side: one number of each in the lanes of a processor's registers.
+//! SIMD over many runs: one number of each run in the lanes of a processor's registers.
 //!
-//! What is written once over [`Real`] serves one run, with `f64`, and many, in lanes. A lane does what `f64` does, to
-//! the bit: nothing but IEEE additions, subtractions, products, quotients and roots, comparisons and selections; no product
-//! is fused with a sum, no reciprocal approximate. So no number depends on the processor, the width or the neighbours.
+//! Code written once over [`Real`] serves a single run, with `f64`, and many runs, in lanes. A lane does exactly what
+//! `f64` does, to the bit: only IEEE additions, subtractions, products, quotients and roots, comparisons and
+//! selections; no product is fused with a sum, no reciprocal is approximate. So no number depends on the processor,
+//! the width or the other lanes.
 //!
-//! Code over lanes must be inlined into the function that [`Processor::run`] compiles for the processor: every function on the way
-//! is `#[inline(always)]` and has plain loops. Closures, iterators' adaptors and `array::from_fn` are functions of their own
-//! that lack the instructions: they are right, and ten times as slow. [`Real::apart`] makes a function that has them.
+//! Code over lanes must be inlined into the function that [`Processor::run`] compiles for the processor: every
+//! function on the way is `#[inline(always)]` and has plain loops. Closures, iterator adaptors and `array::from_fn`
+//! are separate functions that lack the instructions: they are correct, and ten times as slow. [`Real::apart`]
+//! creates a separate function that has them.
 
 mod four;
 mod processor;

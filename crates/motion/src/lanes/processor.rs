@@ -1,4 +1,4 @@
-//! Which registers the processor has: asked once for a chunk of runs.
+//! Detection of the processor's SIMD instruction sets, once per chunk of runs.
 
 use pulp::Simd;
 #[cfg(target_arch = "aarch64")]
@@ -11,7 +11,7 @@ use pulp::x86::V4;
 use super::real::LaneWork;
 use super::register::{Alone, Vectorized};
 
-/// Instructions for lanes that this processor has.
+/// SIMD instruction set of this processor.
 #[derive(Copy, Clone, Debug)]
 pub struct Processor(Instructions);
 
@@ -26,7 +26,7 @@ enum Instructions {
 }
 
 impl Processor {
-    /// All instructions for lanes that this processor has and the build knows, the widest first.
+    /// Returns all SIMD instruction sets that the processor has and the build supports, the widest first.
     pub fn all() -> Vec<Self> {
         #[cfg(all(target_arch = "x86_64", feature = "wide"))]
         let all = [V4::try_new().map(Instructions::Avx512), V3::try_new().map(Instructions::Avx2)];
@@ -39,12 +39,12 @@ impl Processor {
         all.into_iter().flatten().map(Self).collect()
     }
 
-    /// The widest; none if runs go one by one here.
+    /// Returns the widest instruction set; `None` if runs are computed one by one here.
     pub fn best() -> Option<Self> {
         Self::all().into_iter().next()
     }
 
-    /// What the instructions are called.
+    /// Returns the name of the instruction set.
     pub fn name(self) -> &'static str {
         match self.0 {
             #[cfg(all(target_arch = "x86_64", feature = "wide"))]
@@ -56,7 +56,7 @@ impl Processor {
         }
     }
 
-    /// How many lanes so many registers have.
+    /// Returns the number of lanes of the given number of registers.
     pub fn lanes(self, registers: usize) -> usize {
         registers
             * match self.0 {
@@ -69,7 +69,7 @@ impl Processor {
             }
     }
 
-    /// Does some work over numbers, one at a time, with such instructions; those of AVX-512 add nothing to one number.
+    /// Runs a task on single numbers, compiled for the instruction set; AVX-512 is of no use for single numbers.
     pub fn run_alone<W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(all(target_arch = "x86_64", feature = "wide"))]
@@ -81,7 +81,7 @@ impl Processor {
         }
     }
 
-    /// Does some work over lanes of N registers.
+    /// Runs a task on lanes of N registers.
     pub fn run<const N: usize, W: LaneWork>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(all(target_arch = "x86_64", feature = "wide"))]

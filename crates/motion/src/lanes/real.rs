@@ -1,12 +1,13 @@
-//! What numbers of the engine's kernels do, alone or in lanes.
+//! Operations of the engine's kernels on single numbers or SIMD lanes.
 
 use std::fmt::Debug;
 use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
-/// 1.5 * 2^52: beside it, a number has no digits after the point.
+/// Constant 1.5 * 2^52: adding it to a number removes the fraction.
 pub(super) const WHOLE: f64 = 6_755_399_441_055_744.0;
 
-/// A number, or one in each lane. A number of the source, which all lanes share, may stand at the right of an operator.
+/// Floating-point number, or one number per lane. A plain `f64`, shared by all lanes, may stand on the right of an
+/// operator.
 pub trait Real:
     Copy
     + Debug
@@ -19,16 +20,16 @@ pub trait Real:
     + Sub<f64, Output = Self>
     + Mul<f64, Output = Self>
 {
-    /// An answer for each lane.
+    /// Boolean per lane.
     type Mask: Mask;
-    /// How many lanes there are.
+    /// Number of lanes.
     const LANES: usize;
 
-    /// The same number in every lane; `self` only says of which kind.
+    /// Returns the same number in every lane; `self` only determines the type.
     #[must_use]
     fn of(self, value: f64) -> Self;
 
-    /// Numbers from the beginning of a slice, one for each lane; `self` only says of which kind.
+    /// Loads numbers from the beginning of a slice, one per lane; `self` only determines the type.
     ///
     /// # Panics
     /// If the slice is shorter than the lanes.
@@ -41,65 +42,65 @@ pub trait Real:
     /// If the slice is shorter than the lanes.
     fn store(self, to: &mut [f64]);
 
-    /// The root.
+    /// Returns the square root.
     #[must_use]
     fn sqrt(self) -> Self;
 
-    /// The absolute value.
+    /// Returns the absolute value.
     #[must_use]
     fn abs(self) -> Self;
 
-    /// Where this is less; nowhere beside NaN.
+    /// Returns the lanes in which `self < other`; false for NaN.
     fn lt(self, other: Self) -> Self::Mask;
 
-    /// Where this is less or equal; nowhere beside NaN.
+    /// Returns the lanes in which `self <= other`; false for NaN.
     fn le(self, other: Self) -> Self::Mask;
 
-    /// The first where the mask says so, else the second.
+    /// Returns `yes` in the lanes where the mask is set, and `no` in the others.
     #[must_use]
     fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
 
-    /// The nearest integer, of two the even one, and where it is odd, and where its second binary digit is 1: quarter turns
-    /// are told apart by these. Only below 2^51 in absolute value.
+    /// Returns the nearest integer (ties to even), whether it is odd, and whether its second binary digit is 1; these
+    /// distinguish quarter turns. Valid below 2^51 in absolute value.
     fn quadrant(self) -> (Self, Self::Mask, Self::Mask);
 
-    /// Runs some work as a function of its own, for what is too long to stand where it is called.
+    /// Runs a task as a separate function, for code that is too long to be inlined.
     fn apart<W: LaneWork>(self, work: W) -> W::Output;
 
-    /// Where this is greater; nowhere beside NaN.
+    /// Returns the lanes in which `self > other`; false for NaN.
     #[inline(always)]
     fn gt(self, other: Self) -> Self::Mask {
         other.lt(self)
     }
 
-    /// Where this is greater or equal; nowhere beside NaN.
+    /// Returns the lanes in which `self >= other`; false for NaN.
     #[inline(always)]
     fn ge(self, other: Self) -> Self::Mask {
         other.le(self)
     }
 
-    /// This where it is less, else the other: the other beside NaN, and of two zeros.
+    /// Returns the lane-wise minimum with the semantics of x86 `minpd`: `other` if either is NaN or both are zero.
     #[inline(always)]
     #[must_use]
     fn min(self, other: Self) -> Self {
         Self::select(self.lt(other), self, other)
     }
 
-    /// This where it is greater, else the other: the other beside NaN, and of two zeros.
+    /// Returns the lane-wise maximum with the semantics of x86 `maxpd`: `other` if either is NaN or both are zero.
     #[inline(always)]
     #[must_use]
     fn max(self, other: Self) -> Self {
         Self::select(other.lt(self), self, other)
     }
 
-    /// The nearest integer, of two the even one. Only below 2^51 in absolute value.
+    /// Returns the nearest integer (ties to even). Valid below 2^51 in absolute value.
     #[inline(always)]
     #[must_use]
     fn round(self) -> Self {
         self.quadrant().0
     }
 
-    /// The number in a lane.
+    /// Returns the number in a lane.
     #[inline(always)]
     fn lane(self, lane: usize) -> f64 {
         let mut all = [0.0; 16];
@@ -107,7 +108,7 @@ pub trait Real:
         all[..Self::LANES][lane]
     }
 
-    /// Other than before in one lane.
+    /// Replaces the number in one lane.
     #[inline(always)]
     #[must_use]
     fn with_lane(self, lane: usize, value: f64) -> Self {
@@ -118,24 +119,25 @@ pub trait Real:
     }
 }
 
-/// Yes or no, or one of them in each lane.
+/// Boolean, or one boolean per lane.
 pub trait Mask: Copy + Debug + BitAnd<Output = Self> + BitOr<Output = Self> + Not<Output = Self> {
-    /// Whether it is yes in any lane.
+    /// Returns true if any lane is true.
     fn any(self) -> bool;
 
-    /// Whether it is yes in every lane.
+    /// Returns true if every lane is true.
     #[inline(always)]
     fn all(self) -> bool {
         !(!self).any()
     }
 }
 
-/// Work over numbers of any kind.
+/// Task that is generic over the number type, to be compiled for each instruction set.
 pub trait LaneWork {
-    /// What comes of it.
+    /// Result of the task.
     type Output;
 
-    /// Does it; `kind` is any number of the kind, NaN for one. It has to be `#[inline(always)]`.
+    /// Runs the task; `kind` is any number of the type, NaN for a single one. Implementations must be
+    /// `#[inline(always)]`.
     fn run<R: Real>(self, kind: R) -> Self::Output;
 }
 
@@ -160,7 +162,7 @@ impl Real for f64 {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        // IEEE's root, on every processor.
+        // Correctly rounded by IEEE 754 on every processor.
         f64::sqrt(self)
     }
 

@@ -1,4 +1,4 @@
-//! Numbers in the lanes of registers.
+//! SIMD lanes in processor registers.
 
 #![allow(clippy::manual_memcpy, reason = "so few numbers are loaded one by one: a copy would be a call")]
 
@@ -9,10 +9,10 @@ use pulp::{Simd, WithSimd};
 
 use super::real::{LaneWork, Mask, Real, WHOLE};
 
-/// The places of the lanes.
+/// Indices of the lanes.
 const PLACES: [f64; 16] =
     [0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 11.0, 12.0, 13.0, 14.0, 15.0];
-/// The digit of a number's sign.
+/// Sign bit of a number.
 const SIGN: u64 = 1 << 63;
 
 /// Numbers in the lanes of N registers of a processor.
@@ -22,7 +22,7 @@ pub struct Lanes<S: Simd, const N: usize> {
     registers: [S::f64s; N],
 }
 
-/// Yes or no in each of these lanes.
+/// Boolean in each lane of N registers.
 #[derive(Copy, Clone)]
 pub struct LaneMask<S: Simd, const N: usize> {
     simd: S,
@@ -30,14 +30,14 @@ pub struct LaneMask<S: Simd, const N: usize> {
 }
 
 impl<S: Simd, const N: usize> Lanes<S, N> {
-    /// No number in every lane.
+    /// Creates NaN in every lane.
     #[inline(always)]
     pub(super) fn new(simd: S) -> Self {
         Self { simd, registers: [simd.splat_f64s(f64::NAN); N] }
     }
 }
 
-/// Does something to each register, written out: of thousands of loops, LLVM takes minutes to unroll each.
+/// Repeats a statement for each register, written out: LLVM takes minutes to unroll thousands of such loops.
 macro_rules! each_register {
     ($index:ident => $body:expr) => {{
         const { assert!(N == 1 || N == 2, "so many are written out") };
@@ -52,7 +52,8 @@ macro_rules! each_register {
     }};
 }
 
-/// New registers, each from the same one of the operands. No closure: it would lack the processor's instructions.
+/// Computes new registers from the corresponding ones of the operands. Not a closure, which would lack the
+/// processor's instructions.
 macro_rules! each {
     ($lanes:expr, $($operand:ident = $of:expr),+ => $result:expr) => {{
         let mut lanes = $lanes;
@@ -64,7 +65,7 @@ macro_rules! each {
     }};
 }
 
-/// An operator between lanes, and between lanes and a number.
+/// Implements an operator between lanes, and between lanes and a number.
 macro_rules! operator {
     ($trait:ident, $name:ident, $operation:ident) => {
         impl<S: Simd, const N: usize> $trait for Lanes<S, N> {
@@ -131,7 +132,7 @@ impl<S: Simd, const N: usize> Real for Lanes<S, N> {
 
     #[inline(always)]
     fn with_lane(self, lane: usize, value: f64) -> Self {
-        // Chosen in the registers: a number written to memory would have to wait there for its neighbours.
+        // Selected in the registers: a number written to memory would stall the load of the whole register.
         let (at, half) = (self.load(&PLACES) - self.of(lane as f64), self.of(0.5));
         Self::select(at.abs().lt(half), self.of(value), self)
     }
@@ -193,7 +194,7 @@ impl<S: Simd, const N: usize> Real for Lanes<S, N> {
 }
 
 impl<S: Simd, const N: usize> LaneMask<S, N> {
-    /// Nowhere.
+    /// Creates a mask that is false in every lane.
     #[inline(always)]
     fn new(simd: S) -> Self {
         let zero = simd.splat_f64s(0.0);
@@ -242,7 +243,7 @@ impl<S: Simd, const N: usize> Mask for LaneMask<S, N> {
     }
 }
 
-/// Work that a processor's instructions are chosen for.
+/// Task compiled for a processor's instruction set, on lanes of N registers.
 pub(super) struct Vectorized<W, const N: usize>(pub W);
 
 impl<W: LaneWork, const N: usize> WithSimd for Vectorized<W, N> {
@@ -254,7 +255,7 @@ impl<W: LaneWork, const N: usize> WithSimd for Vectorized<W, N> {
     }
 }
 
-/// Work over single numbers.
+/// Task compiled for a processor's instruction set, on single numbers.
 pub(super) struct Alone<W>(pub W);
 
 impl<W: LaneWork> WithSimd for Alone<W> {

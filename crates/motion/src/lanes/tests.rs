@@ -1,9 +1,9 @@
-//! Every operation in every lane of every width is that of f64, to the bit.
+//! Tests that every operation in every lane of every width equals that of f64, to the bit.
 
 use super::register::Lanes;
 use super::{LaneWork, Mask, Processor, Real};
 
-/// What arithmetic stumbles over.
+/// Special values that are critical for arithmetic.
 const ODD: [f64; 28] = [
     0.0,
     -0.0,
@@ -35,10 +35,10 @@ const ODD: [f64; 28] = [
     -3.3e-200,
 ];
 
-/// All results of all operations on two numbers.
+/// Returns the results of all operations on two numbers.
 fn results<R: Real>(a: R, b: R) -> Vec<R> {
     let yes = |mask: R::Mask| R::select(mask, a.of(1.0), a.of(0.0));
-    // Beyond 2^51 there is no nearest integer.
+    // Beyond 2^51 `quadrant` is not defined.
     let small = R::select(a.abs().lt(a.of(2_251_799_813_685_248.0)), a, a.of(7.0));
     let (whole, odd, second) = small.quadrant();
     vec![
@@ -63,7 +63,7 @@ fn results<R: Real>(a: R, b: R) -> Vec<R> {
         whole,
         yes(odd),
         yes(second),
-        // No product is fused with a sum.
+        // Must not be fused into one operation.
         a * b + a,
         a * a - b * b,
     ]
@@ -79,7 +79,7 @@ impl LaneWork for Pairs {
         let lanes = R::LANES;
         for from in 0..ODD.len() {
             for with in 0..ODD.len() {
-                // Each lane another pair.
+                // A different pair in each lane.
                 let a: Vec<f64> = (0..lanes).map(|lane| ODD[(from + lane) % ODD.len()]).collect();
                 let b: Vec<f64> = (0..lanes).map(|lane| ODD[(with + 3 * lane) % ODD.len()]).collect();
                 for (index, all) in results(kind.load(&a), kind.load(&b)).into_iter().enumerate() {
@@ -134,7 +134,7 @@ impl LaneWork for Chosen {
         let (none, rising) = (kind.of(0.0), kind.load(&ODD).with_lane(R::LANES - 1, 7.0));
         assert_eq!(rising.lane(R::LANES - 1), 7.0);
         assert!(!rising.lt(none.of(f64::NEG_INFINITY)).any());
-        // One lane alone is any, and not all, where there are several.
+        // A single true lane is `any`, and `all` only if there is one lane.
         let one = rising.gt(none.of(6.0)) & rising.lt(none.of(8.0));
         assert!(one.any());
         assert_eq!(one.all(), R::LANES == 1);
@@ -148,7 +148,7 @@ impl LaneWork for Chosen {
     }
 }
 
-/// The number in a lane, by a function of its own.
+/// Task that returns the number in a lane, run as a separate function.
 struct Lane(usize);
 
 impl LaneWork for Lane {

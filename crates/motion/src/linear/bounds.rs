@@ -1,4 +1,4 @@
-//! What the second and third derivative of an output cannot exceed from now on.
+//! Bounds of the second and third derivative of an output for the time to come.
 
 use super::flow::{Cluster, LinearFlow};
 use super::segment::{LinearSegment, LinearSight};
@@ -6,8 +6,8 @@ use crate::numerics::phasor::{Phasor, abs};
 use nalgebra::DVector;
 
 impl LinearFlow {
-    /// Renews the bounds from the shrinkage e^(sigma h) of each pole, for departures with these residues. They hold for
-    /// `seen.window` seconds.
+    /// Updates the bounds from the decay e^(sigma h) of each pole and the residues of the segment. They are valid for
+    /// `seen.window` (s).
     pub(super) fn bound(&self, segment: &LinearSegment, seen: &mut LinearSight) {
         let count = self.poles.len();
         seen.window = self.window;
@@ -37,7 +37,7 @@ impl LinearFlow {
                     beaten = beaten.min(*window);
                 }
             }
-            // What differences have rounded away is given back.
+            // Compensates for rounding in the differences.
             *curvature *= 1.0 + 1e-12;
             *jerk *= 1.0 + 1e-12;
         }
@@ -54,7 +54,7 @@ impl LinearFlow {
 }
 
 impl Cluster {
-    /// Bounds of y'' and y''' of an output for its window, from its rates now.
+    /// Returns bounds of y'' and y''' of an output within its window, from its current rates.
     pub(super) fn bounds(&self, output: usize, rates: &DVector<Phasor>) -> [f64; 2] {
         let factor = self.growth * self.block.weight;
         if rates.len() == 2 {

@@ -1,13 +1,13 @@
-//! Poles that nearly coalesce, kept together: e^(T h) r and its integrals for a triangular T.
+//! Nearly coalescing poles in one block: e^(T h) r and its integrals for a triangular T.
 //!
-//! Of two poles it is a closed form, exact for every distance, 0 included; of more it is a matrix exponential.
+//! For two poles a closed form is used, exact for every distance, 0 included; for more, a matrix exponential.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::phi::exponential;
 use crate::numerics::phasor::{Phasor, abs};
 
-/// e^(T h) r, h phi_1(T h) r and h² phi_2(T h) r.
+/// Values of e^(T h) r, h phi_1(T h) r and h² phi_2(T h) r.
 #[derive(Clone, Debug)]
 pub struct Moved {
     pub exp: DVector<Phasor>,
@@ -15,7 +15,7 @@ pub struct Moved {
     pub second: DVector<Phasor>,
 }
 
-/// The functions of a triangular matrix on a vector at `h` seconds.
+/// Computes the functions of a triangular matrix applied to a vector at the time `h` (s).
 pub fn moved(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     let diagonal = t.diagonal();
     let sizes = diagonal.iter().map(|z| abs(*z) * h);
@@ -42,7 +42,8 @@ fn series(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     Moved { exp, first: times(first, h), second: times(second, h * h) }
 }
 
-/// With m = (l1 + l2)/2 and d = (l1 - l2)/2 the off-diagonal element of the exponential is s h e^(m h) sinh(d h)/(d h).
+/// Computes the functions for two poles: with m = (l1 + l2)/2 and d = (l1 - l2)/2 the off-diagonal element of the
+/// exponential is s h e^(m h) sinh(d h)/(d h).
 fn two(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     let (l1, l2, s) = (t[(0, 0)], t[(1, 1)], t[(0, 1)]);
     let (e1, e2) = (exponential(l1 * h), exponential(l2 * h));
@@ -67,7 +68,7 @@ fn two(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     Moved { exp, first, second }
 }
 
-/// By the exponential of T h bordered with r, whose last columns are the integrals.
+/// Computes the functions by the exponential of T h bordered with r, whose last columns are the integrals.
 fn augmented(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     let count = t.nrows();
     let size = f64::sqrt(r.iter().map(Phasor::norm_sqr).sum());
@@ -83,12 +84,12 @@ fn augmented(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     Moved { exp, first: column(count, scale * h), second: column(count + 1, scale * h * h) }
 }
 
-/// exp(M) of an upper triangular matrix, by scaling, Taylor's series and squaring.
+/// Returns exp(M) of an upper triangular matrix, by scaling, Taylor's series and squaring.
 fn triangular_exponential(matrix: &DMatrix<Phasor>) -> DMatrix<Phasor> {
     let order = matrix.nrows();
     let norm = matrix.row_iter().map(|row| row.iter().map(|m| abs(*m)).sum::<f64>()).fold(0.0, f64::max);
     let (mut squarings, mut scale) = (0, 1.0);
-    // What is not finite stays so, and needs no scaling.
+    // Non-finite matrices need no scaling.
     while norm * scale > 0.5 && squarings < 60 {
         squarings += 1;
         scale *= 0.5;

@@ -1,30 +1,31 @@
-//! A second-order plant in energy coordinates, in which damping is never a negative number.
+//! Second-order plant in energy coordinates, in which damping never becomes negative by rounding.
 //!
-//! With M = R' R and K = N' N, s = N q and v = R q' give s' = L v, v' = -L' s - R^-T (D + G) R^-1 v with L = N R^-1.
-//! Without damping the matrix is skew, and its eigenvectors are unitary. Coordinates without stiffness do not appear.
+//! With M = R' R and K = N' N, the coordinates s = N q and v = R q' give s' = L v, v' = -L' s - R^-T (D + G) R^-1 v
+//! with L = N R^-1. Without damping the matrix is skew, and its eigenvectors are unitary. Coordinates without
+//! stiffness do not appear.
 
 use nalgebra::{Cholesky, DMatrix};
 
 use super::form::{StateForm, System};
 
-/// A plant M q'' + (D + G) q' + K q = B u with outputs y = C q.
+/// Second-order plant M q'' + (D + G) q' + K q = B u with outputs y = C q.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SecondOrder {
-    /// M, symmetric and positive definite.
+    /// Mass matrix M, symmetric and positive definite.
     pub mass: DMatrix<f64>,
-    /// D + G: damping, symmetric, and gyroscopic forces, skew.
+    /// Matrix D + G: damping, symmetric, and gyroscopic forces, skew.
     pub damping: DMatrix<f64>,
-    /// K, symmetric. A rigid coordinate has a row and a column of zeros.
+    /// Stiffness matrix K, symmetric. A rigid coordinate has a row and a column of zeros.
     pub stiffness: DMatrix<f64>,
-    /// B, one column for each input.
+    /// Matrix B, one column for each input.
     pub input: DMatrix<f64>,
-    /// C, one row for each output.
+    /// Matrix C, one row for each output.
     pub output: DMatrix<f64>,
 }
 
 impl SecondOrder {
-    /// The plant in energy coordinates, or where a stiffness is negative in balanced ones; its state is x = (q, q').
-    /// None if the mass matrix is not positive definite.
+    /// Returns the plant in energy coordinates, or in balanced ones if a stiffness is negative; its state is x = (q,
+    /// q'). `None` if the mass matrix is not positive definite.
     pub fn form(&self) -> Option<StateForm> {
         let mass = Cholesky::new(self.mass.clone())?;
         let order = self.mass.nrows();
@@ -45,7 +46,7 @@ impl SecondOrder {
     ) -> StateForm {
         let (order, stiff) = (self.mass.nrows(), elastic.len());
         let identity = DMatrix::<f64>::identity(order, order);
-        // Factors of positive definite matrices have no zero on their diagonals.
+        // Cholesky factors of positive definite matrices have no zero on their diagonals.
         let inverse = |l: &DMatrix<f64>, of: &DMatrix<f64>| {
             l.solve_lower_triangular(of).unwrap_or_else(|| of.clone()).transpose()
         };
@@ -86,14 +87,14 @@ impl SecondOrder {
         }
     }
 
-    /// In q and q', where a stiffness is negative and there are no energy coordinates.
+    /// Returns the plant in q and q', for a negative stiffness, where energy coordinates do not exist.
     fn balanced(&self, mass: &Cholesky<f64, nalgebra::Dyn>) -> StateForm {
         let order = self.mass.nrows();
         let mut matrix = DMatrix::zeros(2 * order, 2 * order);
         matrix.view_mut((0, order), (order, order)).fill_with_identity();
         matrix.view_mut((order, 0), (order, order)).copy_from(&-mass.solve(&self.stiffness));
         matrix.view_mut((order, order), (order, order)).copy_from(&-mass.solve(&self.damping));
-        // A column of zeros stays one to the last bit.
+        // Columns of zeros remain exactly zero.
         let mut input = DMatrix::zeros(2 * order, self.input.ncols());
         input.rows_mut(order, order).copy_from(&mass.solve(&self.input));
         let mut output = DMatrix::zeros(self.output.nrows(), 2 * order);

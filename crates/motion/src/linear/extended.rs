@@ -1,10 +1,10 @@
-//! The residual F v - lambda v in twice the digits of a double, which polishes poles.
+//! Residual F v - lambda v in twice the digits of a double, to polish poles.
 
 use nalgebra::{DMatrix, DVector, DVectorView};
 
 use crate::numerics::phasor::Phasor;
 
-/// A sum of products, as a double and what is left of it.
+/// Sum of products as a double and its rounding error.
 #[derive(Copy, Clone, Default)]
 struct Sum {
     high: f64,
@@ -27,14 +27,14 @@ impl Sum {
     }
 }
 
-/// A number as the sum of two of half its digits, whose products are exact.
+/// Splits a number into two of half its digits, whose products are exact.
 fn halves(a: f64) -> [f64; 2] {
     let scaled = 134_217_729.0 * a; // 2^27 + 1
     let high = scaled - (scaled - a);
     [high, a - high]
 }
 
-/// F v - lambda v.
+/// Computes F v - lambda v.
 pub fn residual(f: &DMatrix<f64>, v: DVectorView<Phasor>, lambda: Phasor) -> DVector<Phasor> {
     DVector::from_fn(f.nrows(), |i, _| {
         let (mut re, mut im) = (Sum::default(), Sum::default());

@@ -1,4 +1,4 @@
-//! The linear flow of one configuration: poles, residues, and what the outputs see of them. Computed once.
+//! Eigendecomposition of one plant configuration: poles, residues and output weights. Computed once.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -7,43 +7,44 @@ use super::phi::Pole;
 use super::poles::{Block, blocks};
 use crate::numerics::phasor::{Phasor, abs};
 
-/// The span for which bounds of growing poles hold, at most (s).
+/// Limit on the time for which bounds of growing poles are valid (s).
 const LONGEST: f64 = 1e6;
 
-/// A linear flow.
+/// Linear plant as poles and clusters, ready to compute motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearFlow {
     form: StateForm,
     pub(super) poles: Vec<Simple>,
     pub(super) clusters: Vec<Cluster>,
-    /// C_t of each output.
+    /// Matrix C_t of the outputs.
     pub(super) rigid: DMatrix<f64>,
-    /// Pairs of poles near enough to beat, with their distance (1/s) and for how long (s) they are taken together.
+    /// Pairs of poles near enough to beat, with their distance (1/s) and the time (s) for which they are bounded
+    /// together.
     pub(super) beats: Vec<(usize, usize, f64, f64)>,
-    /// For how long the bounds of growing poles hold (s).
+    /// Time for which the bounds of growing poles are valid (s).
     pub(super) window: f64,
 }
 
-/// A pole that stands alone.
+/// Isolated pole.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Simple {
     pub pole: Pole,
-    /// 2 for a pair, else 1.
+    /// Weight: 2 for a conjugate pair, else 1.
     pub weight: f64,
-    /// By how much it can grow within the flow's window.
+    /// Factor by which it can grow within the flow's window.
     pub growth: f64,
-    /// Modal rate for each unit of each input.
+    /// Modal rate per unit of each input.
     pub push: Vec<Phasor>,
-    /// Rate of each cyclic coordinate.
+    /// Rate of each cyclic coordinate per unit of w.
     pub carry: Vec<Phasor>,
-    /// What each output sees of w, its rate of w, and its acceleration of the modal rate.
+    /// Contribution to each output.
     pub outputs: Vec<PoleOutput>,
-    /// w of (w in form coordinates).
+    /// Left eigenvector, which gives w from the coordinates of the form.
     left: DVector<Phasor>,
     right: DVector<Phasor>,
 }
 
-/// What an output sees of a pole: y of w, y' of w, and y'' of w'.
+/// Contribution of a pole to an output: y per unit of w, y' per unit of w, and y'' per unit of w'.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct PoleOutput {
     pub angle: Phasor,
@@ -51,23 +52,24 @@ pub struct PoleOutput {
     pub residue: Phasor,
 }
 
-/// Poles that are kept together.
+/// Cluster of poles that are kept together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cluster {
     pub block: Block,
-    /// For how long its bounds hold (s), and by how much its rates can grow meanwhile.
+    /// Time for which its bounds are valid (s), and the factor by which its rates can grow meanwhile.
     pub window: f64,
     pub growth: f64,
     pub push: DMatrix<Phasor>,
     pub carry: DMatrix<Phasor>,
-    /// One row for each output: y of w, y' of w, y'' of w', and y''' of w'.
+    /// Contributions to each output (rows): y per unit of w, y' per unit of w, y'' per unit of w', and y''' per unit
+    /// of w'.
     pub angle: DMatrix<Phasor>,
     pub rate: DMatrix<Phasor>,
     pub residue: DMatrix<Phasor>,
     pub jerk: DMatrix<Phasor>,
 }
 
-/// A state in modal coordinates: the cyclic coordinates, and w of the simple poles and of the clusters.
+/// State in modal coordinates: the cyclic coordinates, and w of the simple poles and of the clusters.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Modal {
     pub(super) cyclic: Vec<f64>,
@@ -76,8 +78,8 @@ pub struct Modal {
 }
 
 impl LinearFlow {
-    /// The flow of a plant; none where its numbers leave the range of doubles, or an input moves the rate of an output at
-    /// once.
+    /// Creates the flow of a plant; `None` if its numbers leave the range of doubles, or if an input changes the rate
+    /// of an output instantaneously.
     pub fn new(form: StateForm) -> Option<Self> {
         let [rigid, seen] = form.output.clone();
         if (&seen * &form.input).iter().any(|jump| *jump != 0.0) {
@@ -104,12 +106,12 @@ impl LinearFlow {
         poles.iter().all(finite).then_some(Self { form, poles, clusters, rigid, beats, window })
     }
 
-    /// How many outputs there are.
+    /// Returns the number of outputs.
     pub fn outputs(&self) -> usize {
         self.rigid.nrows()
     }
 
-    /// The poles (1/s), one of each conjugate pair.
+    /// Returns the poles (1/s), one of each conjugate pair.
     pub fn poles(&self) -> Vec<Phasor> {
         let clustered = self
             .clusters
@@ -118,14 +120,14 @@ impl LinearFlow {
         self.poles.iter().map(|simple| simple.pole.lambda).chain(clustered).collect()
     }
 
-    /// The largest condition of a pole or a cluster: how much its rounding is magnified.
+    /// Returns the largest condition number of a pole or a cluster: the amplification of rounding errors.
     pub fn condition(&self) -> f64 {
         let of = |v: &DVector<Phasor>| f64::sqrt(v.iter().map(Phasor::norm_sqr).sum());
         let simple = self.poles.iter().map(|simple| of(&simple.left) * of(&simple.right));
         simple.chain(self.clusters.iter().map(|cluster| cluster.block.condition())).fold(1.0, f64::max)
     }
 
-    /// A state x in modal coordinates.
+    /// Transforms a state x to modal coordinates.
     pub fn modal(&self, x: &DVector<f64>) -> Modal {
         let [cyclic, rest] = &self.form.split;
         let w = (rest * x).map(|re| Phasor { re, im: 0.0 });
@@ -139,7 +141,7 @@ impl LinearFlow {
         }
     }
 
-    /// The state x.
+    /// Transforms modal coordinates to the state x.
     pub fn vector(&self, modal: &Modal) -> DVector<f64> {
         let mut w = DVector::zeros(self.form.matrix.nrows());
         for (simple, z) in self.poles.iter().zip(&modal.simple) {
@@ -229,7 +231,7 @@ impl Cluster {
     }
 }
 
-/// Disjoint pairs of poles that do not grow and are near enough to beat.
+/// Returns disjoint pairs of poles that do not grow and are near enough to beat.
 fn beats(poles: &[Simple]) -> Vec<(usize, usize, f64, f64)> {
     let mut beats: Vec<(usize, usize, f64, f64)> = Vec::new();
     for (i, one) in poles.iter().enumerate() {

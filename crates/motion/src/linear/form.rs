@@ -1,45 +1,46 @@
-//! A coupled plant with its rigid angles split off.
+//! Coupled plant with its rigid angles split off.
 //!
-//! A coordinate whose column in A is zero is cyclic: nothing feels it. Left in, a rigid body would have the defective
-//! double pole 0. What it is, zeros of the matrix decide, never the size of an eigenvalue. Where only filters read it,
-//! they are measured from their standing value, which makes the column zero.
+//! A coordinate whose column in A is zero is cyclic: no rate depends on it. Left in, a rigid body would have the
+//! defective double pole 0. Cyclic coordinates are recognised by zeros of the matrix, never by the size of an
+//! eigenvalue. Where only filters depend on one, they are measured from their static response to it, which makes the
+//! column zero.
 
 use nalgebra::{DMatrix, DVector};
 
-/// A plant x' = A x + B u with outputs y = C x.
+/// Plant x' = A x + B u with outputs y = C x.
 #[derive(Clone, Debug, PartialEq)]
 pub struct System {
-    /// A.
+    /// Matrix A.
     pub matrix: DMatrix<f64>,
-    /// B, one column for each input.
+    /// Matrix B, one column for each input.
     pub input: DMatrix<f64>,
-    /// C, one row for each output.
+    /// Matrix C, one row for each output.
     pub output: DMatrix<f64>,
 }
 
-/// The same plant as theta' = E w, w' = F w + B u, y = C_t theta + C_w w.
+/// Plant with cyclic coordinates split off: theta' = E w, w' = F w + B u, y = C_t theta + C_w w.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StateForm {
-    /// E: rates of the cyclic coordinates.
+    /// Matrix E: rates of the cyclic coordinates.
     pub carried: DMatrix<f64>,
-    /// F.
+    /// Matrix F.
     pub matrix: DMatrix<f64>,
-    /// B.
+    /// Matrix B.
     pub input: DMatrix<f64>,
-    /// C_t and C_w.
+    /// Matrices C_t and C_w.
     pub output: [DMatrix<f64>; 2],
-    /// theta and w of x.
+    /// Matrices that give theta and w from x.
     pub split: [DMatrix<f64>; 2],
-    /// x of theta and of w.
+    /// Matrices that give x from theta and from w.
     pub joined: [DMatrix<f64>; 2],
 }
 
 impl System {
-    /// The plant with its cyclic coordinates split off and the rest balanced.
+    /// Returns the plant with its cyclic coordinates split off and the rest balanced.
     pub fn form(&self) -> StateForm {
         let order = self.matrix.nrows();
         let (mut a, mut c) = (self.matrix.clone(), self.output.clone());
-        // x = shift z, z = unshift x.
+        // Coordinate change x = shift z, z = unshift x.
         let (mut shift, mut unshift) = (DMatrix::identity(order, order), DMatrix::identity(order, order));
         let mut cyclic = Vec::new();
         for theta in 0..order {
@@ -78,7 +79,7 @@ impl System {
     }
 }
 
-/// The coordinates that feel another one, directly or through others.
+/// Returns the coordinates whose rates depend on a coordinate, directly or through others.
 fn reached(a: &DMatrix<f64>, from: usize) -> Vec<usize> {
     let mut reached = Vec::new();
     let mut next = vec![from];
@@ -94,8 +95,8 @@ fn reached(a: &DMatrix<f64>, from: usize) -> Vec<usize> {
     reached
 }
 
-/// What those that feel a coordinate stand at where it is 1 and nothing else acts; none if it feels itself, or if
-/// they have no such value.
+/// Returns the static response of the coupled states to a unit value of the cyclic coordinate; `None` if it does not
+/// exist, or if the coordinate depends on itself.
 fn standing(a: &DMatrix<f64>, theta: usize, reached: &[usize], cyclic: &[usize]) -> Option<DVector<f64>> {
     if reached.iter().any(|i| *i == theta || cyclic.contains(i)) {
         return None;
@@ -116,11 +117,11 @@ fn standing(a: &DMatrix<f64>, theta: usize, reached: &[usize], cyclic: &[usize])
     Some(standing)
 }
 
-/// Scales coordinates by powers of 2, which round nothing, until rows and columns are of like size.
+/// Balances rows and columns by scaling with powers of 2, which is exact; returns the scale factors.
 fn balance(matrix: &mut DMatrix<f64>) -> DVector<f64> {
     let order = matrix.nrows();
     let mut scale = DVector::repeat(order, 1.0);
-    // A few sweeps do; more than these are of no use.
+    // A few sweeps suffice; more than these do not help.
     for _ in 0..20 {
         let mut done = true;
         for i in 0..order {

@@ -1,19 +1,20 @@
-//! The exponential of a pole and its integrals: e^z, h phi_1(z), h² phi_2(z) with z = lambda h.
+//! Exponential of a pole and its integrals: e^z, h phi_1(z), h² phi_2(z) with z = lambda h.
 //!
-//! phi_1(z) = (e^z - 1)/z and phi_2(z) = (phi_1(z) - 1)/z. Below |z| = 1 they come from a series, so that nothing cancels.
+//! phi_1(z) = (e^z - 1)/z and phi_2(z) = (phi_1(z) - 1)/z. Below |z| = 1 they are computed by a series, to avoid
+//! cancellation.
 
 use crate::numerics::phasor::{Phasor, abs};
 
-/// A pole: lambda (1/s) and its reciprocal, 0 for a pole at 0.
+/// Pole lambda (1/s) with its reciprocal, which is 0 for a pole at 0.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Pole {
     pub lambda: Phasor,
     pub inverse: Phasor,
-    /// |lambda|.
+    /// Absolute value |lambda| (1/s).
     pub size: f64,
 }
 
-/// e^z, h phi_1(z) and h² phi_2(z).
+/// Values of e^z, h phi_1(z) and h² phi_2(z).
 #[derive(Copy, Clone, Debug)]
 pub struct Phi {
     pub exp: Phasor,
@@ -28,7 +29,7 @@ impl Pole {
         Self { lambda, inverse, size }
     }
 
-    /// The functions at `h` seconds.
+    /// Returns the functions at the time `h` (s).
     #[inline]
     pub fn phi(&self, h: f64) -> Phi {
         if self.size * h < 1.0 {
@@ -41,7 +42,7 @@ impl Pole {
 
     fn series(&self, h: f64) -> Phi {
         let (z, size) = (self.lambda * h, self.size * h);
-        // The first term left out is below the last bit of the sum.
+        // The first omitted term is below the last bit of the sum.
         let terms = if size < 0.02 {
             8
         } else if size < 0.2 {
@@ -59,7 +60,7 @@ impl Pole {
     }
 }
 
-/// 1/n.
+/// Reciprocals 1/n.
 const RECIPROCALS: [f64; 20] = {
     let mut table = [1.0; 20];
     let mut n = 1;
@@ -70,7 +71,7 @@ const RECIPROCALS: [f64; 20] = {
     table
 };
 
-/// e^z.
+/// Returns e^z.
 #[inline]
 pub fn exponential(z: Phasor) -> Phasor {
     let size = if z.re == 0.0 { 1.0 } else { libm::exp(z.re) };

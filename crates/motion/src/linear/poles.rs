@@ -1,4 +1,5 @@
-//! Poles and their vectors: F V = V T with T diagonal where the vectors allow, polished beyond the solver's digits.
+//! Poles and eigenvectors: F V = V T with T diagonal where the vectors allow it, polished beyond the accuracy of the
+//! solver.
 //!
 //! The order of poles and of every sum is fixed, so that a plant has the same poles on every machine.
 
@@ -8,23 +9,24 @@ use super::extended::residual;
 use super::schur::Schur;
 use crate::numerics::phasor::{Phasor, abs};
 
-/// Poles nearer than this part of their size are candidates for a cluster.
+/// Relative distance below which poles are candidates for a cluster.
 const NEAR: f64 = 3e-3;
-/// Condition of a vector beyond which near poles are kept together, and beyond which any pole joins its neighbour.
+/// Condition number of a pole beyond which near poles are clustered, and beyond which any pole joins its nearest
+/// neighbour.
 const NEAR_CONDITION: f64 = 30.0;
 const CONDITION: f64 = 1e3;
-/// Condition of a cluster beyond which nothing is split.
+/// Condition number of a cluster beyond which the whole matrix is kept as one block.
 const LOST: f64 = 1e6;
-/// Poles nearer than this part of the norm are not polished: the equations for it are singular.
+/// Distance, relative to the norm, below which poles are not polished because the equations become singular.
 const UNPOLISHED: f64 = 1e-8;
 
-/// Some poles, with the subspace in which they live: F `right` = `right` `triangle`, `left` `right` = 1.
+/// Group of poles with their invariant subspace: F `right` = `right` `triangle`, `left` `right` = 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Block {
     pub triangle: DMatrix<Phasor>,
     pub right: DMatrix<Phasor>,
     pub left: DMatrix<Phasor>,
-    /// 2 if the conjugate block, which is not kept, counts too; else 1.
+    /// Weight: 2 if the conjugate block, which is not stored, counts too; else 1.
     pub weight: f64,
 }
 
@@ -33,14 +35,14 @@ impl Block {
         self.triangle[(0, 0)]
     }
 
-    /// How much larger than 1 the product of its vectors' lengths is.
+    /// Returns the condition number of the block, 1 for orthogonal eigenvectors.
     pub fn condition(&self) -> f64 {
         size(&self.left) * size(&self.right) / self.triangle.nrows() as f64
     }
 }
 
-/// The blocks of a matrix. The rows of `seen` and `carried` are each output's weights of w and of the integral of w,
-/// so that a pole's vector gets the phase in which it shows. None if there is no Schur form.
+/// Computes the blocks of a matrix. The rows of `seen` and `carried` are each output's weights of w and of the
+/// integral of w, which determine the phase of each pole's vector. Returns `None` if there is no Schur form.
 pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>) -> Option<Vec<Block>> {
     let order = matrix.nrows();
     let schur = Schur::new(matrix)?;
@@ -48,7 +50,8 @@ pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>
     let poles = Spectrum::new(&schur);
     let mut groups = poles.singles();
     let mut blocks = gather(&schur, &poles, &groups, norm)?;
-    // Near poles with nearly equal vectors, then any pole that cannot be distinguished from its neighbour.
+    // First poles near each other with nearly equal vectors, then any pole that cannot be distinguished from its
+    // neighbour.
     for (nearest, condition) in [(true, NEAR_CONDITION), (false, CONDITION)] {
         let ill: Vec<usize> =
             blocks.iter().filter(|(b, _)| b.condition() > condition).map(|(_, i)| *i).collect();
@@ -81,7 +84,7 @@ pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>
     Some(blocks)
 }
 
-/// The eigenvalues, and which is the conjugate of which.
+/// Eigenvalues, with the index of each one's conjugate.
 struct Spectrum {
     poles: Vec<Phasor>,
     conjugate: Vec<usize>,
@@ -105,13 +108,13 @@ impl Spectrum {
         Self { poles, conjugate }
     }
 
-    /// Each pole in a group of its own: the number of its group.
+    /// Returns groups with one pole each: the group number of every pole.
     fn singles(&self) -> Vec<usize> {
         (0..self.poles.len()).collect()
     }
 
-    /// Joins the group of a pole with that of its nearest neighbour outside, or with those of all poles near it, and the
-    /// conjugates alike.
+    /// Joins the group of a pole with that of its nearest neighbour outside, or with those of all poles near it; the
+    /// conjugates are joined likewise.
     fn merge(&self, pole: usize, near: bool, groups: &mut [usize]) {
         let distance = |j: usize| abs(self.poles[j] - self.poles[pole]);
         let outside: Vec<usize> = (0..self.poles.len()).filter(|j| groups[*j] != groups[pole]).collect();
@@ -129,7 +132,7 @@ impl Spectrum {
             join(pole, other);
             join(self.conjugate[pole], self.conjugate[other]);
         }
-        // A group that holds a pair holds all conjugates.
+        // A group with a conjugate pair must contain all conjugates.
         for i in 0..self.poles.len() {
             let conjugate = self.conjugate[i];
             if conjugate != i && groups[i] == groups[conjugate] {
@@ -143,7 +146,7 @@ impl Spectrum {
     }
 }
 
-/// The blocks of the groups, one of each conjugate pair, each with a pole of it.
+/// Computes the blocks of the groups, one per conjugate pair, each with the index of one of its poles.
 fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Option<Vec<(Block, usize)>> {
     let mut blocks = Vec::new();
     let mut done = vec![false; groups.len()];
@@ -167,7 +170,7 @@ fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Optio
             blocks.push((Block { triangle, right, left, weight }, first));
             continue;
         }
-        // A pole of several independent vectors is several poles.
+        // A multiple pole with independent vectors is split into several poles.
         for (j, member) in members.iter().enumerate() {
             let mut pole = triangle[(j, j)];
             let mut vector = right.columns(j, 1).into_owned();
@@ -184,13 +187,13 @@ fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Optio
     Some(bare.into_iter().zip(blocks).map(|(block, (_, pole))| (block, pole)).collect())
 }
 
-/// Turns the vector of a real pole, of whatever phase, into a real one.
+/// Multiplies the vector of a real pole by a phase factor that makes it real.
 fn make_real(vector: &mut DMatrix<Phasor>) {
     let largest = vector.iter().copied().fold(Phasor::default(), |a, b| if abs(b) > abs(a) { b } else { a });
     vector.apply(|v| *v = Phasor { re: (*v / largest).re, im: 0.0 });
 }
 
-/// Gives a vector the phase in which the output that sees most of it sees it as a real number.
+/// Multiplies a vector by the phase factor that makes its largest output contribution a real number.
 fn turn(block: &mut Block, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f64) {
     let pole = block.pole();
     if pole.im == 0.0 || abs(pole) < 1e-13 * norm {
@@ -208,7 +211,7 @@ fn turn(block: &mut Block, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f6
     }
 }
 
-/// Newton's step for every pole that stands alone, with the residual in extended precision.
+/// Applies a Newton step to every isolated pole, with the residual in extended precision.
 fn polish(blocks: &mut [Block], matrix: &DMatrix<f64>, norm: f64) {
     let old = blocks.to_vec();
     let spread = |pole: Phasor, block: &Block| {
@@ -264,7 +267,7 @@ fn invert(blocks: &mut [Block], order: usize) -> Option<()> {
             at += count;
         }
     }
-    // Vectors that are equal to the last bit make no inverse; what is as good as that makes a huge one.
+    // Vectors that are equal to the last bit have no inverse; a huge one marks them as ill-conditioned.
     let mut left =
         right.clone().lu().try_inverse().unwrap_or_else(|| DMatrix::from_element(order, order, HUGE));
     let rest = DMatrix::identity(order, order) - &left * &right;

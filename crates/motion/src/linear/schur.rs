@@ -1,13 +1,13 @@
-//! The complex Schur form F = Q T Q*, by shifted QR steps in one fixed order of operations.
+//! Complex Schur form F = Q T Q*, by shifted QR steps in one fixed order of operations.
 
 use nalgebra::DMatrix;
 
 use crate::numerics::phasor::{Phasor, abs};
 
-/// Steps for one eigenvalue after which there is no hope; a few are the rule.
+/// Limit on the steps for one eigenvalue; a few are typical.
 const MOST_STEPS: usize = 300;
 
-/// A unitary Q and an upper triangular T.
+/// Unitary Q (`basis`) and upper triangular T (`triangle`).
 #[derive(Clone, Debug)]
 pub struct Schur {
     pub basis: DMatrix<Phasor>,
@@ -15,7 +15,7 @@ pub struct Schur {
 }
 
 impl Schur {
-    /// The Schur form of a matrix; none if its numbers leave the range of doubles.
+    /// Computes the Schur form of a matrix; `None` if its numbers leave the range of doubles.
     pub fn new(matrix: &DMatrix<f64>) -> Option<Self> {
         let order = matrix.nrows();
         let mut schur = Self {
@@ -45,7 +45,7 @@ impl Schur {
         Some(schur)
     }
 
-    /// The first row of the block that ends in `last` and is not yet decoupled from its neighbours.
+    /// Returns the first row of the block that ends in `last` and is not yet decoupled from its neighbours.
     fn decoupled(&mut self, last: usize, scale: f64) -> usize {
         let t = &mut self.triangle;
         for row in (1..=last).rev() {
@@ -59,7 +59,7 @@ impl Schur {
         0
     }
 
-    /// One implicit QR step with Wilkinson's shift.
+    /// Performs one implicit QR step with Wilkinson's shift.
     fn step(&mut self, first: usize, last: usize, steps: usize) {
         let t = &self.triangle;
         let (a, b) = (t[(last - 1, last - 1)], t[(last - 1, last)]);
@@ -67,7 +67,7 @@ impl Schur {
         let half = (a - d) * 0.5;
         let root = root(half * half + b * c);
         let away = if (half * root.conj()).re < 0.0 { half - root } else { half + root };
-        // An exceptional shift now and then breaks a cycle.
+        // An occasional exceptional shift breaks a cycle.
         let shift = if steps.is_multiple_of(10) {
             d + Phasor { re: abs(c), im: 0.5 * abs(c) }
         } else if away == Phasor::default() {
@@ -82,7 +82,7 @@ impl Schur {
         }
     }
 
-    /// Turns rows `row` and the next so that the lower one has a zero in this column.
+    /// Rotates rows `row` and the next so that the lower one has a zero in `column`.
     fn clear(&mut self, row: usize, column: usize) {
         let pair = [self.triangle[(row, column)], self.triangle[(row + 1, column)]];
         if pair[1] != Phasor::default() {
@@ -91,7 +91,7 @@ impl Schur {
         }
     }
 
-    /// Turns coordinates `row` and the next so that this vector lies along the first.
+    /// Rotates coordinates `row` and the next so that the given vector lies along the first.
     fn rotate(&mut self, row: usize, [x, y]: [Phasor; 2]) {
         let (size, norm) = (abs(x), f64::sqrt(x.norm_sqr() + y.norm_sqr()));
         if norm == 0.0 {
@@ -115,8 +115,8 @@ impl Schur {
         }
     }
 
-    /// The invariant subspace of some eigenvalues, by their places on the diagonal: an orthonormal basis of it, and the
-    /// triangular matrix by which it is carried into itself.
+    /// Returns the invariant subspace of the eigenvalues at some places on the diagonal: an orthonormal basis, and
+    /// the triangular matrix of the map on it.
     pub fn subspace(&self, places: &[usize]) -> (DMatrix<Phasor>, DMatrix<Phasor>) {
         let mut schur = self.clone();
         for (front, place) in places.iter().enumerate() {
@@ -134,7 +134,7 @@ impl Schur {
     }
 }
 
-/// A square root.
+/// Returns a square root of a complex number.
 fn root(z: Phasor) -> Phasor {
     let size = abs(z);
     let re = f64::sqrt(0.5 * (size + z.re.abs()));

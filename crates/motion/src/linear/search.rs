@@ -1,19 +1,19 @@
-//! The certified search on a linear flow: any number of guards on any outputs, in one search.
+//! Certified search on a linear plant: any number of guards on any outputs, in one search.
 
 use super::segment::{LinearSegment, LinearSight};
 use crate::crossing::{Approach, first_root};
 use crate::guard::Guard;
 use crate::time::Span;
 
-/// The horizon beyond which no pole counts as slow (s).
+/// Limit on the horizon for which poles are treated as slow (s).
 const LONG: f64 = 1e3;
 
-/// A guard on one of the outputs.
+/// Guard on one of the outputs.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct GuardLevel {
-    /// The index of the output.
+    /// Index of the output.
     pub output: usize,
-    /// Its level.
+    /// Threshold and direction.
     pub guard: Guard,
 }
 
@@ -42,8 +42,8 @@ impl Approach for LinearSegment {
         seen.window
     }
 
-    /// Fast poles that do not grow keep within their residues of a line; slow ones accelerate towards the guard at most as
-    /// they do at one of the ends, or by what they turn meanwhile.
+    /// Returns the earliest trip by a bound: fast non-growing poles stay within their residues of a line; slow ones
+    /// accelerate towards the guard at most as at one of the ends, or by their change of phase meanwhile.
     fn earliest(&self, GuardLevel { output, guard }: GuardLevel, horizon: Span, seen: &LinearSight) -> f64 {
         let (flow, towards) = (&*self.flow, guard.side.sign());
         let horizon = horizon.seconds().min(LONG).min(seen.window);

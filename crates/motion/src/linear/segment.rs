@@ -1,4 +1,5 @@
-//! The motion under one input: residues at departure, and everything at a later time from them.
+//! Motion of a linear plant under one constant input: residues at the start of the segment, from which later motion
+//! follows.
 
 use std::sync::Arc as Shared;
 
@@ -9,40 +10,40 @@ use super::flow::{LinearFlow, Modal};
 use crate::Sensed;
 use crate::numerics::phasor::{Phasor, abs};
 
-/// A motion under one constant input.
+/// Motion of a linear plant under one constant input.
 #[derive(Clone, Debug)]
 pub struct LinearSegment {
     pub(super) flow: Shared<LinearFlow>,
     from: Modal,
-    /// Modal rates at departure.
+    /// Modal rates at the start of the segment.
     rates: Vec<Phasor>,
     cluster_rates: Vec<DVector<Phasor>>,
-    /// Of each output and pole: the residue of the acceleration, and its absolute value times the pole's weight.
+    /// Residues of the acceleration, per output and pole, and their absolute values times the pole's weight.
     pub(super) residues: Vec<Phasor>,
     pub(super) sizes: Vec<f64>,
-    /// Of each output: value and rate at departure.
+    /// Value and rate of each output at the start of the segment.
     pub(super) origins: Vec<(f64, f64)>,
 }
 
-/// What is seen at one instant, and bounds of what comes.
+/// Outputs at one instant, with bounds of their later derivatives.
 #[derive(Clone, Debug, Default)]
 pub struct LinearSight {
-    /// Of each output: value, rate and acceleration.
+    /// Value, rate and acceleration of each output.
     pub outputs: Vec<Sensed>,
-    /// No |y''| of the output is larger within the window.
+    /// Bound of |y''| of each output within the window.
     pub curvature: Vec<f64>,
-    /// No |y'''| of the output is larger within the window.
+    /// Bound of |y'''| of each output within the window.
     pub jerk: Vec<f64>,
-    /// For how long the bounds hold (s).
+    /// Time for which the bounds are valid (s).
     pub window: f64,
-    /// Of each pole: e^(lambda h) and its absolute value.
+    /// Values of e^(lambda h) and its absolute value, per pole.
     pub(super) exponentials: Vec<(Phasor, f64)>,
-    /// Rates of the clusters now.
+    /// Current rates of the clusters.
     pub(super) rates: Vec<DVector<Phasor>>,
 }
 
 impl LinearSegment {
-    /// A motion of a flow, not yet departed.
+    /// Creates a motion of a flow; call `depart` before use.
     pub fn new(flow: Shared<LinearFlow>) -> Self {
         let (outputs, poles) = (flow.outputs(), flow.poles.len());
         Self {
@@ -56,7 +57,7 @@ impl LinearSegment {
         }
     }
 
-    /// Begins the motion anew: from this state, under this input.
+    /// Begins a new segment from a state, under a constant input.
     pub fn depart(&mut self, from: &Modal, input: &[f64]) {
         self.from.clone_from(from);
         let (flow, count) = (&*self.flow, self.flow.poles.len());
@@ -90,7 +91,7 @@ impl LinearSegment {
         }
     }
 
-    /// What is seen `h` seconds after departure.
+    /// Evaluates the outputs at `h` (s) since the start of the segment.
     pub fn at(&self, h: f64, seen: &mut LinearSight) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
@@ -122,7 +123,7 @@ impl LinearSegment {
         flow.bound(self, seen);
     }
 
-    /// What is seen at departure, which needs no exponential.
+    /// Evaluates the outputs at the start of the segment, which needs no exponential.
     pub fn origin(&self, seen: &mut LinearSight) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
@@ -139,7 +140,7 @@ impl LinearSegment {
         flow.bound(self, seen);
     }
 
-    /// The state `h` seconds after departure.
+    /// Evaluates the state at `h` (s) since the start of the segment.
     pub fn arrive(&self, h: f64, state: &mut Modal) {
         state.clone_from(&self.from);
         for (k, simple) in self.flow.poles.iter().enumerate() {
@@ -175,7 +176,7 @@ impl LinearSight {
     }
 }
 
-/// Re(a b).
+/// Returns Re(a b).
 #[inline]
 pub fn real(a: Phasor, b: Phasor) -> f64 {
     a.re * b.re - a.im * b.im

@@ -1,6 +1,7 @@
-//! A digital filter of second order.
+//! Digital filter of second order.
 
-/// y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2, of the samples x and y now, one and two before, in direct form II transposed.
+/// Biquad y = b0 x + b1 x1 + b2 x2 - a1 y1 - a2 y2, for the samples x and y now, one and two before, in direct form
+/// II transposed.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Biquad {
     numerator: [f64; 3],
@@ -9,12 +10,12 @@ pub struct Biquad {
 }
 
 impl Biquad {
-    /// The filter with b0, b1, b2 and a1, a2, at rest.
+    /// Creates the filter with b0, b1, b2 and a1, a2, at rest.
     pub fn new(numerator: [f64; 3], denominator: [f64; 2]) -> Self {
         Self { numerator, denominator, state: [0.0; 2] }
     }
 
-    /// The filter (n0 + n1 s + n2 s²)/(d0 + d1 s + d2 s²) at samples this far apart (s): s = K (z - 1)/(z + 1), with the
+    /// Discretises (n0 + n1 s + n2 s²)/(d0 + d1 s + d2 s²) with a sample period (s): s = K (z - 1)/(z + 1), with the
     /// K at which both have the same gain and phase at a frequency below pi/period (rad/s).
     pub fn tustin(numerator: [f64; 3], denominator: [f64; 3], frequency: f64, period: f64) -> Self {
         let k = frequency / libm::tan(0.5 * frequency * period);
@@ -26,23 +27,23 @@ impl Biquad {
         Self::new(b.map(|b| b / a0), [a1 / a0, a2 / a0])
     }
 
-    /// b0, b1, b2 and a1, a2.
+    /// Returns b0, b1, b2 and a1, a2.
     pub fn coefficients(&self) -> ([f64; 3], [f64; 2]) {
         (self.numerator, self.denominator)
     }
 
-    /// Whether what goes into it dies away.
+    /// Returns true if the filter is stable.
     pub fn is_stable(&self) -> bool {
         let [a1, a2] = self.denominator;
         a2.abs() < 1.0 && a1.abs() < 1.0 + a2
     }
 
-    /// Takes the coefficients of another, and keeps its state.
+    /// Replaces the coefficients by those of another filter, and keeps the state.
     pub fn retune(&mut self, other: &Self) {
         *self = Self { state: self.state, ..*other };
     }
 
-    /// Takes a sample, and gives one.
+    /// Filters a sample and returns the output.
     pub fn filter(&mut self, sample: f64) -> f64 {
         let ([b0, b1, b2], [a1, a2]) = (self.numerator, self.denominator);
         let output = b0 * sample + self.state[0];
@@ -50,10 +51,10 @@ impl Biquad {
         output
     }
 
-    /// Gain and phase (rad) at a frequency, for samples this far apart.
+    /// Returns gain and phase (rad) at a frequency (rad/s), for a sample period (s).
     pub fn response(&self, frequency: f64, period: f64) -> [f64; 2] {
         let (sin, cos) = libm::sincos(frequency * period);
-        // z^-1 = cos - i sin, z^-2 = z^-1 squared.
+        // Here z^-1 = cos - i sin, z^-2 = z^-1 squared.
         let of = |[c0, c1, c2]: [f64; 3]| {
             [c0 + c1 * cos + c2 * (cos * cos - sin * sin), -c1 * sin - c2 * 2.0 * sin * cos]
         };

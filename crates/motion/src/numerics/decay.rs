@@ -1,4 +1,4 @@
-//! The exponential function without a branch on its digits, of one number or of several in lanes: for what decays.
+//! Branch-free exponential function for decays, for single numbers and SIMD lanes.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::excessive_precision, reason = "as fdlibm has them")]
@@ -8,13 +8,13 @@ use std::f64::consts::LOG2_E;
 use super::trig::nearest;
 use crate::lanes::{Mask, Real};
 
-/// Below this all is lost: what is left is smaller than any number with all of its digits.
+/// Argument below which the result is set to zero, because it is near the smallest number with full precision.
 const LEAST: f64 = -708.0;
 
-/// The first 32 bits of ln 2, and the rest.
+/// Constant ln 2: its first 32 bits, and the rest.
 const LN_2: [f64; 2] = [6.931_471_803_691_238_164_90e-1, 1.908_214_929_270_587_700_02e-10];
 
-/// 1/n! from n = 2 on.
+/// Coefficients 1/n! from n = 2 on.
 const TERMS: [f64; 12] = {
     let mut of = [0.5; 12];
     let mut n = 1;
@@ -25,11 +25,11 @@ const TERMS: [f64; 12] = {
     of
 };
 
-/// exp(x) for x up to 1; within 1 unit in the last place, and 0 below -708.
+/// Returns exp(x) for x up to 1; within 1 unit in the last place, and 0 below -708.
 #[inline(always)]
 pub fn exp<R: Real>(x: R) -> R {
     let (mut size, mut twos) = parts(x);
-    // As a rule little is lost.
+    // Large decays are rare.
     if !twos.of(-15.5).lt(twos).all() {
         for power in [512, 256, 128, 64, 32, 16] {
             (size, twos) = halved(size, twos, power);
@@ -42,15 +42,15 @@ pub fn exp<R: Real>(x: R) -> R {
     R::select(x.lt(x.of(LEAST)), x.of(0.0), size)
 }
 
-/// The same for an absolute value up to 1.
+/// Returns exp(x) for |x| up to 1.
 #[inline(always)]
 pub fn exp_short<R: Real>(x: R) -> R {
     let (size, twos) = parts(x);
-    // 2^-1, 1 or 2.
+    // Factor 2^-1, 1 or 2.
     size * (x.of(1.0) + twos * (x.of(0.75) + twos * 0.25))
 }
 
-/// exp(x) = size 2^twos, with a size between 1/sqrt(2) and sqrt(2).
+/// Splits exp(x) = size 2^twos, with a size between 1/sqrt(2) and sqrt(2).
 #[inline(always)]
 fn parts<R: Real>(x: R) -> (R, R) {
     let twos = nearest(x * LOG2_E);
@@ -59,7 +59,7 @@ fn parts<R: Real>(x: R) -> (R, R) {
     let r = high - low;
     let (z, one) = (r * r, x.of(1.0));
     let w = z * z;
-    // What is left out is 0.35^14/14!, 4e-18.
+    // The truncation error is 0.35^14/14!, 4e-18.
     let first = (x.of(TERMS[0]) + r * TERMS[1]) + z * (x.of(TERMS[2]) + r * TERMS[3]);
     let second = (x.of(TERMS[4]) + r * TERMS[5]) + z * (x.of(TERMS[6]) + r * TERMS[7]);
     let third = (x.of(TERMS[8]) + r * TERMS[9]) + z * (x.of(TERMS[10]) + r * TERMS[11]);
@@ -67,11 +67,11 @@ fn parts<R: Real>(x: R) -> (R, R) {
     (one + (high + (z * rest - low)), twos)
 }
 
-/// Divided by 2^power, where there are so many to be divided by.
+/// Divides by 2^power in the lanes where `twos` still requires it, and updates `twos`.
 #[inline(always)]
 fn halved<R: Real>(size: R, twos: R, power: i32) -> (R, R) {
     let halves = twos.le(twos.of(-f64::from(power)));
-    // 2^-power, as the exponent's digits say it.
+    // Value 2^-power, assembled from its exponent bits.
     let part = f64::from_bits(((1023 - power) as u64) << 52);
     (R::select(halves, size * part, size), R::select(halves, twos + f64::from(power), twos))
 }
@@ -80,7 +80,7 @@ fn halved<R: Real>(size: R, twos: R, power: i32) -> (R, R) {
 mod tests {
     use super::*;
 
-    /// By mpmath: the argument, and the nearest double of its exponential.
+    /// Arguments and the nearest doubles of their exponentials, by mpmath.
     const ORACLE: &str = include_str!("../../../../tests/golden/decay.csv");
 
     #[test]

@@ -1,40 +1,40 @@
-//! The largest gain of a delayed rate feedback, x'' + 2 zeta w x' + w² x + k x'(t - h) = 0, and the limit cycle of a relay in
-//! its place.
+//! Largest stable gain of a delayed rate feedback, x'' + 2 zeta w x' + w² x + k x'(t - h) = 0, and the limit cycle of
+//! a relay in its place.
 //!
-//! On the border of stability x = exp(i y t): w = zeta y tan(h y) + y sqrt(zeta² tan²(h y) + 1) and k = -2 zeta w/cos(h y)
-//! (D-partition, \[Timakov14\], page 50). With k > 0 the cosine is negative: in each such interval of h y one y belongs to w,
-//! and the interval with the least k is the border.
+//! On the stability boundary x = exp(i y t): w = zeta y tan(h y) + y sqrt(zeta² tan²(h y) + 1) and k = -2 zeta
+//! w/cos(h y) (D-partition, \[Timakov14\], page 50). With k > 0 the cosine is negative: in each such interval of h y
+//! one y belongs to w, and the interval with the least k is the boundary.
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-/// Halvings of an interval: more than its bits.
+/// Number of halvings of an interval: more than its bits.
 const HALVINGS: u32 = 100;
 
-/// The border of stability.
+/// Stability boundary of the loop.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct DelayMargin {
-    /// The gain k up to which the loop is stable (1/s).
+    /// Gain k up to which the loop is stable (1/s).
     pub gain: f64,
-    /// Frequency of the swing there (rad/s).
+    /// Frequency of the oscillation at that gain (rad/s).
     pub frequency: f64,
 }
 
 impl DelayMargin {
-    /// Amplitude of the rate (rad/s) in the limit cycle of a relay of this acceleration (rad/s²), at this frequency: by its
-    /// describing function, 4 a/(pi k). Simulated ones are a fifth larger. Ours.
+    /// Returns the rate amplitude (rad/s) of the limit cycle of a relay with the given acceleration (rad/s²), at this
+    /// frequency: by its describing function, 4 a/(pi k). Simulated amplitudes are a fifth larger. Ours.
     pub fn limit_cycle(&self, acceleration: f64) -> f64 {
         4.0 * acceleration / (PI * self.gain)
     }
 }
 
-/// The border of stability for a natural frequency (rad/s), a delay (s) and a damping ratio; none without a delay, where
-/// every gain is stable.
+/// Returns the stability boundary for a natural frequency (rad/s), a delay (s) and a damping ratio; `None` without a
+/// delay, where every gain is stable.
 pub fn delay_margin(frequency: f64, delay: f64, damping: f64) -> Option<DelayMargin> {
     if delay <= 0.0 {
         return None;
     }
     let ends = |branch: f64| [0.5, 1.5].map(|part| (part + 2.0 * branch) * PI / delay);
-    // k is at least |y² - w²|/y: intervals further from w cannot be the border.
+    // The gain k is at least |y² - w²|/y: intervals further from w cannot be the boundary.
     let least = |y: f64| (y * y - frequency * frequency).abs() / y;
     let middle = libm::floor((frequency * delay - FRAC_PI_2) / (2.0 * PI)).max(0.0);
     let mut best = on(ends(middle), frequency, delay, damping);
@@ -55,9 +55,9 @@ fn lower(a: DelayMargin, b: DelayMargin) -> DelayMargin {
     if b.gain < a.gain { b } else { a }
 }
 
-/// The point of an interval that belongs to a natural frequency, which grows along it from 0 to infinity.
+/// Returns the point of an interval that belongs to a natural frequency, which increases along it from 0 to infinity.
 fn on([mut low, mut high]: [f64; 2], frequency: f64, delay: f64, damping: f64) -> DelayMargin {
-    // Both sides of the equation of w times a positive number, so that nothing grows without bound or cancels.
+    // Both sides of the equation of w times a positive number, which avoids overflow and cancellation.
     let above = |y: f64| {
         let (sin, cos) = libm::sincos(delay * y);
         let root = libm::hypot(cos, damping * sin);
@@ -73,7 +73,8 @@ fn on([mut low, mut high]: [f64; 2], frequency: f64, delay: f64, damping: f64) -
     }
     let y = 0.5 * (low + high);
     let (sin, cos) = libm::sincos(delay * y);
-    // The imaginary and the real part of the characteristic equation give the same k; each is exact where the other is not.
+    // The imaginary and the real part of the characteristic equation give the same k; each is accurate where the
+    // other is not.
     let gain = if cos < -0.5 {
         -2.0 * damping * frequency / cos
     } else {

@@ -1,4 +1,4 @@
-//! The incomplete elliptic integral of the second kind, by Carlson's duplication (\[Carlson95\]).
+//! Incomplete elliptic integral of the second kind, by Carlson's duplication (\[Carlson95\]).
 
 use std::array::from_fn;
 use std::f64::consts::PI;
@@ -6,9 +6,10 @@ use std::f64::consts::PI;
 /// Sine and cosine of pi/2 as a double.
 const QUARTER: (f64, f64) = (1.0, 6.123_233_995_736_766e-17);
 
-/// E(to | m) - E(from | m), the integral of sqrt(1 - m sin² t) over from..to, for any real ends and m in [0, 1].
+/// Returns E(to | m) - E(from | m), the integral of sqrt(1 - m sin² t) over from..to, for any real ends and m in [0,
+/// 1].
 ///
-/// Takes the complement 1 - m, so that nothing is lost near m = 1. Relative error of each E about 1e-15.
+/// The argument is the complement 1 - m, to keep accuracy near m = 1. The relative error of each E is about 1e-15.
 pub fn second_kind(from: f64, to: f64, complement: f64) -> f64 {
     let (turns, rest) = half_turns(to);
     let (turns_before, rest_before) = half_turns(from);
@@ -22,13 +23,13 @@ pub fn second_kind(from: f64, to: f64, complement: f64) -> f64 {
     whole(turns, part) - whole(turns_before, part_before)
 }
 
-/// How many times pi an angle has, and what is left of it, in [-pi/2, pi/2].
+/// Splits an angle into a multiple of pi and a rest in [-pi/2, pi/2].
 fn half_turns(phi: f64) -> (f64, f64) {
     let turns = libm::round(phi / PI);
     (turns, phi - turns * PI)
 }
 
-/// E for angles in [-pi/2, pi/2], of which it takes sine and cosine.
+/// Returns E for angles in [-pi/2, pi/2], given by sine and cosine.
 fn principal<const N: usize>(angles: [(f64, f64); N], complement: f64) -> [f64; N] {
     let m = 1.0 - complement;
     let x = angles.map(|(_, cos)| cos * cos);
@@ -36,17 +37,17 @@ fn principal<const N: usize>(angles: [(f64, f64); N], complement: f64) -> [f64; 
     let carlson = carlson(Triples { x, y: [1.0; N], z, sum: [0.0; N], power: [1.0; N] });
     from_fn(|at| {
         let ((sin, cos), (rf, rd)) = (angles[at], carlson[at]);
-        // DLMF 19.25.10: no two terms of different sign, so nothing cancels near m = 1.
+        // By DLMF 19.25.10: no two terms have different signs, so nothing cancels near m = 1.
         let s2 = sin * sin;
         sin * (complement * (rf + m * s2 * rd / 3.0) + m * cos / f64::sqrt(z[at]))
     })
 }
 
-/// Carlson's R_F and R_D of the same arguments, of so many triples at once: the processor takes the square roots and
-/// divisions of several together.
+/// Returns Carlson's R_F and R_D of N triples at once: the processor computes the square roots and divisions of
+/// several together.
 ///
-/// The duplication theorem brings the arguments together by a factor 4 a round; what is left is a Taylor
-/// series (\[Carlson95\]).
+/// The duplication theorem contracts the differences of the arguments by a factor 4 per round; a Taylor series
+/// completes the result (\[Carlson95\]).
 fn carlson<const N: usize>(mut of: Triples<N>) -> [(f64, f64); N] {
     loop {
         let apart = of.are_apart();
@@ -57,13 +58,13 @@ fn carlson<const N: usize>(mut of: Triples<N>) -> [(f64, f64); N] {
     }
 }
 
-/// The arguments of R_F and R_D on their way together, of which at most one of x, y is zero at the start.
+/// Arguments of R_F and R_D during duplication; at most one of x, y is zero at the start.
 #[derive(Copy, Clone)]
 struct Triples<const N: usize> {
     x: [f64; N],
     y: [f64; N],
     z: [f64; N],
-    /// What the rounds so far have contributed to R_D / 3, and the weight of what is to come.
+    /// Contribution of the rounds to R_D / 3, and the weight of the next round.
     sum: [f64; N],
     power: [f64; N],
 }
@@ -73,7 +74,7 @@ impl<const N: usize> Triples<N> {
         (self.x[at] + self.y[at] + 3.0 * self.z[at]) / 5.0
     }
 
-    /// Which are too far apart for the series.
+    /// Returns which triples are too far apart for the series.
     fn are_apart(&self) -> [bool; N] {
         from_fn(|at| {
             let mean = self.mean(at);
@@ -82,7 +83,7 @@ impl<const N: usize> Triples<N> {
         })
     }
 
-    /// After one more round of those that are to have one.
+    /// Returns the triples after one more duplication of the selected ones.
     #[expect(clippy::needless_range_loop, reason = "the compiler takes several at once")]
     fn doubled(&self, which: [bool; N]) -> Self {
         let mut next = *self;
@@ -139,7 +140,7 @@ mod tests {
 
     use super::*;
 
-    /// mpmath 1.3, 30 digits: `ellipe(phi, m)` with m = 1 - complement.
+    /// Values `ellipe(phi, m)` with m = 1 - complement, by mpmath 1.3 with 30 digits.
     const ORACLE: [(f64, f64, f64); 8] = [
         (0.3, 0.5, 0.297_775_371_953_160_21),
         (1.2, 0.9, 1.178_119_934_598_459_41),

@@ -1,17 +1,18 @@
-//! The exponential of a matrix.
+//! Exponential of a matrix.
 
 use nalgebra::DMatrix;
 
 use crate::lanes::{LaneWork, Processor, Real};
 
-/// exp(M), by scaling, Taylor's series and squaring. Every sum has a fixed order: the same bits on every machine.
+/// Returns exp(M), by scaling, Taylor's series and squaring. Every sum has a fixed order: the result has the same
+/// bits on every machine.
 pub fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     let order = matrix.nrows();
     let (squarings, scale) = scaling(matrix);
     let small = matrix * scale;
     let mut term = DMatrix::identity(order, order);
     let mut sum = term.clone();
-    // 0.5^15/15! is below the last bit of 1.
+    // The term 0.5^15/15! is below the last bit of 1.
     for n in 1..=15 {
         term = &term * &small / f64::from(n);
         sum += &term;
@@ -21,12 +22,12 @@ pub fn exponential(matrix: &DMatrix<f64>) -> DMatrix<f64> {
     }
     sum
 }
-/// How often the exponential of a part is squared, and the part.
+/// Returns the number of squarings and the scale factor of the matrix.
 fn scaling(matrix: &DMatrix<f64>) -> (u32, f64) {
     let norm = matrix.row_iter().map(|row| row.iter().map(|m| m.abs()).sum::<f64>()).fold(0.0, f64::max);
     let mut squarings = 0;
     let mut scale = 1.0;
-    // What is not finite stays so, and needs no scaling.
+    // Non-finite matrices need no scaling.
     while norm * scale > 0.5 && squarings < 60 {
         squarings += 1;
         scale *= 0.5;
@@ -34,7 +35,8 @@ fn scaling(matrix: &DMatrix<f64>) -> (u32, f64) {
     (squarings, scale)
 }
 
-/// The exponentials of matrices of one order: each to the bit as alone, side by side where the processor can.
+/// Returns the exponentials of matrices of one order, each equal to the bit to [`exponential`], computed in SIMD
+/// lanes if possible.
 pub fn exponentials(matrices: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
     let Some(processor) = Processor::best().filter(|_| matrices.len() > 1) else {
         return matrices.iter().map(exponential).collect();
@@ -43,7 +45,7 @@ pub fn exponentials(matrices: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
     matrices.chunks(processor.lanes(1)).flat_map(some).collect()
 }
 
-/// As many matrices as there are lanes, or fewer.
+/// SIMD task for at most as many matrices as there are lanes.
 struct Several<'a>(&'a [DMatrix<f64>]);
 
 impl LaneWork for Several<'_> {
@@ -102,7 +104,7 @@ impl LaneWork for Several<'_> {
     }
 }
 
-/// The product of square matrices by columns, each sum in the order of nalgebra's.
+/// Multiplies square matrices stored by columns, each sum in the order of nalgebra's.
 #[inline(always)]
 pub fn multiply<R: Real>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
     for column in 0..order {

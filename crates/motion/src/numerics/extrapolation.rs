@@ -1,22 +1,23 @@
-//! Integration of y' = f(t, y) to a tolerance, by extrapolation of the modified midpoint rule (Gragg, Bulirsch, Stoer).
+//! Integration of y' = f(t, y) to a tolerance, by extrapolation of the modified midpoint rule (Gragg, Bulirsch,
+//! Stoer).
 //!
-//! The error of the midpoint rule is a series in h², so that each further number of substeps removes two orders; a step
-//! ends with the first column whose two best values agree to the tolerance.
+//! The error of the midpoint rule is a series in h², so that each further number of substeps removes two orders; a
+//! step ends with the first column whose two best values agree to the tolerance.
 
-/// Substeps of each column.
+/// Number of substeps of each column.
 const SUBSTEPS: [u32; 9] = [2, 4, 6, 8, 10, 12, 14, 16, 18];
 
-/// The right-hand side of an equation.
+/// Right-hand side of a differential equation.
 pub trait RightHandSide {
-    /// Puts y' at (t, y) into the last argument.
+    /// Computes y' at (t, y) into `rate`.
     fn rate(&self, t: f64, y: &[f64], rate: &mut [f64]);
 }
 
-/// An integrator for fields of one dimension: its tolerance and its memory.
+/// Integrator for equations of one dimension: tolerance and working memory.
 #[derive(Clone, Debug)]
 pub struct Extrapolation {
     tolerance: f64,
-    /// Row i holds the extrapolation of the columns from i to the newest: the first row is the best value.
+    /// Row i contains the extrapolation of the columns from i to the newest: the first row is the best value.
     table: Vec<Vec<f64>>,
     before: Vec<f64>,
     here: Vec<f64>,
@@ -24,7 +25,7 @@ pub struct Extrapolation {
 }
 
 impl Extrapolation {
-    /// An integrator whose steps err by at most this, relative to the largest component of y or to 1.
+    /// Creates an integrator whose steps err by at most `tolerance`, relative to the largest component of y or to 1.
     pub fn new(tolerance: f64, dimension: usize) -> Self {
         let zero = vec![0.0; dimension];
         Self {
@@ -36,8 +37,7 @@ impl Extrapolation {
         }
     }
 
-    /// One step of at most `h` seconds from (t, y), which is carried along. Returns its length, and a length for the
-    /// next one.
+    /// Advances y by one step of at most `h` (s) from t. Returns the step length and a suggestion for the next one.
     pub fn step(&mut self, field: &impl RightHandSide, t: f64, y: &mut [f64], mut h: f64) -> (f64, f64) {
         loop {
             if let Some(column) = self.converge(field, t, y, h) {
@@ -53,10 +53,10 @@ impl Extrapolation {
         }
     }
 
-    /// The column with which a step of `h` seconds met the tolerance, if one did.
+    /// Returns the column with which a step of `h` (s) met the tolerance; `None` if no column did.
     fn converge(&mut self, field: &impl RightHandSide, t: f64, y: &[f64], h: f64) -> Option<usize> {
         let size = y.iter().fold(1.0_f64, |size, y| size.max(y.abs()));
-        // Shorter steps gain nothing but rounding; what is not a number is for the caller to find.
+        // Shorter steps would only add rounding; the caller detects non-finite values.
         let last_resort = h < 1e-9;
         for (column, substeps) in SUBSTEPS.into_iter().enumerate() {
             self.midpoint(field, t, y, h, column);
@@ -81,7 +81,7 @@ impl Extrapolation {
         None
     }
 
-    /// The modified midpoint rule with the substeps of a column, into its row.
+    /// Applies the modified midpoint rule with the substeps of a column, into its row.
     fn midpoint(&mut self, field: &impl RightHandSide, t: f64, y: &[f64], h: f64, column: usize) {
         let Self { table, before, here, rate, .. } = self;
         let small = h / f64::from(SUBSTEPS[column]);
@@ -106,21 +106,21 @@ impl Extrapolation {
     }
 }
 
-/// A solution on its way: its steps depend on where it departs alone, not on where it is looked at.
+/// Solution over time; its steps depend only on the initial state, not on when it is observed.
 #[derive(Clone, Debug)]
 pub struct Trajectory {
     integrator: Extrapolation,
-    /// The steps around now: time since departure (s), and y.
+    /// Steps around the current time: time since the start of the segment (s), and y.
     node: (f64, Vec<f64>),
     next: (f64, Vec<f64>),
     /// Length of the step after `next` (s).
     step: f64,
-    /// y where it was looked at last.
+    /// Value of y at the last observed time.
     here: Vec<f64>,
 }
 
 impl Trajectory {
-    /// A solution that begins with y; its first step is at most so long (s).
+    /// Creates a solution that begins with y; `step` limits the first step (s).
     pub fn new(tolerance: f64, y: Vec<f64>, step: f64) -> Self {
         Self {
             integrator: Extrapolation::new(tolerance, y.len()),
@@ -131,18 +131,19 @@ impl Trajectory {
         }
     }
 
-    /// y where it was looked at last.
+    /// Returns y at the last observed time.
     pub fn here(&self) -> &[f64] {
         &self.here
     }
 
-    /// Departs anew from where it was looked at last.
+    /// Begins a new segment at the last observed time.
     pub fn depart(&mut self) {
         self.node = (0.0, self.here.clone());
         self.next = self.node.clone();
     }
 
-    /// Takes one step towards `h` seconds after departure, if it is still ahead; whether it is not.
+    /// Advances by one step towards `h` (s) since the start of the segment, unless it was reached; returns true once
+    /// it is reached.
     pub fn approach(&mut self, field: &impl RightHandSide, h: f64) -> bool {
         let Self { integrator, node, next, step, .. } = self;
         if next.0 < h {
@@ -154,11 +155,12 @@ impl Trajectory {
         next.0 >= h || !next.0.is_finite()
     }
 
-    /// y at `h` seconds after departure, not before one asked for earlier. The field's time counts from the departure.
+    /// Returns y at `h` (s) since the start of the segment, which must not decrease between calls. The field's time
+    /// counts from the start of the segment.
     pub fn at(&mut self, field: &impl RightHandSide, h: f64) -> &[f64] {
         while !self.approach(field, h) {}
         let Self { integrator, node, here, .. } = self;
-        // A look between two steps changes neither.
+        // An observation between two steps changes neither.
         here.clone_from(&node.1);
         let mut t = node.0;
         while t < h {
@@ -172,7 +174,7 @@ impl Trajectory {
 mod tests {
     use super::*;
 
-    /// A pendulum of unit frequency, and its energy as a check.
+    /// Pendulum of unit frequency.
     struct Pendulum;
 
     impl RightHandSide for Pendulum {
@@ -184,7 +186,7 @@ mod tests {
 
     #[test]
     fn a_pendulum_comes_back_after_its_period() {
-        // 4 K(sin(1)) for the amplitude 2 rad, by mpmath.
+        // Period 4 K(sin(1)) for the amplitude 2 rad, by mpmath.
         let period = 8.349_752_926_918_495;
         let mut y = [2.0, 0.0];
         let (mut t, mut h, mut steps) = (0.0, 0.1, 0);

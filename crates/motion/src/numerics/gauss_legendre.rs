@@ -1,15 +1,15 @@
-//! The Gauss-Legendre method of three stages and order 6, which keeps quadratic invariants, and sums with compensation
+//! Gauss-Legendre method of three stages and order 6, which preserves quadratic invariants, and compensated sums
 //! (\[HairerLubichWanner06\]).
 
 use nalgebra::SVector;
 
-/// sqrt(15).
+/// Square root of 15.
 const R: f64 = 3.872_983_346_207_417;
-/// The nodes, as parts of a step.
+/// Nodes, as fractions of a step.
 pub const NODES: [f64; 3] = [0.5 - R / 10.0, 0.5, 0.5 + R / 10.0];
-/// The weights of the stages in a whole step.
+/// Weights of the stages for a whole step.
 pub const WEIGHTS: [f64; 3] = [5.0 / 18.0, 4.0 / 9.0, 5.0 / 18.0];
-/// The weights of the stages at each node.
+/// Weights of the stages for each node.
 pub const MATRIX: [[f64; 3]; 3] = [
     [5.0 / 36.0, 2.0 / 9.0 - R / 15.0, 5.0 / 36.0 - R / 30.0],
     [5.0 / 36.0 + R / 24.0, 2.0 / 9.0, 5.0 / 36.0 - R / 24.0],
@@ -22,7 +22,7 @@ pub const PARABOLAS: [[f64; 3]; 3] = [
     [5.0 / 6.0 - R / 6.0, -10.0 / 3.0 + R / 3.0, 10.0 / 3.0],
 ];
 
-/// A sum, and what rounding takes from it (Knuth).
+/// Returns a sum and its rounding error (Knuth).
 pub fn exact_sum<const N: usize>(
     a: SVector<f64, N>,
     b: SVector<f64, N>,

@@ -1,4 +1,4 @@
-//! Numbers: special functions, quadrature, integration, roots. Nothing here knows a spacecraft.
+//! Numerical methods, independent of spacecraft: special functions, quadrature, integration, roots.
 
 pub mod biquad;
 pub mod decay;

@@ -1,12 +1,12 @@
-//! The normal distribution: its cumulative function and the inverse.
+//! Normal distribution: its cumulative function and the inverse.
 
-/// The probability of a standard normal number below this one.
+/// Returns the probability that a standard normal number is below z.
 pub fn cumulative(z: f64) -> f64 {
     0.5 * libm::erfc(-z * std::f64::consts::FRAC_1_SQRT_2)
 }
 
-/// The standard normal number with this probability below it, in (0, 1): an approximation of relative error 1.2e-9
-/// \[Acklam03\], and a step of Halley's method to the precision of a double.
+/// Returns the standard normal number below which the probability is p, in (0, 1): an approximation of relative error
+/// 1.2e-9 \[Acklam03\], followed by a step of Halley's method to the precision of a double.
 pub fn quantile(p: f64) -> f64 {
     const A: [f64; 6] = [
         -3.969_683_028_665_376e1,
@@ -41,7 +41,7 @@ pub fn quantile(p: f64) -> f64 {
     ];
     let at = |coefficients: &[f64], x: f64| coefficients.iter().fold(0.0, |sum, c| sum * x + c);
     if p > 0.5 {
-        // 1 - p is exact here, and the tail keeps its digits.
+        // Here 1 - p is exact, and the tail keeps its digits.
         return -quantile(1.0 - p);
     }
     let z = if p < 0.02425 {
@@ -62,7 +62,7 @@ mod tests {
 
     #[test]
     fn quantiles_are_those_of_mpmath() {
-        // mpmath 1.3, 40 digits: sqrt(2) erfinv(2 p - 1), of 1e-300 the root of erfc.
+        // Reference by mpmath 1.3, 40 digits: sqrt(2) erfinv(2 p - 1), and for 1e-300 the root of erfc.
         for (p, exact) in [
             (1e-300, -37.047_096_299_361_2),
             (1e-10, -6.361_340_902_404_056),

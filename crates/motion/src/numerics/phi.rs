@@ -1,16 +1,16 @@
-//! The exponential integrals phi_n, from which every exact response is made.
+//! Exponential integrals phi_n, the building blocks of all exact responses.
 
 use crate::numerics::phasor::{Phasor, abs, polar};
 
-/// exp(z).
+/// Returns exp(z).
 pub fn exp(z: Phasor) -> Phasor {
     polar(libm::exp(z.re), z.im)
 }
 
-/// phi_n(z) = sum z^k/(n + k)! = the integral of exp(z (1 - t)) t^(n-1)/(n-1)! from 0 to 1, for n >= 1.
+/// Returns phi_n(z) = sum z^k/(n + k)! = the integral of exp(z (1 - t)) t^(n-1)/(n-1)! from 0 to 1, for n >= 1.
 pub fn phi(n: usize, z: Phasor) -> Phasor {
     if abs(z) < (n + 1) as f64 {
-        // Each term is smaller than the one before: little cancels.
+        // Each term is smaller than the previous one: little cancels.
         let mut term = Phasor::new((1..=n).fold(1.0, |product, k| product / k as f64), 0.0);
         let mut sum = term;
         let mut k = n;
@@ -21,7 +21,7 @@ pub fn phi(n: usize, z: Phasor) -> Phasor {
         }
         return sum;
     }
-    // Upwards from exp, which |z| > n keeps from growing errors.
+    // Recurrence upwards from exp; with |z| > n errors do not grow.
     let mut factorial = 1.0;
     let mut value = exp(z);
     for k in 0..n {
@@ -31,11 +31,11 @@ pub fn phi(n: usize, z: Phasor) -> Phasor {
     value
 }
 
-/// exp(z) and phi_1 to phi_3, at the price of one of them.
+/// Returns exp(z) and phi_1 to phi_3, at the cost of one of them.
 pub fn first(z: Phasor) -> [Phasor; 4] {
     let whole = exp(z);
     if abs(z) < 4.0 {
-        // 4^26/29! is below the last bit of 1/6, and so is all that follows.
+        // The term 4^26/29! is below the last bit of 1/6, and so are all later ones.
         let third =
             (4..30).rev().fold(Phasor::new(1.0, 0.0), |sum, k| z * sum * (1.0 / f64::from(k)) + 1.0) / 6.0;
         let second = z * third + 0.5;
@@ -47,7 +47,7 @@ pub fn first(z: Phasor) -> [Phasor; 4] {
     [whole, first, second, (second - 0.5) * inverse]
 }
 
-/// The integral of t^n exp(z t) from 0 to 1.
+/// Returns the integral of t^n exp(z t) from 0 to 1.
 pub fn moment(n: usize, z: Phasor) -> Phasor {
     if abs(z) < (n + 2) as f64 {
         let factorial = (1..=n).fold(1.0, |product, k| product * k as f64);
@@ -68,7 +68,7 @@ mod tests {
             let z = Phasor::new(re, im);
             let mut factorial = 1.0;
             for n in 1..13 {
-                // z phi_(n+1) = phi_n - 1/n!
+                // Recurrence z phi_(n+1) = phi_n - 1/n!
                 factorial *= f64::from(n);
                 let n = n as usize;
                 let gap = abs(z * phi(n + 1, z) - phi(n, z) + 1.0 / factorial);
@@ -89,7 +89,7 @@ mod tests {
                 assert!(abs(sum - moment(n, z)) < 2e-8, "n {n}, z {z}");
             }
         }
-        // 1 - (1 + 1)/e, the integral of t exp(-t).
+        // Exact value 1 - (1 + 1)/e, the integral of t exp(-t).
         assert!((moment(1, Phasor::new(-1.0, 0.0)).re - (1.0 - 2.0 / std::f64::consts::E)).abs() < 1e-15);
     }
 }

@@ -1,29 +1,29 @@
-//! Polynomials on the interval from 0 to 1: extremes, roots and integrals, to rounding and with nothing missed.
+//! Polynomials on the interval from 0 to 1: extremes, roots and integrals, to rounding, without missing any.
 //!
-//! A sum of the coefficients of one sign bounds a polynomial there. What the bounds cannot decide is halved, until the
-//! polynomial or its derivative has one sign, or nothing is left but rounding.
+//! The sum of the coefficients of one sign bounds a polynomial on the interval. Intervals that the bounds cannot
+//! decide are halved, until the polynomial or its derivative has one sign, or only rounding errors remain.
 
-/// So many coefficients has a polynomial.
+/// Number of coefficients of a polynomial.
 pub const TERMS: usize = 22;
-/// A Taylor series: its coefficients, the constant first.
+/// Taylor series: its coefficients, the constant first.
 pub type Series = [f64; TERMS];
 
-/// What is halved so often is a point.
+/// Number of halvings after which an interval is treated as a point.
 const DEPTH: u32 = 48;
 /// Rounding of a value, relative to the sum of the absolute coefficients.
 pub const ROUNDING: f64 = 4.0 * f64::EPSILON;
 
-/// The sum of `c[n] s^n`, for s from 0 to 1.
+/// Polynomial, the sum of `c[n] s^n`, for s from 0 to 1.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Polynomial([f64; TERMS]);
 
 impl Polynomial {
-    /// Of these coefficients.
+    /// Creates a polynomial from its coefficients.
     pub fn new(terms: [f64; TERMS]) -> Self {
         Self(terms)
     }
 
-    /// A Taylor series in a time, over the time from 0 to `length`.
+    /// Creates the polynomial of a Taylor series in time, over the time from 0 to `length`.
     pub fn of(series: &Series, length: f64) -> Self {
         let mut power = 1.0;
         Self(series.map(|c| {
@@ -33,18 +33,18 @@ impl Polynomial {
         }))
     }
 
-    /// The value at s.
+    /// Returns the value at s.
     pub fn at(&self, s: f64) -> f64 {
         self.0.iter().rev().fold(0.0, |sum, c| sum * s + c)
     }
 
-    /// The same with the other sign.
+    /// Returns the polynomial with the opposite sign.
     #[must_use]
     pub fn negative(&self) -> Self {
         Self(self.0.map(|c| -c))
     }
 
-    /// The polynomial less a straight line.
+    /// Subtracts the straight line `start + slope s`.
     #[must_use]
     pub fn less(&self, start: f64, slope: f64) -> Self {
         let mut less = *self;
@@ -53,19 +53,19 @@ impl Polynomial {
         less
     }
 
-    /// The polynomial less another.
+    /// Subtracts another polynomial.
     #[must_use]
     pub fn minus(&self, other: &Self) -> Self {
         Self(std::array::from_fn(|n| self.0[n] - other.0[n]))
     }
 
-    /// The polynomial times a number.
+    /// Multiplies the polynomial by a number.
     #[must_use]
     pub fn scaled(&self, by: f64) -> Self {
         Self(self.0.map(|c| c * by))
     }
 
-    /// The part between two points, on the interval from 0 to 1.
+    /// Returns the part between two points, mapped to the interval from 0 to 1.
     #[must_use]
     pub fn part(&self, from: f64, to: f64) -> Self {
         let mut part = self.0;
@@ -77,20 +77,20 @@ impl Polynomial {
         Self::of(&part, to - from)
     }
 
-    /// The largest value, if it is above a floor; else the floor.
+    /// Returns the largest value, or `floor` if that is larger.
     pub fn maximum(&self, floor: f64) -> f64 {
         let mut best = floor;
         self.climb(&mut best, DEPTH);
         best
     }
 
-    /// The largest absolute value, if it is above a floor; else the floor.
+    /// Returns the largest absolute value, or `floor` if that is larger.
     pub fn magnitude(&self, floor: f64) -> f64 {
         self.negative().maximum(self.maximum(floor))
     }
 
-    /// Adds to `roots` where the polynomial takes a level, in order. A pair of roots that lies within rounding of a
-    /// touching one may be missing.
+    /// Appends to `roots` where the polynomial equals a level, in order. A pair of roots within rounding of a double
+    /// root may be missing.
     pub fn roots(&self, level: f64, roots: &mut Vec<f64>) {
         let noise = ROUNDING * (self.size() + level.abs());
         let mut above = *self;
@@ -98,7 +98,7 @@ impl Polynomial {
         above.find((0.0, 1.0), noise, roots, DEPTH);
     }
 
-    /// The integrals of the polynomial, and of s times it, over s.
+    /// Returns the integrals of the polynomial, and of s times it, over s between two points.
     pub fn integrals(&self, from: f64, to: f64) -> [f64; 2] {
         let (mut low, mut high) = (1.0, 1.0);
         let mut integrals = [0.0; 2];
@@ -114,13 +114,13 @@ impl Polynomial {
         self.0.iter().map(|c| c.abs()).sum()
     }
 
-    /// No value is smaller than the first, or larger than the second.
+    /// Returns lower and upper bounds of the values.
     pub fn bounds(&self) -> (f64, f64) {
         let [first, rest @ ..] = &self.0;
         rest.iter().fold((*first, *first), |(low, high), c| (low + c.min(0.0), high + c.max(0.0)))
     }
 
-    /// The derivative.
+    /// Returns the derivative.
     #[must_use]
     pub fn derivative(&self) -> Self {
         let mut derivative = [0.0; TERMS];
@@ -130,7 +130,7 @@ impl Polynomial {
         Self(derivative)
     }
 
-    /// The first and the second half, each on the interval from 0 to 1.
+    /// Returns the first and the second half, each mapped to the interval from 0 to 1.
     fn halves(&self) -> [Self; 2] {
         let mut first = *self;
         let mut power = 1.0;
@@ -169,7 +169,7 @@ impl Polynomial {
         }
     }
 
-    /// Adds the roots to a list: those of the whole, of which this is the part between `ends`.
+    /// Appends the roots of this part, at the positions between `ends` of the whole polynomial.
     fn find(&self, ends: (f64, f64), noise: f64, roots: &mut Vec<f64>, depth: u32) {
         let (low, high) = self.bounds();
         let size = low.abs().max(high.abs());
@@ -187,15 +187,15 @@ impl Polynomial {
         let middle = 0.5 * (from + to);
         let [first, second] = self.halves();
         first.find((from, middle), noise, roots, depth - 1);
-        // One that is the middle itself changes the sign of neither half.
+        // A root exactly at the middle changes the sign of neither half.
         if second.0[0] == 0.0 {
             roots.push(middle);
         }
         second.find((middle, to), noise, roots, depth - 1);
     }
 
-    /// The root between 0 and 1 of a polynomial whose values there differ in sign: Newton's method, and halving where it
-    /// leaves the bracket.
+    /// Returns the root between 0 and 1 of a polynomial whose values there differ in sign: by Newton's method, and by
+    /// halving where it leaves the bracket.
     fn root(&self) -> f64 {
         let slope = self.derivative();
         let (mut low, mut high) = (0.0, 1.0);
@@ -230,7 +230,7 @@ mod tests {
 
     #[test]
     fn chebyshev_polynomials_have_all_their_crests_and_roots() {
-        // T_9 on [0, 1], s = (1 + x)/2: nine roots, values of 1 at the crests.
+        // Chebyshev T_9 on [0, 1], s = (1 + x)/2: nine roots, values of 1 at the crests.
         let (mut before, mut now) = (vec![1.0], vec![-1.0, 2.0]);
         for _ in 1..9 {
             let mut next = vec![0.0; now.len() + 1];
@@ -249,7 +249,7 @@ mod tests {
         for (k, root) in (0..9).zip(&roots) {
             assert!((root - exact(k)).abs() < 1e-10, "{root} {}", exact(k));
         }
-        // Crests of 1 just above and just below a level.
+        // The crests of 1 lie just above the level.
         roots.clear();
         t9.roots(0.999, &mut roots);
         assert_eq!(roots.len(), 9);
@@ -259,7 +259,7 @@ mod tests {
 
     #[test]
     fn a_narrow_crest_between_two_valleys_is_found() {
-        // Ends of 0, a crest of 1e-6 at 0.7 beside a valley of -1: 16 points would miss it.
+        // Ends of -2e4 and -4e3, and a crest of 1e-6 at 0.7: 16 sample points would miss it.
         let s = 0.7;
         let p = polynomial(&[1e-6 - 4e4 * s * s, 8e4 * s, -4e4]);
         assert!((p.maximum(f64::NEG_INFINITY) - 1e-6).abs() < 1e-11);
@@ -293,7 +293,7 @@ mod tests {
     #[test]
     fn integrals_are_those_of_the_powers() {
         let p = polynomial(&[1.0, -2.0, 3.0]);
-        // s - s² + s³ and s²/2 - 2 s³/3 + 3 s⁴/4.
+        // Exact integrals: s - s² + s³ and s²/2 - 2 s³/3 + 3 s⁴/4.
         let [plain, weighted] = p.integrals(0.5, 1.0);
         assert!((plain - (1.0 - 0.375)).abs() < 1e-15);
         assert!((weighted - (7.0 / 12.0 - (0.125 - 1.0 / 12.0 + 3.0 / 64.0))).abs() < 1e-15);

@@ -1,9 +1,9 @@
-//! Polynomials on the interval from 0 to 1, side by side: what bounds decide, for all of them at once.
+//! Polynomials on the interval from 0 to 1 in SIMD lanes: results that follow from bounds, for all of them at once.
 
 use super::polynomial::{Polynomial, ROUNDING, TERMS};
 use crate::lanes::Real;
 
-/// One polynomial in each lane.
+/// Polynomial per lane, with bounds.
 #[derive(Copy, Clone, Debug)]
 pub struct Polynomials<R> {
     terms: [R; TERMS],
@@ -14,7 +14,7 @@ pub struct Polynomials<R> {
 }
 
 impl<R: Real> Polynomials<R> {
-    /// Taylor series in a time, each over the time from 0 to its length, with their bounds.
+    /// Creates the polynomials of Taylor series in time, each over the time from 0 to its length, with their bounds.
     #[inline(always)]
     pub fn of(series: &[R; TERMS], length: R) -> Self {
         let mut terms = *series;
@@ -37,13 +37,13 @@ impl<R: Real> Polynomials<R> {
         Self { terms, low, high, size, end }
     }
 
-    /// No value is smaller than the first, or larger than the second.
+    /// Returns lower and upper bounds of the values.
     #[inline(always)]
     pub fn bounds(&self) -> (R, R) {
         (self.low, self.high)
     }
 
-    /// The value at s.
+    /// Returns the values at s.
     #[inline(always)]
     pub fn at(&self, s: f64) -> R {
         let mut sum = self.low.of(0.0);
@@ -53,7 +53,7 @@ impl<R: Real> Polynomials<R> {
         sum
     }
 
-    /// The largest absolute values, if they are above a floor, else the floor; and where this is certain.
+    /// Returns the largest absolute values, or `floor` if that is larger, and the lanes in which they are certain.
     #[inline(always)]
     pub fn magnitude(&self, floor: R) -> (R, R::Mask) {
         let slack = self.size * ROUNDING;
@@ -63,7 +63,7 @@ impl<R: Real> Polynomials<R> {
         (best, above & (-self.low).le(best + slack))
     }
 
-    /// The integrals of the polynomials, and of s times them, over all of s.
+    /// Returns the integrals of the polynomials, and of s times them, over the whole interval.
     #[inline(always)]
     pub fn integrals(&self) -> [R; 2] {
         let zero = self.low.of(0.0);
@@ -75,7 +75,7 @@ impl<R: Real> Polynomials<R> {
         integrals
     }
 
-    /// The polynomial in a lane.
+    /// Returns the polynomial in a lane.
     pub fn lane(&self, lane: usize) -> Polynomial {
         let mut terms = [0.0; TERMS];
         for n in 0..TERMS {

@@ -1,16 +1,16 @@
 //! Gauss-Legendre quadrature of functions that are smooth between breaks.
 
-/// Nodes of a panel: exact to degree 31.
+/// Number of nodes of a panel: exact to degree 31.
 const NODES: usize = 16;
 
-/// A panel of [`nodes`] is at most so many radians of the fastest motion long.
+/// Maximum length of a panel of [`nodes`], in radians of the fastest motion.
 const TURN: f64 = 16.0;
 
-/// What the mean over a panel of [`nodes`] leaves of an oscillation that it does not have, at most.
+/// Maximum error of the mean over a panel of [`nodes`], relative to the amplitude of an oscillation.
 const LEFT: f64 = 1e-15;
 
-/// The integral of `f(middle, t)` over the pieces between these breaks, `middle` being a time inside the piece that t
-/// belongs to. Panels are at most `panel` long; over a panel of four radians the integral is exact to rounding.
+/// Returns the integral of `f(middle, t)` over the pieces between breaks, where `middle` is a time inside the piece
+/// that contains t. Panels are at most `panel` long; over a panel of four radians the integral is exact to rounding.
 pub fn integral(breaks: &[f64], panel: f64, f: impl Fn(f64, f64) -> f64) -> f64 {
     let rule = rule();
     let mut total = 0.0;
@@ -27,8 +27,9 @@ pub fn integral(breaks: &[f64], panel: f64, f: impl Fn(f64, f64) -> f64) -> f64 
     total
 }
 
-/// Times and weights of the integral from 0 to a length (s) of what changes no faster than the fastest motion (rad/s), the
-/// earliest first: of an oscillation at most 1e-15 of its amplitude is missing from the mean, or 1e-6 at twice that frequency.
+/// Returns times and weights for an integral from 0 to `length` (s), the earliest first, for functions that change no
+/// faster than `fastest` (rad/s): the mean of an oscillation errs by at most 1e-15 of its amplitude, or 1e-6 at twice
+/// that frequency.
 pub fn nodes(length: f64, fastest: f64) -> Vec<(f64, f64)> {
     let turn = length * fastest;
     let panels = (turn / TURN).ceil().clamp(1.0, 1e6);
@@ -42,8 +43,8 @@ pub fn nodes(length: f64, fastest: f64) -> Vec<(f64, f64)> {
     (0..panels as usize).flat_map(panel).collect()
 }
 
-/// So many nodes are enough for the mean of exp(i x s) over s in [-1, 1]: the error of n nodes is at most
-/// 4^n n!^4 / ((2 n + 1) (2 n)!^3) times the derivative of order 2 n.
+/// Returns the number of nodes that suffices for the mean of exp(i x s) over s in [-1, 1]: the error of n nodes is at
+/// most 4^n n!^4 / ((2 n + 1) (2 n)!^3) times the derivative of order 2 n.
 fn enough(x: f64) -> usize {
     let (mut left, mut n) = (1.0, 0.0);
     while left > LEFT && n < 2.0 * TURN {
@@ -51,16 +52,16 @@ fn enough(x: f64) -> usize {
         let odd = 2.0 * n - 1.0;
         left *= x * x * n / (2.0 * (2.0 * n + 1.0) * odd * odd);
     }
-    // A constant acceleration, and what little it changes by.
+    // Minimum for slowly varying accelerations.
     (n as usize).max(4)
 }
 
-/// Nodes and weights on [-1, 1], the last first.
+/// Returns nodes and weights on [-1, 1], the last first.
 fn rule() -> [(f64, f64); NODES] {
     std::array::from_fn(|i| node(NODES, i))
 }
 
-/// A root of the Legendre polynomial of so many nodes, by Newton's method, and its weight.
+/// Returns root number `i` of the Legendre polynomial of degree `count`, by Newton's method, and its weight.
 #[inline]
 fn node(count: usize, i: usize) -> (f64, f64) {
     let n = count as f64;
@@ -97,7 +98,7 @@ mod tests {
         for turn in [0.0, 1e-3, 0.4, 2.0, 7.9, 15.9, 16.1, 40.0, 300.0] {
             let nodes = nodes(2.5, turn / 2.5);
             assert!(nodes.windows(2).all(|pair| pair[0].0 < pair[1].0), "{turn}");
-            // No more than it takes: about one to a radian.
+            // Not many more than needed: about one per radian.
             assert!(nodes.len() as f64 <= 1.1 * turn + 7.0, "{turn} {}", nodes.len());
             let mean = |f: &dyn Fn(f64) -> f64| nodes.iter().map(|(t, w)| w * f(*t)).sum::<f64>() / 2.5;
             assert!((mean(&|_| 1.0) - 1.0).abs() < 1e-15 && (mean(&|t| t * t * t) - 3.90625).abs() < 1e-14);

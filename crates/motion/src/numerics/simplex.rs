@@ -1,16 +1,17 @@
-//! The bounded simplex method for small linear programmes: minimise c'x with A x = b and 0 <= x <= u.
+//! Bounded simplex method for small linear programmes: minimise c'x with A x = b and 0 <= x <= u.
 //!
-//! Of a few rows and some dozens of columns, again and again in a run: the basis is solved anew at each pivot, so that rounding does
-//! not gather, and pivots follow Bland's rule, the least index first, which ends and has one answer on every machine
-//! (\[Bland77\]). A library would bring sparse factorisations and rules of its own that may change what a log holds.
+//! Intended for a few rows and some dozens of columns, solved repeatedly in a run: the basis is solved anew at each
+//! pivot, so that rounding does not accumulate, and pivots follow Bland's rule, the least index first, which
+//! terminates and has one result on every machine (\[Bland77\]). A library would bring sparse factorisations and its
+//! own pivot rules, which could change the results in a log.
 
-/// Pivots after which the best point so far is taken: Bland's rule needs far fewer for such programmes.
+/// Limit on the pivots; beyond it the best point found is used. Bland's rule needs far fewer for such programmes.
 const MOST: usize = 500;
 
-/// What is less than this part of a programme's numbers is rounding.
+/// Relative size below which numbers of a programme are rounding errors.
 const ROUNDING: f64 = 1e-11;
 
-/// Columns of equal length, and the largest value of the variable of each; the smallest is 0.
+/// Linear programme: columns of equal length, and the upper bound of each variable; the lower bound is 0.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct LinearProgramme {
     columns: Vec<Vec<f64>>,
@@ -18,7 +19,7 @@ pub struct LinearProgramme {
     rows: usize,
 }
 
-/// Where the method is: the basis, and which variables outside of it are at their largest value.
+/// State of the method: the basis, and which variables outside of it are at their upper bound.
 struct Tableau<'a> {
     columns: &'a [Vec<f64>],
     most: Vec<f64>,
@@ -29,20 +30,21 @@ struct Tableau<'a> {
 }
 
 impl LinearProgramme {
-    /// A programme of so many rows.
+    /// Creates a programme with the given number of rows, columns and upper bounds.
     pub fn new(rows: usize, columns: Vec<Vec<f64>>, most: Vec<f64>) -> Self {
         Self { columns, most, rows }
     }
 
-    /// How many rows it has.
+    /// Returns the number of rows.
     pub fn rows(&self) -> usize {
         self.rows
     }
 
-    /// The cheapest x with A x = s b, 0 <= x <= u, where s is the largest part of b, up to 1, that can be had; and s.
+    /// Returns the cheapest x with A x = s b, 0 <= x <= u, where s is the largest attainable fraction of b, up to 1;
+    /// and s.
     pub fn cheapest(&self, b: &[f64], costs: &[f64]) -> (Vec<f64>, f64) {
         let (rows, count) = (self.rows, self.columns.len());
-        // Each row to the size of 1.
+        // Each row is scaled to the size of 1.
         let size = |row: usize| self.columns.iter().map(|column| column[row].abs()).fold(0.0, f64::max);
         let scales: Vec<f64> =
             (0..rows).map(size).map(|size| if size > 0.0 { 1.0 / size } else { 1.0 }).collect();
@@ -52,7 +54,8 @@ impl LinearProgramme {
         if asked == 0.0 || largest == 0.0 {
             return (vec![0.0; count], if asked == 0.0 { 1.0 } else { 0.0 });
         }
-        // What is found is of the size of 1, however little is asked. In units of x, and of what is asked; then s, then what stands for each row at first.
+        // Solutions are scaled to the size of 1, however small the request. Columns: x in its unit and that of the
+        // request, then s, then an initial slack for each row.
         let mut columns: Vec<Vec<f64>> = self
             .columns
             .iter()
@@ -76,9 +79,9 @@ impl LinearProgramme {
         let mut rising = vec![0.0; columns.len()];
         rising[count] = -1.0;
         tableau.minimise(&rising);
-        // Rounding asks for no more than there is.
+        // Rounding must not request more than is available.
         let part = tableau.values[count].clamp(0.0, 1.0);
-        // That part is what is asked from now on, and s takes nothing from it.
+        // That fraction is the request from here on; s is then fixed to zero.
         tableau.rhs = tableau.columns[count].iter().map(|of| -of * part).collect();
         (tableau.values[count], tableau.most[count], tableau.above[count]) = (0.0, 0.0, false);
         tableau.refresh();
@@ -91,7 +94,7 @@ impl LinearProgramme {
 }
 
 impl Tableau<'_> {
-    /// The solution of B y = v by elimination with the largest pivot; B' y = v if `transposed`.
+    /// Solves B y = v by elimination with the largest pivot; B' y = v if `transposed`.
     fn solve(&self, v: &[f64], transposed: bool) -> Vec<f64> {
         let n = self.basis.len();
         let entry = |row: usize, column: usize| {
@@ -123,14 +126,15 @@ impl Tableau<'_> {
         found
     }
 
-    /// Goes from vertex to vertex until no costs fall any more.
+    /// Moves from vertex to vertex until the costs no longer decrease.
     fn minimise(&mut self, costs: &[f64]) {
         for _ in 0..MOST {
             let of_basis: Vec<f64> = self.basis.iter().map(|index| costs[*index]).collect();
             let prices = self.solve(&of_basis, true);
             let Some((enters, sense)) = self.entering(costs, &prices) else { return };
             let column = self.solve(&self.columns[enters], false);
-            // How far, and what stops it: the variable that enters at its other end, or one of the basis at one of its own.
+            // Step length and its limit: the entering variable at its other bound, or one of the basis at one of its
+            // bounds.
             let (mut step, mut leaves) = (self.most[enters], None);
             for (place, (index, slope)) in self.basis.iter().zip(&column).enumerate() {
                 let change = -sense * slope;
@@ -152,7 +156,7 @@ impl Tableau<'_> {
             match leaves {
                 None => self.above[enters] = sense > 0.0,
                 Some((place, index)) => {
-                    // At the end that is nearer.
+                    // Placed at the nearer bound.
                     self.above[index] = self.values[index] > 0.5 * self.most[index];
                     self.values[index] = if self.above[index] { self.most[index] } else { 0.0 };
                     self.basis[place] = enters;
@@ -162,7 +166,7 @@ impl Tableau<'_> {
         }
     }
 
-    /// The first variable outside of the basis whose change lowers the costs, and which way.
+    /// Returns the first variable outside of the basis whose change lowers the costs, and the direction.
     fn entering(&self, costs: &[f64], prices: &[f64]) -> Option<(usize, f64)> {
         (0..self.columns.len()).find_map(|index| {
             if self.most[index] <= 0.0 || self.basis.contains(&index) {
@@ -179,7 +183,7 @@ impl Tableau<'_> {
         })
     }
 
-    /// The values of the basis from those outside of it.
+    /// Computes the values of the basis from those outside of it.
     fn refresh(&mut self) {
         let mut left = self.rhs.clone();
         for (index, column) in self.columns.iter().enumerate() {
@@ -198,7 +202,7 @@ impl Tableau<'_> {
 mod tests {
     use super::*;
 
-    /// Against SciPy's `linprog`: tests/golden/jets_oracle.py.
+    /// Compares with SciPy's `linprog`: tests/golden/jets_oracle.py.
     #[test]
     fn it_finds_what_scipy_finds() {
         let text = include_str!("../../../../tests/golden/jets.csv");
@@ -249,7 +253,7 @@ mod tests {
         assert_eq!(programme.cheapest(&[-1.0], &[1.0, 1.0]).1, 0.0);
         let (x, part) = programme.cheapest(&[10.0], &[1.0, 1.0]);
         assert!((part - 0.5).abs() < 1e-14 && x.iter().all(|x| (x - 1.0).abs() < 1e-14), "{part} {x:?}");
-        // The second gives more for its cost.
+        // The second variable is cheaper per unit of the constraint.
         let (x, _) = programme.cheapest(&[2.0], &[1.0, 1.0]);
         assert!(x[0] == 0.0 && (x[1] - 2.0 / 3.0).abs() < 1e-15, "{x:?}");
     }

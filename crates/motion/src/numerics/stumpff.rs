@@ -1,7 +1,7 @@
-//! The Stumpff functions c_k(x²) = sum over j of (-x²)^j/(k + 2j)!, in which rotations are exact without an axis to divide by
-//! (\[Hughes86\] writes them as sines and versines).
+//! Stumpff functions c_k(x²) = sum over j of (-x²)^j/(k + 2j)!, by which rotations are exact without division by an
+//! axis (\[Hughes86\] writes them as sines and versines).
 
-/// c_1 to c_5 at the square of an angle (rad²).
+/// Returns c_1 to c_5 at the square of an angle (rad²).
 pub fn stumpff(square: f64) -> [f64; 5] {
     if square < 10.0 {
         let (c4, c5) = (series::<4>(square), series::<5>(square));
@@ -15,13 +15,14 @@ pub fn stumpff(square: f64) -> [f64; 5] {
     [c1, c2, c3, (0.5 - c2) / square, (1.0 / 6.0 - c3) / square]
 }
 
-/// The series of c_K below 10, where 20 terms are exact to rounding, and five of small angles.
+/// Returns c_K below 10 by its series: 20 terms are exact to rounding, and five for small angles.
 fn series<const K: u32>(square: f64) -> f64 {
     let sum = if square < 1e-2 { sum::<K, 5>(square) } else { sum::<K, 20>(square) };
     sum / (1..=K).map(f64::from).product::<f64>()
 }
 
-/// So many terms of the series, for a first term of 1. Their numbers are constants: few of them are no loop.
+/// Sums `TERMS` terms of the series, scaled to a first term of 1. The number is a constant, so that few terms are
+/// unrolled.
 #[inline]
 fn sum<const K: u32, const TERMS: u32>(square: f64) -> f64 {
     let term = |j: u32| f64::from((K + 2 * j - 1) * (K + 2 * j));
@@ -34,7 +35,7 @@ mod tests {
 
     #[test]
     fn both_branches_agree_with_forty_digits() {
-        // mpmath, 40 digits: sum of (-x²)^j/(k + 2j)!.
+        // Reference by mpmath, 40 digits: sum of (-x²)^j/(k + 2j)!.
         let cases = [
             (0.0, [1.0, 0.5, 1.0 / 6.0, 1.0 / 24.0, 1.0 / 120.0]),
             (

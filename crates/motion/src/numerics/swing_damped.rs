@@ -1,8 +1,8 @@
-//! The integral over time of a damped mode's envelope while the torque is constant, by quadrature, of one number or of several in
+//! Integral over time of a damped mode's envelope under a constant torque, by quadrature, for single numbers and SIMD
 //! lanes.
 //!
-//! There the mode's phasor is Z(h) = c + W exp(-(s + i w) h), and the integrand abs(Z). Its singularities are the zeros of Z, at
-//! times that lie |ln |W/c|| radians beside the real ones: the further both sizes are from each other, the longer the panels.
+//! The mode's phasor is Z(h) = c + W exp(-(s + i w) h), and the integrand abs(Z). Its singularities are the zeros of
+//! Z, at a distance of |ln |W/c|| radians from the real axis: the more |W| and |c| differ, the longer the panels.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
@@ -12,7 +12,7 @@ use super::decay::exp;
 use super::trig::{nearest, sincos};
 use crate::lanes::{Mask, Real};
 
-/// Pairs of nodes.
+/// Number of pairs of nodes.
 const PAIRS: usize = 6;
 /// Positive abscissae and weights of the 12-point Gauss-Legendre rule on [-1, 1].
 const NODES: [(f64, f64); PAIRS] = [
@@ -23,17 +23,17 @@ const NODES: [(f64, f64); PAIRS] = [
     (0.904_117_256_370_474_857, 0.106_939_325_995_318_431),
     (0.981_560_634_246_719_251, 0.047_175_336_386_511_827_2),
 ];
-/// So many radians of a panel for each by which the zeros lie beside it.
+/// Length of a panel (rad) per radian of the zeros' distance from the real axis.
 const RATIO: f64 = 2.0;
-/// Shortest and longest panel (rad).
+/// Lengths of the shortest and longest panel (rad).
 const SHORTEST: f64 = 0.4;
 const LONGEST: f64 = 6.0;
-/// Most panels.
+/// Largest number of panels.
 const MOST: f64 = 1e6;
 
-/// Terms of the series of an arc tangent, to 0.04^9/19.
+/// Number of terms of the arc tangent series, with an error of 0.04^9/19.
 const ARC: usize = 9;
-/// The polynomials of x² that are 1 at one abscissa and 0 at the others.
+/// Lagrange polynomials of x² that are 1 at one abscissa and 0 at the others.
 const LAGRANGE: [[f64; PAIRS]; PAIRS] = lagrange();
 
 const fn lagrange() -> [[f64; PAIRS]; PAIRS] {
@@ -61,10 +61,10 @@ const fn lagrange() -> [[f64; PAIRS]; PAIRS] {
     of
 }
 
-/// Integral over [0, h] of abs(c + W exp(-(s + i w) t)), by c and W at both ends.
+/// Returns the integral over [0, h] of abs(c + W exp(-(s + i w) t)), from c and from W at both ends.
 ///
-/// Composite Gauss-Legendre, 12 nodes in panels of 0.4 to 6 radians. A panel beside a zero of Z has a factor of its own for it, whose
-/// moments are in closed form. Error 3e-12 of h times the larger of |c| and |W|.
+/// Composite Gauss-Legendre, 12 nodes in panels of 0.4 to 6 radians. In a panel near a zero of Z the factor of that
+/// zero is integrated with its moments in closed form. The error is 3e-12 of h times the larger of |c| and |W|.
 #[inline(always)]
 pub fn damped<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, frequency: R, h: R) -> R {
     let (zero, one) = (h.of(0.0), h.of(1.0));
@@ -115,11 +115,12 @@ pub fn damped<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, freque
     sum * half
 }
 
-/// The zero of c + W exp(-L x), and where it is so near to 0 that a panel from -1 to 1 has to know of it.
+/// Returns the zero of c + W exp(-L x), and the lanes in which it is close enough to the panel from -1 to 1 to be
+/// treated separately.
 #[inline(always)]
 fn root<R: Real>(centre: [R; 2], deviation: [R; 2], rate: [R; 2]) -> ([R; 2], R::Mask) {
     let one = rate[0].of(1.0);
-    // L x = ln(-W/c) = 2 artanh((W + c)/(W - c)).
+    // By L x = ln(-W/c) = 2 artanh((W + c)/(W - c)).
     let below = [deviation[0] - centre[0], deviation[1] - centre[1]];
     let u = over([deviation[0] + centre[0], deviation[1] + centre[1]], below);
     let z = times(u, u);
@@ -133,11 +134,11 @@ fn root<R: Real>(centre: [R; 2], deviation: [R; 2], rate: [R; 2]) -> ([R; 2], R:
     (root, square(u).le(one * 0.05) & square(root).le(one * 4.0))
 }
 
-/// The integral from -1 to 1 of what has these sizes at the nodes, and this zero and the conjugate one.
+/// Returns the integral from -1 to 1 of a function with the given values at the nodes, and a zero with its conjugate.
 ///
-/// What is left without the factor |x - zero| is a polynomial of degree 11, to rounding. The moments M_k = int x^k S dx with
-/// S = |x - zero|, zero = a + i b, follow from the derivative of x^(k-1) S³:
-/// (k + 2) M_k = [x^(k-1) S³] + (2 k + 1) a M_(k-1) - (k - 1) (a² + b²) M_(k-2).
+/// Without the factor |x - zero| the function is a polynomial of degree 11, to rounding. The moments M_k = int x^k S
+/// dx with S = |x - zero|, zero = a + i b, follow from the derivative of x^(k-1) S³: (k + 2) M_k = [x^(k-1) S³] + (2
+/// k + 1) a M_(k-1) - (k - 1) (a² + b²) M_(k-2).
 #[inline(always)]
 fn beside<R: Real>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
     let (zero, half) = (a.of(0.0), a.of(0.5));
@@ -154,7 +155,7 @@ fn beside<R: Real>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
             odd[k] = odd[k] + difference * LAGRANGE[pair][k];
         }
     }
-    // The ends as they are seen from the zero.
+    // Positions of the ends relative to the zero.
     let (before, after) = (-a - 1.0, -a + 1.0);
     let (first, last) = ((before * before + b).sqrt(), (after * after + b).sqrt());
     let reach = |of: R, size: R| R::select(zero.lt(of), of + size, b / (size - of));
@@ -174,7 +175,7 @@ fn beside<R: Real>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
     sum
 }
 
-/// The natural logarithm, lane by lane.
+/// Returns the natural logarithm, lane by lane.
 #[inline(always)]
 fn logarithm<R: Real>(of: R) -> R {
     let mut all = [1.0; 16];
@@ -185,17 +186,18 @@ fn logarithm<R: Real>(of: R) -> R {
     of.load(&all)
 }
 
-/// How long panels are (rad).
+/// Returns the length of the panels (rad).
 #[inline(always)]
 fn radians<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2]) -> R {
     let (zero, one) = (from[0].of(0.0), from[0].of(1.0));
     let (c, first, last) = (square(centre), square(from), square(to));
-    // Both sizes where they are nearest to each other; the same where one passes the other.
+    // Squares of the larger and smaller of |c| and |W| where they are nearest to each other; equal if one passes the
+    // other.
     let (inside, outside) = (first.lt(c), c.lt(last));
     let large = R::select(inside, c, R::select(outside, last, one));
     let small = R::select(inside, first, R::select(outside, c, one));
     let ratio = (small / R::select(zero.lt(large), large, one)).sqrt();
-    // A lower bound of -ln(ratio), the beginning of a series of positive terms.
+    // Lower bound of -ln(ratio), the beginning of a series of positive terms.
     let part = (one - ratio) / (one + ratio);
     let z = part * part;
     let distance = (part + part) * (one + z * (z.of(1.0 / 3.0) + z * 0.2));
@@ -218,7 +220,7 @@ fn square<R: Real>([re, im]: [R; 2]) -> R {
     re * re + im * im
 }
 
-/// The absolute value of a sum.
+/// Returns the absolute value of a sum.
 #[inline(always)]
 fn size<R: Real>([a, b]: [R; 2], [c, d]: [R; 2]) -> R {
     square([a + c, b + d]).sqrt()
@@ -228,10 +230,10 @@ fn size<R: Real>([a, b]: [R; 2], [c, d]: [R; 2]) -> R {
 mod tests {
     use super::*;
 
-    /// By `tests/golden/swing_damped_oracle.py`.
+    /// Reference values by `tests/golden/swing_damped_oracle.py`.
     const ORACLE: &str = include_str!("../../../../tests/golden/swing_damped.csv");
 
-    /// The deviation after a time.
+    /// Returns the deviation after the time `t`.
     fn later([re, im]: [f64; 2], decay: f64, frequency: f64, t: f64) -> [f64; 2] {
         let ((sin, cos), left) = (libm::sincos(frequency * t), libm::exp(-decay * t));
         times([re, im], [left * cos, -left * sin])

@@ -1,17 +1,17 @@
-//! The integral over time of an undamped mode's envelope while the torque is constant.
+//! Integral over time of an undamped mode's envelope under a constant torque.
 //!
-//! There the mode's phasor is Z(h) = c + W exp(-i w h), and the integrand abs(Z).
+//! The mode's phasor is Z(h) = c + W exp(-i w h), and the integrand abs(Z).
 
 use super::elliptic::second_kind;
 use super::swing_series::{Circle, LARGE, MIDDLE, SMALL};
 use crate::lanes::{Mask, Real};
 use crate::numerics::phasor::{Phasor, abs, arg};
 
-/// Integral over [0, h] of abs(c + W exp(-i w t)): an undamped mode, in closed form (the envelope's mean of
-/// \[Silaev\], section 2). Takes W at both ends.
+/// Returns the integral over [0, h] of abs(c + W exp(-i w t)) for an undamped mode, in closed form (the envelope's
+/// mean of \[Silaev\], section 2); `centre` is c, and W is given at both ends.
 ///
-/// What is smaller of |c| and |W|, relative to the other, is the modulus of a series ([`super::swing_series`]); within 0.002 of 1 the
-/// integral is left to Carlson's duplication. Error 1e-13 of h times the larger of both.
+/// The ratio of the smaller to the larger of |c| and |W| is the modulus of a series ([`super::swing_series`]); within
+/// 0.002 of 1 the integral is computed by Carlson's duplication. The error is 1e-13 of h times the larger of both.
 #[allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #[inline(always)]
 pub fn undamped<R: Real>(centre: R, [from, to]: [[R; 2]; 2], frequency: R, h: R) -> R {
@@ -42,7 +42,7 @@ pub fn undamped<R: Real>(centre: R, [from, to]: [[R; 2]; 2], frequency: R, h: R)
     swept / frequency
 }
 
-/// The same for an angle, with frequency 1.
+/// Returns the integral over an angle (rad), with frequency 1, by an elliptic integral.
 ///
 /// With R = abs(W) and the angle psi between c and the phasor, abs(Z)² = (c + R)² - 4 c R sin²(psi/2), which
 /// integrates to the incomplete elliptic integral of the second kind.
@@ -61,10 +61,10 @@ mod tests {
     use super::*;
     use crate::numerics::phasor::{Complex, polar};
 
-    /// By `tests/golden/swing_oracle.py`.
+    /// Reference values by `tests/golden/swing_oracle.py`.
     const ORACLE: &str = include_str!("../../../../tests/golden/swing.csv");
 
-    /// The integral, with W turned to its other end.
+    /// Returns the integral, with W rotated to its other end.
     fn over(c: f64, from: Phasor, w: f64, h: f64) -> f64 {
         let to = from * polar(1.0, -w * h);
         undamped(c, [[from.re, from.im], [to.re, to.im]], w, h)

@@ -1,9 +1,9 @@
-//! The integral of |1 + z| while z runs on a circle about 0: its Fourier series, and Landen's substitution, which makes the
-//! circle smaller.
+//! Integral of |1 + z| while z moves on a circle about 0: its Fourier series, and Landen's transformation, which
+//! reduces the circle.
 //!
-//! With z = k e^(i t) and 1 + z = p e^(i a), the angle b = t - a between z and 1 + z gives dt = p db/cos a, sin a = k sin b and
-//! p = cos a + k cos b. Hence integrals over t are complete in b, and with the smaller modulus m = (1 - k')/(1 + k'),
-//! k' = sqrt(1 - k²), on the circle z_2 = m e^(2 i b):
+//! With z = k e^(i t) and 1 + z = p e^(i a), the angle b = t - a between z and 1 + z gives dt = p db/cos a, sin a = k
+//! sin b and p = cos a + k cos b. Hence integrals over t are complete in b, and with the smaller modulus m = (1 -
+//! k')/(1 + k'), k' = sqrt(1 - k²), on the circle z_2 = m e^(2 i b):
 //!
 //! ```text
 //! int |1 + z| dt   = (int |1 + z_2| dt_2 - (1 - m)²/2 int dt_2/|1 + z_2|)/(1 + m) + 2 [Im u]
@@ -11,31 +11,32 @@
 //! u = k e^(i b) = (z + k²)/|1 + z|,   z_2 = u² (1 + m)²/4,   dt_2 = 2 (dt - da)
 //! ```
 //!
-//! All of it is algebraic at both ends, but for the angle between the two 1 + z. With the other modulus, 1 + m = 2/(1 + k'), the next
-//! k' is 2 sqrt(k')/(1 + k') and |1 + z_2| = (|1 + z| + k'^2/|1 + z|)/(1 + k'): a second step has one root, and one arc tangent is enough
-//! for the angles of both.
+//! All terms are algebraic at both ends, except for the angle between the two values of 1 + z. With the other
+//! modulus, 1 + m = 2/(1 + k'), the next k' is 2 sqrt(k')/(1 + k') and |1 + z_2| = (|1 + z| + k'^2/|1 + z|)/(1 + k'):
+//! a second step needs one root, and one arc tangent suffices for the angles of both.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
 use super::trig::argument;
 use crate::lanes::Real;
 
-/// The series alone takes moduli below this.
+/// Modulus below which the series suffices without Landen steps.
 pub const SMALL: f64 = 0.1;
-/// Two steps of Landen's take moduli below this, three those below the next.
+/// Modulus below which two Landen steps suffice; three suffice up to the next limit.
 pub const MIDDLE: f64 = 0.9;
-/// Beyond this three are not enough.
+/// Modulus beyond which three Landen steps do not suffice.
 pub const LARGE: f64 = 0.998;
 
-/// Powers of k² in a coefficient, and binomial coefficients in it.
+/// Number of powers of k² in a coefficient, and of binomial coefficients.
 const POWERS: usize = 6;
 const BINOMIALS: usize = 20;
-/// The power of k after which the series alone leaves all out, which is below 2e-14; so does that after steps of Landen's,
-/// whose modulus is below 0.045.
+/// Largest power of k in the series alone, and in the series after Landen steps (modulus below 0.045); the truncation
+/// error is below 2e-14.
 const ALONE: usize = 10;
 const AFTER: usize = 9;
 
-/// The coefficients of Im z^n, n > 0, in the integral of |1 + z|^power over t, as powers of k²; for n = 0 those of t.
+/// Returns the coefficients of Im z^n, n > 0, in the integral of |1 + z|^power over t, as powers of k²; for n = 0
+/// those of t.
 const fn fourier(power: f64) -> [[f64; POWERS]; ALONE + 1] {
     let mut binomial = [1.0; BINOMIALS];
     let mut k = 1;
@@ -60,7 +61,7 @@ const fn fourier(power: f64) -> [[f64; POWERS]; ALONE + 1] {
 const LENGTH: [[f64; POWERS]; ALONE + 1] = fourier(1.0);
 const INVERSE: [[f64; POWERS]; ALONE + 1] = fourier(-1.0);
 
-/// A loop that is written out.
+/// Unrolls a loop over literal values.
 macro_rules! each {
     ($n:ident in [$($value:literal),+] $body:block) => {
         $({
@@ -70,31 +71,31 @@ macro_rules! each {
     };
 }
 
-/// A motion of z on a circle.
+/// Motion of z on a circle, with the integral along it.
 #[derive(Copy, Clone)]
 pub struct Circle<R> {
-    /// What |1 + z| is to be multiplied by.
+    /// Factor by which |1 + z| is multiplied.
     pub scale: R,
-    /// The circle's radius k, at most 1.
+    /// Radius k of the circle, at most 1.
     pub modulus: R,
-    /// z at both ends.
+    /// Values of z at both ends.
     ends: [[R; 2]; 2],
-    /// The angle between them, all turns counted (rad).
+    /// Angle between the ends, full turns included (rad).
     angle: R,
-    /// The weights of the integrals of |1 + z| and 1/|1 + z|, and what is known already.
+    /// Weights of the integrals of |1 + z| and 1/|1 + z|, and the part of the result that is already known.
     length: R,
     inverse: R,
     sum: R,
 }
 
 impl<R: Real> Circle<R> {
-    /// The motion of c + W e^(-i t) over an angle (rad), by the centre c and W at both ends.
+    /// Creates the motion of c + W e^(-i t) over an angle (rad), from the centre c and W at both ends.
     #[inline(always)]
     pub fn new(centre: R, [from, to]: [[R; 2]; 2], angle: R) -> Self {
         let (zero, one) = (centre.of(0.0), centre.of(1.0));
         let square = from[0] * from[0] + from[1] * from[1];
         let (radius, distance) = (square.sqrt(), centre.abs());
-        // |c + W| = |c| |1 + W*/c| = |W| |1 + c/W|.
+        // Uses |c + W| = |c| |1 + W*/c| = |W| |1 + c/W|.
         let outside = radius.lt(distance);
         let below = R::select(outside, centre, square);
         let factor = R::select(outside, one, centre) / R::select(below.abs().le(zero), one, below);
@@ -109,7 +110,7 @@ impl<R: Real> Circle<R> {
         }
     }
 
-    /// The same integral on a smaller circle, of a modulus near 1.
+    /// Transforms the integral to a smaller circle by one Landen step, for a modulus near 1.
     #[inline(always)]
     #[must_use]
     pub fn once(&self) -> Self {
@@ -118,19 +119,19 @@ impl<R: Real> Circle<R> {
         smaller
     }
 
-    /// The same integral after two steps, of a modulus below [`MIDDLE`]: afterwards it is below 0.042.
+    /// Transforms the integral by two Landen steps, for a modulus below [`MIDDLE`]; the new modulus is below 0.042.
     #[inline(always)]
     #[must_use]
     pub fn twice(&self) -> Self {
         let (complement, sizes) = (self.complement(), self.sizes());
         let (first, once) = self.step(complement, sizes);
-        // Of the smaller circle, both are known without a root of what depends on the ends.
+        // For the smaller circle, complement and sizes follow without a root of values that depend on the ends.
         let square = complement * complement;
         let next = complement.sqrt() * first.inverse * 2.0;
         let [a, b] = first.sizes_inverse;
         let sizes = [first.inverse * (sizes[0] + square * a), first.inverse * (sizes[1] + square * b)];
         let (second, mut twice) = once.step(next, sizes);
-        // Both angles at once: that of the first step, and half that of the second.
+        // Both angles in one arc tangent: that of the first step, and half that of the second.
         let ([re, im], [along, across]) = (first.between, second.between);
         let along = sizes[0] * sizes[1] + along;
         let part = argument([re * along - im * across, re * across + im * along]);
@@ -138,14 +139,14 @@ impl<R: Real> Circle<R> {
         twice
     }
 
-    /// k' of the modulus.
+    /// Returns k' of the modulus.
     #[inline(always)]
     fn complement(&self) -> R {
         let one = self.modulus.of(1.0);
         ((one - self.modulus) * (one + self.modulus)).sqrt()
     }
 
-    /// |1 + z| at both ends.
+    /// Returns |1 + z| at both ends.
     #[inline(always)]
     fn sizes(&self) -> [R; 2] {
         let [a, b] = self.ends;
@@ -153,11 +154,11 @@ impl<R: Real> Circle<R> {
         [(a_re * a_re + a[1] * a[1]).sqrt(), (b_re * b_re + b[1] * b[1]).sqrt()]
     }
 
-    /// A step, by k' and |1 + z| at both ends, and all but the angle of the same integral after it.
+    /// Performs a Landen step, given k' and |1 + z| at both ends; sets all of the new circle but its angle.
     #[inline(always)]
     fn step(&self, complement: R, sizes: [R; 2]) -> (Step<R>, Self) {
         let step = Step::new(self, complement, sizes);
-        // (1 - k')/(1 + k') is its square.
+        // The new modulus (1 - k')/(1 + k') is the square of this.
         let root = self.modulus * step.inverse;
         let smaller = Self {
             scale: self.scale,
@@ -171,7 +172,7 @@ impl<R: Real> Circle<R> {
         (step, smaller)
     }
 
-    /// One or the other, of the same motion.
+    /// Selects one of two circles with the same scale, per lane.
     #[inline(always)]
     #[must_use]
     pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
@@ -189,7 +190,7 @@ impl<R: Real> Circle<R> {
         one
     }
 
-    /// The integral over the angle, for a modulus below [`SMALL`], before any step.
+    /// Returns the integral over the angle by the series alone, for a modulus below [`SMALL`].
     #[inline(always)]
     pub fn alone(&self) -> R {
         let square = self.modulus * self.modulus;
@@ -203,7 +204,7 @@ impl<R: Real> Circle<R> {
         self.scale * (mean * self.angle + (sums[1].sum() - sums[0].sum()))
     }
 
-    /// The integral over the angle, after enough steps.
+    /// Returns the integral over the angle by the series after Landen steps.
     #[inline(always)]
     pub fn after(&self) -> R {
         let square = self.modulus * self.modulus;
@@ -222,27 +223,27 @@ impl<R: Real> Circle<R> {
     }
 }
 
-/// What a step of Landen's makes of both ends.
+/// Result of a Landen step at both ends.
 struct Step<R> {
-    /// 1/(1 + k').
+    /// Factor 1/(1 + k').
     inverse: R,
-    /// 1/|1 + z| at both ends.
+    /// Values of 1/|1 + z| at both ends.
     sizes_inverse: [R; 2],
-    /// z_2 there.
+    /// Values of z_2 at both ends.
     ends: [[R; 2]; 2],
-    /// By how much Im u rises between them.
+    /// Increase of Im u from the first to the second end.
     rise: R,
-    /// A number whose argument is the angle between both 1 + z.
+    /// Complex number whose argument is the angle between both values of 1 + z.
     between: [R; 2],
 }
 
 impl<R: Real> Step<R> {
-    /// The step of a circle whose k' and |1 + z| are known.
+    /// Computes the step of a circle from k' and |1 + z| at both ends.
     #[inline(always)]
     fn new(circle: &Circle<R>, complement: R, [a_size, b_size]: [R; 2]) -> Self {
         let square = circle.modulus * circle.modulus;
         let [a, b] = circle.ends;
-        // One quotient for all three.
+        // One division serves all three.
         let (above, sizes) = (complement + 1.0, a_size * b_size);
         let all = square.of(1.0) / (above * sizes);
         let (inverse, both) = (all * sizes, all * above);
@@ -264,7 +265,7 @@ impl<R: Real> Step<R> {
     }
 }
 
-/// So many terms of a polynomial.
+/// Evaluates the first `TERMS` terms of a polynomial.
 #[inline(always)]
 fn polynomial<R: Real, const TERMS: usize>(coefficients: &[f64; POWERS], x: R) -> R {
     let mut sum = x.of(coefficients[TERMS - 1]);
@@ -274,7 +275,7 @@ fn polynomial<R: Real, const TERMS: usize>(coefficients: &[f64; POWERS], x: R) -
     sum
 }
 
-/// The sum of b_n Im z^n, by Clenshaw's recurrence from the last term on.
+/// Sum of b_n Im z^n, by Clenshaw's recurrence from the last term on.
 #[derive(Copy, Clone)]
 struct Clenshaw<R> {
     twice: R,

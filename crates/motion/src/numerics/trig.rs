@@ -1,4 +1,4 @@
-//! Sine, cosine and arc tangent without a branch, of one number or of several in lanes: the polynomials of fdlibm.
+//! Branch-free sine, cosine and arc tangent, for single numbers and SIMD lanes: the polynomials of fdlibm.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::excessive_precision, reason = "as fdlibm has them")]
@@ -7,13 +7,13 @@ use std::f64::consts::FRAC_2_PI;
 
 use crate::lanes::Real;
 
-/// Beyond this (rad) the reduction by pi/2 in three parts is not exact.
+/// Angle (rad) up to which the reduction by pi/2 in three parts is exact.
 pub const FARTHEST: f64 = 1e6;
 
-/// The first 33 bits of pi/2, the next 33, and the rest.
+/// Constant pi/2: its first 33 bits, the next 33, and the rest.
 const HALF_PI: [f64; 3] =
     [1.570_796_326_734_125_614_17, 6.077_100_506_303_965_976_60e-11, 2.022_266_248_795_950_631_54e-21];
-/// 1.5 2^52: added and taken away again, it rounds to an integer.
+/// Constant 1.5 2^52: adding and subtracting it rounds to an integer.
 const ROUNDER: f64 = 6_755_399_441_055_744.0;
 
 const SINE: [f64; 6] = [
@@ -32,7 +32,7 @@ const COSINE: [f64; 6] = [
     2.087_572_321_298_174_827_90e-9,
     -1.135_964_755_778_819_482_65e-11,
 ];
-/// The arc tangent.
+/// Coefficients of the arc tangent.
 const ARC: [f64; 11] = [
     3.333_333_333_333_293_180_27e-1,
     -1.999_999_999_987_648_324_76e-1,
@@ -47,14 +47,14 @@ const ARC: [f64; 11] = [
     1.628_582_011_536_578_236_23e-2,
 ];
 
-/// The integer nearest to a number below 2^51.
+/// Returns the integer nearest to a number below 2^51.
 #[inline(always)]
 pub fn nearest<R: Real>(x: R) -> R {
     let rounder = x.of(ROUNDER);
     (x + rounder) - rounder
 }
 
-/// Sine and cosine of an angle (rad) up to [`FARTHEST`]; within 1 unit in the last place.
+/// Returns sine and cosine of an angle (rad) up to [`FARTHEST`]; within 1 unit in the last place.
 #[inline(always)]
 pub fn sincos<R: Real>(x: R) -> (R, R) {
     let turns = nearest(x * x.of(FRAC_2_PI));
@@ -67,20 +67,20 @@ pub fn sincos<R: Real>(x: R) -> (R, R) {
     let rest = turns * x.of(HALF_PI[2]) - low;
     let angle = high - rest;
     let (sin, cos) = within(angle, (high - angle) - rest);
-    // Quarter turns modulo 4, -2 to 2, turn the pair: no product but by 1, 0 or -1, and so exact.
+    // Quarter turns modulo 4, -2 to 2, rotate the pair: by products with 1, 0 or -1 only, which are exact.
     let quarters = turns - x.of(4.0) * nearest(turns * x.of(0.25));
     let size = quarters.abs();
     let (along, across) = (x.of(1.0) - size, quarters * (x.of(2.0) - size));
     (along * sin + across * cos, along * cos - across * sin)
 }
 
-/// Sine and cosine of any angle (rad): those of [`sincos`] up to [`FARTHEST`].
+/// Returns sine and cosine of any angle (rad): those of [`sincos`] up to [`FARTHEST`].
 #[inline]
 pub fn sincos_any(x: f64) -> (f64, f64) {
     if x.abs() < FARTHEST { sincos(x) } else { libm::sincos(x) }
 }
 
-/// Sine and cosine of an angle (rad) that is at most pi/4.
+/// Returns sine and cosine of an angle (rad) of at most pi/4.
 #[inline(always)]
 pub fn sincos_short<R: Real>(x: R) -> (R, R) {
     let z = x * x;
@@ -96,7 +96,7 @@ pub fn sincos_short<R: Real>(x: R) -> (R, R) {
     (sin, near + (((one - near) - half) + z * cosines))
 }
 
-/// The same of a sum of two parts.
+/// Returns sine and cosine of an angle (rad) of at most pi/4, given as a sum of two parts.
 #[inline(always)]
 fn within<R: Real>(x: R, y: R) -> (R, R) {
     let z = x * x;
@@ -113,7 +113,7 @@ fn within<R: Real>(x: R, y: R) -> (R, R) {
     (sin, near + (((one - near) - hz) + (z * cosines - x * y)))
 }
 
-/// The arc tangent of a number up to 0.4375; within 1 unit in the last place.
+/// Returns the arc tangent of a number up to 0.4375; within 1 unit in the last place.
 #[inline(always)]
 pub fn arc<R: Real>(t: R) -> R {
     let z = t * t;
@@ -128,7 +128,7 @@ pub fn arc<R: Real>(t: R) -> R {
     t - t * (z * odd + w * even)
 }
 
-/// The argument of a complex number that is not 0, from -pi to pi (rad); within 1e-15.
+/// Returns the argument of a non-zero complex number, from -pi to pi (rad); within 1e-15.
 #[inline(always)]
 pub fn argument<R: Real>([re, im]: [R; 2]) -> R {
     let zero = re.of(0.0);
@@ -162,7 +162,7 @@ mod tests {
                 check(size * part);
                 check(-size * part);
             }
-            // Beside multiples of pi/2, where most digits cancel.
+            // Near multiples of pi/2, where most digits cancel.
             let quarter = f64::from(6 * i) * std::f64::consts::FRAC_PI_2;
             check(quarter);
             check(quarter.next_up());

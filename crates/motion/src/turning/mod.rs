@@ -11,9 +11,9 @@
 //! The momentum of rotors in gimbals is part of sum a h, a known function of time (`gimbal.rs`).
 //!
 //! The method (`method.rs`) is Gauss-Legendre of order 6 in mean axes, which preserves |H| and |Q|, with the modes as
-//! exact oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends only on the start of the
-//! segment; an instant between grid points is reached by one shorter off-grid step, so that observation does not change
-//! the motion.
+//! exact oscillators (\[HairerLubichWanner06\], \[Likins70\]). Steps lie on a grid that depends only on the start of
+//! the segment; an instant between grid points is reached by one shorter off-grid step, so that observation does not
+//! change the motion.
 
 mod acceleration;
 mod bearing;
