@@ -1,8 +1,8 @@
-//! Areas made fit to draw: polygons cut at gaps, held within a panel, with no more points than it can show.
+//! Preparation of areas for drawing: polygons cut at gaps, limited to a panel, with no more points than it can show.
 
 use crate::line::{Point, Window, drop_close};
 
-/// The polygon between two lines over the same abscissae; where a point is not finite it has a gap.
+/// Returns the polygon between two lines over the same abscissae, with a gap where a point is not finite.
 pub fn band(lower: &[Point], upper: &[Point]) -> Vec<Point> {
     let finite = |(a, b): &(&Point, &Point)| [a.0, a.1, b.1].iter().all(|value| value.is_finite());
     let pairs: Vec<_> = lower.iter().zip(upper).collect();
@@ -16,8 +16,8 @@ pub fn band(lower: &[Point], upper: &[Point]) -> Vec<Point> {
     polygons
 }
 
-/// The polygons of an area that a window shows. What lies outside is moved to the border: right for areas between lines,
-/// and for those within the window.
+/// Returns the polygons of an area that are visible in a window. Points outside are moved to the border, which is
+/// correct for areas between lines, and for those within the window.
 pub fn polygons(points: &[Point], window: &Window, pixels: u32) -> Vec<Vec<Point>> {
     let size = (window.x.end - window.x.start, window.y.end - window.y.start);
     let hold =

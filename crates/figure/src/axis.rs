@@ -2,65 +2,65 @@
 
 use std::ops::Range;
 
-/// An axis.
+/// Axis of a panel.
 #[derive(Clone, Debug)]
 pub struct FigureAxis {
-    /// What is along it; empty for an axis that another panel names.
+    /// Name of the quantity; empty for an axis that another panel names.
     pub name: String,
-    /// Unit of its values; empty for a ratio.
+    /// Unit of the values; empty for a ratio.
     pub unit: &'static str,
-    /// What it shows, in that unit.
+    /// Visible range, in the unit.
     pub range: Range<f64>,
-    /// How values lie along it.
+    /// Scale of the axis.
     pub scale: Scale,
-    /// The largest value of the axes beside it whose prefix it has too.
+    /// Largest value of the stacked axes that share the prefix.
     beside: f64,
 }
 
-/// How values lie along an axis.
+/// Scale of an axis.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Scale {
-    /// In proportion.
+    /// Proportional to the value.
     Linear,
-    /// By their logarithms: only positive values have a place.
+    /// Proportional to the logarithm: only positive values have a place.
     Logarithmic,
 }
 
-/// The ticks of an axis.
+/// Ticks of an axis.
 #[derive(Clone, Debug)]
 pub struct Ticks {
-    /// Where they are, in the axis' unit.
+    /// Values of the ticks, in the axis' unit.
     pub at: Vec<f64>,
     form: Form,
 }
 
-/// How ticks are written.
+/// Format of the ticks.
 #[derive(Copy, Clone, Debug)]
 enum Form {
-    /// In a prefixed unit, which is `factor` times the axis' own.
+    /// Decimal numbers in a prefixed unit, which is `factor` times the axis' own.
     Decimal { factor: f64, decimals: usize },
-    /// As powers of ten.
+    /// Powers of ten.
     Power,
 }
 
-/// No logarithmic axis shows more decades: far below the largest value there is only rounding.
+/// Maximum number of decades of a logarithmic axis: values far below the largest are rounding errors.
 const DECADES: f64 = 8.0;
 
-/// Axes of one unit have one prefix if their largest values differ by no larger factor: those of one quantity, ...
+/// Maximum ratio of the largest values of axes that share a prefix, for axes of one quantity.
 const SAME: f64 = 1000.0;
-/// ... and others.
+/// Maximum ratio of the largest values of axes that share a prefix, for axes of different quantities.
 const ALIKE: f64 = 10.0;
-/// The names of three axes, whose quantity is the same.
+/// Names of the three axes of one quantity.
 const DIRECTIONS: [&str; 6] = ["roll", "pitch", "yaw", "x", "y", "z"];
 
-/// Prefixes, from the smallest.
+/// SI prefixes, from the smallest.
 const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
 
 impl FigureAxis {
-    /// An axis that shows exactly this range.
+    /// Creates an axis with exactly the given range.
     pub fn exact(name: &str, unit: &'static str, range: Range<f64>) -> Self {
         let size = range.start.abs().max(range.end.abs());
-        // An axis needs a width, which a range of a single value does not have, or of none.
+        // An axis needs a width, which a single value or an empty range does not have.
         let wide = size.is_finite() && range.end - range.start > 1e-9 * size;
         let middle = if range.start.is_finite() { range.start } else { 0.0 };
         let half = if middle == 0.0 { 1.0 } else { 0.05 * middle.abs() };
@@ -68,7 +68,7 @@ impl FigureAxis {
         Self { name: name.to_owned(), unit, range, scale: Scale::Linear, beside: 0.0 }
     }
 
-    /// An axis that shows all of these values, and a little more.
+    /// Creates an axis around all values, with a small margin.
     pub fn around(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         let finite = values.into_iter().filter(|value| value.is_finite());
         let (low, high) =
@@ -77,13 +77,13 @@ impl FigureAxis {
         Self::exact(name, unit, low - margin..high + margin)
     }
 
-    /// An axis from zero to the largest of these values, and a little more.
+    /// Creates an axis from zero to the largest value, with a small margin.
     pub fn from_zero(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         let highest = values.into_iter().filter(|value| value.is_finite()).fold(0.0, f64::max);
         Self::exact(name, unit, 0.0..1.06 * highest)
     }
 
-    /// A logarithmic axis of whole decades that shows all of these values that are positive, but no more than eight decades.
+    /// Creates a logarithmic axis of whole decades for all positive values, with at most eight decades.
     pub fn decades(name: &str, unit: &'static str, values: impl IntoIterator<Item = f64>) -> Self {
         let positive = values.into_iter().filter(|value| value.is_finite() && *value > 0.0);
         let (low, high) = positive.fold((f64::INFINITY, 0.0_f64), |(low, high), v| (low.min(v), high.max(v)));
@@ -93,7 +93,7 @@ impl FigureAxis {
         Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic, beside: 0.0 }
     }
 
-    /// Axes of a figure one below the other: those of one unit have one prefix, unless one of them would show too small
+    /// Returns the axes of stacked panels: axes of one unit share a prefix, unless one of them would show too small
     /// numbers.
     pub(crate) fn stacked<'a>(axes: impl IntoIterator<Item = &'a Self>) -> Vec<Self> {
         let mut axes: Vec<Self> = axes.into_iter().cloned().collect();
@@ -112,7 +112,7 @@ impl FigureAxis {
         axes
     }
 
-    /// Where a value lies, in the numbers of [`FigureAxis::extent`]; not finite if it has no place.
+    /// Returns the place of a value, in the numbers of [`FigureAxis::extent`]; not finite if it has none.
     pub fn place(&self, value: f64) -> f64 {
         match self.scale {
             Scale::Linear => value,
@@ -120,22 +120,22 @@ impl FigureAxis {
         }
     }
 
-    /// Where the ends of the range lie.
+    /// Returns the places of the ends of the range.
     pub fn extent(&self) -> Range<f64> {
         self.place(self.range.start)..self.place(self.range.end)
     }
 
-    /// The same axis, named by another panel.
+    /// Returns the axis without its name, which another panel shows.
     #[must_use]
     pub fn unnamed(&self) -> Self {
         Self { name: String::new(), ..self.clone() }
     }
 
-    /// The name with the prefixed unit.
+    /// Returns the name with the prefixed unit.
     pub fn label(&self) -> String {
         match (self.name.as_str(), self.unit) {
             ("", _) | (_, "") => self.name.clone(),
-            // The kilogram has a prefix of its own.
+            // Special case: the kilogram already has a prefix.
             (name, "kg") => match self.prefix().0 {
                 "M" => format!("{name} (t)"),
                 prefix => format!("{name} ({prefix}g)"),
@@ -144,12 +144,12 @@ impl FigureAxis {
         }
     }
 
-    /// How many of its own units the prefixed one is.
+    /// Returns the size of the prefixed unit in the axis' own unit.
     pub fn factor(&self) -> f64 {
         10_f64.powi(self.prefix().1 - self.own())
     }
 
-    /// At most about `most` ticks.
+    /// Returns the ticks, about `most` at most.
     pub fn ticks(&self, most: u32) -> Ticks {
         if self.scale == Scale::Logarithmic {
             let Range { start, end } = self.extent();
@@ -162,15 +162,15 @@ impl FigureAxis {
         let (low, high) = (self.range.start / factor, self.range.end / factor);
         let rough = (high - low) / f64::from(most.max(1));
         let power = 10_f64.powf(rough.log10().floor());
-        // A tick at an end of the range may lie a rounding beyond it.
+        // A tick at an end of the range may exceed it by rounding.
         let ends = |step: f64| ((low / step - 1e-9).ceil() as i64, (high / step + 1e-9).floor() as i64);
         let steps = [0.5, 1.0, 2.0, 5.0, 10.0].map(|nice| nice * power);
         let place = steps.iter().position(|step| *step >= rough).unwrap_or(4);
-        // One tick does not tell how far a value is.
+        // At least two ticks are needed to read a value.
         let (first, last) = ends(steps[place]);
         let step = if place > 0 && last - first < 1 { steps[place - 1] } else { steps[place] };
         let (first, last) = ends(step);
-        // A little tolerance: the logarithm of a power of ten may be rounded.
+        // The tolerance allows for rounding in the logarithm of a power of ten.
         let decimals = (-1e-9 - step.log10()).ceil().clamp(0.0, 12.0) as usize;
         Ticks {
             at: (first..=last).map(|i| i as f64 * step * factor).collect(),
@@ -178,7 +178,7 @@ impl FigureAxis {
         }
     }
 
-    /// The largest absolute value that it shows.
+    /// Returns the largest absolute value of the range.
     fn size(&self) -> f64 {
         self.range.start.abs().max(self.range.end.abs())
     }
@@ -189,20 +189,20 @@ impl FigureAxis {
         }
         let size = self.size().max(self.beside) * 10_f64.powi(self.own());
         let half = (self.range.end - self.range.start) / 2.0;
-        // Times are told in seconds up to 2500 s, and however late they are.
+        // Times are in seconds for ranges up to 2500 s, even if they are late.
         let measure = if self.unit == "s" { half } else { size };
         let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(measure / 10_f64.powi(*power)));
         PREFIXES.iter().find(fits).copied().unwrap_or(("", self.own()))
     }
 
-    /// The power of ten of the prefix that the unit has of its own.
+    /// Returns the power of ten of the prefix that the unit itself contains.
     fn own(&self) -> i32 {
         if self.unit == "kg" { 3 } else { 0 }
     }
 }
 
 impl Ticks {
-    /// The text of a tick.
+    /// Returns the text of a tick.
     pub fn text(&self, at: f64) -> String {
         let Form::Decimal { factor, decimals } = self.form else {
             return format!("10{}", superscript(at.log10().round() as i32));
@@ -215,7 +215,7 @@ impl Ticks {
     }
 }
 
-/// A whole number as an exponent.
+/// Formats an integer as a superscript.
 fn superscript(number: i32) -> String {
     let raised = |character: char| match character {
         '-' => '⁻',
@@ -224,13 +224,13 @@ fn superscript(number: i32) -> String {
     number.to_string().chars().map(raised).collect()
 }
 
-/// The name and the unit that an axis of a quantity has: prefixes are those of SI units, so that any other unit stands
-/// in the name.
+/// Returns the name and the unit of the axis of a quantity: prefixes are for SI units, so that any other unit is part
+/// of the name.
 pub fn name_and_unit(name: &str, unit: &str) -> (String, &'static str) {
     if unit == "rad" { (name.to_owned(), "rad") } else { (format!("{name} ({unit})"), "") }
 }
 
-/// The number of 1, 2 or 5 times a power of ten that is nearest to a positive one.
+/// Returns the number 1, 2 or 5 times a power of ten that is nearest to a positive value.
 pub fn round_to_nice(value: f64) -> f64 {
     let power = 10_f64.powf(value.log10().floor());
     let nice = [1.0, 2.0, 5.0, 10.0].map(|nice| nice * power);
@@ -297,7 +297,7 @@ mod tests {
         assert_eq!(residual.label(), "phi4 left (rad)");
         assert_eq!(texts(&residual, 8), ["10⁻¹", "10⁻²", "10⁻³", "10⁻⁴", "10⁻⁵"]);
         assert_eq!(texts(&residual, 2), ["10⁻¹", "10⁻³", "10⁻⁵"]);
-        // Values are as far from one another as their logarithms, and zero is nowhere.
+        // Distances are those of the logarithms, and zero has no place.
         let extent = residual.extent();
         assert!((extent.start + 5.0).abs() < 1e-12 && (extent.end + 1.0).abs() < 1e-12);
         assert!((residual.place(1e-3) + 3.0).abs() < 1e-12);

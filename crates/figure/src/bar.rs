@@ -1,4 +1,4 @@
-//! The bar that tells what the colours of a map stand for.
+//! Colour bar of a map.
 
 use plotters::element::Polygon;
 use plotters::style::text_anchor::{HPos, VPos};
@@ -6,27 +6,27 @@ use plotters::style::{Color, RGBColor};
 
 use crate::svg::{Area, Error, UNITS, at, text};
 
-/// The classes of a map's values, the lowest first.
+/// Colour bar: the classes of a map's values, the lowest first.
 pub struct Bar {
-    /// What the values are.
+    /// Name of the values.
     pub name: String,
-    /// The colour of each class.
+    /// Colour of each class.
     pub colours: Vec<RGBColor>,
-    /// The values between each class and the next; an empty one is not written.
+    /// Values between each class and the next; empty texts are not drawn.
     pub edges: Vec<String>,
 }
 
 /// Height of the bar with its numbers (px).
 pub const HEIGHT: u32 = 30;
-/// The widest class, the widest bar, and the height of the colours (px).
+/// Maximum width of a class, maximum width of the bar, and height of the colours (px).
 const CLASS: f64 = 40.0;
 const BAR: f64 = 400.0;
 const COLOUR: u32 = 10;
 
-/// Draws a bar from here on, its name before it, in this width.
+/// Draws a bar at `left` (px) with its name before it, within `width` (px).
 pub fn draw(area: &Area<'_>, bar: &Bar, left: u32, width: u32) -> Result<(), Error> {
     let middle = 2 + COLOUR / 2;
-    // A letter is some 0.58 of the font's size wide; a long name leaves half of the width.
+    // A letter is about 0.53 of the font's size wide; a long name leaves half of the width.
     let letters = bar.name.chars().count() as f64;
     let size = (0.5 * f64::from(width) / (0.53 * letters)).min(11.0);
     area.draw_text(&bar.name, &text(size, HPos::Left, VPos::Center), at(left, middle))?;
@@ -43,7 +43,7 @@ pub fn draw(area: &Area<'_>, bar: &Bar, left: u32, width: u32) -> Result<(), Err
             [place(index, top), place(index + 1, top), place(index + 1, bottom), place(index, bottom)];
         area.draw(&Polygon::new(corners, colour.filled()))?;
     }
-    // Texts that would touch the one before are left out.
+    // Texts that would touch the previous one are omitted.
     let mut free = f64::NEG_INFINITY;
     for (index, edge) in bar.edges.iter().enumerate().filter(|(_, edge)| !edge.is_empty()) {
         let (middle, half) = ((index + 1) as f64 * class, 3.1 * edge.chars().count() as f64);

@@ -1,32 +1,33 @@
-//! Where a field on a grid is at least a level: marching squares.
+//! Contours of a field on a grid, by marching squares.
 
 use std::collections::BTreeMap;
 
 use crate::line::Point;
 
-/// A field on a grid.
+/// Scalar field on a rectangular grid.
 pub struct ScalarField {
-    /// Abscissae of the columns, which grow.
+    /// Abscissae of the columns, increasing.
     pub x: Vec<f64>,
-    /// Ordinates of the rows, which grow.
+    /// Ordinates of the rows, increasing.
     pub y: Vec<f64>,
-    /// Value at each abscissa, and for it at each ordinate.
+    /// Values by columns: at each abscissa, one per ordinate.
     pub values: Vec<f64>,
 }
 
-/// A closed curve with the higher values on its left.
+/// Closed contour with the higher values on its left.
 pub struct Ring {
-    /// Its points; the last is followed by the first.
+    /// Points of the contour; the last is connected to the first.
     pub points: Vec<Point>,
-    /// Whether the segment from each point lies on the border of the grid.
+    /// True for each point whose following segment lies on the border of the grid.
     border: Vec<bool>,
 }
 
 impl ScalarField {
-    /// The curves around all that is at least as high as a level: straight between the edges of the grid's cells. What is no
-    /// number counts as infinitely high.
+    /// Returns the contours around the regions with values of at least `level`, as straight lines between the edges
+    /// of the grid's cells. NaN counts as infinitely high.
     pub fn rings(&self, level: f64) -> Vec<Ring> {
-        // Around the grid lie cells without width, whose outer corners are below every level: so each curve closes.
+        // The grid is surrounded by cells without width, whose outer corners are below every level, so that each
+        // contour closes.
         let (columns, rows) = (self.x.len() + 2, self.y.len() + 2);
         let mut segments = BTreeMap::new();
         for i in 0..columns - 1 {
@@ -35,7 +36,7 @@ impl ScalarField {
                 let corners = [(i, j), (i + 1, j), (i + 1, j + 1), (i, j + 1)];
                 let inside = corners.map(|corner| self.value(corner) >= level);
                 for from in (0..4).filter(|k| inside[*k] && !inside[(k + 1) % 4]) {
-                    // Back along the corners that are inside, to the edge on which they begin.
+                    // Backwards along the inside corners, to the edge at which they begin.
                     let mut to = from;
                     while inside[to] {
                         to = (to + 3) % 4;
@@ -58,12 +59,12 @@ impl ScalarField {
         rings
     }
 
-    /// The curves without what lies on the border of the grid, gaps between them.
+    /// Returns the contours without their parts on the border of the grid, separated by gaps.
     pub fn lines(&self, level: f64) -> Vec<Point> {
         self.rings(level).iter().flat_map(Ring::open).collect()
     }
 
-    /// The value at a corner of the cells.
+    /// Returns the value at a corner of the cells.
     fn value(&self, (i, j): (usize, usize)) -> f64 {
         if i == 0 || j == 0 || i > self.x.len() || j > self.y.len() {
             return f64::NEG_INFINITY;
@@ -72,13 +73,13 @@ impl ScalarField {
         if value.is_nan() { f64::INFINITY } else { value }
     }
 
-    /// Where a corner is.
+    /// Returns the position of a corner.
     fn place(&self, (i, j): (usize, usize)) -> Point {
         let held = |axis: &[f64], index: usize| axis[index.clamp(1, axis.len()) - 1];
         (held(&self.x, i), held(&self.y, j))
     }
 
-    /// Where a level is reached on an edge.
+    /// Returns the position at which a level is reached on an edge.
     fn crossing(&self, edge: Edge, level: f64) -> Point {
         let (a, b) = (self.value(edge.from), self.value(edge.to));
         let (from, to) = (self.place(edge.from), self.place(edge.to));
@@ -87,7 +88,7 @@ impl ScalarField {
     }
 }
 
-/// An edge of the cells, from its lower or left corner on.
+/// Edge of a cell, from its lower or left corner.
 #[derive(Copy, Clone, PartialEq, Eq, PartialOrd, Ord)]
 struct Edge {
     from: (usize, usize),
@@ -101,13 +102,13 @@ impl Edge {
 }
 
 impl Ring {
-    /// The area within, negative where what is within is lower.
+    /// Returns the enclosed area, negative if the values inside are lower.
     pub fn area(&self) -> f64 {
         let next = self.points.iter().cycle().skip(1);
         0.5 * self.points.iter().zip(next).map(|(a, b)| a.0 * b.1 - b.0 * a.1).sum::<f64>()
     }
 
-    /// The curve without its segments on the border, which leave gaps.
+    /// Returns the contour with gaps in place of its segments on the border.
     fn open(&self) -> Vec<Point> {
         const GAP: Point = (f64::NAN, f64::NAN);
         let next = self.points.iter().cycle().skip(1);

@@ -1,4 +1,4 @@
-//! Drawing a figure as SVG.
+//! Drawing of a figure as SVG.
 
 use std::ops::Range;
 
@@ -13,22 +13,22 @@ use crate::line::{Point, Window, pieces, straighten, thin};
 use crate::svg::{Area, Error, UNITS, at, text};
 use crate::{Figure, FigureAxis, Layer, LayerShape, Panel, bar, colour};
 
-/// Width of a figure whose panels are as high as they say (px).
+/// Width of a figure whose panels have their nominal height (px).
 const WIDTH: u32 = 800;
-/// Room left of a panel's plot, and right of it (px).
+/// Margins left and right of a panel's plot (px).
 const LEFT: u32 = 70;
 const RIGHT: u32 = 20;
-/// Room below it, for numbers, and for a name of the axis (px).
+/// Margins below the plot, for numbers and for the name of the axis (px).
 const NUMBERS: u32 = 24;
 const NAME: u32 = 18;
-/// Room for the title, for each further line of it, and for each row of a legend (px).
+/// Heights of the title, of each further line of it, of a legend, and of each further row of it (px).
 const TITLE: u32 = 30;
 const LINE: u32 = 17;
 const LEGEND: u32 = 22;
 const ROW: u32 = 16;
 const GRID: RGBColor = RGBColor(225, 225, 225);
 
-/// Where things are in a figure.
+/// Layout of a figure.
 #[derive(Copy, Clone)]
 struct Layout {
     /// Width of the figure (px).
@@ -40,22 +40,22 @@ struct Layout {
 impl Layout {
     fn of(figure: &Figure, width: u32) -> Self {
         let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
-        // Narrow figures are lower too, but not so much.
+        // Narrow figures are also lower, but less than proportionally.
         let plot = f64::from(figure.panel_height) * part.powf(0.6);
         Self { width, plot: plot.round() as u32 }
     }
 
-    /// Width of a plot (px).
+    /// Returns the width of a plot (px).
     fn across(self) -> u32 {
         self.width - LEFT - RIGHT
     }
 
-    /// Room for the legend of a panel (px).
+    /// Returns the height of a panel's legend (px).
     fn legend(self, panel: &Panel) -> u32 {
         LEGEND + ROW * self.entries(panel).last().map_or(0, |(_, (row, _))| *row)
     }
 
-    /// The layers that a legend names, each with its row and how far right it begins (px).
+    /// Returns the layers in the legend, each with its row and the left end of its entry (px).
     fn entries(self, panel: &Panel) -> Vec<(&Layer, (u32, u32))> {
         let (mut row, mut left) = (0, LEFT);
         let mut entries = Vec::new();
@@ -70,24 +70,26 @@ impl Layout {
         entries
     }
 
-    /// The height of a panel with all that is around its plot (px).
+    /// Returns the height of a panel including all around its plot (px).
     fn panel(self, panel: &Panel) -> u32 {
         let name = if panel.x.name.is_empty() { 0 } else { NAME };
         bar_height(panel) + self.legend(panel) + self.plot + NUMBERS + name
     }
 }
 
-/// The width of letters of a legend (px): the backend knows no font; a letter is some 0.6 of the font's size wide.
+/// Estimates the width of a legend text (px): the backend has no font metrics; a letter is about 0.6 of the font's
+/// size wide.
 fn letters(text: &str) -> u32 {
     text.chars().count() as u32 * 62 / 10
 }
 
-/// The size of letters, at most `most` (px), so that a text is no wider than some pixels: a letter is some 0.57 of it wide.
+/// Returns the font size, at most `most` (px), at which a text fits into `room` (px): a letter is about 0.57 of it
+/// wide.
 fn fitting(text: &str, room: f64, most: f64) -> f64 {
     (room / (0.57 * text.chars().count() as f64)).min(most)
 }
 
-/// A title in lines that are not too small: parted between words, the first line the longest.
+/// Splits a title between words into lines of legible size, the first as long as possible.
 fn title_lines(title: &str, width: u32) -> Vec<String> {
     let room = f64::from(width - 20);
     let smallest = 11.0;
@@ -104,7 +106,7 @@ fn title_lines(title: &str, width: u32) -> Vec<String> {
     lines
 }
 
-/// The figure as SVG, so many pixels wide.
+/// Draws the figure as SVG with a width in pixels.
 pub fn svg(figure: &Figure, width: u32) -> Result<String, Error> {
     let layout = Layout::of(figure, width);
     let lines = title_lines(&figure.title, width);
@@ -135,7 +137,7 @@ pub fn svg(figure: &Figure, width: u32) -> Result<String, Error> {
         }
         root.present()?;
     }
-    // The size in pixels; and round joins, since mitred ones point far beyond sharp peaks.
+    // Sets the size in pixels, and round joins, because mitred ones extend far beyond sharp peaks.
     let fine = format!("width=\"{}\" height=\"{}\"", width * UNITS, height * UNITS);
     let size = format!("width=\"{width}\" height=\"{height}\" stroke-linejoin=\"round\"");
     Ok(svg.replacen(&fine, &size, 1))
@@ -145,17 +147,17 @@ fn bar_height(panel: &Panel) -> u32 {
     if panel.bar.is_some() { bar::HEIGHT } else { 0 }
 }
 
-/// A panel's plot: a window of the plane, in the places that values have on the axes, on a rectangle of the backend.
+/// Plot of a panel: the mapping from axis places to a rectangle of the backend.
 struct Plot {
     window: Window,
-    /// From the top of the panel to that of the plot, width and height of the plot (px).
+    /// Distance from the top of the panel to the plot, width and height of the plot (px).
     top: u32,
     across: u32,
     height: u32,
 }
 
 impl Plot {
-    /// Where a point of the plane is.
+    /// Returns the backend's coordinates of a point.
     fn place(&self, (x, y): Point) -> (i32, i32) {
         let part = |value: f64, range: &Range<f64>| (value - range.start) / (range.end - range.start);
         let x = f64::from(LEFT) + part(x, &self.window.x) * f64::from(self.across);
@@ -225,7 +227,7 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
     let name = across.label();
     let size = fitting(&name, f64::from(plot.across + LEFT), 12.0);
     area.draw_text(&name, &text(size, HPos::Center, VPos::Center), below)?;
-    // A long name becomes smaller.
+    // A long name is drawn smaller.
     let (name, room) = (up.label(), f64::from(plot.height + plot.top + NUMBERS / 2));
     let size = fitting(&name, room, 12.0);
     let upright = text(size, HPos::Center, VPos::Center).transform(FontTransform::Rotate270);
@@ -240,7 +242,7 @@ fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<
     }
 }
 
-/// Names the layers above the panel, in rows.
+/// Draws the legend above the panel, in rows.
 fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error> {
     for (layer, (row, left)) in layout.entries(panel) {
         let middle = LEGEND / 2 + 1 + ROW * row;

@@ -1,22 +1,22 @@
-//! Figures as PNG and PDF: the same SVG, rendered with fonts of our own, so that no system needs any.
+//! Figures as PNG and PDF: the same SVG, rendered with embedded fonts, independent of the system's fonts.
 
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::{Options, Tree};
 
 use crate::{Style, pdf};
 
-/// Pixels of a PNG for each pixel of the SVG: on screens, ...
+/// Pixels of a PNG per pixel of the SVG, for screens.
 const SCALE: f64 = 2.0;
-/// ... and on paper, 600 to the inch.
+/// Pixels of a PNG per pixel on paper: 600 per inch.
 const FINE: f64 = 600.0 / 96.0;
-/// No PNG has more pixels.
+/// Maximum number of pixels of a PNG.
 const MOST: u32 = 150_000_000;
 
-/// Renders SVG.
+/// Renderer from SVG to PNG and PDF.
 pub struct Renderer(Options<'static>);
 
 impl Default for Renderer {
-    /// A renderer with its fonts.
+    /// Creates a renderer with its fonts.
     fn default() -> Self {
         let mut options = Options::default();
         let fonts = options.fontdb_mut();
@@ -27,7 +27,7 @@ impl Default for Renderer {
 }
 
 impl Renderer {
-    /// The PNG of an SVG that was laid out for a style.
+    /// Renders the PNG of an SVG that was laid out for a style.
     pub fn png(&self, svg: &str, style: &Style) -> Result<Vec<u8>, String> {
         let tree = Tree::from_str(svg, &self.0).map_err(|error| error.to_string())?;
         let scale = if style.is_for_screens() { SCALE } else { FINE * style.scale() } as f32;
@@ -41,7 +41,7 @@ impl Renderer {
         pixels.encode_png().map_err(|error| error.to_string())
     }
 
-    /// The PDF of an SVG, with the letters that it uses.
+    /// Renders the PDF of an SVG, with the glyphs that it uses.
     pub fn pdf(&self, svg: &str) -> Result<Vec<u8>, String> {
         pdf::written(&Tree::from_str(svg, &self.0).map_err(|error| error.to_string())?)
     }

@@ -27,11 +27,11 @@ pub use plotters::style::RGBColor;
 pub use sheet::sheet;
 pub use style::Style;
 
-/// Colours that also the colour-blind tell apart (Okabe and Ito).
+/// Colours that are distinguishable with colour blindness (Okabe and Ito).
 pub mod colour {
     use plotters::style::RGBColor;
 
-    /// For what is not data.
+    /// Grey, for elements other than data.
     pub const GREY: RGBColor = RGBColor(120, 120, 120);
     /// Black.
     pub const BLACK: RGBColor = RGBColor(0, 0, 0);
@@ -47,32 +47,32 @@ pub mod colour {
     pub const VERMILLION: RGBColor = RGBColor(213, 94, 0);
 }
 
-/// A figure.
+/// Figure of stacked panels.
 pub struct Figure {
-    /// What it shows.
+    /// Title of the figure.
     pub title: String,
-    /// Its panels, from top to bottom.
+    /// Panels, from top to bottom.
     pub panels: Vec<Panel>,
     /// Height of each panel in pixels.
     pub panel_height: u32,
 }
 
-/// A figure, after the name of its file without an extension.
+/// Figure with the name of its file, without an extension.
 pub type Named = (String, Figure);
 
-/// A panel.
+/// Panel of a figure: layers over two axes.
 pub struct Panel {
-    /// Axis to the right.
+    /// Horizontal axis.
     pub x: FigureAxis,
-    /// Axis upwards.
+    /// Vertical axis.
     pub y: FigureAxis,
-    /// What is drawn, the lowest first.
+    /// Layers, the lowest first.
     pub layers: Vec<Layer>,
-    /// What the colours of a map stand for.
+    /// Colour bar of a map.
     pub bar: Option<Bar>,
 }
 
-/// What is drawn in one go.
+/// Set of points drawn with one shape and colour.
 #[derive(Clone)]
 pub struct Layer {
     /// Name in the legend; empty for none.
@@ -81,18 +81,18 @@ pub struct Layer {
     pub colour: RGBColor,
     /// Shape.
     pub shape: LayerShape,
-    /// Where; a point that is not finite is a gap.
+    /// Points; a point that is not finite is a gap.
     pub points: Vec<Point>,
 }
 
-/// The shape of a layer.
+/// Shape of a layer.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum LayerShape {
-    /// A line of this width in pixels.
+    /// Line with a width in pixels.
     Line(f64),
-    /// A dashed line.
+    /// Dashed line.
     Dashes,
-    /// The area within the points, with this opacity: a closed polygon between gaps.
+    /// Area within the points, with an opacity: a closed polygon between gaps.
     Area(f64),
     /// Discs at the points.
     Disc,
@@ -109,31 +109,31 @@ pub enum LayerShape {
 }
 
 impl Figure {
-    /// The figure as SVG, as large as on a screen.
+    /// Returns the figure as SVG, in the size for screens.
     pub fn svg(&self) -> Result<String, String> {
         self.laid_out(&Style::default())
     }
 
-    /// The vertical axes of the panels as they are drawn: those of one unit have one prefix.
+    /// Returns the vertical axes of the panels as drawn: axes of one unit share a prefix.
     pub fn upward(&self) -> Vec<FigureAxis> {
         FigureAxis::stacked(self.panels.iter().map(|panel| &panel.y))
     }
 
-    /// The figure as SVG, laid out for a style but in pixels of its own: [`Style::sized`] gives it its size.
+    /// Returns the figure as SVG, laid out for a style but in pixels of the layout: [`Style::sized`] sets its size.
     pub fn laid_out(&self, style: &Style) -> Result<String, String> {
         draw::svg(self, style.layout_width()).map_err(|error| error.to_string())
     }
 }
 
 impl Panel {
-    /// A panel of layers.
+    /// Creates a panel from its axes and layers.
     pub fn new(x: FigureAxis, y: FigureAxis, layers: Vec<Layer>) -> Self {
         Self { x, y, layers, bar: None }
     }
 }
 
 impl Layer {
-    /// A layer.
+    /// Creates a layer from its name, colour, shape and points.
     pub fn new(name: &str, colour: RGBColor, shape: LayerShape, points: Vec<Point>) -> Self {
         Self { name: name.to_owned(), colour, shape, points }
     }

@@ -1,26 +1,26 @@
-//! Lines made fit to draw: cut at gaps and at the border of a panel, with no more points than it can show.
+//! Preparation of lines for drawing: cut at gaps and at the border of a panel, with no more points than it can show.
 
 use std::ops::Range;
 
-/// A point.
+/// Point of a figure, x and y.
 pub type Point = (f64, f64);
 
-/// The part of a plane that a panel shows.
+/// Visible part of the plane in a panel.
 #[derive(Clone, Debug)]
 pub struct Window {
-    /// Shown values of x.
+    /// Visible range of x.
     pub x: Range<f64>,
-    /// Shown values of y.
+    /// Visible range of y.
     pub y: Range<f64>,
 }
 
 impl Window {
-    /// Whether a point is shown.
+    /// Returns true if a point is visible.
     pub fn contains(&self, (x, y): Point) -> bool {
         (self.x.start..=self.x.end).contains(&x) && (self.y.start..=self.y.end).contains(&y)
     }
 
-    /// The part of a segment that is shown.
+    /// Returns the visible part of a segment.
     fn clip(&self, (a, b): (Point, Point)) -> Option<(Point, Point)> {
         if self.contains(a) && self.contains(b) {
             return Some((a, b));
@@ -48,7 +48,7 @@ impl Window {
     }
 }
 
-/// The pieces of a line that a window shows; a point that is not finite is a gap.
+/// Returns the visible pieces of a line; a point that is not finite is a gap.
 pub fn pieces(points: &[Point], window: &Window) -> Vec<Vec<Point>> {
     let mut pieces: Vec<Vec<Point>> = Vec::new();
     for pair in points.windows(2) {
@@ -62,8 +62,8 @@ pub fn pieces(points: &[Point], window: &Window) -> Vec<Vec<Point>> {
     pieces
 }
 
-/// A line that looks the same on this many columns of pixels, and as many rows. Where x never falls, each column
-/// keeps its first, lowest, highest and last point, so that no peak is lost.
+/// Reduces a line to points that look the same at a resolution of `pixels` columns and rows. Where x never decreases,
+/// each column keeps its first, lowest, highest and last point, so that no peak is lost.
 pub fn thin(points: &[Point], window: &Window, pixels: u32) -> Vec<Point> {
     let (width, height) = (window.x.end - window.x.start, window.y.end - window.y.start);
     if points.windows(2).any(|pair| pair[1].0 < pair[0].0) {
@@ -82,7 +82,7 @@ pub fn thin(points: &[Point], window: &Window, pixels: u32) -> Vec<Point> {
     thinned
 }
 
-/// Leaves out points less than a pixel from the last that is kept.
+/// Drops points closer than a pixel to the last one kept.
 pub fn drop_close(points: &[Point], (width, height): (f64, f64), pixels: u32) -> Vec<Point> {
     let far = |a: &Point, b: &Point| {
         let (dx, dy) = ((a.0 - b.0) / width, (a.1 - b.1) / height);
@@ -97,8 +97,8 @@ pub fn drop_close(points: &[Point], (width, height): (f64, f64), pixels: u32) ->
     kept
 }
 
-/// Leaves out points of the backend's coordinates where the line is straight to one unit, a tenth of a pixel (Ramer, Douglas
-/// and Peucker).
+/// Drops points, in the backend's coordinates, where the line is straight to one unit, a tenth of a pixel (Ramer,
+/// Douglas and Peucker).
 pub fn straighten(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
     let mut kept = vec![false; points.len()];
     let mut spans = vec![(0, points.len().saturating_sub(1))];
@@ -117,7 +117,7 @@ pub fn straighten(points: &[(i32, i32)]) -> Vec<(i32, i32)> {
     points.iter().zip(kept).filter_map(|(point, kept)| kept.then_some(*point)).collect()
 }
 
-/// How far a point is from a segment.
+/// Returns the distance of a point from a segment.
 fn distance(point: (i32, i32), from: (i32, i32), to: (i32, i32)) -> f64 {
     let apart = |a: (i32, i32), b: (i32, i32)| (f64::from(a.0 - b.0), f64::from(a.1 - b.1));
     let ((x, y), (dx, dy)) = (apart(point, from), apart(to, from));
@@ -126,7 +126,7 @@ fn distance(point: (i32, i32), from: (i32, i32), to: (i32, i32)) -> f64 {
     (x - part * dx).hypot(y - part * dy)
 }
 
-/// The line of a value that holds until the next one: it is `values[i]` from `times[i]` on, up to `end`.
+/// Returns the line of a value that holds until the next one: it is `values[i]` from `times[i]` on, up to `end`.
 pub fn steps(values: impl IntoIterator<Item = Point>, end: f64) -> Vec<Point> {
     let mut line: Vec<Point> = Vec::new();
     for (time, value) in values {

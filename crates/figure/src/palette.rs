@@ -1,8 +1,8 @@
-//! Colours of maps, of equal steps to the eye.
+//! Perceptually uniform colours for maps.
 
 use plotters::style::RGBColor;
 
-/// Viridis (Smith and van der Walt, matplotlib), in tenths.
+/// Colour map Viridis (Smith and van der Walt, matplotlib), in tenths.
 const VIRIDIS: [RGBColor; 11] = [
     RGBColor(68, 1, 84),
     RGBColor(72, 36, 117),
@@ -17,13 +17,13 @@ const VIRIDIS: [RGBColor; 11] = [
     RGBColor(253, 231, 37),
 ];
 
-/// So many colours from the darkest to the lightest.
+/// Returns `count` colours from the darkest to the lightest.
 pub fn viridis(count: usize) -> Vec<RGBColor> {
     let part = |index: usize| if count > 1 { index as f64 / (count - 1) as f64 } else { 0.5 };
     (0..count).map(|index| between(&VIRIDIS, 10.0 * part(index))).collect()
 }
 
-/// The colour at a place among colours: 1.5 is halfway between the second and the third.
+/// Interpolates between colours: place 1.5 is halfway between the second and the third.
 pub fn between(colours: &[RGBColor], place: f64) -> RGBColor {
     let place = place.clamp(0.0, (colours.len() - 1) as f64);
     let below = (place as usize).min(colours.len().saturating_sub(2));
@@ -40,7 +40,7 @@ mod tests {
 
     #[test]
     fn lightness_grows_evenly() {
-        // CIE L* of sRGB.
+        // Lightness CIE L* of sRGB.
         let lightness = |RGBColor(r, g, b): RGBColor| {
             let linear = |c: u8| {
                 let c = f64::from(c) / 255.0;

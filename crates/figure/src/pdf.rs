@@ -1,4 +1,4 @@
-//! Figures as PDF: the lines and areas of an SVG, and its letters with the part of their font that they use.
+//! Figures as PDF: the lines and areas of an SVG, and its text with the used subset of the font.
 
 use std::fmt::Write as _;
 
@@ -7,10 +7,10 @@ use resvg::usvg::fontdb::ID;
 use resvg::usvg::{Fill, FillRule, Group, LineCap, LineJoin, Node, Paint, Path, Stroke, Text, Tree};
 use subsetter::{GlyphRemapper, subset};
 
-/// Points of a page in a pixel.
+/// Points (pt) per pixel.
 const POINTS: f32 = 0.75;
 
-/// The PDF of an SVG.
+/// Converts an SVG to PDF.
 pub fn written(tree: &Tree) -> Result<Vec<u8>, String> {
     let mut page = Page::default();
     page.group(tree.root(), 1.0, tree)?;
@@ -22,7 +22,7 @@ pub fn written(tree: &Tree) -> Result<Vec<u8>, String> {
     for (index, opacity) in page.opacities.iter().enumerate() {
         let _ = write!(resources, "/G{index} << /ca {opacity} /CA {opacity} >> ");
     }
-    // A font takes five objects after those of the page.
+    // Each font takes five objects after those of the page.
     let mut fonts = String::new();
     for index in 0..page.fonts.len() {
         let _ = write!(fonts, "/F{index} {} 0 R ", stream + 1 + 5 * index);
@@ -40,11 +40,11 @@ pub fn written(tree: &Tree) -> Result<Vec<u8>, String> {
     Ok(file.finish(catalogue))
 }
 
-/// What is drawn on the page.
+/// Content of the page.
 #[derive(Default)]
 struct Page {
     content: String,
-    /// The opacities that are used.
+    /// Opacities in use.
     opacities: Vec<f32>,
     fonts: Vec<Font>,
 }
@@ -139,7 +139,7 @@ impl Page {
                 PathSegment::QuadTo(bend, to) => {
                     let (from, bend) = (last, place(bend));
                     last = place(to);
-                    // The same curve as a cubic one.
+                    // Quadratic curve as a cubic one.
                     let part = |a: Point| {
                         Point::from_xy(a.x + (bend.x - a.x) * 2.0 / 3.0, a.y + (bend.y - a.y) * 2.0 / 3.0)
                     };
@@ -171,7 +171,7 @@ impl Page {
                 let font = &mut self.fonts[index];
                 let Ok(glyph_id) = u16::try_from(glyph.id.0) else { continue };
                 let name = font.take(glyph_id, &glyph.text);
-                // Letters as large as the unit of the font's matrix.
+                // Scales letters to the unit of the font's matrix.
                 let Transform { sx, ky, kx, sy, tx, ty } = text
                     .abs_transform()
                     .pre_concat(glyph.outline_transform())
@@ -187,7 +187,7 @@ impl Page {
     }
 }
 
-/// Red, green and blue from 0 to 1.
+/// Returns red, green and blue from 0 to 1.
 fn colour(paint: &Paint) -> [String; 3] {
     match paint {
         Paint::Color(colour) => [colour.red, colour.green, colour.blue].map(|c| short(f32::from(c) / 255.0)),
@@ -195,20 +195,20 @@ fn colour(paint: &Paint) -> [String; 3] {
     }
 }
 
-/// A number with at most three decimals.
+/// Formats a number with at most three decimals.
 fn short(number: f32) -> String {
     let text = format!("{number:.3}");
     let text = text.trim_end_matches('0').trim_end_matches('.');
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
 }
 
-/// A font, and what of it is used.
+/// Font, with the glyphs in use.
 struct Font {
     id: ID,
     data: Vec<u8>,
     units_per_em: f32,
     glyphs: GlyphRemapper,
-    /// The text of each glyph by its new number, from 1 on.
+    /// Text of each glyph by its new number, starting at 1.
     texts: Vec<String>,
 }
 
@@ -219,7 +219,7 @@ impl Font {
         Ok(Self { id, data, units_per_em, glyphs: GlyphRemapper::new(), texts: Vec::new() })
     }
 
-    /// The number of a glyph in the part of the font that is written.
+    /// Returns the number of a glyph in the subset of the font, which is extended if necessary.
     fn take(&mut self, glyph: u16, text: &str) -> u16 {
         let name = self.glyphs.remap(glyph);
         if usize::from(name) > self.texts.len() {
@@ -228,7 +228,7 @@ impl Font {
         name
     }
 
-    /// The width of a glyph in thousandths of an em.
+    /// Returns the width of a glyph in thousandths of an em.
     fn width(&self, glyph: u16) -> Option<f32> {
         let hhea = table(&self.data, *b"hhea")?;
         let last = number(&self.data, hhea + 34)?.checked_sub(1)?;
@@ -236,10 +236,10 @@ impl Font {
         Some(f32::from(number(&self.data, row)?) * 1000.0 / self.units_per_em)
     }
 
-    /// Five objects: the font, its glyphs, what they are like, their outlines and their text.
+    /// Writes five objects: the font, its glyphs, their descriptor, their outlines and their text.
     fn write(&self, file: &mut File) -> Result<(), String> {
         let part = subset(&self.data, 0, &self.glyphs).map_err(|error| error.to_string())?;
-        // Parts of a font have names of their own.
+        // Each subset of a font has its own name.
         let hash = part.iter().fold(0xcbf2_9ce4_8422_2325_u64, |hash, byte| {
             (hash ^ u64::from(*byte)).wrapping_mul(0x0000_0100_0000_01b3)
         });
@@ -259,7 +259,7 @@ impl Font {
              /FontDescriptor {kind} 0 R /W [0 [{}]] >>",
             widths.join(" ")
         ));
-        // Heights of DejaVu Sans in thousandths of an em; of the flags, that its letters are no others' names.
+        // Heights of DejaVu Sans in thousandths of an em; the flag marks a symbolic font.
         file.object(&format!(
             "<< /Type /FontDescriptor /FontName /{name} /Flags 4 /FontBBox [-1021 -463 1793 1232] /ItalicAngle 0 \
              /Ascent 928 /Descent -236 /CapHeight 729 /StemV 80 /FontFile2 {outlines} 0 R >>"
@@ -269,14 +269,14 @@ impl Font {
         Ok(())
     }
 
-    /// What the glyphs say, for searches and copies.
+    /// Returns the map from glyphs to text, for searching and copying.
     fn texts(&self) -> String {
         let mut map = "/CIDInit /ProcSet findresource begin 12 dict begin begincmap\n\
             /CIDSystemInfo << /Registry (Adobe) /Ordering (UCS) /Supplement 0 >> def\n\
             /CMapName /Adobe-Identity-UCS def /CMapType 2 def\n\
             1 begincodespacerange <0000> <ffff> endcodespacerange\n"
             .to_owned();
-        // At most a hundred in one go.
+        // Limited to one hundred entries per block.
         for (chunk, texts) in self.texts.chunks(100).enumerate() {
             let _ = writeln!(map, "{} beginbfchar", texts.len());
             for (index, text) in texts.iter().enumerate() {
@@ -292,7 +292,7 @@ impl Font {
     }
 }
 
-/// Where a table of a TrueType font begins.
+/// Returns the offset of a table of a TrueType font.
 fn table(font: &[u8], tag: [u8; 4]) -> Option<usize> {
     let count = usize::from(number(font, 4)?);
     let rows = font.get(12..12 + 16 * count)?.chunks(16);
@@ -300,12 +300,12 @@ fn table(font: &[u8], tag: [u8; 4]) -> Option<usize> {
     Some(u32::from_be_bytes(row[8..12].try_into().ok()?) as usize)
 }
 
-/// A whole number in a TrueType font.
+/// Returns a 16-bit integer of a TrueType font.
 fn number(font: &[u8], at: usize) -> Option<u16> {
     Some(u16::from_be_bytes(font.get(at..at + 2)?.try_into().ok()?))
 }
 
-/// The objects of a file, one after the other.
+/// Writer of a file's objects in sequence.
 struct File {
     bytes: Vec<u8>,
     places: Vec<usize>,
@@ -313,13 +313,13 @@ struct File {
 
 impl Default for File {
     fn default() -> Self {
-        // The second line says that the file is no text.
+        // The second line marks the file as binary.
         Self { bytes: b"%PDF-1.5\n%\xe2\xe3\xcf\xd3\n".to_vec(), places: Vec::new() }
     }
 }
 
 impl File {
-    /// The number of the next object.
+    /// Returns the number of the next object.
     fn next(&self) -> usize {
         self.places.len() + 1
     }
@@ -346,7 +346,7 @@ impl File {
         let (start, count) = (self.bytes.len(), self.next());
         let mut end = format!("xref\n0 {count}\n0000000000 65535 f \n");
         for place in &self.places {
-            // Each line has twenty bytes.
+            // Each line must have twenty bytes.
             let _ = write!(end, "{place:010} 00000 n");
             end.push_str(" \n");
         }

@@ -1,9 +1,10 @@
-//! A field on a finer grid: between its values by monotone cubics, which are smooth and never beyond the values beside them.
+//! Refinement of a field to a finer grid by monotone cubics, which are smooth and stay within the neighbouring
+//! values.
 
 use crate::contour::ScalarField;
 
 impl ScalarField {
-    /// The field with so many steps in each of the grid's.
+    /// Returns the field with each step of the grid divided into `steps`.
     #[must_use]
     pub fn refined(&self, steps: usize) -> Self {
         let rows = self.y.len();
@@ -20,15 +21,15 @@ impl ScalarField {
     }
 }
 
-/// Abscissae with so many steps between each and the next.
+/// Divides each interval between abscissae into `steps`.
 fn even(values: &[f64], steps: usize) -> Vec<f64> {
     between(values, steps, |index, part| values[index] + part * (values[index + 1] - values[index]))
 }
 
-/// Values with as many more between them.
+/// Interpolates values with `steps` per interval.
 fn finer(values: &[f64], steps: usize) -> Vec<f64> {
     let rise: Vec<f64> = values.windows(2).map(|pair| pair[1] - pair[0]).collect();
-    // The harmonic mean of the rises on both sides; none at a peak (Fritsch and Butland).
+    // Harmonic mean of the rises on both sides; zero at a peak (Fritsch and Butland).
     let slope = |index: usize| match (index.checked_sub(1).map(|before| rise[before]), rise.get(index)) {
         (Some(before), Some(&after)) if before * after > 0.0 => 2.0 * before * after / (before + after),
         (Some(_), Some(_)) | (None, None) => 0.0,
@@ -84,7 +85,7 @@ mod tests {
     fn smooth_fields_are_met_and_infinities_stay_where_they_are() {
         let axis: Vec<f64> = (0..12).map(f64::from).collect();
         let values = axis.iter().flat_map(|x| axis.iter().map(move |y| x * x + 3.0 * y)).collect();
-        // At the ends slopes are one-sided.
+        // Slopes are one-sided at the ends.
         let fine = ScalarField { x: axis.clone(), y: axis.clone(), values }.refined(5);
         for (i, x) in fine.x.iter().enumerate().filter(|(_, x)| **x > 1.0 && **x < 10.0) {
             for (j, y) in fine.y.iter().enumerate() {

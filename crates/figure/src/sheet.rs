@@ -1,9 +1,9 @@
-//! Several figures on one sheet: side by side in columns, each figure below the shortest column so far.
+//! Sheet of several figures in columns: each figure is placed below the shortest column.
 
-/// The sheet shall be about so many times as wide as high.
+/// Approximate ratio of width to height of the sheet.
 const ASPECT: f64 = 4.0 / 3.0;
 
-/// One SVG that holds several.
+/// Combines several SVGs into one.
 pub fn sheet(figures: &[String]) -> String {
     if let [only] = figures {
         return only.clone();
@@ -28,7 +28,7 @@ pub fn sheet(figures: &[String]) -> String {
     sheet
 }
 
-/// Where each figure is, and the size of all.
+/// Returns the position of each figure (px), and the size of the sheet (px).
 fn places(sizes: &[[u32; 2]], columns: usize) -> (Vec<[u32; 2]>, [u32; 2]) {
     let width = sizes.iter().map(|size| size[0]).max().unwrap_or(0);
     let mut heights = vec![0; columns];
@@ -41,7 +41,7 @@ fn places(sizes: &[[u32; 2]], columns: usize) -> (Vec<[u32; 2]>, [u32; 2]) {
     (places, [columns as u32 * width, heights.into_iter().max().unwrap_or(0)])
 }
 
-/// A size that an SVG of ours has, in pixels.
+/// Returns a size attribute of an SVG written by this crate, in pixels.
 fn size(svg: &str, name: &str) -> u32 {
     let rest = svg.split_once(&format!("{name}=\"")).map_or("", |(_, rest)| rest);
     rest.split('"').next().and_then(|number| number.parse().ok()).unwrap_or(0)

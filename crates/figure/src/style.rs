@@ -1,33 +1,33 @@
-//! The size of a figure on paper, and of its letters.
+//! Size of a figure on paper, and of its letters.
 
 use std::ops::RangeInclusive;
 
-/// Pixels of SVG and CSS in a millimetre and in a point.
+/// Pixels of SVG and CSS per millimetre and per point.
 const PER_MM: f64 = 96.0 / 25.4;
 const PER_PT: f64 = 96.0 / 72.0;
 /// Size of the axes' names in the layout (px).
 const NAMES: f64 = 12.0;
-/// Width of the layout as on a screen (px).
+/// Width of the layout for screens (px).
 const SCREEN: f64 = 800.0;
-/// Size of the axes' names where a width is given and no size (pt).
+/// Size of the axes' names if only a width is given (pt).
 const USUAL: f64 = 8.0;
-/// The narrowest and the widest layout (px).
+/// Minimum and maximum width of the layout (px).
 const LAYOUTS: RangeInclusive<f64> = 230.0..=3000.0;
 
-/// How large a figure and its letters are.
+/// Size of a figure and of its letters.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Style {
-    /// Width (mm); none is 800 px.
+    /// Width (mm); 800 px by default.
     width: Option<f64>,
     /// Size of the axes' names (pt).
     font: Option<f64>,
 }
 
 impl Style {
-    /// A style of this width (mm) and these letters (pt).
+    /// Creates a style from a width (mm) and a size of the axes' names (pt).
     ///
     /// # Errors
-    /// Sizes that no figure can have.
+    /// If a size is out of range, or the letters are too large for the width.
     pub fn new(width: Option<f64>, font: Option<f64>) -> Result<Self, String> {
         if let Some(width) = width.filter(|width| !(30.0..=400.0).contains(width)) {
             return Err(format!("the width must be 30 to 400 mm, got {width}"));
@@ -47,17 +47,17 @@ impl Style {
         self.width.unwrap_or(SCREEN / PER_MM)
     }
 
-    /// Whether sizes are those of a screen.
+    /// Returns true if the sizes are those for screens.
     pub fn is_for_screens(&self) -> bool {
         self.width.is_none() && self.font.is_none()
     }
 
-    /// Pixels on paper for each of the layout.
+    /// Returns the pixels on paper per pixel of the layout.
     pub fn scale(&self) -> f64 {
         self.width_mm() * PER_MM / f64::from(self.layout_width())
     }
 
-    /// Width of the layout before it is rounded (px).
+    /// Returns the width of the layout before rounding (px).
     fn across(&self) -> f64 {
         if self.is_for_screens() {
             return SCREEN;
@@ -65,17 +65,17 @@ impl Style {
         self.width_mm() * PER_MM * NAMES / (self.font.unwrap_or(USUAL) * PER_PT)
     }
 
-    /// Width of the layout (px).
+    /// Returns the width of the layout (px).
     pub fn layout_width(&self) -> u32 {
         self.across().round() as u32
     }
 
-    /// An SVG of this layout, or a sheet of several, with its size on paper.
+    /// Sets the size on paper of an SVG with this layout, or of a sheet of several.
     pub fn sized(&self, svg: &str) -> String {
         if self.is_for_screens() {
             return svg.to_owned();
         }
-        // The size stands in the first element.
+        // The size is an attribute of the first element.
         let (head, rest) = svg.split_at(svg.find('>').unwrap_or(0));
         let mut head = head.to_owned();
         for name in ["width", "height"] {
@@ -100,7 +100,7 @@ mod tests {
             (screen.layout_width(), screen.sized("<svg width=\"800\">")),
             (800, "<svg width=\"800\">".into())
         );
-        // 8 pt are 10.667 px: 12 px of the layout.
+        // 8 pt are 10.667 px, and 12 px of the layout.
         let column = Style::new(Some(85.0), None).expect("fits");
         assert_eq!(column.layout_width(), 361);
         let sized = column

@@ -8,20 +8,20 @@ use plotters::prelude::SVGBackend;
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontDesc, FontFamily, FontStyle, TextStyle};
 
-/// The backend's coordinates are integers: so many of them make a pixel.
+/// Units of the backend's integer coordinates per pixel.
 pub const UNITS: u32 = 10;
 
 pub type Error = DrawingAreaErrorKind<io::Error>;
 pub type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// Black text of this size (px).
+/// Returns a style for black text of a size (px).
 pub fn text(size: f64, h: HPos, v: VPos) -> TextStyle<'static> {
     // The backend's sizes are 1.24 times those of SVG.
     let size = 1.24 * size * f64::from(UNITS);
     TextStyle::from(FontDesc::new(FontFamily::SansSerif, size, FontStyle::Normal)).pos(Pos::new(h, v))
 }
 
-/// A place of pixels in the backend's coordinates.
+/// Converts a position in pixels to the backend's coordinates.
 pub fn at(x: u32, y: u32) -> (i32, i32) {
     ((x * UNITS) as i32, (y * UNITS) as i32)
 }

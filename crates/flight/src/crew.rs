@@ -106,9 +106,9 @@ pub struct LaneRest {
 pub struct Searched {
     /// Time since the start of the motion: whole seconds and femtoseconds, and in seconds.
     pub after: ((u64, u64), f64),
-    /// Whether it is the right boundary, out of the mirror, or the only level.
+    /// True if the right boundary is reached, without mirroring, or the only threshold.
     pub right: bool,
-    /// Displacement from 0 and quadrature of each mode there.
+    /// Displacement from 0 and quadrature of each mode at the crossing (rad).
     pub modes: Vec<[f64; 2]>,
 }
 

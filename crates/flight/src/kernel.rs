@@ -60,9 +60,9 @@ pub struct Flight<R: Real, D> {
     pushed: Clock<R>,
     lasted: R,
     tracks: Vec<PhasorTrack<R, D>>,
-    /// What follows those of one run side by side.
+    /// SIMD instructions for the phasors of a single run.
     four: Four,
-    /// Whether any run has windows.
+    /// True if any run has windows.
     watches: bool,
     /// Events that the host requested: switchings, and possible exits from the band.
     listens: bool,

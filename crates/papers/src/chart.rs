@@ -1,4 +1,4 @@
-//! Charts that a page draws from its own numbers, and what it reads off curves.
+//! Charts drawn from a page's own numbers, and functions that evaluate curves.
 
 #![expect(clippy::needless_pass_by_value, reason = "templates hand their values over")]
 
@@ -38,7 +38,7 @@ struct Line {
 }
 
 impl Chart {
-    /// The figure.
+    /// Returns the figure of the chart.
     pub fn figure(&self) -> Figure {
         let colours =
             [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY, colour::BLACK];
@@ -69,27 +69,27 @@ impl Chart {
     }
 }
 
-/// Adds what templates read off curves to an environment.
+/// Adds the functions that evaluate curves to an environment.
 pub fn add_to(environment: &mut Environment) {
     environment.add_function("minima", minima);
     environment.add_function("stretches", stretches);
     environment.add_function("bands", bands);
 }
 
-/// The keys at which a curve is lower than on both sides.
+/// Returns the keys at which a curve has a local minimum.
 fn minima(keys: Vec<f64>, values: Vec<f64>) -> Vec<f64> {
     let lower = |i: &usize| values[i - 1] > values[*i] && values[*i] < values[i + 1];
     (1..values.len().saturating_sub(1)).filter(lower).filter_map(|i| keys.get(i).copied()).collect()
 }
 
-/// The ranges of keys, first and last, over which at least so many values in a row are there.
+/// Returns the ranges of keys, first and last, over which at least `least` consecutive values are present.
 fn stretches(keys: Vec<f64>, values: Vec<Value>, least: usize) -> Vec<Vec<f64>> {
     let all: Vec<(f64, bool)> = keys.into_iter().zip(values.iter().map(|value| !value.is_none())).collect();
     let runs = all.chunk_by(|a, b| a.1 == b.1).filter(|run| run[0].1 && run.len() >= least);
     runs.map(|run| vec![run[0].0, run[run.len() - 1].0]).collect()
 }
 
-/// The number of periods of a map at which an unstable frequency lies below a stable one.
+/// Returns the number of periods in a map at which an unstable frequency lies below a stable one.
 fn bands(rows: Serde<Vec<Cell>>) -> usize {
     let mut rows = rows.0;
     rows.sort_by(|a, b| {

@@ -1,4 +1,4 @@
-//! What was computed for a page: each command once, and how long it took.
+//! Cache of the results for a page: each command is run once, and its duration is recorded.
 
 use std::collections::BTreeMap;
 use std::sync::{Mutex, MutexGuard, PoisonError};
@@ -11,19 +11,19 @@ use serde_json::json;
 
 use crate::Laboratory;
 
-/// What was computed for a page.
+/// Cache of the results of commands.
 pub struct Computed {
     laboratory: Box<dyn Laboratory>,
-    /// What is told of each command that begins.
+    /// Callback that receives each command when it starts.
     begin: Box<dyn Fn(&str) + Send + Sync>,
     told: Mutex<BTreeMap<String, Value>>,
     drawn: Mutex<BTreeMap<String, (String, String)>>,
-    /// Each command, and how long it took (s).
+    /// Commands with their durations (s).
     times: Mutex<Vec<(String, f64)>>,
 }
 
 impl Computed {
-    /// Nothing yet; `begin` is told of each command that begins.
+    /// Creates an empty cache; `begin` is called with each command that starts.
     pub fn new(laboratory: impl Laboratory + 'static, begin: impl Fn(&str) + Send + Sync + 'static) -> Self {
         Self {
             laboratory: Box::new(laboratory),
@@ -34,28 +34,28 @@ impl Computed {
         }
     }
 
-    /// What a command tells.
+    /// Returns the JSON output of a command.
     ///
     /// # Errors
-    /// A command that is not known, or fails.
+    /// If the command is unknown or fails.
     pub fn tell(&self, command: &str) -> Result<Value, Error> {
         self.once(&self.told, command, || value(self.laboratory.tell(command)?))
     }
 
-    /// The times (s) and the values of a column of a run's full log.
+    /// Returns the times (s) and the values of a column of a run's full log.
     ///
     /// # Errors
-    /// As of [`Computed::tell`].
+    /// If the command is unknown or fails.
     pub fn column(&self, command: &str, topic: &str, name: &str) -> Result<Value, Error> {
         self.once(&self.told, &format!("{command} {topic} {name}"), || {
             value(json!(self.laboratory.column(command, topic, name)?))
         })
     }
 
-    /// The drawing `what` of a command, to be called `name`, and the command as a user gives it.
+    /// Returns the figure `what` of a command as SVG with the name `name`, and the command as a user would enter it.
     ///
     /// # Errors
-    /// As of [`Computed::tell`], and a figure that there is not.
+    /// If the command is unknown or fails, or has no such figure.
     pub fn draw(&self, command: &str, what: &str, name: &str) -> Result<(String, String), Error> {
         self.once(&self.drawn, &format!("{command}: figure {what}"), || {
             let (figure, shown) = self.laboratory.draw(command, what)?;
@@ -63,12 +63,12 @@ impl Computed {
         })
     }
 
-    /// Each command, and how long it took (s).
+    /// Returns the commands with their durations (s).
     pub fn times(&self) -> Vec<(String, f64)> {
         locked(&self.times).clone()
     }
 
-    /// What a key stands for: computed when it is first asked for.
+    /// Returns the value of a key, which is computed on first use.
     fn once<T: Clone>(
         &self,
         cache: &Mutex<BTreeMap<String, T>>,
@@ -87,17 +87,17 @@ impl Computed {
     }
 }
 
-/// What machines are told, as templates read it.
+/// Converts JSON output to a template value.
 fn value(told: serde_json::Value) -> Result<Value, String> {
     serde_json::from_value(told).map_err(|error| error.to_string())
 }
 
-/// What a lock holds: a thread that failed has left it whole.
+/// Locks a mutex; a panicked thread leaves its value intact.
 pub fn locked<T>(lock: &Mutex<T>) -> MutexGuard<'_, T> {
     lock.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// A figure as it stands in a page.
+/// Draws a figure as SVG for a page.
 pub fn svg(name: &str, figure: &Figure) -> Result<String, String> {
     figure.svg().map_err(|why| format!("cannot draw {name}: {why}"))
 }

@@ -1,4 +1,4 @@
-//! The page as HTML: one file that needs no other, without a script.
+//! Page as self-contained HTML in one file, without scripts.
 
 use pulldown_cmark::{Event, Options, Parser, Tag, TagEnd, html};
 
@@ -6,19 +6,19 @@ use crate::page::{Drawn, Outcome};
 
 const STYLE: &str = include_str!("page.css");
 
-/// A filled section.
+/// Section of a paper, filled with results.
 pub struct Section {
     /// Name of the paper.
     pub name: String,
-    /// Its Markdown, with places for its figures.
+    /// Markdown text, with placeholders for the figures.
     pub text: String,
-    /// What it came to.
+    /// Figures and verdicts.
     pub outcome: Outcome,
-    /// Its commands, and how long each took (s).
+    /// Commands with their durations (s).
     pub times: Vec<(String, f64)>,
 }
 
-/// The page of some sections, which took so long in all (s) on so many threads.
+/// Returns the page of some sections, with the total duration `took` (s) and the number of threads.
 pub fn page(sections: &[Section], took: f64, threads: usize) -> String {
     let verdicts: Vec<_> = sections.iter().flat_map(|section| &section.outcome.verdicts).collect();
     let holds = verdicts.iter().filter(|verdict| verdict.holds).count();
@@ -58,7 +58,7 @@ fn row((command, seconds): &(String, f64)) -> String {
 }
 
 impl Section {
-    /// A line of the contents.
+    /// Returns the section's line of the contents.
     fn entry(&self) -> String {
         let heading = self.text.lines().find_map(|line| line.strip_prefix("## ")).unwrap_or(&self.name);
         let (verdicts, figures) = (&self.outcome.verdicts, self.outcome.figures.len());
@@ -73,14 +73,14 @@ impl Section {
 
     fn html(&self) -> String {
         let mut text = String::new();
-        // The page stands alone: what the documentation links to is not beside it.
+        // The page is self-contained: links to the documentation are removed.
         let link = |event: &Event| matches!(event, Event::Start(Tag::Link { .. }) | Event::End(TagEnd::Link));
         let events = Parser::new_ext(&self.text, Options::ENABLE_TABLES).filter(|event| !link(event));
         html::push_html(&mut text, events);
         for drawn in &self.outcome.figures {
             text = text.replace(&format!("<!--figure {}-->", drawn.name), &drawn.html());
         }
-        // Wide tables scroll within themselves.
+        // Makes wide tables scroll within themselves.
         text = text.replace("<table>", "<div class=\"table\"><table>").replace("</table>", "</table></div>");
         format!("<section id=\"{}\">\n{text}</section>\n", self.name)
     }

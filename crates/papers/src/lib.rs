@@ -1,7 +1,7 @@
-//! The papers that the studies come from, on one page: what each says beside what is measured, with the command behind
-//! every number.
+//! Reproduction of the papers behind the studies, on one page: each statement beside the measured result, with the
+//! command for every number.
 //!
-//! A section is a template of Markdown, filled with what a [`Laboratory`] finds; see [`page`] for its language.
+//! A section is a Markdown template, filled with the results of a [`Laboratory`]; see [`page`] for its language.
 
 mod chart;
 pub mod computed;
@@ -22,39 +22,39 @@ pub use page::{Drawn, Form, Outcome};
 pub use paper::Paper;
 pub use verdict::Verdict;
 
-/// What carries out the commands that a page names. Errors are words for people.
+/// Executor of the commands named in a page. Errors are messages for users.
 pub trait Laboratory: Send + Sync {
-    /// What a command tells machines.
+    /// Returns the JSON output of a command.
     ///
     /// # Errors
-    /// A command that is not known, or fails.
+    /// If the command is unknown or fails.
     fn tell(&self, command: &str) -> Result<Value, String>;
 
-    /// The times (s) and the values of a column of a run's full log.
+    /// Returns the times (s) and the values of a column of a run's full log.
     ///
     /// # Errors
-    /// A command that is not known, is no simulation, or fails.
+    /// If the command is unknown, is not a simulation, or fails.
     fn column(&self, command: &str, topic: &str, name: &str) -> Result<[Vec<f64>; 2], String>;
 
-    /// The figure `what` of a command, and the command as a user gives it.
+    /// Returns the figure `what` of a command, and the command as a user would enter it.
     ///
     /// # Errors
-    /// A command that is not known, or fails, or has no such figure.
+    /// If the command is unknown or fails, or has no such figure.
     fn draw(&self, command: &str, what: &str) -> Result<(Figure, String), String>;
 }
 
-/// A paper's section in both forms.
+/// Section of a paper in both output forms.
 pub struct Filled {
-    /// For the page.
+    /// Section for the HTML page.
     pub section: Section,
-    /// For the documentation.
+    /// Markdown for the documentation.
     pub markdown: String,
 }
 
 /// Computes a paper's section.
 ///
 /// # Errors
-/// A template that is wrong, and a command that is not known or fails.
+/// If the template is invalid, or a command is unknown or fails.
 pub fn fill(paper: Paper, computed: Computed) -> Result<Filled, String> {
     let (name, computed) = (paper.name(), Arc::new(computed));
     let form =
@@ -64,7 +64,7 @@ pub fn fill(paper: Paper, computed: Computed) -> Result<Filled, String> {
     Ok(Filled { section: Section { name, text, outcome, times: computed.times() }, markdown })
 }
 
-/// The page of the documentation: sections in Markdown, below its heading.
+/// Returns the documentation page: sections in Markdown, below its heading.
 pub fn documentation(sections: &[String]) -> String {
     format!("{HEAD}\n{}", sections.join("\n"))
 }

@@ -1,4 +1,4 @@
-//! Numbers as pages print them, and what pages make of lists of them.
+//! Template filters and tests for numbers and lists of numbers.
 
 #![expect(clippy::needless_pass_by_value, reason = "templates hand their values over")]
 
@@ -7,7 +7,7 @@ use minijinja::value::{Serde, Value};
 use minijinja::{Environment, Error, ErrorKind};
 use serde::Deserialize;
 
-/// Adds the filters and tests of numbers to an environment.
+/// Adds the filters and tests for numbers to an environment.
 pub fn add_to(environment: &mut Environment) {
     environment.add_filter("sci", |value: f64, digits: usize| format!("{value:.digits$e}"));
     environment.add_filter("fixed", |value: f64, digits: usize| format!("{:.digits$}", positive_zero(value)));
@@ -15,7 +15,7 @@ pub fn add_to(environment: &mut Environment) {
     environment.add_filter("grouped", grouped);
     environment
         .add_filter("zero_below", |value: f64, least: f64| if value.abs() < least { 0.0 } else { value });
-    // What is below is rounding.
+    // Smaller values are rounding errors.
     environment.add_filter(
         "small",
         |value: f64| if value < 1e-12 { "0".to_owned() } else { format!("{value:.3e}") },
@@ -50,7 +50,7 @@ pub fn add_to(environment: &mut Environment) {
     environment.add_filter("from_place", |list: Vec<Value>, place: usize| {
         list.into_iter().skip(place).collect::<Vec<_>>()
     });
-    // Of a number that has none there is nothing to compare: the test fails.
+    // Tests of a missing number fail.
     environment.add_test("near", |value: Option<f64>, of: f64, part: f64| {
         value.is_some_and(|value| (value - of).abs() <= part * of.abs())
     });
@@ -60,12 +60,12 @@ pub fn add_to(environment: &mut Environment) {
     environment.add_test("rounds_to", rounds_to);
 }
 
-/// A whole number with its thousands apart.
+/// Formats an integer with groups of thousands.
 fn grouped(value: f64) -> String {
     let digits = format!("{:.0}", value.abs());
     let first = digits.len() % 3;
     let mut text = if value < 0.0 { "-".to_owned() } else { String::new() };
-    // Four digits stand together, as in the rest of the text.
+    // Four digits are not grouped, as in the rest of the text.
     if digits.len() < 5 {
         return text + &digits;
     }
@@ -79,7 +79,7 @@ fn grouped(value: f64) -> String {
     text
 }
 
-/// Whether a number, rounded to the digits of another as it is printed, is that one.
+/// Returns true if a number, rounded to the digits of a printed one, equals it.
 fn rounds_to(value: Option<f64>, printed: &str) -> Result<bool, Error> {
     let decimals = printed.split_once('.').map_or(0, |(_, decimals)| decimals.len());
     if printed.parse::<f64>().is_err() {
@@ -89,12 +89,12 @@ fn rounds_to(value: Option<f64>, printed: &str) -> Result<bool, Error> {
     Ok(value.is_some_and(|value| format!("{value:.decimals$}") == printed))
 }
 
-/// Without the sign that a small negative number keeps when it is rounded to 0.
+/// Removes the sign of a negative zero.
 fn positive_zero(value: f64) -> f64 {
     if value == 0.0 { 0.0 } else { value }
 }
 
-/// The numbers of a list: what is none, or not finite, is left out.
+/// Returns the finite numbers of a list, without missing ones.
 fn finite(list: &[Value]) -> Vec<f64> {
     let number = |value: &Value| f64::try_from(value.clone()).ok().filter(|value| value.is_finite());
     list.iter().filter_map(number).collect()
@@ -108,14 +108,14 @@ fn mean(list: &[f64]) -> f64 {
     list.iter().sum::<f64>() / list.len() as f64
 }
 
-/// Standard deviation over the mean.
+/// Returns the standard deviation divided by the mean.
 fn spread(list: &[f64]) -> f64 {
     let mean = mean(list);
     let squares: f64 = list.iter().map(|value| (value - mean) * (value - mean)).sum();
     (squares / list.len() as f64).sqrt() / mean
 }
 
-/// The quantile of the numbers of a list, interpolated as the statistics of a campaign are.
+/// Returns a quantile of the numbers of a list, interpolated as in the statistics of campaigns.
 fn quantile(list: &[Value], part: f64) -> Value {
     let mut sorted = finite(list);
     sorted.sort_by(f64::total_cmp);
@@ -123,21 +123,21 @@ fn quantile(list: &[Value], part: f64) -> Value {
     some(Some(quantile).filter(|value| value.is_finite()))
 }
 
-/// How many pairs of two lists fulfil a condition.
+/// Counts the pairs of two lists that satisfy a condition.
 fn pairs(a: &[Value], b: &[Value], fits: impl Fn(f64, f64) -> bool) -> usize {
-    // What never happens is later than all else.
+    // A missing event counts as later than all others.
     let number = |value: &Value| f64::try_from(value.clone()).unwrap_or(f64::INFINITY);
     let both = a.iter().map(number).zip(b.iter().map(number));
     both.filter(|(a, b)| fits(*a, *b)).count()
 }
 
-/// The values of a list whose keys lie within a range.
+/// Returns the values of a list whose keys lie within a range.
 fn within(list: &[Value], keys: &[f64], low: f64, high: f64) -> Vec<Value> {
     let inside = |key: &f64| (low - 1e-9..=high + 1e-9).contains(key);
     list.iter().zip(keys).filter(|(_, key)| inside(key)).map(|(value, _)| value.clone()).collect()
 }
 
-/// The key at which a list has this value.
+/// Returns the key at which a list has the given value.
 fn place(value: f64, list: Vec<Value>, keys: Vec<f64>) -> Value {
     let number = |value: &Value| f64::try_from(value.clone()).ok();
     some(
@@ -145,7 +145,7 @@ fn place(value: f64, list: Vec<Value>, keys: Vec<f64>) -> Value {
     )
 }
 
-/// A command with values in the places of `{}`.
+/// Replaces the placeholders `{}` of a command by values.
 fn fill(command: String, values: Vec<f64>) -> String {
     values.iter().fold(command, |command, value| command.replacen("{}", &format!("{value:?}"), 1))
 }
@@ -158,13 +158,13 @@ struct Point {
     gain: f64,
 }
 
-/// The points of a schedule as a scenario has them.
+/// Formats the points of a schedule as in a scenario.
 fn as_schedule(points: Serde<Vec<Point>>) -> String {
     let point = |Point { frequency, gain }: &Point| format!("{{frequency={frequency:.6}, gain={gain:.4}}}");
     points.0.iter().map(point).collect::<Vec<_>>().join(", ")
 }
 
-/// Objects by the value of one of their keys.
+/// Maps objects by the value of one of their keys.
 fn by(list: Vec<Value>, key: &str) -> Result<Value, Error> {
     let pair = |object: Value| Ok((object.get_attr(key)?, object));
     Ok(Value::from_pairs(list.into_iter().map(pair).collect::<Result<Vec<_>, Error>>()?))

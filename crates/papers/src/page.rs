@@ -1,14 +1,14 @@
-//! A paper's page: its template, filled with what the commands that it names tell.
+//! Page of a paper: its template, filled with the output of the commands that it names.
 //!
-//! The template is the paper's section of docs/papers.md. In it
-//! - `run("simulate scenarios/relay-fixed.toml")` is what that command prints with `--json`,
-//! - `each("plan ... suppress={}", [0, 1])` is a list of what the commands tell that have each value in the place of `{}`,
-//! - `column("simulate ...", "/attitude", "angle_rad")` is a column of the run's full log,
-//! - `drawing(name, chart, caption, command)` is a [`Chart`] of the page's own numbers,
-//! - `figure(name, command, what, caption)` is the figure `what` that the command draws, or the run's,
-//! - `yes("what it is about", condition)` and `no(...)` are verdicts: known to hold, known not to,
+//! The template is the paper's section of docs/papers.md. It can use
+//! - `run("simulate scenarios/relay-fixed.toml")`: output of the command with `--json`,
+//! - `each("plan ... suppress={}", [0, 1])`: list of outputs, with each value in place of `{}`,
+//! - `column("simulate ...", "/attitude", "angle_rad")`: column of the run's full log,
+//! - `drawing(name, chart, caption, command)`: [`Chart`] of the page's own numbers,
+//! - `figure(name, command, what, caption)`: figure `what` that the command draws, or of the run,
+//! - `yes("subject", condition)` and `no(...)`: verdicts that are known to hold, or known not to,
 //!
-//! and filters and tests of [`crate::number`]. A name that is not known is an error.
+//! and the filters and tests of [`crate::number`]. An unknown name is an error.
 
 use std::sync::{Arc, Mutex};
 
@@ -21,41 +21,41 @@ use crate::computed::{Computed, locked, svg};
 use crate::number;
 use crate::verdict::Verdict;
 
-/// The form that a template is filled for.
+/// Output form of a filled template.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Form {
-    /// Markdown of the documentation, its figures in files beside it.
+    /// Markdown of the documentation, with its figures in separate files.
     Markdown,
-    /// Markdown that becomes HTML, its figures to be put in.
+    /// Markdown that is converted to HTML, with placeholders for its figures.
     Html,
 }
 
-/// A drawn figure.
+/// Figure drawn for a page.
 #[derive(Clone, Debug)]
 pub struct Drawn {
-    /// Its name, and that of its file.
+    /// Name of the figure and of its file.
     pub name: String,
-    /// What it shows.
+    /// Caption of the figure.
     pub caption: String,
-    /// The command behind it.
+    /// Command that produced the figure.
     pub command: String,
-    /// The drawing.
+    /// Drawing as SVG.
     pub svg: String,
 }
 
-/// What a page came to.
+/// Figures and verdicts of a page.
 #[derive(Clone, Debug, Default)]
 pub struct Outcome {
-    /// The figures, in their order.
+    /// Figures, in order.
     pub figures: Vec<Drawn>,
-    /// The verdicts, in their order.
+    /// Verdicts, in order.
     pub verdicts: Vec<Verdict>,
 }
 
-/// What templates of numbers know: the commands `run`, `each` and `column`, and the filters and tests of numbers.
+/// Creates the template environment: the functions `run`, `each` and `column`, and the filters and tests of numbers.
 ///
 /// # Errors
-/// None that a caller can make.
+/// Only on an internal error of the template syntax.
 pub fn environment(computed: &Arc<Computed>) -> Result<Environment<'static>, String> {
     let mut environment = Environment::new();
     environment.set_undefined_behavior(UndefinedBehavior::Strict);
@@ -79,10 +79,10 @@ pub fn environment(computed: &Arc<Computed>) -> Result<Environment<'static>, Str
     Ok(environment)
 }
 
-/// Fills a template with what is, or has been, computed.
+/// Fills a template with results, which are computed as needed.
 ///
 /// # Errors
-/// A template that is wrong, and a command that is not known or fails.
+/// If the template is invalid, or a command is unknown or fails.
 pub fn fill(computed: &Arc<Computed>, template: &str, form: Form) -> Result<(String, Outcome), String> {
     let outcome = Arc::new(Mutex::new(Outcome::default()));
     let mut environment = environment(computed)?;
@@ -127,7 +127,7 @@ fn show(outcome: &Mutex<Outcome>, form: Form, drawn: Drawn) -> String {
     text
 }
 
-/// An error with the line of the template and what is behind it.
+/// Formats an error with the line of the template and its cause.
 pub fn explained(error: &Error) -> String {
     let line = error.line().map_or(String::new(), |line| format!("line {line}: "));
     format!("{line}{error}")
@@ -141,7 +141,7 @@ mod tests {
     use super::*;
     use crate::Laboratory;
 
-    /// A laboratory that knows one command.
+    /// Laboratory with a single command, for tests.
     struct Toy;
 
     impl Laboratory for Toy {
@@ -177,7 +177,7 @@ mod tests {
         assert!(known.verdicts[0].is_as_expected() && !other.verdicts[0].is_as_expected());
         let refuted = filled("{{ no('more', 1 > 2) }}").expect("a page").1;
         assert!(refuted.verdicts[0].is_as_expected());
-        // What is not there is near to nothing.
+        // Missing values are near no number.
         assert_eq!(filled("{{ yes('none', none is near(0, 1)) }}").expect("a page").0, "no");
     }
 

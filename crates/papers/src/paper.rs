@@ -1,4 +1,4 @@
-//! The papers that the studies come from.
+//! Papers behind the studies.
 
 use clap::ValueEnum;
 
@@ -16,7 +16,7 @@ pub enum Paper {
 }
 
 impl Paper {
-    /// The template of its page.
+    /// Returns the template of the paper's page.
     pub fn template(self) -> &'static str {
         match self {
             Self::Relay => include_str!("../templates/relay.md"),
@@ -26,7 +26,7 @@ impl Paper {
         }
     }
 
-    /// What the command calls it.
+    /// Returns the paper's name on the command line.
     pub fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
@@ -36,12 +36,12 @@ impl Paper {
 mod tests {
     use super::*;
 
-    /// The parts of a template between one mark and the next of another.
+    /// Returns the parts of a text between each mark `from` and the next mark `to`.
     fn between<'a>(text: &'a str, from: &str, to: &str) -> Vec<&'a str> {
         text.split(from).skip(1).filter_map(|rest| rest.split(to).next()).collect()
     }
 
-    /// A text without what is between two marks.
+    /// Returns a text without the parts between two marks.
     fn without(text: &str, from: &str, to: &str) -> String {
         let mut parts = text.split(from);
         let first = parts.next().unwrap_or_default().to_owned();
@@ -64,7 +64,7 @@ mod tests {
         }
     }
 
-    /// In a column of what we measure stand no numbers but those that were computed, and whole ones that say what was run.
+    /// Checks that columns of measured results contain only computed numbers, and integers that describe the run.
     #[test]
     fn no_measured_number_is_typed() {
         let mut measured = None;
@@ -91,7 +91,7 @@ mod tests {
         assert!(cells > 30, "{cells}");
     }
 
-    /// Numbers within those columns that say what was run, and are not what came out.
+    /// Numbers within those columns that describe the run and are not results.
     const GIVEN: &[&str] = &[
         "0.003", "0.02", "0.1", "0.12", "0.15", "0.3", "0.30", "0.31", "0.3389", "0.35", "0.6", "14.5",
         "1e-3", "1e-4",

@@ -1,23 +1,23 @@
-//! Verdicts: whether what a paper says holds, decided by a stated condition, beside what is known to come out.
+//! Verdicts: whether a paper's statement holds, decided by a stated condition, and compared with the known result.
 
-/// A verdict.
+/// Verdict on a statement of a paper.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Verdict {
-    /// What it is about.
+    /// Subject of the statement.
     pub name: String,
-    /// Whether the paper's statement holds.
+    /// True if the paper's statement holds.
     pub holds: bool,
-    /// Whether it is known to.
+    /// True if the statement is known to hold.
     pub expected: bool,
 }
 
 impl Verdict {
-    /// The word of it: yes or no.
+    /// Returns the word for the verdict: yes or no.
     pub fn word(&self) -> &'static str {
         if self.holds { "yes" } else { "no" }
     }
 
-    /// Whether it came out as it is known to.
+    /// Returns true if the verdict is the known one.
     pub fn is_as_expected(&self) -> bool {
         self.holds == self.expected
     }
