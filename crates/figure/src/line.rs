@@ -27,7 +27,7 @@ impl Window {
         }
         let (dx, dy) = (b.0 - a.0, b.1 - a.1);
         let (mut enter, mut leave) = (0.0_f64, 1.0_f64);
-        // Each border is crossed where `slope * t == room`.
+        // Each border is crossed at the t with `slope * t == room`.
         let borders = [
             (-dx, a.0 - self.x.start),
             (dx, self.x.end - a.0),

@@ -1,4 +1,4 @@
-//! The drawing area of an SVG, whose integer coordinates are tenths of a pixel, and text in it.
+//! Drawing area of an SVG, whose integer coordinates are tenths of a pixel, and text in it.
 
 use std::io;
 

@@ -4,7 +4,7 @@
 
 use flexsc_motion::lanes::Real;
 
-/// Femtoseconds in a second.
+/// Number of femtoseconds in a second.
 const FEMTOSECONDS: f64 = 1e15;
 /// Length (s) below which spans are counted in femtoseconds.
 const SHORT: f64 = 9_000.0;

@@ -30,7 +30,7 @@ pub struct Guard {
 }
 
 impl Guard {
-    /// A guard that trips at or above an angle (rad).
+    /// Creates a guard that trips at or above an angle (rad).
     pub const fn at_least(level: f64) -> Self {
         Self { side: Side::AtLeast, level }
     }

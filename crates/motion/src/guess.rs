@@ -28,7 +28,7 @@ pub struct GuessOscillator<R, D = Undamped> {
     pub frequency: R,
     /// Equilibrium (rad).
     pub equilibrium: R,
-    /// Displacement from it (rad).
+    /// Displacement from equilibrium (rad).
     pub displacement: R,
     /// Rate divided by the frequency (rad).
     pub quadrature: R,
@@ -45,7 +45,7 @@ pub struct Departure<R> {
     pub rate: R,
     /// Acceleration of the rigid angle (rad/s²).
     pub moment: R,
-    /// The highest frequency of a mode (rad/s).
+    /// Highest frequency of a mode (rad/s).
     pub fastest: R,
     /// Time in which the fastest mode advances by [`FARTHEST_TURN`] (s).
     pub longest: R,

@@ -98,7 +98,7 @@ impl Tolerance {
 macro_rules! zero_by_default {
     ($($name:ident),*) => {
         $(impl $name {
-            /// Exactly zero.
+            /// Value zero.
             pub const ZERO: Self = Self(0.0);
         }
 
@@ -120,11 +120,11 @@ impl Frequency {
 }
 
 impl Fraction {
-    /// Exactly one half.
+    /// Value one half.
     pub const HALF: Self = Self(0.5);
 }
 
 impl Positive {
-    /// Exactly one.
+    /// Value one.
     pub const ONE: Self = Self(1.0);
 }

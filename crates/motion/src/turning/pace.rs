@@ -29,7 +29,7 @@ const NEAR: f64 = 0.3;
 /// Maximum number of reductions of a step by 3 % to avoid such multiples.
 const NUDGES: u32 = 40;
 
-/// The longest step of a body without modes (s).
+/// Longest step of a body without modes (s).
 const LONGEST: f64 = 1024.0;
 
 /// Number of halvings from the longest step to one that resolves all modes.

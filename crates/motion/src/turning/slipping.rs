@@ -23,11 +23,11 @@ const AT_REST: f64 = 1e-12;
 /// Motion of a rotor in a bearing at an instant.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct SlippedRotor {
-    /// Absolute angular momentum about its axis (N m s).
+    /// Absolute angular momentum of the rotor about its axis (N m s).
     pub momentum: f64,
-    /// Speed against the body (rad/s).
+    /// Speed relative to the body (rad/s).
     pub speed: f64,
-    /// Angle against the body since the start (rad).
+    /// Angle relative to the body since the start (rad).
     pub angle: f64,
     /// Friction torque, opposing the motor torque (N m).
     pub friction: f64,

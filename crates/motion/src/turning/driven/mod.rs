@@ -57,7 +57,7 @@ pub struct PanelMode {
 /// Appendage with a drive or a hinge, or fixed; in its own axes except for its root.
 #[derive(Clone, Debug, PartialEq)]
 pub struct DrivenPanel {
-    /// Mass (kg).
+    /// Mass of the appendage (kg).
     pub mass: f64,
     /// Position of its root, in the body's axes (m).
     pub root: Vector,

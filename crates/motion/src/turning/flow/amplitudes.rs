@@ -8,7 +8,7 @@ use crate::turning::pace::Amplitude;
 /// SIMD task that computes the amplitudes of the modes from their states and the loads.
 pub(super) struct Amplitudes<'a> {
     pub model: &'a Model,
-    /// q and P/W of each.
+    /// States of the modes: q and P/W of each.
     pub modes: &'a [[f64; 4]],
     /// Modal forces other than those of the torque (N/sqrt(kg)); empty or one per mode.
     pub forces: &'a [f64],
