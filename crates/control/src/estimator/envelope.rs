@@ -226,7 +226,7 @@ impl Track {
         Complex { re: displacement, im: (rate + self.decay * displacement) / self.damped }
     }
 
-    /// Integral of the mode's envelope over the last `h` seconds, in which its deviation was this at first.
+    /// Returns the integral of the mode's envelope (rad s) over the last `h` (s); `from` is its deviation at their start.
     fn integral(&self, from: Phasor, h: f64) -> f64 {
         let Self { equilibrium, deviation, decay, damped, frequency, .. } = *self;
         let ends = [[from.re, from.im], [deviation.re, deviation.im]];

@@ -44,7 +44,7 @@ pub struct Pd {
     /// Numbers as an adaptation has tuned them.
     #[serde(skip)]
     tuned: TunedNumbers,
-    /// What was fed back at the last sample.
+    /// Error at the last sample (rad).
     #[serde(skip)]
     last: Option<f64>,
 }
@@ -84,14 +84,14 @@ pub struct ScheduledGain {
 }
 
 impl Pd {
-    /// The gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
+    /// Returns the gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
     pub fn extra_gain(&self, frequency: f64) -> f64 {
         self.extra.as_ref().map_or(0.0, |extra| extra.gain(frequency))
     }
 }
 
 impl Extra {
-    /// The gain at a frequency of the dominant mode (rad/s).
+    /// Returns the gain at a frequency of the dominant mode (rad/s).
     pub fn gain(&self, frequency: f64) -> f64 {
         match self {
             Self::Gain(gain) => gain.get(),
@@ -121,7 +121,7 @@ impl Rule for Pd {
         Some(self.period)
     }
 
-    /// The usual 5 % of a step.
+    /// Returns the usual 5 % of a step.
     fn promise(&self) -> Promise {
         Promise::Part(0.05)
     }

@@ -52,8 +52,8 @@ impl Default for Gradient {
 }
 
 impl Gradient {
-    /// The first key that does not fit the others, these trackers, so many inputs or the period of the samples (s), and what
-    /// is wrong with it.
+    /// Checks the settings against each other, the trackers, the number of inputs and the sampling period (s); returns
+    /// the first inconsistent key and the reason.
     pub fn inconsistency(&self, trackers: &[Tracker], inputs: usize, period: f64) -> Option<Fault> {
         super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, inputs, period)
     }

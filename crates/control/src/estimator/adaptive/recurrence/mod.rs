@@ -74,7 +74,8 @@ impl Default for Recurrence {
 }
 
 impl Recurrence {
-    /// The first key that does not fit the others, this tracker or the period of the samples (s), and what is wrong with it.
+    /// Checks the settings against each other, a tracker and the sampling period (s); returns the first inconsistent
+    /// key and the reason.
     pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<Fault> {
         let trackers = std::slice::from_ref(tracker);
         super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, 1, period)
