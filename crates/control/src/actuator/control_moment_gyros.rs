@@ -73,7 +73,7 @@ const SQUARE: f64 = 1e-6;
 const PARALLEL: f64 = 1e-9;
 
 impl ControlMomentGyros {
-    /// Number of control moment gyros.
+    /// Returns the number of control moment gyros.
     pub fn count(&self) -> usize {
         match self.arrangement {
             Some(GimbalArrangement::Pyramid) => 4,

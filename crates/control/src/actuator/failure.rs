@@ -130,7 +130,7 @@ impl Failure {
         }
     }
 
-    /// Name of the kind, as in a scenario.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Dead(_) => "dead",

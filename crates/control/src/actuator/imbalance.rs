@@ -98,7 +98,7 @@ impl Imbalance {
         let offset = self.positions.get(wheel).map_or_else(Vector::zeros, vector);
         let shapes = body.shapes(name);
         let line = |order: f64, force: [Vector; 2], moment: [Vector; 2]| {
-            // About the point, then about the centre of mass.
+            // Moments about the mounting point, then about the centre of mass.
             let moment = [0, 1].map(|part| moment[part] + offset.cross(&force[part]));
             let torque = [0, 1].map(|part| moment[part] + point.cross(&force[part]));
             let beyond = |part: usize| -> Vec<f64> {

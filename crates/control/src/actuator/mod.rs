@@ -155,7 +155,7 @@ pub trait Actuate: fmt::Debug + Send + Sync {
         self.torque(axis)
     }
 
-    /// Returns the reduced moment held about an axis (rad/s²), without back-EMF and without unknown failures.
+    /// Returns the reduced moment held about an axis (rad/s²), without back-EMF and disregarding failures.
     fn moment(&self, axis: usize) -> f64;
 
     /// Returns the change of the rate about the first axis (rad/s) by the waveform between two times (s).
@@ -247,7 +247,7 @@ impl Clone for Box<dyn Actuate> {
 /// Jet activity in a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JetCycle {
-    /// Signed on-times about each axis (s).
+    /// Signed on-time about each axis (s).
     pub on: [f64; 3],
     /// Propellant used until the end of the pulses (kg).
     pub fuel: f64,
@@ -273,7 +273,7 @@ impl Default for Actuator {
 }
 
 impl Actuator {
-    /// Name of the kind, as in a scenario.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Ideal(_) => "ideal",

@@ -14,12 +14,12 @@ pub struct PulseTiming {
 }
 
 impl PulseTiming {
-    /// Fraction of the time under thrust.
+    /// Returns the fraction of the time under thrust.
     pub fn duty(&self) -> f64 {
         if self.period > 0.0 { self.on_time / self.period } else { 1.0 }
     }
 
-    /// Mean time from a sample to its pulse (s).
+    /// Returns the mean time from a sample to its pulse (s).
     pub fn mean_delay(&self) -> f64 {
         if self.period > 0.0 { self.delay + 0.5 * self.on_time } else { self.delay }
     }
@@ -33,14 +33,14 @@ impl PulseTiming {
         self.duty() * libm::cos(frequency * self.mean_delay()) * blur
     }
 
-    /// Natural frequency from which on the relay no longer damps (rad/s), pi/(2 h + tau); infinite without any delay. A
-    /// pure delay allows 1/(4 h) Hz (\[Timakov14\], page 50), a pulse over the whole period 1/(2 T) Hz without a delay
-    /// and 1/(6 T) Hz with a delay of one period.
+    /// Returns the natural frequency from which on the relay no longer damps (rad/s), pi/(2 h + tau); infinite without
+    /// any delay. A pure delay allows 1/(4 h) Hz (\[Timakov14\], page 50), a pulse over the whole period 1/(2 T) Hz
+    /// without a delay and 1/(6 T) Hz with a delay of one period.
     pub fn frequency_limit(&self) -> f64 {
         FRAC_PI_2 / self.mean_delay()
     }
 
-    /// Longest delay with which the relay damps a mode of this natural frequency (s): pi/(2 w) - tau/2.
+    /// Returns the longest delay with which the relay damps a mode of this natural frequency (s): pi/(2 w) - tau/2.
     pub fn delay_limit(&self, frequency: f64) -> f64 {
         let on_time = if self.period > 0.0 { self.on_time } else { 0.0 };
         0.5 * (PI / frequency - on_time)

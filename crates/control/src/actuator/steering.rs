@@ -1,10 +1,10 @@
 //! Steering of control moment gyros: gimbal rates whose torque on the body is the demanded one.
 //!
-//! With unit vectors t_i across the spin axes, the columns of A, rotors of momentum h give the torque -h A d' at gimbal rates d'.
-//! The rates are A' (A A' + P)^-1 u, with u the demanded torque per unit of h. P = 0 is the pseudo-inverse; a weight
-//! that grows towards singular angles keeps the rates finite there (\[Nakamura86\]), and time-varying off-diagonal
-//! elements of it move the gimbals out of angles at which the demanded torque is along the singular direction
-//! (\[Wie01\]).
+//! With unit vectors t_i perpendicular to the spin axes, the columns of A, rotors of momentum h give the torque -h A d'
+//! at gimbal rates d'. The rates are A' (A A' + P)^-1 u, with u the demanded torque per unit of h. P = 0 is the
+//! pseudo-inverse; a weight that grows towards singular angles keeps the rates finite there (\[Nakamura86\]), and
+//! time-varying off-diagonal elements of it move the gimbals out of angles at which the demanded torque is along the
+//! singular direction (\[Wie01\]).
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;

@@ -23,7 +23,7 @@ pub struct TorquerSetting {
     pub inertia: f64,
     /// Inertia about the axis of the body that the manoeuvre is planned for (kg m²).
     pub planned_inertia: f64,
-    /// Rate at the start (rad/s).
+    /// Initial rate about the axis (rad/s).
     pub rate: f64,
     /// Period of the law, if it has one.
     pub cycle: Option<Span>,

@@ -104,7 +104,7 @@ pub struct SpeedBias {
 const EQUAL_CANT: f64 = 0.615_479_708_670_387_3;
 
 impl Wheels {
-    /// Number of wheels.
+    /// Returns the number of wheels.
     pub fn count(&self) -> usize {
         match self.arrangement {
             Some(Arrangement::Orthogonal) => 3,

@@ -97,7 +97,7 @@ impl Adaptation {
         }
     }
 
-    /// Name of the kind, as in a scenario.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::RandomSearch(_) => "random_search",

@@ -55,7 +55,7 @@ impl Objective {
         *self == Self::default()
     }
 
-    /// Name of the objective in a scenario.
+    /// Returns the name of the objective in a scenario.
     pub fn word(self) -> &'static str {
         match self {
             Self::EnvelopeMean => "envelope_mean",

@@ -226,7 +226,8 @@ impl Track {
         Complex { re: displacement, im: (rate + self.decay * displacement) / self.damped }
     }
 
-    /// Returns the integral of the mode's envelope (rad s) over the last `h` (s); `from` is its deviation at their start.
+    /// Returns the integral of the mode's envelope (rad s) over the last `h` (s); `from` is the deviation at their
+    /// start.
     fn integral(&self, from: Phasor, h: f64) -> f64 {
         let Self { equilibrium, deviation, decay, damped, frequency, .. } = *self;
         let ends = [[from.re, from.im], [deviation.re, deviation.im]];

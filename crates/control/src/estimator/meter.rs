@@ -32,7 +32,7 @@ pub struct Meter {
     held: (f64, Instant),
     /// Time up to which the motion has been evaluated.
     pub measured: Instant,
-    /// Signs of the torques about the axes that were applied last, and the count of jet pulses so far.
+    /// Signs of the torques about the axes that were applied last, and the count of jet pulses.
     burning: [bool; 3],
     pulses: u64,
     search: Searching,
@@ -43,7 +43,7 @@ pub struct Meter {
 pub struct WindowMeans {
     /// Log row with the value of the objective.
     pub row: record::Objective,
-    /// The step of the adaptation, with the value before it.
+    /// Step of the adaptation, with the parameter before it; `None` without a step.
     pub step: Option<(record::Adaptation, f64)>,
 }
 

@@ -99,13 +99,13 @@ pub struct Known<'a> {
     pub drift: Option<&'a Drift>,
     /// Sampling period; `None` without sampling.
     pub sampling: Option<Span>,
-    /// Standard deviation of the measured angle (rad).
+    /// Standard deviation of the sensor's angle (rad).
     pub angle_noise: f64,
     /// Standard deviation of the measured rate (rad/s) about each axis; `None` where no rate is measured.
     pub rate_noise: Vec<Option<f64>>,
     /// Estimates that the law about each axis reads.
     pub reads: Vec<Reads>,
-    /// The design of adaptive observers.
+    /// Design of adaptive observers, if they are used.
     pub adaptive: Option<&'a adaptive::ObserverDesign>,
     /// Noise, latency and role of each sensor for an attitude filter.
     pub attitude: Option<&'a attitude::AttitudeSetting>,
@@ -121,9 +121,9 @@ pub struct Taken<'a> {
     pub readings: &'a [Option<Reading>],
     /// Orientation from which angles are measured.
     pub origin: &'a Orientation,
-    /// The true motion about an axis, for ideal observers.
+    /// True motion about an axis, for ideal observers.
     pub truth: &'a dyn Fn(usize) -> Cow<'a, State>,
-    /// The actuator.
+    /// Actuator with its executed and waiting pulses.
     pub actuator: &'a dyn Actuate,
     /// Longest lead time (s) for which laws read predicted elastic rates.
     pub ahead: f64,
@@ -241,7 +241,7 @@ impl Estimator {
     pub const AT_SAMPLES: &str = "acts at each sample of a `[sensor.sampled]` or a `[sensor.gyro]`, or of a law with a period, and \
                                   there is none";
 
-    /// Name of the kind, as in a scenario.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Envelope(_) => "envelope",

@@ -16,7 +16,7 @@ pub struct Monitor {
     /// Time at which the current window closes.
     pub closes: Instant,
     index: u64,
-    /// Mean of the window that was closed last (rad).
+    /// Mean envelope over the window closed last (rad); NaN before the first.
     pub mean: f64,
     search: Option<Searching>,
 }
@@ -26,7 +26,7 @@ pub struct Monitor {
 pub struct WindowEnd {
     /// Mean of the envelope over the window.
     pub mean: WindowMean,
-    /// The step of the adaptation, with the value before it.
+    /// Step of the adaptation, with the parameter before it; `None` without a step.
     pub step: Option<(record::Adaptation, f64)>,
 }
 

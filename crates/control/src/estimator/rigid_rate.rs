@@ -84,7 +84,7 @@ impl Estimate for RateFilter {
 mod tests {
     use super::*;
 
-    /// Without the drift the rates would stay (1 - l)/l = 99 cycles behind.
+    /// Checks the drift term, without which the rates would stay (1 - l)/l = 99 cycles behind.
     #[test]
     fn rates_do_not_stay_behind_a_steady_torque() {
         let correction = Fraction::new(0.01).expect("a fraction");

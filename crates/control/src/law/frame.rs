@@ -49,7 +49,7 @@ impl Frame {
         self == Self::Nadir
     }
 
-    /// Name of the reference frame for messages.
+    /// Returns the name of the reference frame for messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::Inertial => "",

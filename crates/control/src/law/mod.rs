@@ -174,7 +174,7 @@ impl Clone for Box<dyn Control> {
 /// Authority of an actuator about an axis, in the laws' model.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Authority {
-    /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
+    /// Index of the axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub axis: usize,
     /// Largest accelerations in the positive and the negative direction (rad/s²); infinite without a limit.
     pub accelerations: [f64; 2],
@@ -236,7 +236,7 @@ impl Law {
         if let Self::Attitude(law) = self { law.inertia.as_ref() } else { None }
     }
 
-    /// Name of the kind, as in a scenario.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Relay(_) => "relay",
@@ -275,7 +275,7 @@ pub struct Goal {
 impl Goal {
     /// Returns angle (rad) and rate (rad/s) at an instant.
     pub fn at(&self, now: Instant) -> (f64, f64) {
-        // Without a rate, the elapsed time has no effect, even if it is infinite or NaN.
+        // Without a rate, the elapsed time has no effect.
         let travel = if self.rate == 0.0 { self.rate } else { self.rate * now.since(self.from).seconds() };
         (self.angle + travel, self.rate)
     }
@@ -325,7 +325,7 @@ pub struct Hold {
     pub guards: Guards,
 }
 
-/// A command about one axis.
+/// Command about one axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Command {
     /// Torque (N m), or reduced moment (rad/s²) on a body without inertia; for a wheel, units of its command.
@@ -343,20 +343,20 @@ impl Hold {
     pub const NONE: Self = Self { command: Command::Torque(0.0), until: None, guards: Guards::NONE };
 }
 
-/// At most two guards.
+/// Set of at most two guards.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Guards([Guard; 2], usize);
 
 impl Guards {
-    /// No guard.
+    /// Empty set of guards.
     pub const NONE: Self = Self([Guard::at_least(0.0); 2], 0);
 
-    /// One guard, of index 0.
+    /// Creates a set of one guard, of index 0.
     pub const fn one(guard: Guard) -> Self {
         Self([guard; 2], 1)
     }
 
-    /// Two guards, of indices 0 and 1.
+    /// Creates a set of two guards, of indices 0 and 1.
     pub const fn two(first: Guard, second: Guard) -> Self {
         Self([first, second], 2)
     }

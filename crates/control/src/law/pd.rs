@@ -1,7 +1,7 @@
 //! The sampled PD law, u = -k_p (y - y_goal) - k_d (y' - y'_goal), held between its samples.
 //!
-//! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the dominant
-//! mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
+//! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the
+//! dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -44,7 +44,7 @@ pub struct Pd {
     /// Numbers as an adaptation has tuned them.
     #[serde(skip)]
     tuned: TunedNumbers,
-    /// Error at the last sample (rad).
+    /// What was fed back at the last sample.
     #[serde(skip)]
     last: Option<f64>,
 }

@@ -57,7 +57,7 @@ fn wheels(speed: f64) -> Spinning {
     wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
 }
 
-/// Time at which a wheel came to rest (s), index of the wheel, and its slip afterwards.
+/// Time at which a wheel stopped (s), index of the wheel, and its slip afterwards.
 type Met = (f64, usize, Slip);
 
 #[test]
@@ -66,8 +66,8 @@ fn sixty_degrees_by_four_wheels() {
     assert!(met.is_empty());
 }
 
-/// Checks the slew with friction: six times a wheel comes to rest and then slips in the other direction; two times are
-/// from both codes.
+/// Checks the slew with friction: six times a wheel stops and then slips in the other direction; the first two times
+/// are those of both codes.
 #[test]
 fn the_same_with_friction() {
     let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
@@ -82,7 +82,7 @@ fn the_same_with_friction() {
     }
 }
 
-/// Runs the slew against a table of the second code; returns the times at which wheels came to rest.
+/// Runs the slew against a table of the second code; returns the times at which wheels stopped.
 fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let craft = craft();
     let mut turning = Turning::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
@@ -112,7 +112,7 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
             met += 1;
             let three = |from: usize| Vector::from_row_slice(&row[from..from + 3]);
             let q = Quaternion::new(row[1], row[2], row[3], row[4]);
-            // The table has 13 digits; the two codes agree to 1e-13, 1e-14, 2e-10 and 2e-13.
+            // The reference table has 13 digits; the two codes agree to 1e-13, 1e-14, 2e-10 and 2e-13.
             assert!((attitude - q).norm() < 1e-12, "{t} {:e}", (attitude - q).norm());
             assert!((rate - three(5)).norm() < 1e-13, "{t} {:e}", (rate - three(5)).norm());
             for (wheel, speed) in wheels.wheels(now, rate.into()).iter().zip(&row[8..12]) {

@@ -71,7 +71,7 @@ impl Accelerometer {
         Some(document::Fault::new(format!("along[{none}]"), "must not be zero, got [0, 0, 0]"))
     }
 
-    /// Number of measurement axes.
+    /// Returns the number of measurement axes.
     pub fn axis_count(&self) -> usize {
         if self.along.is_empty() { 3 } else { self.along.len() }
     }

@@ -249,7 +249,7 @@ impl Sense for AtCycles {
 }
 
 impl AtCycles {
-    /// Queues the measured rates; returns those of `latency` before, or those of the start in the first `latency`.
+    /// Queues the measured rates; returns those measured one latency earlier, or the first ones until then.
     fn queued(&mut self, rate: [f64; 3]) -> [f64; 3] {
         let late = self.gyro.late();
         let Some(told) = &mut self.told else { return *self.told.insert(rate) };

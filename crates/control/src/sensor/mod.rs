@@ -220,7 +220,7 @@ impl Sensor {
         matches!(self, Self::Continuous)
     }
 
-    /// Name of the kind, as in a scenario.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Continuous => "continuous",
@@ -342,7 +342,7 @@ impl Parts<Sensor> {
         &self[0]
     }
 
-    /// Number of sensors that measure the body's motion.
+    /// Returns the number of sensors that measure the body's motion.
     pub fn of_body(&self) -> usize {
         self.iter().filter(|sensor| sensor.sees_body()).count()
     }

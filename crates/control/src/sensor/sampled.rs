@@ -55,7 +55,7 @@ impl Fault {
         *outage
     }
 
-    /// Name of the kind, as in a scenario.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Stuck(_) => "stuck",

@@ -48,7 +48,7 @@ const NULL: [f64; 4] =
 const ANGLES: &str = "angles = [0.2, -0.4, 0.1, 0.7]";
 const TORQUE: [f64; 3] = [0.5, -0.25, 1.0];
 
-/// numpy.linalg.pinv(A) @ (-T/h), with A = ACROSS cos d - SPIN sin d by columns, and sqrt(det(A A')).
+/// Checks against numpy.linalg.pinv(A) @ (-T/h), with A = ACROSS cos d - SPIN sin d by columns, and sqrt(det(A A')).
 #[test]
 fn the_pseudo_inverse_is_that_of_numpy() {
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
@@ -65,7 +65,7 @@ fn the_pseudo_inverse_is_that_of_numpy() {
     }
 }
 
-/// A' (A A' + w E)^-1 (-T/h) at 0.3 s, by numpy.linalg.solve.
+/// Checks against A' (A A' + w E)^-1 (-T/h) at 0.3 s, by numpy.linalg.solve.
 #[test]
 fn near_singular_angles_the_robust_rates_are_those_of_numpy() {
     let angles = "angles = [-1.4, 0.1, 1.5, -0.05]";
@@ -147,8 +147,8 @@ fn the_robust_rule_passes_a_singularity_at_which_the_pseudo_inverse_stays() {
     assert!(locked < 1.16 && slow < 1.9, "{locked} {slow}");
 }
 
-/// At angles of -90, 0, 90 and 0 degrees A A' is diag(0, 2 + 2 cos², 2 sin²) of the cant, diag(0, 8/3, 4/3): with u = -T/h the
-/// rates of the first and the third are 3 u_y/8, those of the others -+ cos 3 u_y/8 + sin 3 u_z/4.
+/// Checks angles of -90, 0, 90 and 0 degrees, where A A' is diag(0, 2 + 2 cos², 2 sin²) of the cant, diag(0, 8/3, 4/3):
+/// with u = -T/h the rates of the first and the third are 3 u_y/8, those of the others -+ cos 3 u_y/8 + sin 3 u_z/4.
 #[test]
 fn at_singular_angles_the_torques_that_can_be_are_given_without_null_motion() {
     let angles = "angles = [-1.5707963267948966, 0, 1.5707963267948966, 0]";
@@ -189,7 +189,7 @@ fn the_largest_torques_are_those_of_the_rate_limit() {
     assert_eq!(most(ANGLES), [f64::INFINITY; 3]);
 }
 
-/// A change of 2e-3 rad/s within the law's 0.1 s is 2 N m on 100 kg m².
+/// Checks that a change of 2e-3 rad/s within the law's 0.1 s is 2 N m on 100 kg m².
 #[test]
 fn a_change_of_the_rate_takes_a_period_of_the_law() {
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));

@@ -95,7 +95,7 @@ impl Adaptive {
         matches!(self.form, Form::Recurrence(_))
     }
 
-    /// Number of modes that each axis tracks.
+    /// Returns the number of modes that each axis tracks.
     pub fn count(&self) -> usize {
         self.count.map_or(if self.recurs() { 1 } else { 2 }, |count| count as usize)
     }

@@ -47,7 +47,7 @@ pub struct MeasuredRates {
 pub struct ActuatorInput {
     /// Modal forces of the modes.
     pub forces: Vec<f64>,
-    /// Acceleration about its own axis (rad/s²).
+    /// Angular acceleration about the actuator's own axis (rad/s²).
     pub acceleration: f64,
     /// Change of the rigid rate about each axis, per unit of its change about the actuator's own axis.
     pub turning: Vec<f64>,

@@ -1,8 +1,9 @@
-//! Adaptive observers of one channel of a rate sensor: the rigid rate, the dominant elastic modes, and their parameters.
+//! Adaptive observers of one channel of a rate sensor: rigid rate, dominant elastic modes, and their parameters.
 //!
-//! y = w + sum g_i: the measured rate is the rigid one and the elastic rates of some modes, which known pulses of thrusters
-//! excite. The natural frequencies and the influence of the thrusters on each mode are identified as the observer runs. Two
-//! forms: the recurrence of \[Timakov14\] (pages 41 to 46) and a recursive gradient with exact pulses.
+//! y = w + sum g_i: the measured rate is the rigid one plus the elastic rates of some modes, which known pulses of
+//! thrusters excite. The natural frequencies and the influence of the thrusters on each mode are identified as the
+//! observer runs. Two forms exist: the recurrence of \[Timakov14\] (pages 41 to 46) and a recursive gradient with exact
+//! pulses.
 
 mod at_work;
 mod axes;

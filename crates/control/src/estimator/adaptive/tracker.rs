@@ -26,7 +26,7 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// Sum of the absolute influences of all inputs.
+    /// Returns the sum of the absolute influences of all inputs.
     pub fn strength(&self) -> f64 {
         self.influence.iter().map(|influence| influence.get().abs()).sum()
     }
@@ -81,8 +81,8 @@ fn nearest(merged: &[Merged], merge: f64) -> Option<usize> {
 }
 
 /// Returns the bounds of each tracker (rad/s): its own, or from its frequency divided by `reach` to its frequency times
-/// `reach`, limited by the geometric mean with a neighbour, the neighbour's own bound, and the alias at the sampling
-/// period `period` (s).
+/// `reach`, limited by the geometric mean with a neighbour, the neighbour's own bound, and 0.98 of the Nyquist
+/// frequency at the sampling period `period` (s).
 pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
     let highest = SAMPLED * std::f64::consts::PI / period;
     let of = |tracker: &Tracker| {

@@ -1,10 +1,11 @@
 //! A multiplicative extended Kalman filter of attitude and gyro bias (\[LeffertsMarkleyShuster82\]).
 //!
-//! The attitude is Q = Q^ exp(theta), the bias b = b^ + beta; theta and beta, three numbers each, have the covariance P. A gyro
-//! reading y covers an interval: w^ = y - b^ rotates Q^ through it, and theta' = -w^ x theta - beta - n_v, beta' = n_u
-//! is solved exactly for constant w^, with the exact covariance that n_v and n_u add. An attitude z corrects by 2
-//! vec(Q^* z), in Joseph's form. A vector y, r in inertial axes, corrects too: with b = Q^* r it is b + b x theta, of
-//! which a direction has only the part perpendicular to b. Errors stay on the right of Q^: a reset changes Q^ alone.
+//! The attitude is Q = Q^ exp(theta), the bias b = b^ + beta; theta and beta, three numbers each, have the covariance
+//! P. A gyro reading y covers an interval: w^ = y - b^ rotates Q^ through it, and theta' = -w^ x theta - beta - n_v,
+//! beta' = n_u is solved exactly for constant w^, with the exact covariance that n_v and n_u add. An attitude z
+//! corrects by 2 vec(Q^* z), in Joseph's form. A vector y, r in inertial axes, corrects too: with b = Q^* r it is b + b
+//! x theta, of which a direction has only the part perpendicular to b. Errors stay on the right of Q^: a reset changes
+//! Q^ alone.
 
 use nalgebra::{
     Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
@@ -228,7 +229,7 @@ fn unit(q: Quaternion<f64>) -> Quaternion<f64> {
 /// Returns the covariance after a correction: K P K' + `added` with K = 1 - [told, 0].
 fn left(covariance: &Matrix6<f64>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) -> Matrix6<f64> {
     let kept = Matrix6x3::identity() - told;
-    // The other columns of K are those of 1.
+    // The other columns of K are those of the identity.
     let mut once = kept * covariance.fixed_rows::<3>(0);
     let mut below = once.fixed_rows_mut::<3>(3);
     below += covariance.fixed_rows::<3>(3);

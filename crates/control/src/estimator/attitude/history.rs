@@ -20,7 +20,7 @@ pub struct Fix {
     pub exposed: Instant,
     /// Measured attitude or vector.
     pub measured: AttitudeMeasurement,
-    /// Covariance of its error in the body's axes (rad², or that of the vector's unit).
+    /// Covariance of the measurement error in the body's axes (rad², or that of the vector's unit).
     pub noise: Matrix3<f64>,
     /// Constant gain, of a filter that has one.
     pub gain: Option<Matrix6x3<f64>>,
@@ -94,7 +94,7 @@ impl Between {
 #[derive(Clone, Debug)]
 struct Entry {
     at: Instant,
-    /// The gyro reading of the interval that ends here (rad/s).
+    /// Gyro reading of the interval that ends at this entry (rad/s).
     reading: Vector,
     fixes: Vec<Fix>,
     filter: AttitudeFilterState,
@@ -110,7 +110,7 @@ impl FilterHistory {
 
     /// Returns the filter after everything it has received.
     pub fn latest(&self) -> &AttitudeFilterState {
-        // There is always an entry.
+        // The history always has an entry.
         &self.entries[self.entries.len() - 1].filter
     }
 

@@ -24,7 +24,7 @@ pub enum AttitudeMeasurement {
 }
 
 impl AttitudeMeasurement {
-    /// Number of components: 2 of a direction, else 3.
+    /// Returns the number of components: 2 of a direction, else 3.
     pub fn numbers(&self) -> u64 {
         if matches!(self, Self::Vector(VectorSight { is_direction: true, .. })) { 2 } else { 3 }
     }

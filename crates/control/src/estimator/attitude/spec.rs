@@ -65,7 +65,7 @@ pub struct Initial {
 }
 
 impl Default for Initial {
-    /// Deviations of 1 mrad, and of 2 degrees per hour.
+    /// Returns deviations of 1 mrad, and of 2 degrees per hour.
     fn default() -> Self {
         let positive = |value: f64| Positive::new(value).unwrap_or(Positive::ONE);
         Self { angle: positive(1e-3), bias: positive(1e-5) }

@@ -81,7 +81,7 @@ fn late_attitudes_give_what_forty_digits_give() {
         let k = row[0] as usize;
         let filter = states[k].latest();
         let q = quaternion(&row[2..6]);
-        // The table has 14 digits.
+        // The reference table has 14 digits.
         assert!((filter.attitude - q).norm() < 1e-14, "{k} {:e}", (filter.attitude - q).norm());
         for axis in 0..3 {
             let [angle, rate] = filter.deviations();

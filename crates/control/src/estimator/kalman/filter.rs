@@ -36,15 +36,15 @@ pub struct Tuning {
     pub prediction: Prediction,
     /// Period of the samples (s).
     pub period: f64,
-    /// Mean at the start.
+    /// Mean of the state at the start.
     pub mean: DVector<f64>,
-    /// Standard deviations at the start.
+    /// Standard deviations of the state at the start.
     pub spread: DVector<f64>,
     /// Spectral density of the moment's white noise ((rad/s²)² s).
     pub moment_noise: f64,
     /// Spectral densities of the white noises that drive a ratio (1/s) and its rate (1/s³).
     pub ratio_noise: [f64; 2],
-    /// Standard deviations of the measured angle (rad) and, with a gyro, of the measured rate (rad/s).
+    /// Standard deviation of the measured angle (rad).
     pub angle_noise: f64,
     /// Standard deviation of the measured rate (rad/s), if there is a gyro.
     pub rate_noise: Option<f64>,
@@ -83,7 +83,7 @@ pub struct KalmanFilter {
 /// Innovation of a sample.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Innovation {
-    /// Measured angle less the predicted one (rad); 0 if the sample was dropped.
+    /// Measured angle minus the predicted one (rad); 0 if the sample was dropped.
     pub innovation: f64,
     /// Normalised innovation squared, summed over the measurements; `None` if the sample was dropped.
     pub nis: Option<f64>,

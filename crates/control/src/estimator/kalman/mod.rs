@@ -1,7 +1,7 @@
 //! Kalman filters of the body's motion: linear, extended and unscented (\[BarShalom01\]).
 //!
-//! The measured angle, and with a gyro the rate, determines the rigid motion and every mode. The extended and the unscented
-//! filter estimate ratios of the natural frequencies, which drift as integrated random walks.
+//! The measured angle, and with a gyro the rate, determines the rigid motion and every mode. The extended and the
+//! unscented filter estimate ratios of the natural frequencies, which drift as integrated random walks.
 
 mod filter;
 mod lock;
@@ -170,7 +170,7 @@ pub enum Ratios {
 }
 
 impl Ratios {
-    /// Number of frequency ratios of `modes` modes.
+    /// Returns the number of frequency ratios of `modes` modes.
     pub fn count(self, modes: usize) -> usize {
         if self == Self::Common { 1 } else { modes }
     }

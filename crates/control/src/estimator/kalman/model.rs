@@ -57,12 +57,12 @@ impl Model {
         Self { modes: modes.iter().map(swing).collect(), ratios, back_emf, substeps, bounds }
     }
 
-    /// Number of motion states: rigid angle and rate, and two for each mode.
+    /// Returns the number of motion states: rigid angle and rate, and two for each mode.
     pub fn motion(&self) -> usize {
         2 + 2 * self.modes.len()
     }
 
-    /// Number of states.
+    /// Returns the number of states.
     pub fn order(&self) -> usize {
         self.motion() + 2 * self.ratios
     }
@@ -83,7 +83,7 @@ impl Model {
         self.modes[mode].frequency * self.ratio(mode, state)
     }
 
-    /// Number of modes.
+    /// Returns the number of modes.
     pub fn modes(&self) -> usize {
         self.modes.len()
     }
@@ -161,7 +161,7 @@ impl Model {
         }
     }
 
-    /// Number of modes whose rates the back-EMF opposes.
+    /// Returns the number of modes whose rates the back-EMF opposes.
     pub(super) fn felt(&self) -> usize {
         if self.back_emf.1 { self.modes.len() } else { 0 }
     }
@@ -217,7 +217,7 @@ impl ModeModel {
     }
 }
 
-/// Adds a multiple of one column to another.
+/// Adds a multiple of a column to another one.
 fn add_column(matrix: &mut DMatrix<f64>, to: usize, from: usize, factor: f64) {
     let rows = matrix.nrows();
     let all = matrix.as_mut_slice();
@@ -244,7 +244,7 @@ mod tests {
 
     const WIDE: [f64; 2] = [0.1, 3.0];
 
-    /// Four modes, of which the third is damped and the last overdamped.
+    /// Returns a body with four modes: the third is damped, the last overdamped.
     fn body() -> Planar {
         let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165, damping = 0.02 }, \

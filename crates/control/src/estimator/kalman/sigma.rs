@@ -33,7 +33,8 @@ pub fn transform(
     // Relative to the central point, whose weight is large and negative, nothing cancels.
     points.column_iter_mut().for_each(|mut point| point -= &origin);
     let shift = points.column_sum() * weight;
-    // Weights of a covariance about the mean: sum w d d' = sum w p p' - (2 - sum w) s s', where sum w = 1 + 1 - alpha² + beta.
+    // Weights of a covariance about the mean: sum w d d' = sum w p p' - (2 - sum w) s s', where sum w = 2 - alpha² +
+    // beta.
     let total = 2.0 * n * weight + centre + 1.0 - ALPHA * ALPHA + BETA;
     points.mul_to(&points.transpose(), covariance);
     *covariance *= weight;

@@ -1,5 +1,5 @@
-//! The recursive gradient: exact pulses, the sensitivities of the prediction to every parameter, and steps along them that are
-//! normalised by their mean square (recursive prediction error method, L. Ljung; the tuning is ours).
+//! The recursive gradient: exact pulses, the sensitivities of the prediction to every parameter, and steps along them
+//! that are normalised by their mean square (recursive prediction error method, L. Ljung; the tuning is ours).
 
 mod observer;
 mod parameter;

@@ -1,8 +1,8 @@
-//! The recurrence of the paper: one mode as a difference equation that is linear in its parameters (\[Timakov14\], page 41 and
-//! equation (8)), with the weights W1 to W8.
+//! The recurrence of the paper: one mode as a difference equation that is linear in its parameters (\[Timakov14\], page
+//! 41 and equation (8)), with the weights W1 to W8.
 //!
-//! A = 2 exp(-zeta w T) cos(w_d T) and B = exp(-2 zeta w T), of which A is identified and B is not. A pulse counts as an
-//! impulse at the end of its cycle, so that one as long as the cycle biases the influence by some 18 % at 0.2 Hz.
+//! A = 2 exp(-zeta w T) cos(w_d T) and B = exp(-2 zeta w T), of which A is identified and B is not. A pulse counts as
+//! an impulse at the end of its cycle, so that one as long as the cycle biases the influence by some 18 % at 0.2 Hz.
 
 mod observer;
 

@@ -16,7 +16,7 @@ pub struct LentStep {
 }
 
 impl<R: Real> Filters<R> {
-    /// Number of state components of each filter.
+    /// Returns the number of state components of each filter.
     pub fn count(&self) -> usize {
         self.order
     }
@@ -90,7 +90,7 @@ impl KalmanFilter {
         self.beside.lent
     }
 
-    /// Takes the innovation of the sample that the batch processed for this filter.
+    /// Moves out the innovation of the sample that the batch processed for this filter.
     pub fn told_beside(&mut self) -> Option<Innovation> {
         self.beside.told.take()
     }
@@ -100,7 +100,7 @@ impl KalmanFilter {
         self.beside.nees = if nees <= Self::FARTHEST { nees } else { Self::FARTHEST };
     }
 
-    /// Normalised squared error set by `assess_beside`.
+    /// Returns the normalised squared error set by `assess_beside`.
     pub fn nees_beside(&self) -> f64 {
         self.beside.nees
     }
