@@ -1,55 +1,55 @@
-//! What the control system believes of the motion about one axis: the only thing that a law reads, and what it asks for.
+//! State estimate of the motion about one axis, the only input of a law, and the estimates that laws need.
 
-/// Written by sensor and estimator, read by the law of the axis.
+/// State estimate about one axis, written by sensor and estimator, and read by the law of the axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Belief {
-    /// Angle (rad): of a body with one angle the angle itself, of one with three axes how far it is beyond the target.
+    /// Angle (rad): absolute on a one-axis body, relative to the target on a three-axis body.
     pub angle: f64,
-    /// Length of the vector of such angles about all axes (rad); 0 of a body with one angle.
+    /// Length of the vector of the angles about all axes (rad); 0 on a one-axis body.
     pub whole: f64,
-    /// Rate (rad/s): of a sampled sensor without a gyro, the difference of its last two samples over the period.
+    /// Rate (rad/s); of a sampled sensor without a gyro, the difference of the last two samples divided by the period.
     pub rate: f64,
-    /// How fast the magnetic field along the axis changes (T/s): the difference of a magnetometer's last two readings over the
-    /// time between.
+    /// Rate of change of the magnetic field along the axis (T/s): the difference of a magnetometer's last two readings
+    /// divided by the time between them.
     pub field_rate: f64,
-    /// The dominant mode, as an estimator gives it.
+    /// Dominant mode.
     pub dominant: Dominant,
-    /// Change of the rigid rate that is commanded, and not yet executed (rad/s).
+    /// Commanded change of the rigid rate that is not yet executed (rad/s).
     pub queued: f64,
-    /// The elastic modes, at the time that the law wants to know them for.
+    /// Elastic modes, with rates predicted for the law's lead time.
     pub elastic: Vec<ElasticRate>,
-    /// Whether they may be acted on.
+    /// True if laws may act on the elastic modes.
     pub trusted: bool,
 }
 
-/// What is believed of an elastic mode about one axis.
+/// Estimate of an elastic mode about one axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct ElasticRate {
     /// Elastic rate (rad/s).
     pub rate: f64,
     /// Natural frequency (rad/s).
     pub frequency: f64,
-    /// Jump of the elastic rate for each jump of the rigid rate that the actuator of the axis gives.
+    /// Jump of the elastic rate per unit jump of the rigid rate by the actuator of the axis.
     pub influence: f64,
 }
 
-/// The mode that a step of the torque excites most.
+/// Mode that a step of the torque excites most, by an estimate.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Dominant {
     /// Estimated displacement (rad).
     pub displacement: f64,
-    /// Its derivative with time (rad/s).
+    /// Time derivative of the displacement (rad/s).
     pub rate: f64,
     /// Estimated natural frequency (rad/s).
     pub frequency: f64,
 }
 
-/// What a law reads of an estimator.
+/// Estimates that a law reads.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Reads {
-    /// Nothing.
+    /// No estimates.
     Nothing,
-    /// How fast the magnetic field changes.
+    /// Rate of change of the magnetic field.
     Field,
     /// Angle and rate.
     Motion,
@@ -59,19 +59,19 @@ pub enum Reads {
     ElasticRates,
 }
 
-/// What active damping does about an axis.
+/// Status of active damping about an axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Damped {
-    /// Elastic rate on which it acts (rad/s).
+    /// Elastic rate on which damping acts (rad/s).
     pub rate: f64,
     /// Threshold (rad/s).
     pub threshold: f64,
-    /// Whether the elastic rate has been beyond the threshold and is not yet back.
+    /// True if the elastic rate has exceeded the threshold and has not fallen below the release level.
     pub latched: bool,
-    /// Whether the watchdog keeps it quiet.
+    /// True if the watchdog has paused damping.
     pub resting: bool,
-    /// Signed on-time of its pulse (s).
+    /// Signed on-time of the pulse (s).
     pub on: f64,
-    /// Change of the rigid rate that the pulse makes (rad/s).
+    /// Change of the rigid rate by the pulse (rad/s).
     pub change: f64,
 }

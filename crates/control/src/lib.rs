@@ -1,7 +1,7 @@
-//! The control system of a spacecraft: from what sensors measure to what actuators do.
+//! The control system of a spacecraft: from sensor measurements to actuator outputs.
 //!
 //! Each role is a trait: [`sensor::Sense`], [`estimator::Estimate`], [`adaptation::Adapt`], [`law::Control`],
-//! [`actuator::Actuate`]. `docs/extending.md` tells how to add a kind.
+//! [`actuator::Actuate`]. `docs/extending.md` describes how to add a kind.
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 

@@ -1,4 +1,4 @@
-//! How long something lasts: from one instant to another, or to the end of the run.
+//! Interval of time: from a start to an end, or to the end of the run.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,22 +19,22 @@ pub struct Outage {
 }
 
 impl Outage {
-    /// Whether it lasts at an instant.
+    /// Returns true if `now` is within the interval.
     pub fn lasts(self, now: Instant) -> bool {
         self.begins() <= now && self.ends().is_none_or(|ends| now < ends)
     }
 
-    /// When it begins.
+    /// Returns the start of the interval.
     pub fn begins(self) -> Instant {
         at(self.from)
     }
 
-    /// When it ends, unless with the run.
+    /// Returns the end of the interval; `None` if it lasts to the end of the run.
     pub fn ends(self) -> Option<Instant> {
         self.to.map(at)
     }
 
-    /// An end before the beginning: what is wrong, of no key within.
+    /// Checks that the start is before the end; returns a `Fault` without a key if not.
     pub fn disorder(self) -> Option<Fault> {
         let unordered = self.to.is_some_and(|to| self.from >= to);
         unordered.then(|| Fault::new("", "must have `from` before `to`"))

@@ -1,4 +1,4 @@
-//! Parts from outside of this crate: kinds of a role that a program brings with it, and no scenario file can name.
+//! Custom parts: kinds of a role that another crate provides, and that a scenario file cannot name.
 
 use std::borrow::Cow;
 use std::error::Error;
@@ -9,11 +9,11 @@ use std::sync::Arc;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// A part that a program brings with it, shared by all runs of a scenario.
+/// Custom part provided by a program, shared by all runs of a scenario.
 pub struct Own<T: ?Sized>(Arc<T>);
 
 impl<T: ?Sized> Own<T> {
-    /// The part.
+    /// Wraps a custom part.
     pub fn new(part: Arc<T>) -> Self {
         Self(part)
     }
@@ -44,7 +44,7 @@ impl<T: ?Sized> PartialEq for Own<T> {
     }
 }
 
-/// In the text of a scenario it is an empty table.
+/// Serialises the part as an empty table.
 impl<T: ?Sized> Serialize for Own<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         serializer.collect_map(std::iter::empty::<(&str, &str)>())
@@ -57,17 +57,17 @@ impl<'de, T: ?Sized> Deserialize<'de> for Own<T> {
     }
 }
 
-/// Why a part of a program's own cannot go on: the error that ends its run.
+/// Error of a custom part, which ends the run.
 #[derive(Clone, Debug)]
 pub struct Halt(Arc<dyn Error + Send + Sync>);
 
 impl Halt {
-    /// A part that cannot go on for this reason.
+    /// Creates the error of a custom part from its cause.
     pub fn new(error: impl Error + Send + Sync + 'static) -> Self {
         Self(Arc::new(error))
     }
 
-    /// The reason, if it is of this type.
+    /// Returns the cause, if it is of this type.
     pub fn downcast<E: Error + 'static>(&self) -> Option<&E> {
         self.0.downcast_ref()
     }

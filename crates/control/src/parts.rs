@@ -1,4 +1,4 @@
-//! Parts of which a scenario has one, as a table, or several, as an array of tables.
+//! One or several parts of a kind in a scenario: a table, or an array of tables.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -10,21 +10,21 @@ use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{Error, MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-/// One part or more.
+/// One or more parts of a kind.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Parts<T> {
     parts: Vec<T>,
-    /// Whether they were written as an array, of one part too.
+    /// True if the parts were written as an array, even of one part.
     listed: bool,
 }
 
 impl<T> Parts<T> {
-    /// A single part.
+    /// Creates a single part, not written as an array.
     pub fn one(part: T) -> Self {
         Self { parts: vec![part], listed: false }
     }
 
-    /// The key of a part, which is called `name` where it stands alone.
+    /// Returns the key of a part: `name` for a single part, else with its index.
     pub fn key(&self, name: &str, index: usize) -> String {
         if self.listed { format!("{name}[{index}]") } else { name.to_owned() }
     }
@@ -58,7 +58,7 @@ impl<T: Serialize> Serialize for Parts<T> {
     }
 }
 
-/// Reads either.
+/// Visitor that reads a table or an array of tables.
 struct Either<T>(PhantomData<T>);
 
 impl<'de, T: Deserialize<'de>> Visitor<'de> for Either<T> {

@@ -1,8 +1,9 @@
-//! Jets by themselves, in any number and on any axis: in each cycle those on-times that give what is demanded with the least propellant.
+//! Individually allocated jets, in any number and on any axis: each cycle's on-times meet the demand with the least
+//! propellant.
 //!
-//! That is a linear programme in the on-times t: the least sum of flows times t with B t = impulse and 0 <= t <= period, where the
-//! columns of B are the torques of the thrusters, and their forces too where these shall cancel. Of an impulse that is more than there is
-//! the largest part in its direction is given.
+//! The on-times t solve a linear programme: the smallest sum of flows times t with B t = impulse and 0 <= t <= period,
+//! where the columns of B are the torques of the thrusters, and also their forces if these must cancel. An impulse
+//! beyond the capability is scaled down to the largest one in its direction.
 
 use super::valves::Valves;
 use super::{Actuate, Demand, FiringGroup, JetCycle, Jets, OpenThruster, PulseWidth};
@@ -12,23 +13,23 @@ use crate::numerics::simplex::LinearProgramme;
 use crate::time::{Instant, Span};
 use crate::wrench::{Push, Wrench};
 
-/// Jets at work.
+/// Run-time state of individually allocated jets.
 #[derive(Clone, Debug)]
 pub struct Allocated {
     programme: LinearProgramme,
-    /// Torques (N m), and propellant in a second (kg/s), of each thruster.
+    /// Torque (N m) and propellant flow (kg/s) of each thruster.
     torques: Vec<Vector>,
     flows: Vec<f64>,
-    /// What a unit of torque accelerates about each axis (kg m²), and the largest torques one way and the other (N m).
+    /// Inertia about each axis (kg m²), and largest torque in the positive and the negative direction (N m).
     inertia: [f64; 3],
     largest: [[f64; 2]; 3],
     width: PulseWidth,
     delayed: bool,
-    /// The cycle of the pulses, and when the next begins where it is not the law's.
+    /// Period of the pulses, and the start of the next cycle unless it is the law's.
     period: Span,
     next: Option<Instant>,
     demands: [Demand; 3],
-    /// On-times of the next cycle and of this one (s), and when each of these pulses ends.
+    /// On-times of the next cycle and of the current one (s), and the end of each current pulse.
     waiting: Vec<f64>,
     executed: Vec<f64>,
     ends: Vec<Option<Instant>>,
@@ -36,7 +37,8 @@ pub struct Allocated {
     pulses: u64,
 }
 
-/// The programme of thrusters: their largest on-time (s), and whether their forces shall cancel.
+/// Creates the linear programme of thrusters with the largest on-time `most` (s); `force_free`: their forces must
+/// cancel.
 fn programme(nozzles: &[OpenThruster], most: f64, force_free: bool) -> LinearProgramme {
     let column = |nozzle: &OpenThruster| {
         let force = nozzle.push.force.iter().copied().filter(|_| force_free);
@@ -46,16 +48,16 @@ fn programme(nozzles: &[OpenThruster], most: f64, force_free: bool) -> LinearPro
     LinearProgramme::new(rows, nozzles.iter().map(column).collect(), vec![most; nozzles.len()])
 }
 
-/// What is asked of a programme: a torque or an impulse, and no force.
+/// Returns the right-hand side of a programme: a torque or an impulse, and zero force.
 fn asked(wanted: &Vector, force_free: bool) -> Vec<f64> {
     wanted.iter().copied().chain([0.0; 3].into_iter().filter(|_| force_free)).collect()
 }
 
-/// What the thrusters do together that give the largest torque about each axis about which they act, one way and the other, for the
-/// least propellant.
+/// Returns, for each axis about which the jets act, the combined effects of the thrusters that give the largest
+/// positive and negative torque with the least propellant.
 ///
 /// # Errors
-/// They cannot turn the body about such an axis.
+/// A `Fault` if the thrusters cannot rotate the body about such an axis.
 pub(super) fn largest(
     jets: &Jets,
     nozzles: &[OpenThruster],
@@ -64,7 +66,7 @@ pub(super) fn largest(
 ) -> Result<[[FiringGroup; 2]; 3], Fault> {
     let programme = programme(nozzles, 1.0, jets.force_free);
     let costs: Vec<f64> = nozzles.iter().map(|nozzle| nozzle.flow).collect();
-    // More than all of them have.
+    // More than all thrusters together can give.
     let beyond: f64 = nozzles.iter().map(|nozzle| nozzle.push.torque.norm()).sum::<f64>().max(1.0) * 2.0;
     let group = |axis: usize, sign: f64| {
         let mut wanted = Vector::zeros();
@@ -93,7 +95,7 @@ pub(super) fn largest(
 }
 
 impl Allocated {
-    /// The jets before the first command; `period` is that of the law, for jets without one of their own.
+    /// Creates the jets before their first command; `period` is the law's, for jets without their own.
     pub fn new(
         jets: &Jets,
         (groups, nozzles): (&[[FiringGroup; 2]; 3], &[OpenThruster]),
@@ -106,7 +108,7 @@ impl Allocated {
             programme: programme(nozzles, cycle.seconds(), jets.force_free),
             torques: nozzles.iter().map(|nozzle| nozzle.push.torque).collect(),
             flows: nozzles.iter().map(|nozzle| nozzle.flow).collect(),
-            // Nothing is asked about an axis without a group.
+            // There is no demand about an axis without a group.
             inertia: [0, 1, 2].map(|axis| match torque(axis, 0) {
                 0.0 => f64::INFINITY,
                 torque => torque / groups[axis][0].acceleration,
@@ -125,7 +127,7 @@ impl Allocated {
         }
     }
 
-    /// The impulse that is demanded over a cycle (N m s).
+    /// Returns the demanded angular impulse over a cycle (N m s).
     fn wanted(&self) -> Vector {
         let about = |axis: usize| match self.demands[axis] {
             Demand::Torque(torque) => torque * self.period.seconds(),
@@ -135,7 +137,7 @@ impl Allocated {
         Vector::from_fn(|axis, _| about(axis))
     }
 
-    /// Begins a cycle with what is commanded.
+    /// Begins a cycle with the current demands.
     fn begin(&mut self, now: Instant) {
         let period = self.period.seconds();
         let b = asked(&self.wanted(), self.programme.rows() > 3);
@@ -160,7 +162,7 @@ impl Allocated {
         valves.set(now, |index| f64::from(u8::from(ends[index].is_some_and(|end| end > now))));
     }
 
-    /// What on-times turn the body by (N m s).
+    /// Returns the angular impulse of these on-times (N m s).
     fn turned_by(&self, times: &[f64]) -> Vector {
         self.torques.iter().zip(times).fold(Vector::zeros(), |sum, (torque, on)| sum + torque * *on)
     }
@@ -199,7 +201,7 @@ impl Actuate for Allocated {
         self.valves.torque(axis)
     }
 
-    /// As it is without a failure.
+    /// Returns the reduced moment about an axis (rad/s²) as if no thruster failed.
     fn moment(&self, axis: usize) -> f64 {
         let burning = self.torques.iter().zip(&self.ends).filter(|(_, end)| end.is_some());
         burning.map(|(torque, _)| torque[axis]).sum::<f64>() / self.inertia[axis]

@@ -1,4 +1,4 @@
-//! Torques of wheels that together give a torque about three axes: sum over wheels of axis times torque is what is wanted.
+//! Allocation of a three-axis torque to wheels: the sum of axis times torque over the wheels is the demanded torque.
 
 use nalgebra::{Cholesky, Matrix3};
 use schemars::JsonSchema;
@@ -17,22 +17,22 @@ pub enum Choice {
     LeastLargest,
 }
 
-/// The wheels' axes, and what follows from them.
+/// Allocation of a torque to wheels with given axes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Allocation {
     axes: Vec<Vector>,
-    /// For each wheel, the torque for each unit of the wanted one about each axis.
+    /// Torque of each wheel per unit of the demanded torque about each axis.
     inverse: Vec<Vector>,
-    /// Of four wheels, torques that cancel each other, the largest 1 and the first that is not 0 positive.
+    /// Cancelling torques of four wheels: the largest has size 1, the first that is not 0 is positive.
     null: Option<[f64; 4]>,
     choice: Choice,
 }
 
 impl Allocation {
-    /// The allocation to wheels about these unit axes; none if they do not reach all three axes.
+    /// Creates the allocation to wheels about these unit axes; `None` if they do not span three axes.
     pub fn new(axes: &[Vector], choice: Choice) -> Option<Self> {
         let gram = axes.iter().fold(Matrix3::zeros(), |sum, axis| sum + axis * axis.transpose());
-        // A plane of wheels has no torque across it.
+        // Wheels in a plane give no torque perpendicular to it.
         if gram.determinant() < 1e-9 * axes.len().pow(3) as f64 {
             return None;
         }
@@ -45,17 +45,17 @@ impl Allocation {
         })
     }
 
-    /// The axes.
+    /// Returns the wheels' axes.
     pub fn axes(&self) -> &[Vector] {
         &self.axes
     }
 
-    /// Of four wheels, torques that cancel each other, the largest 1.
+    /// Returns torques of four wheels that cancel each other, the largest of size 1.
     pub fn null(&self) -> Option<&[f64; 4]> {
         self.null.as_ref()
     }
 
-    /// The torques of all wheels that give one about the three axes (N m).
+    /// Returns the torques of all wheels that give the torque `wanted` about the three axes (N m).
     pub fn torques(&self, wanted: &Vector) -> Vec<f64> {
         let mut torques: Vec<f64> = self.inverse.iter().map(|row| row.dot(wanted)).collect();
         if let (Choice::LeastLargest, Some(null)) = (self.choice, &self.null) {
@@ -65,7 +65,7 @@ impl Allocation {
         torques
     }
 
-    /// The largest torque about an axis alone (N m), of wheels that give so much each (N m).
+    /// Returns the largest torque about a single axis (N m), with `limit` (N m) for each wheel.
     pub fn most(&self, axis: usize, limit: f64) -> f64 {
         let mut wanted = Vector::zeros();
         wanted[axis] = 1.0;
@@ -73,7 +73,7 @@ impl Allocation {
     }
 }
 
-/// Four torques about four axes that cancel each other: up to their sign, the volumes that the other three span.
+/// Returns four torques about four axes that cancel: up to their sign, the volumes that the other three axes span.
 fn null(axes: &[Vector]) -> Option<[f64; 4]> {
     let &[a, b, c, d] = axes else { return None };
     let volume = |x: Vector, y: Vector, z: Vector| x.dot(&y.cross(&z));
@@ -83,8 +83,8 @@ fn null(axes: &[Vector]) -> Option<[f64; 4]> {
     Some(null.map(|part| part / libm::copysign(largest, first)))
 }
 
-/// How much of a null vector makes the largest of some torques least: that is where two of them are equally large. Of several
-/// such places it is the one nearest to none.
+/// Returns the multiple of a null vector that minimises the largest torque: two of them are equally large there. Of
+/// several such multiples it is the smallest.
 fn least_largest(torques: &[f64], null: &[f64; 4]) -> f64 {
     let largest = |part: f64| {
         let sizes = torques.iter().zip(null).map(|(torque, null)| (torque + part * null).abs());
@@ -94,7 +94,7 @@ fn least_largest(torques: &[f64], null: &[f64; 4]) -> f64 {
     for (i, (u, n)) in torques.iter().zip(null).enumerate() {
         for (v, m) in torques.iter().zip(null).take(i) {
             for part in [(v - u) / (n - m), -(u + v) / (n + m)] {
-                // Parallel lines do not meet.
+                // Parallel lines do not intersect.
                 if !part.is_finite() {
                     continue;
                 }
@@ -139,12 +139,12 @@ mod tests {
         for (found, exact) in least_squares.null().unwrap().iter().zip([1.0, -1.0, 1.0, -1.0]) {
             assert!((found - exact).abs() < 1e-15);
         }
-        // The linear programme's answer.
+        // Result of the linear programme.
         let torques = least_largest.torques(&wanted);
         let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
         assert!((largest - 0.130_333_24).abs() < 5e-9, "{largest}");
         assert!((given(&pyramid(), &torques) - wanted).norm() < 1e-16);
-        // Equally large already.
+        // Already equal.
         let upwards = least_largest.torques(&Vector::z());
         assert!((given(&pyramid(), &upwards) - Vector::z()).norm() < 1e-15, "{upwards:?}");
     }
@@ -164,7 +164,7 @@ mod tests {
                 let sizes = torques.iter().zip(null).map(|(u, n)| (u + part * n).abs());
                 sizes.fold(0.0, f64::max)
             };
-            // No step along the null vector makes the largest smaller.
+            // A step along the null vector never reduces the largest torque.
             for part in [-1.0, -1e-3, -1e-9, 1e-9, 1e-3, 1.0] {
                 assert!(largest(part) >= largest(0.0), "{part}");
             }

@@ -1,4 +1,4 @@
-//! How an actuator is written, `[actuator.KIND]` or an entry of `[[actuator]]`, with what it is for.
+//! Actuator entries of a scenario, `[actuator.KIND]` or entries of `[[actuator]]`, with their tasks.
 
 use std::fmt;
 
@@ -13,19 +13,19 @@ use super::{
 };
 use crate::axes::Axis;
 
-/// The name of the kind that needs no keys.
+/// Name of the kind that needs no keys.
 const IDEAL: &str = "ideal";
 
-/// An actuator, and which part of the demand it executes, or that it unloads wheels.
+/// Actuator with its task: its part of the demand, or the unloading of wheels.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Assigned {
-    /// The actuator.
+    /// Kind of the actuator.
     pub kind: Actuator,
-    /// The axes whose demand it executes; all by default.
+    /// Axes whose demand the actuator executes; `None` for all.
     pub axes: Option<Vec<Axis>>,
-    /// The share of the demand about them; all by default.
+    /// Share of the demand about these axes; `None` for all of it.
     pub share: Option<Share>,
-    /// How it unloads the wheels beside it, in place of a part of the demand.
+    /// Settings for unloading the wheels of the list, instead of executing a part of the demand.
     pub unloads: Option<Box<Unloads>>,
 }
 
@@ -35,7 +35,7 @@ impl From<Actuator> for Assigned {
     }
 }
 
-/// Declares the keys of an actuator in a list: those of the kinds, and of what it is for.
+/// Declares the keys of an actuator in a list: the kinds, and the keys of the task.
 macro_rules! keys {
     ($($(#[doc = $doc:literal])* $key:ident: $name:ident($kind:ident)),* $(,)?) => {
         /// An actuator of a list: exactly one of the kinds, and which part of the demand it executes.
@@ -60,7 +60,7 @@ macro_rules! keys {
         }
 
         impl Keys {
-            /// The kinds that are given.
+            /// Moves out the kinds that are given.
             fn kinds(&mut self) -> Vec<Actuator> {
                 [$(self.$key.take().map(Actuator::$name)),*].into_iter().flatten().collect()
             }
@@ -100,12 +100,12 @@ keys! {
 }
 
 impl Assigned {
-    /// What unloads wheels and is written within them.
+    /// Returns the unloading that is given within wheels.
     pub(super) fn unloading(&self) -> Option<&Unloading> {
         if let Actuator::Wheels(wheels) = &self.kind { wheels.unloading.as_deref() } else { None }
     }
 
-    /// Whether it is written with what it is for.
+    /// Returns true if the entry has keys of a task.
     pub(super) fn is_particular(&self) -> bool {
         self.axes.is_some() || self.share.is_some() || self.unloads.is_some()
     }

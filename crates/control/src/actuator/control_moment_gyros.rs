@@ -1,4 +1,4 @@
-//! Control moment gyros: rotors of constant speed, each in a gimbal whose rate gives the torque.
+//! Control moment gyros: rotors of constant speed, each in a gimbal whose rate produces the torque.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -63,17 +63,17 @@ pub enum GimbalArrangement {
     Pyramid,
 }
 
-/// The cant of a pyramid by default: atan(sqrt(2)) (rad).
+/// Default cant of a pyramid: atan(sqrt(2)) (rad).
 const EQUAL_CANT: f64 = 0.955_316_618_124_509_3;
 
-/// Gimbal axis and spin axis are at right angles to this.
+/// Largest cosine between a gimbal axis and its spin axis.
 const SQUARE: f64 = 1e-6;
 
-/// Gimbal axes with a smaller sum of squared areas between them are parallel.
+/// Sum of squared areas between gimbal axes below which they count as parallel.
 const PARALLEL: f64 = 1e-9;
 
 impl ControlMomentGyros {
-    /// How many there are.
+    /// Returns the number of control moment gyros.
     pub fn count(&self) -> usize {
         match self.arrangement {
             Some(GimbalArrangement::Pyramid) => 4,
@@ -81,23 +81,23 @@ impl ControlMomentGyros {
         }
     }
 
-    /// Gimbal angles at the start (rad).
+    /// Returns the gimbal angles at the start (rad).
     pub(super) fn starts(&self) -> Vec<f64> {
         (0..self.count()).map(|gyro| self.angles.get(gyro).map_or(0.0, |angle| angle.get())).collect()
     }
 
-    /// The weight of its steering, if it has one.
+    /// Returns the weight of singularity-robust steering, if it is used.
     pub(super) fn weight(&self) -> Option<Robustness> {
         (self.steering == Steering::SingularityRobust).then(|| self.robust.unwrap_or_default())
     }
 
-    /// The failures of a gimbal, if it ever fails.
+    /// Returns the failures of a gimbal, if it has any.
     pub(super) fn failing(&self, gyro: usize) -> Option<Failing> {
         let own = |of: &Lasting<'_>| of.gimbal.is_none_or(|number| number.get() as usize == gyro + 1);
         Failing::new(&self.faults, own)
     }
 
-    /// The largest torque about an axis alone at the gimbal angles of the start (N m).
+    /// Returns the largest torque about a single axis at the initial gimbal angles (N m).
     pub fn most(&self, axes: &[GyroAxes], axis: usize) -> f64 {
         let limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
         let wanted = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
@@ -106,10 +106,10 @@ impl ControlMomentGyros {
         if largest > 0.0 { self.momentum.get() * limit / largest } else { 0.0 }
     }
 
-    /// The axes of each, once all keys fit each other.
+    /// Checks all keys and returns the axes of each gyro.
     ///
     /// # Errors
-    /// A key that does not fit the others, and why.
+    /// A `Fault` with a key that does not fit the others and the reason.
     pub fn axes(&self) -> Result<Vec<GyroAxes>, Fault> {
         let axes = self.directions()?;
         let count = axes.len();
@@ -208,12 +208,12 @@ impl ControlMomentGyros {
         Ok(axes)
     }
 
-    /// The largest gimbal rate that is expected (rad/s): the limit, or 0 without one.
+    /// Returns the largest expected gimbal rate (rad/s): the limit, or 0 without one.
     pub fn fastest(&self) -> f64 {
         self.rate_limit.map_or(0.0, Positive::get)
     }
 
-    /// What its null motion gives, if it has one: preferred angles (rad), and the gain (1/s).
+    /// Returns preferred angles (rad) and gain (1/s) of the null motion, if it is used.
     pub(super) fn preferred(&self) -> Option<(Vec<f64>, f64)> {
         let null = self.null_motion.as_deref()?;
         Some((null.angles.iter().map(|angle| angle.get()).collect(), null.gain.get()))

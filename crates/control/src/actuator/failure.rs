@@ -1,4 +1,4 @@
-//! Failures of actuators: dead, stuck, weaker than they should be, or with something added, from one time to another.
+//! Failures of actuators within intervals: no output, a stuck output, a wrong scale, or an added error.
 
 use std::num::NonZeroU32;
 
@@ -12,7 +12,7 @@ use crate::quantity::{Finite, Time};
 use crate::sine::Sine;
 use crate::time::Instant;
 
-/// Declares a kind of failure: how long it lasts, what of the actuator fails, and keys of its own.
+/// Declares a kind of failure: its interval, the component that fails, and further keys.
 macro_rules! kinds {
     ($($(#[doc = $doc:literal])* $name:ident { $($(#[$meta:meta])* $field:ident: $of:ty),* $(,)? })+) => {
         $(
@@ -91,36 +91,36 @@ pub enum Failure {
     Added(Added),
 }
 
-/// How long a failure lasts, and what fails.
+/// Interval of a failure, and the component that fails.
 #[derive(Copy, Clone, Debug)]
 pub struct Lasting<'a> {
-    /// How long it lasts.
+    /// Interval of the failure.
     pub outage: Outage,
-    /// The axis.
+    /// Axis that fails; `None` for all.
     pub about: Option<Axis>,
-    /// The wheel, from 1.
+    /// Wheel that fails, counted from 1; `None` for all.
     pub wheel: Option<NonZeroU32>,
-    /// The gimbal, from 1.
+    /// Gimbal that fails, counted from 1; `None` for all.
     pub gimbal: Option<NonZeroU32>,
-    /// The thruster.
+    /// Thruster that fails; `None` for all.
     pub thruster: Option<&'a str>,
 }
 
-/// What an actuator consists of, as its failures name it.
+/// Components of an actuator that failures can name.
 #[derive(Copy, Clone, Debug)]
 pub(super) enum FailingPart<'a> {
-    /// One actuator about each of so many axes; magnetorquers are such a one too.
+    /// Number of axes with an actuator each; magnetorquers count so too.
     Axes(usize),
-    /// So many wheels.
+    /// Number of wheels.
     Wheels(usize),
-    /// So many gimbals.
+    /// Number of gimbals.
     Gimbals(usize),
-    /// Thrusters of these names.
+    /// Names of the thrusters.
     Thrusters(&'a [String]),
 }
 
 impl Failure {
-    /// How long it lasts, and what fails.
+    /// Returns the interval of the failure and the component that fails.
     pub fn lasting(&self) -> Lasting<'_> {
         match self {
             Self::Dead(of) => of.lasting(),
@@ -130,7 +130,7 @@ impl Failure {
         }
     }
 
-    /// The kind, as a scenario names it.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Dead(_) => "dead",
@@ -140,12 +140,13 @@ impl Failure {
         }
     }
 
-    /// The sines that it adds.
+    /// Returns the sines that the failure adds.
     pub fn sines(&self) -> &[Sine] {
         if let Self::Added(added) = self { &added.sines } else { &[] }
     }
 
-    /// What of it does not fit an actuator of these parts, which `turns` the body by torques or not: a key, and why.
+    /// Checks the failure against an actuator with these components; `turns`: it exerts torques. Returns a key and the
+    /// reason.
     pub(super) fn fault(&self, parts: FailingPart<'_>, turns: bool) -> Option<Fault> {
         let Lasting { outage, about, wheel, gimbal, thruster } = self.lasting();
         if let Some(fault) = outage.disorder() {
@@ -190,7 +191,7 @@ impl Failure {
         None
     }
 
-    /// What no thruster does, whose thrust has one direction.
+    /// Checks the failure of a thruster, whose thrust has a fixed direction.
     fn thruster_fault(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", self.kind()), why));
         match self {
@@ -209,23 +210,23 @@ impl Failure {
     }
 }
 
-/// What failures make of one value: a torque, a moment, the part of a thrust.
+/// Failures that act on one value: a torque, a moment, or the fraction of a thrust.
 #[derive(Clone, Debug)]
 pub(super) struct Failing {
-    /// The failures, and what those that stick hold.
+    /// Failures, and the held value of a stuck one.
     failures: Vec<(Failure, Option<f64>)>,
-    /// When one begins or ends, latest first.
+    /// Times at which a failure begins or ends, latest first.
     edges: Vec<Instant>,
-    /// What is given of what should be, if it is not the same all the time.
+    /// Factor on the commanded value, and the constant value that replaces it, if any.
     factor: f64,
     fixed: Option<f64>,
-    /// What is added.
+    /// Constant added to the value.
     added: f64,
     sines: Vec<Sine>,
 }
 
 impl Failing {
-    /// The failures that concern a value, none of which has begun; nothing if there are none.
+    /// Creates the failures that concern a value, none of which has begun; `None` if there are none.
     pub fn new(failures: &[Failure], concerns: impl Fn(&Lasting<'_>) -> bool) -> Option<Self> {
         let own: Vec<_> = failures.iter().filter(|failure| concerns(&failure.lasting())).cloned().collect();
         if own.is_empty() {
@@ -242,12 +243,12 @@ impl Failing {
         Some(Self { failures, edges, factor: 1.0, fixed: None, added: 0.0, sines: Vec::new() })
     }
 
-    /// When a failure begins or ends next.
+    /// Returns the next time at which a failure begins or ends.
     pub fn due(&self) -> Option<Instant> {
         self.edges.last().copied()
     }
 
-    /// Begins and ends failures, of an actuator that should give this now; tells whether any did.
+    /// Starts and ends failures at `now`, given the commanded value. Returns true if any started or ended.
     pub fn serve(&mut self, now: Instant, wanted: f64) -> bool {
         let before = self.edges.len();
         while self.edges.last().is_some_and(|edge| *edge <= now) {
@@ -256,7 +257,7 @@ impl Failing {
         if self.edges.len() == before {
             return false;
         }
-        // Without what is added, which is so beside a value that sticks.
+        // Without added errors, which act in addition to a stuck value.
         let given = self.fixed.unwrap_or(self.factor * wanted);
         (self.factor, self.fixed, self.added) = (1.0, None, 0.0);
         self.sines.clear();
@@ -283,22 +284,22 @@ impl Failing {
         true
     }
 
-    /// What is given where this should be, without the sines.
+    /// Returns the output for a commanded value, without the sines.
     pub fn of(&self, wanted: f64) -> f64 {
         self.fixed.unwrap_or(self.factor * wanted) + self.added
     }
 
-    /// The part of what should be that is given; none of what is the same all the time.
+    /// Returns the factor on the commanded value; `None` if the output is constant.
     pub fn part(&self) -> Option<f64> {
         if self.fixed.is_some() { None } else { Some(self.factor) }
     }
 
-    /// The sines that are added now.
+    /// Returns the sines that are added now.
     pub fn sines(&self) -> &[Sine] {
         &self.sines
     }
 
-    /// All the sines that are ever added, each with when it begins and ends.
+    /// Returns all sines of the failures, each with its interval.
     pub fn all_sines(&self) -> impl Iterator<Item = (Sine, Outage)> + '_ {
         let of = |(failure, _): &'_ (Failure, Option<f64>)| {
             let outage = failure.lasting().outage;

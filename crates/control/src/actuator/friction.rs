@@ -1,4 +1,4 @@
-//! Friction in the bearings of wheels, and what their drives add against it.
+//! Friction in the bearings of wheels, and its compensation by the drives.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,15 +23,15 @@ pub struct Friction {
 }
 
 impl Friction {
-    /// The torque up to which the bearing of a wheel holds it (N m).
+    /// Returns the breakaway torque of a wheel's bearing (N m).
     pub fn holds(&self, wheel: usize) -> f64 {
         self.breakaway.as_ref().map_or(self.coulomb.of(wheel), |of| of.of(wheel)).get()
     }
 
-    /// What single values cannot show to be wrong, of so many wheels.
+    /// Checks the values against each other and the number of wheels.
     ///
     /// # Errors
-    /// A key within the friction, and why.
+    /// A `Fault` with a key within the friction and the reason.
     pub fn check(&self, wheels: usize) -> Result<(), Fault> {
         self.coulomb.check("coulomb", wheels)?;
         self.viscous.check("viscous", wheels)?;

@@ -1,7 +1,8 @@
-//! Control moment gyros at work: gimbal rates that are held from command to command, and the angles that they come to.
+//! Run-time state of control moment gyros: gimbal rates held from command to command, and gimbal angles.
 //!
-//! While a gimbal turns at a constant rate, its angle and with it the momentum of its rotor are known functions of time: the motion
-//! evaluates them at its stages. The drives know the angles exactly, those of failed gimbals too; nobody knows of a failure.
+//! While a gimbal rotates at a constant rate, its angle and the momentum of its rotor are known functions of time: the
+//! motion evaluates them at its stages. The drives read the exact angles, those of failed gimbals too; estimators and
+//! laws are not informed of failures.
 
 use super::control_moment_gyros::ControlMomentGyros;
 use super::failure::Failing;
@@ -14,35 +15,35 @@ use crate::record::{self, Steered};
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-/// The control moment gyros of a body.
+/// Run-time state of the control moment gyros of a body.
 #[derive(Clone, Debug)]
 pub struct Gimbals {
     axes: Vec<GyroAxes>,
-    /// Of each rotor (N m s).
+    /// Momentum of each rotor (N m s).
     momentum: f64,
-    /// Largest rate (rad/s).
+    /// Largest gimbal rate (rad/s).
     limit: f64,
     robust: Option<Robustness>,
-    /// Preferred angles (rad), and the gain towards them (1/s).
+    /// Preferred gimbal angles (rad), and the gain towards them (1/s).
     preferred: Option<(Vec<f64>, f64)>,
     settings: Vec<TorquerSetting>,
-    /// The torque on the body that laws ask for, and one of others that they hold against (N m).
+    /// Torque on the body that laws demand, and torque of other sources that the gyros counteract (N m).
     wanted: Vector,
     against: Vector,
-    /// Angles (rad) since an instant, and the rates from there on (rad/s).
+    /// Gimbal angles (rad) at the time `since`, and the rates from then on (rad/s).
     since: Instant,
     angles: Vec<f64>,
     rates: Vec<f64>,
-    /// The rates that the drives are to give, and their failures.
+    /// Commanded rates of the drives (rad/s), and their failures.
     commanded: Vec<f64>,
     failing: Vec<Option<Failing>>,
-    /// When the rates are updated next without a command, and how often.
+    /// Time of the next update of the rates without a command, and the period of these updates.
     updates: Option<(Instant, Span)>,
     steered: Steered,
 }
 
 impl ControlMomentGyros {
-    /// The control moment gyros before their first command, on a body of these settings.
+    /// Creates the control moment gyros before their first command, on a body with these settings.
     pub fn start(&self, axes: &[GyroAxes], settings: &[TorquerSetting]) -> Gimbals {
         let (angles, count) = (self.starts(), axes.len());
         let least_measure = steering::measure(&steering::columns(axes, &angles));
@@ -76,19 +77,19 @@ impl Gimbals {
         self.angles.iter().zip(&self.rates).map(|(angle, rate)| angle + rate * seconds).collect()
     }
 
-    /// Angles go on to now.
+    /// Propagates the angles to `now`.
     fn turn(&mut self, now: Instant) {
         self.angles = self.angles_at(now);
         self.since = now;
     }
 
-    /// The torque on the body of gimbals at these rates, with the columns of their angles (N m).
+    /// Returns the torque on the body (N m) of gimbals with these rates and the columns of their angles.
     fn given(&self, columns: &[Vector], rates: &[f64]) -> Vector {
         columns.iter().zip(rates).fold(Vector::zeros(), |sum, (column, rate)| sum + column * *rate)
             * -self.momentum
     }
 
-    /// The rates that give the body what is wanted, as far as the limit lets them.
+    /// Returns the rates that give the body the demanded torque, within the rate limit.
     fn steer(&self, columns: &[Vector], now: Instant) -> Vec<f64> {
         let wanted = (self.against - self.wanted) / self.momentum;
         let mut rates = steering::rates(columns, self.robust.as_ref(), &wanted, now.seconds());
@@ -102,7 +103,7 @@ impl Gimbals {
             let towards: Vec<f64> =
                 preferred.iter().zip(&self.angles).map(|(to, angle)| gain * (to - angle)).collect();
             let more = steering::cancelling(columns, &towards);
-            // The torque comes first: null motion takes what the limit leaves.
+            // The torque has priority: null motion uses what the limit leaves.
             let part = |(rate, more): (&f64, &f64)| {
                 let room = self.limit - libm::copysign(1.0, *more) * rate;
                 if more.abs() > room { room.max(0.0) / more.abs() } else { 1.0 }
@@ -113,7 +114,7 @@ impl Gimbals {
         rates
     }
 
-    /// The drives give what they are to give, as far as their failures let them.
+    /// Sets the rates to the commanded ones, subject to failures.
     fn drive(&mut self) {
         for (rate, (commanded, failing)) in
             self.rates.iter_mut().zip(self.commanded.iter().zip(&self.failing))
@@ -122,7 +123,7 @@ impl Gimbals {
         }
     }
 
-    /// The rates follow what is wanted and the angles, as they are now.
+    /// Updates the rates for the demanded torque and the current angles.
     fn update(&mut self, now: Instant) {
         let columns = steering::columns(&self.axes, &self.angles);
         self.commanded = self.steer(&columns, now);
@@ -130,7 +131,7 @@ impl Gimbals {
         self.see(&columns);
     }
 
-    /// What the gimbals do from now on counts.
+    /// Updates the extreme values with the rates from now on.
     fn see(&mut self, columns: &[Vector]) {
         let error = self.given(columns, &self.rates) - (self.wanted - self.against);
         let Steered { largest_rate_rad_s, least_measure, largest_error_nm } = &mut self.steered;
@@ -139,7 +140,7 @@ impl Gimbals {
         *largest_error_nm = largest_error_nm.max(error.norm());
     }
 
-    /// Rotors of the body, as they are from now on.
+    /// Returns the rotors of the body with their motion from `now` on.
     fn rotors(&self, now: Instant) -> impl Iterator<Item = Gimbal> {
         let each = self.axes.iter().zip(self.angles_at(now)).zip(&self.rates);
         each.map(|((axes, angle), rate)| Gimbal {
@@ -170,7 +171,7 @@ impl Actuate for Gimbals {
         failing.chain(self.updates.map(|(next, _)| next)).min()
     }
 
-    /// Failures begin and end; rates are updated.
+    /// Starts and ends failures, and updates the rates.
     fn serve(&mut self, now: Instant, _: [f64; 3]) {
         let mut any = false;
         for (failing, commanded) in self.failing.iter_mut().zip(&self.commanded) {
@@ -198,7 +199,7 @@ impl Actuate for Gimbals {
         self.wanted[axis]
     }
 
-    /// When the rates changed last.
+    /// Returns the torque about an axis (N m) at the last change of the rates.
     fn torque(&self, axis: usize) -> f64 {
         self.given(&steering::columns(&self.axes, &self.angles), &self.rates)[axis]
     }
@@ -207,7 +208,7 @@ impl Actuate for Gimbals {
         self.given(&steering::columns(&self.axes, &self.angles_at(now)), &self.rates)[axis]
     }
 
-    /// As if no gimbal failed.
+    /// Returns the reduced moment about an axis (rad/s²) as if no gimbal failed.
     fn moment(&self, axis: usize) -> f64 {
         let columns = steering::columns(&self.axes, &self.angles);
         self.given(&columns, &self.commanded)[axis] / self.settings[axis].inertia

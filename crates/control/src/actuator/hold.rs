@@ -1,4 +1,4 @@
-//! The zero-order hold: in each period the mean of the waveform, and the feedback at its start.
+//! The zero-order hold: in each period, the mean of the waveform and the feedback at the start.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,7 @@ pub struct ZeroOrderHold {
     pub faults: Vec<Failure>,
 }
 
-/// The hold at work.
+/// Run-time state of the zero-order hold.
 #[derive(Clone, Debug)]
 pub struct Holding {
     period: Span,
@@ -32,7 +32,7 @@ pub struct Holding {
 }
 
 impl ZeroOrderHold {
-    /// The hold before its first period.
+    /// Creates the hold before its first period.
     pub fn start(&self, setting: &TorquerSetting) -> Holding {
         Holding {
             period: self.period,

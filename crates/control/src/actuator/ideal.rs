@@ -1,4 +1,4 @@
-//! The ideal actuator: the command itself at every instant, and the waveform of a manoeuvre as it is.
+//! The ideal actuator: the command at every instant, and the exact waveform of a manoeuvre.
 
 use std::sync::Arc;
 
@@ -19,7 +19,7 @@ pub struct Ideal {
     pub faults: Vec<Failure>,
 }
 
-/// The actuator at work.
+/// Run-time state of the ideal actuator.
 #[derive(Clone, Debug)]
 pub struct Executing {
     torque: f64,
@@ -27,7 +27,7 @@ pub struct Executing {
 }
 
 impl Executing {
-    /// The actuator before its first command.
+    /// Creates the actuator before its first command.
     pub fn new(setting: &TorquerSetting) -> Self {
         let share = |waveform: &Arc<Waveform>| match setting.share {
             1.0 => Arc::clone(waveform),

@@ -1,4 +1,4 @@
-//! Imbalance of wheels: forces and torques that turn with them, and their harmonics.
+//! Imbalance of wheels: forces and torques that rotate with them, and their harmonics.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -60,10 +60,10 @@ pub struct Harmonic {
 }
 
 impl Imbalance {
-    /// What single values cannot show to be wrong, of so many wheels.
+    /// Checks the values against the number of wheels.
     ///
     /// # Errors
-    /// A key within the imbalance, and why.
+    /// A `Fault` with a key within the imbalance and the reason.
     pub fn check(&self, wheels: usize) -> Result<(), Fault> {
         self.static_.check("static", wheels)?;
         self.dynamic.check("dynamic", wheels)?;
@@ -76,10 +76,10 @@ impl Imbalance {
         Ok(())
     }
 
-    /// The lines of a wheel on a body, mounted at its point.
+    /// Returns the harmonic lines of a wheel that is mounted at its point of a body.
     ///
     /// # Errors
-    /// A key within the imbalance, and why.
+    /// A `Fault` with a key within the imbalance and the reason.
     pub fn lines(
         &self,
         wheel: usize,
@@ -98,7 +98,7 @@ impl Imbalance {
         let offset = self.positions.get(wheel).map_or_else(Vector::zeros, vector);
         let shapes = body.shapes(name);
         let line = |order: f64, force: [Vector; 2], moment: [Vector; 2]| {
-            // About the point, then about the centre of mass.
+            // Moments about the mounting point, then about the centre of mass.
             let moment = [0, 1].map(|part| moment[part] + offset.cross(&force[part]));
             let torque = [0, 1].map(|part| moment[part] + point.cross(&force[part]));
             let beyond = |part: usize| -> Vec<f64> {
@@ -115,7 +115,7 @@ impl Imbalance {
             HarmonicLine { order, torque, force, forces: [beyond(0), beyond(1)] }
         };
         let (first, second) = across(&rotor.axis);
-        // Along e1 cos(x + phase) + e2 sin(x + phase), of cos x and of sin x.
+        // Coefficients of cos x and sin x in e1 cos(x + phase) + e2 sin(x + phase).
         let turning = |phase: f64| {
             let (sin, cos) = libm::sincos(phase);
             [first * cos + second * sin, second * cos - first * sin]
@@ -139,7 +139,7 @@ impl Imbalance {
     }
 }
 
-/// Two unit vectors across a wheel's axis, which follow each other as it turns.
+/// Returns two unit vectors perpendicular to a wheel's axis, in the sense of its rotation.
 fn across(axis: &Vector) -> (Vector, Vector) {
     let level = Vector::z().cross(axis);
     let first = if level.norm() > 1e-9 { level.normalize() } else { Vector::x() };

@@ -1,4 +1,4 @@
-//! An actuator of one axis that fails at times.
+//! Failures of a single-axis actuator.
 
 use std::sync::Arc;
 
@@ -12,17 +12,17 @@ use crate::sine::Sine;
 use crate::time::Instant;
 use crate::waveform::Waveform;
 
-/// The actuator, and its failures: they change the torque that it gives, and nobody knows of them.
+/// Single-axis actuator with failures, which change its torque; estimators and laws are not informed of them.
 #[derive(Clone, Debug)]
 pub(super) struct Impaired {
     inner: Box<dyn AxisActuate>,
     failing: Failing,
-    /// The sines that are ever added.
+    /// Waveform of all sines that failures add.
     added: Arc<Waveform>,
 }
 
 impl Impaired {
-    /// An actuator with the failures that concern it; as it is, if none do.
+    /// Wraps an actuator with the failures that concern it; returns it unchanged if there are none.
     pub fn by(
         failures: &[Failure],
         concerns: impl Fn(&Lasting<'_>) -> bool,
@@ -34,7 +34,7 @@ impl Impaired {
         Box::new(Self { inner, failing, added: Arc::new(Waveform { terms }) })
     }
 
-    /// What it should give now, its waveform included (N m).
+    /// Returns the torque without failures, with the waveform (N m).
     fn wanted(&self, now: Instant) -> f64 {
         self.inner.torque() + self.inner.forced(now).map_or(0.0, |forced| forced.at(0.0))
     }
@@ -92,7 +92,7 @@ impl AxisActuate for Impaired {
     fn applied(&self, now: Instant, rates: [f64; 2]) -> f64 {
         let (wanted, t) = (self.wanted(now), now.seconds());
         let added: f64 = self.failing.sines().iter().map(|sine| sine.at(t)).sum();
-        // What the rates take stays.
+        // Back-EMF is not affected.
         self.inner.applied(now, rates) - wanted + self.failing.of(wanted) + added
     }
 

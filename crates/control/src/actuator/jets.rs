@@ -1,4 +1,4 @@
-//! Jets: thrusters at points of a spatial body, in groups that turn it about one axis each, by pulses of given length.
+//! Jets: thrusters at points of a three-axis body, fired in groups about the axes or individually.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -11,7 +11,7 @@ use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::time::Span;
 use crate::wrench::Push;
 
-/// Standard acceleration of free fall (m/s²), by which the specific impulse counts.
+/// Standard gravity (m/s²), to which the specific impulse refers.
 const G_0: f64 = 9.806_65;
 
 /// Thrusters that are either on or off (\[Timakov14\]).
@@ -99,7 +99,7 @@ pub struct Groups {
 }
 
 impl Groups {
-    /// Those of roll, pitch and yaw.
+    /// Returns the groups of roll, pitch and yaw.
     pub fn each(&self) -> [Option<&Pair>; 3] {
         [&self.roll, &self.pitch, &self.yaw].map(Option::as_ref)
     }
@@ -115,38 +115,38 @@ pub struct Pair {
     pub minus: Vec<String>,
 }
 
-/// What a group does while it is on.
+/// Effect of a group while it fires.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct FiringGroup {
-    /// Its forces, all together.
+    /// Total force, torque and modal forces of the group.
     pub push: Push,
-    /// Propellant in a second (kg/s).
+    /// Propellant flow (kg/s).
     pub flow: f64,
-    /// Absolute acceleration about the group's own axis, m = |M_a|/J_aa (rad/s²).
+    /// Absolute acceleration about the group's axis, m = |M_a|/J_aa (rad/s²).
     pub acceleration: f64,
 }
 
 impl FiringGroup {
-    /// Two groups that do nothing to a body with so many modes.
+    /// Returns two groups without effect on a body with `modes` modes.
     pub(super) fn idle(modes: usize) -> [Self; 2] {
         let push = Push { forces: vec![0.0; modes], ..Push::default() };
         [(); 2].map(|()| Self { push: push.clone(), ..Self::default() })
     }
 }
 
-/// What a thruster does while it is open.
+/// Effect of a thruster while it is open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct OpenThruster {
-    /// Its force.
+    /// Force, torque and modal forces of the thruster.
     pub push: Push,
-    /// Propellant in a second (kg/s).
+    /// Propellant flow (kg/s).
     pub flow: f64,
     /// Thrust (N).
     pub thrust: f64,
 }
 
 impl Jets {
-    /// What each thruster does to a body that has their points.
+    /// Returns the effect of each thruster on a body that has the thrusters' points.
     pub fn nozzles_on(&self, body: &Spatial) -> Vec<OpenThruster> {
         let nozzle = |thruster: &Thruster| {
             let thrust = thruster.thrust.get();
@@ -158,7 +158,7 @@ impl Jets {
         self.thrusters.iter().map(nozzle).collect()
     }
 
-    /// The groups in which each thruster is: axis, and 0 for plus or 1 for minus.
+    /// Returns the groups of each thruster: axis, and 0 for plus or 1 for minus.
     pub(super) fn memberships(&self) -> Vec<Vec<[usize; 2]>> {
         let Some(groups) = &self.groups else { return Vec::new() };
         let of = |thruster: &Thruster| {
@@ -173,11 +173,11 @@ impl Jets {
         self.thrusters.iter().map(of).collect()
     }
 
-    /// The groups on a body, of jets that act about these axes: for each axis, plus and minus. Without groups about another one
-    /// they do nothing there.
+    /// Checks the jets and returns the groups on a body: plus and minus about each axis. `acts` selects the axes about
+    /// which the jets act; about another axis without groups they have no effect.
     ///
     /// # Errors
-    /// A key within the jets, and why.
+    /// A `Fault` with a key within the jets and the reason.
     pub fn groups_on(&self, body: &Spatial, acts: [bool; 3]) -> Result<[[FiringGroup; 2]; 3], Fault> {
         for (index, thruster) in self.thrusters.iter().enumerate() {
             let refused = |key: &str, why: String| Err(Fault::new(format!("thrusters[{index}].{key}"), why));
@@ -267,13 +267,13 @@ impl Jets {
         Ok(FiringGroup { push, flow, acceleration })
     }
 
-    /// The names of the thrusters.
+    /// Returns the names of the thrusters.
     pub fn names(&self) -> Vec<String> {
         self.thrusters.iter().map(|thruster| thruster.name.clone()).collect()
     }
 
-    /// The jets before the first command, with what their groups and their thrusters do; `period` is that of the law, for jets without
-    /// one of their own.
+    /// Returns the run-time state before the first command, with the effects of groups and thrusters; `period` is the
+    /// law's, for jets without their own.
     pub fn start(&self, fitted: (&[[FiringGroup; 2]; 3], &[OpenThruster]), period: Span) -> Box<dyn Actuate> {
         match self.allocation {
             Firing::Groups => Box::new(Pulsing::new(self, fitted, period)),
@@ -281,7 +281,7 @@ impl Jets {
         }
     }
 
-    /// What becomes of a wanted pulse.
+    /// Returns the quantisation of pulse lengths.
     pub fn width(&self) -> PulseWidth {
         PulseWidth { minimum: self.minimum_on, quantum: self.quantum }
     }

@@ -1,6 +1,7 @@
-//! Magnetorquers along the body's axes: magnetic moments whose torque is moment times field, at every instant as both are.
+//! Magnetorquers along the body's axes: magnetic moments whose torque is moment times field at every instant.
 //!
-//! A torque T that is wanted becomes the moment B x T/B², whose torque m x B is the part of T across the field (\[Wertz78\]).
+//! A demanded torque T gives the moment B x T/B², whose torque m x B is the part of T perpendicular to the field
+//! (\[Wertz78\]).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -26,7 +27,7 @@ pub struct Magnetorquers {
 }
 
 impl Magnetorquers {
-    /// The torquers before their first command.
+    /// Creates the torquers before their first command.
     pub fn start(&self, settings: &[TorquerSetting]) -> Torquing {
         Torquing {
             limits: [0, 1, 2].map(|axis| self.moment.about(axis).get()),
@@ -41,29 +42,29 @@ impl Magnetorquers {
         }
     }
 
-    /// The length of the largest moment (A m²).
+    /// Returns the length of the largest magnetic moment (A m²).
     pub fn largest(&self) -> f64 {
         Vector::from_fn(|axis, _| self.moment.about(axis).get()).norm()
     }
 }
 
-/// The torquers at work.
+/// Run-time state of the magnetorquers.
 #[derive(Clone, Debug)]
 pub struct Torquing {
     limits: [f64; 3],
     settings: Vec<TorquerSetting>,
-    /// The field in the body's axes as it is known (T).
+    /// Magnetic field in the body's axes (T), as last measured; `None` before that.
     field: Option<Vector>,
-    /// The torque that is asked for (N m).
+    /// Demanded torque (N m).
     wanted: Vector,
-    /// What is held, in the body's axes (A m²).
+    /// Commanded magnetic moment, in the body's axes (A m²).
     moment: Vector,
-    /// The failures of each.
+    /// Failures of each torquer.
     failing: [Option<Failing>; 3],
 }
 
 impl Torquing {
-    /// The moments that there are (A m²), of torquers that may fail.
+    /// Returns the actual moments (A m²), subject to failures.
     fn held(&self) -> Vector {
         let of = |axis: usize| {
             let wanted = self.moment[axis];
@@ -72,8 +73,8 @@ impl Torquing {
         Vector::from_fn(|axis, _| of(axis))
     }
 
-    /// Holds the moment whose torque is the part of this one across the field (N m), made smaller as a whole where it is too
-    /// large.
+    /// Commands the moment whose torque is the part of `torque` (N m) perpendicular to the field, scaled down as a
+    /// whole if a limit is exceeded.
     fn give(&mut self, torque: Vector) {
         self.wanted = torque;
         let moment = self
@@ -85,12 +86,12 @@ impl Torquing {
         self.moment = moment / excess;
     }
 
-    /// The torque in the field as it is known (N m).
+    /// Returns the torque in the measured field (N m).
     fn given(&self) -> Vector {
         self.field.map_or_else(Vector::zeros, |field| self.moment.cross(&field))
     }
 
-    /// Holds the moments that are demanded (A m²), each as large as it may be.
+    /// Commands the demanded moments (A m²), each limited separately.
     fn hold(&mut self, demands: &[Demand]) {
         for (axis, demand) in demands.iter().enumerate().take(3) {
             let wanted = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
@@ -139,7 +140,7 @@ impl Actuate for Torquing {
         self.given()[axis]
     }
 
-    /// What the moments give depends on the field of the instant: the plant tells it. This zero changes no sum, -0 included.
+    /// Returns -0: the torque depends on the current field and is computed by the plant; -0 leaves every sum unchanged.
     fn applied(&self, _: Instant, _: usize, _: [f64; 2]) -> f64 {
         -0.0
     }
@@ -189,7 +190,7 @@ mod tests {
         let along = field.normalize();
         let exact = torque - along * along.dot(&torque);
         assert!((torquers.given() - exact).norm() < 1e-18);
-        // Ten times the torque asks for more than there is: all of it is made smaller.
+        // Ten times the torque exceeds the limit: all of it is scaled down.
         let mut weak = start("moment = [4.0, 100.0, 100.0]");
         weak.feel(field);
         weak.command(Instant::START, &(torque * 10.0).data.0[0].map(Demand::Torque), [0.0; 3]);

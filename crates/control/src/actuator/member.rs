@@ -1,4 +1,4 @@
-//! The actuators of a scenario as they work together: each with its key, and what it is for.
+//! Actuators of a scenario as a set: each with its key and its task.
 
 use std::borrow::Cow;
 
@@ -7,28 +7,28 @@ use super::{Actuator, Assigned, ControlMomentGyros, Jets, Magnetorquers, Share, 
 use crate::document::Fault;
 use crate::parts::Parts;
 
-/// An actuator among those of a scenario.
+/// Actuator among those of a scenario.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActuatorMember<'a> {
-    /// Its key.
+    /// Key of the actuator in the scenario.
     pub key: String,
-    /// The actuator.
+    /// Kind and settings of the actuator.
     pub kind: Cow<'a, Actuator>,
-    /// What it is for.
+    /// Task of the actuator.
     pub task: ActuatorTask,
 }
 
-/// What an actuator is for.
+/// Task of an actuator.
 #[derive(Clone, Debug, PartialEq)]
 pub enum ActuatorTask {
-    /// It executes this share of what laws demand about each axis.
+    /// Execution of this share of the laws' demand about each axis.
     Executes([f64; 3]),
-    /// It unloads the wheels beside it.
+    /// Unloading of the wheels or gyros of the list.
     Unloads(Unloads),
 }
 
 impl ActuatorMember<'_> {
-    /// Its share of what laws demand about an axis.
+    /// Returns the actuator's share of the laws' demand about an axis.
     pub fn share(&self, axis: usize) -> f64 {
         match &self.task {
             ActuatorTask::Executes(shares) => shares[axis],
@@ -36,13 +36,14 @@ impl ActuatorMember<'_> {
         }
     }
 
-    /// The key of how it unloads wheels: `actuator[1].unloads`, or that of the table within wheels that has it.
+    /// Returns the key of the unloading settings: `actuator[1].unloads`, or the table within wheels that contains it.
     pub fn unloads_key(&self) -> String {
         let beside = self.key.rsplit_once('.').map_or("", |(beside, _)| beside);
         if beside.ends_with(".unloading") { beside.to_owned() } else { format!("{beside}.unloads") }
     }
 
-    /// What of its failures does not fit, of one about so many axes: a key, and why.
+    /// Checks the failures of an actuator on a body with `axes` axes; returns the first inconsistent key and the
+    /// reason.
     pub fn failure_fault(&self, axes: usize) -> Option<Fault> {
         let names = if let Actuator::Jets(jets) = &*self.kind { jets.names() } else { Vec::new() };
         let parts = match &*self.kind {
@@ -60,7 +61,7 @@ impl ActuatorMember<'_> {
 }
 
 impl Parts<Assigned> {
-    /// All of them, those too that are written within others.
+    /// Returns all actuators, including those given within others.
     pub fn members(&self) -> Vec<ActuatorMember<'_>> {
         let mut members = Vec::with_capacity(self.len());
         for (index, assigned) in self.iter().enumerate() {
@@ -84,12 +85,12 @@ impl Parts<Assigned> {
         members
     }
 
-    /// The key of one of them, with its kind.
+    /// Returns the key of an actuator, with its kind.
     fn kind_key(&self, index: usize) -> String {
         format!("{}.{}", self.key("actuator", index), self[index].kind.kind())
     }
 
-    /// The only actuator, if there are no others and it executes all that is demanded.
+    /// Returns the only actuator, if there are no others and it executes the whole demand.
     pub fn alone(&self) -> Option<&Actuator> {
         match &**self {
             [only] if !only.is_particular() && only.unloading().is_none() => Some(&only.kind),
@@ -97,39 +98,39 @@ impl Parts<Assigned> {
         }
     }
 
-    /// Whether laws are executed as they are: no failure changes that.
+    /// Returns true if laws are executed exactly, without failures.
     pub fn is_ideal(&self) -> bool {
         matches!(self.alone(), Some(Actuator::Ideal(ideal)) if ideal.faults.is_empty())
     }
 
-    /// Whether one of them is of a kind.
+    /// Returns true if any actuator satisfies `is`.
     pub fn any(&self, is: impl Fn(&Actuator) -> bool) -> bool {
         self.iter().any(|assigned| is(&assigned.kind))
     }
 
-    /// The first of a kind, and its key.
+    /// Returns the first actuator of a kind, with its key.
     fn first<'a, T>(&'a self, of: impl Fn(&'a Actuator) -> Option<T>) -> Option<(T, String)> {
         self.iter()
             .enumerate()
             .find_map(|(index, assigned)| Some((of(&assigned.kind)?, self.kind_key(index))))
     }
 
-    /// The flywheel about the first axis, and its key.
+    /// Returns the flywheel about the first axis, with its key.
     pub fn wheel(&self) -> Option<(&Wheel, String)> {
         self.first(|kind| if let Actuator::Wheel(wheel) = kind { Some(wheel) } else { None })
     }
 
-    /// The reaction wheels, and their key.
+    /// Returns the reaction wheels, with their key.
     pub fn wheels(&self) -> Option<(&Wheels, String)> {
         self.first(|kind| if let Actuator::Wheels(wheels) = kind { Some(wheels) } else { None })
     }
 
-    /// The control moment gyros, and their key.
+    /// Returns the control moment gyros, with their key.
     pub fn control_moment_gyros(&self) -> Option<(&ControlMomentGyros, String)> {
         self.first(|kind| if let Actuator::ControlMomentGyros(gyros) = kind { Some(gyros) } else { None })
     }
 
-    /// The jets, laws act by them or not, and their key.
+    /// Returns the jets, for control or for unloading, with their key.
     pub fn jets(&self) -> Option<(&Jets, String)> {
         self.first(|kind| if let Actuator::Jets(jets) = kind { Some(jets) } else { None }).or_else(|| {
             let (wheels, key) = self.wheels()?;
@@ -137,7 +138,7 @@ impl Parts<Assigned> {
         })
     }
 
-    /// The magnetorquers, laws act by them or not, and their key.
+    /// Returns the magnetorquers, for control or for unloading, with their key.
     pub fn magnetorquers(&self) -> Option<(&Magnetorquers, String)> {
         self.first(|kind| if let Actuator::Magnetorquers(torquers) = kind { Some(torquers) } else { None })
             .or_else(|| {

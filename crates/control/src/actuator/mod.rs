@@ -1,4 +1,4 @@
-//! Actuators: how commands are executed, as they are, through a hold, by a wheel, or by pulses of thrusters.
+//! Actuators: they execute commands ideally, through a hold, by wheels or gyros, or by pulses of thrusters.
 
 mod allocated;
 mod allocation;
@@ -92,148 +92,149 @@ pub enum Actuator {
     Own(Own<dyn Effector>),
 }
 
-/// What is demanded of an actuator about an axis.
+/// Demand on an actuator about an axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Demand {
-    /// A torque (N m), or reduced moment (rad/s²) on a body without inertia; of a wheel, units of its command.
+    /// Torque (N m), or reduced moment (rad/s²) on a body without inertia; for a wheel, units of its command.
     Torque(f64),
-    /// A change of the rigid rate within the law's period (rad/s): the actuator makes a pulse of it.
+    /// Change of the rigid rate within the law's period (rad/s), which the actuator converts to a pulse.
     Change(f64),
-    /// A magnetic moment along the axis (A m²), of torquers.
+    /// Magnetic moment along the axis (A m²), for magnetorquers.
     Moment(f64),
 }
 
-/// What an actuator from outside tells of itself before a run.
+/// Settings of an actuator that another crate provides.
 pub trait Effector: Send + Sync {
-    /// The actuator at work, in the setting of each axis.
+    /// Returns the run-time state of the actuator, from the setting of each axis.
     fn start(&self, settings: &[TorquerSetting]) -> Box<dyn Actuate>;
 
-    /// Its largest torque about an axis (N m); none without a limit.
+    /// Returns the actuator's largest torque about an axis (N m); `None` without a limit.
     fn limit(&self, _axis: usize) -> Option<f64> {
         None
     }
 
-    /// What it is, for the program that brought it.
+    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
         None
     }
 }
 
-/// An actuator at work.
+/// Run-time state of an actuator.
 pub trait Actuate: fmt::Debug + Send + Sync {
-    /// Takes over what is demanded from now on about each axis, of a body that turns at these rigid rates (rad/s).
+    /// Sets the demands about the axes from `now` on, of a body with these rigid rates (rad/s).
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]);
 
-    /// Takes over the magnetic field in the body's axes (T) as it is measured, before what follows from it.
+    /// Sets the measured magnetic field in the body's axes (T), before the commands that depend on it.
     fn feel(&mut self, _field: Vector) {}
 
-    /// Makes wheels hold against a torque on the body (N m) from the next command on.
+    /// Makes wheels or gyros counteract a torque on the body (N m) from the next command on.
     fn hold_against(&mut self, _torque: Vector) {}
 
-    /// The next instant at which what it exerts changes by itself.
+    /// Returns the next time at which the output changes without a command.
     fn due(&self) -> Option<Instant> {
         None
     }
 
-    /// Does what is due now, after the laws have decided.
+    /// Executes the changes due at `now`, after the laws have decided.
     fn serve(&mut self, _now: Instant, _rigid: [f64; 3]) {}
 
-    /// Takes over how its rotors in bearings are now, which the motion tells.
+    /// Sets the state of the rotors in bearings, as computed by the motion.
     fn turned(&mut self, _now: Instant, _rotors: &[SlippedRotor]) {}
 
-    /// Adds what it exerts from now on.
+    /// Adds the actuator's output from `now` on to `onto`.
     fn exert(&self, now: Instant, onto: &mut Wrench);
 
-    /// The torque that is asked for about an axis (N m).
+    /// Returns the torque demanded about an axis (N m).
     fn asked(&self, axis: usize) -> f64;
 
-    /// The torque that it holds about an axis (N m), without a waveform and without back-EMF.
+    /// Returns the torque held about an axis (N m), without a waveform and without back-EMF.
     fn torque(&self, axis: usize) -> f64;
 
-    /// The torque that it gives about an axis (N m), of a body that turns at this rate and this rigid rate (rad/s).
+    /// Returns the torque applied about an axis (N m), of a body with this rate and this rigid rate (rad/s).
     fn applied(&self, _now: Instant, axis: usize, _rates: [f64; 2]) -> f64 {
         self.torque(axis)
     }
 
-    /// The reduced moment about an axis (rad/s²) that it holds, without what a rate takes from it.
+    /// Returns the reduced moment held about an axis (rad/s²), without back-EMF and disregarding failures.
     fn moment(&self, axis: usize) -> f64;
 
-    /// What its waveform adds to the rate about the first axis from one time to another (s), in rad/s.
+    /// Returns the change of the rate about the first axis (rad/s) by the waveform between two times (s).
     fn waveform_impulse(&self, _from: f64, _to: f64) -> f64 {
         0.0
     }
 
-    /// Back-EMF for each unit of the rate about the first axis (N m s), and whether it is that of the elastic body.
+    /// Returns the back-EMF torque per unit of the rate about the first axis (N m s), and true if the elastic rate is
+    /// included.
     fn back_emf(&self) -> (f64, bool) {
         (0.0, false)
     }
 
-    /// The wheel about an axis, if there is one that stores momentum, of a body that turns at this rigid rate (rad/s).
+    /// Returns the wheel about an axis, if it stores momentum, of a body with this rigid rate (rad/s).
     fn wheel(&self, _axis: usize, _rigid_rate: f64) -> Option<WheelMotion> {
         None
     }
 
-    /// Wheels about axes of their own, of a body that turns at this rate (rad/s).
+    /// Returns the log rows of wheels about their own axes, of a body with this rate (rad/s).
     fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<record::Wheel> {
         Vec::new()
     }
 
-    /// Control moment gyros, if it consists of them.
+    /// Returns the log row of control moment gyros, if the actuator has any.
     fn gimbals(&self, _now: Instant) -> Option<record::ControlMomentGyros> {
         None
     }
 
-    /// What control moment gyros did since the start.
+    /// Returns the extreme values of the control moment gyros since the start.
     fn steered(&self) -> Option<Steered> {
         None
     }
 
-    /// The magnetic moments that it holds, of torquers.
+    /// Returns the log row of the magnetic moments held by magnetorquers.
     fn magnetic(&self) -> Option<record::Magnetorquers> {
         None
     }
 
-    /// Speeds of wheels in bearings as their drives know them (rad/s).
+    /// Returns the speeds of wheels in bearings that are available to the drives (rad/s).
     fn known_speeds(&self) -> Vec<f64> {
         Vec::new()
     }
 
-    /// The angular momentum that its rotors store now, as far as it is known, in the body's axes (N m s).
+    /// Returns the angular momentum stored in the rotors (N m s, body axes), as available to the drives.
     fn stored(&self, _now: Instant) -> [f64; 3] {
         [0.0; 3]
     }
 
-    /// Of jets, the cycle of pulses that has begun.
+    /// Returns the current cycle of pulses of jets.
     fn cycle(&self) -> Option<JetCycle> {
         None
     }
 
-    /// Of jets, the pulses of the cycle that has begun.
+    /// Returns the pulses of the current cycle of jets.
     fn executed(&self) -> Option<Vec<Pulse>> {
         None
     }
 
-    /// Of jets, what the pulses of this cycle turn the body by, all together (N m s).
+    /// Returns the angular impulse of all pulses of the current cycle of jets (N m s, body axes).
     fn impulse(&self) -> Vector {
         Vector::zeros()
     }
 
-    /// Changes of the rigid rates by commands that are not yet executed (rad/s).
+    /// Returns the changes of the rigid rates (rad/s) by commands that are not yet executed.
     fn queued(&self) -> [f64; 3] {
         [0.0; 3]
     }
 
-    /// The pulses that wait for the cycle that begins.
+    /// Returns the pulses that will be executed in the cycle that begins now.
     fn waiting(&self) -> Vec<Pulse> {
         Vec::new()
     }
 
-    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    /// Returns the error that an actuator of another crate failed with; the run ends there.
     fn halted(&self) -> Option<Halt> {
         None
     }
 
-    /// A copy in the same state.
+    /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Actuate>;
 }
 
@@ -243,24 +244,24 @@ impl Clone for Box<dyn Actuate> {
     }
 }
 
-/// What jets do in a cycle.
+/// Jet activity in a cycle.
 #[derive(Clone, Debug, PartialEq)]
 pub struct JetCycle {
-    /// Signed on-times about each axis (s).
+    /// Signed on-time about each axis (s).
     pub on: [f64; 3],
-    /// Propellant until their end (kg).
+    /// Propellant used until the end of the pulses (kg).
     pub fuel: f64,
-    /// Pulses so far, of all axes together.
+    /// Number of pulses since the start, of all axes together.
     pub pulses: u64,
-    /// Of groups, the signs of those that burn now, 0 for none.
+    /// Sign of the group that fires now about each axis; 0 for none.
     pub burning: [f64; 3],
-    /// Of thrusters that act by themselves, the on-time of each (s).
+    /// On-time of each thruster (s), for jets that are allocated individually.
     pub each: Vec<f64>,
-    /// Of thrusters that act by themselves or may fail, the part of its thrust that each gives now.
+    /// Current fraction of the thrust of each thruster, for jets that are allocated individually or may fail.
     pub open: Vec<f64>,
 }
 
-/// When an actuator with a phase acts first.
+/// Returns the first time at which an actuator with a phase acts.
 fn first(phase: Option<Time>) -> Instant {
     Instant::START + Span::from_seconds(phase.map_or(0.0, Time::get))
 }
@@ -272,7 +273,7 @@ impl Default for Actuator {
 }
 
 impl Actuator {
-    /// The kind, as a scenario names it.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Ideal(_) => "ideal",
@@ -287,7 +288,7 @@ impl Actuator {
         }
     }
 
-    /// Its failures.
+    /// Returns the actuator's failures.
     pub fn failures(&self) -> &[Failure] {
         match self {
             Self::Ideal(ideal) => &ideal.faults,
@@ -302,12 +303,12 @@ impl Actuator {
         }
     }
 
-    /// The period in which the command is executed; none for one that executes it at once.
+    /// Returns the period in which the command is executed; `None` for immediate execution.
     pub fn period(&self) -> Option<Span> {
         self.timing().0
     }
 
-    /// When the first period begins (s), if that is given.
+    /// Returns the start of the first period (s), if given.
     pub fn phase(&self) -> Option<Time> {
         self.timing().1
     }
@@ -326,8 +327,8 @@ impl Actuator {
         }
     }
 
-    /// The actuator of a single axis at work in a setting. Jets, torquers, wheels of three axes, control moment gyros and one from
-    /// outside act about all axes, and are not asked.
+    /// Returns the run-time state of a single-axis actuator. Kinds that act about all axes are not asked for it: jets,
+    /// magnetorquers, wheels of three axes, control moment gyros and those of another crate.
     pub fn about_an_axis(&self, setting: &TorquerSetting) -> Box<dyn AxisActuate> {
         match self {
             Self::Ideal(_)

@@ -1,4 +1,4 @@
-//! Values of wheels: one for all, or one for each.
+//! Values of wheels: one for all wheels, or one for each.
 
 use std::borrow::Cow;
 
@@ -12,14 +12,14 @@ use crate::document::{Fault, read_value};
 /// One value for all wheels, or one for each.
 #[derive(Clone, Debug, PartialEq)]
 pub enum PerWheel<T> {
-    /// For all.
+    /// Value of all wheels.
     All(T),
-    /// For each, in the order of the scenario.
+    /// Value of each wheel, in the order of the scenario.
     Each(Vec<T>),
 }
 
 impl<T: Copy + Default> PerWheel<T> {
-    /// The value of a wheel.
+    /// Returns the value of a wheel.
     pub fn of(&self, wheel: usize) -> T {
         match self {
             Self::All(value) => *value,
@@ -27,10 +27,10 @@ impl<T: Copy + Default> PerWheel<T> {
         }
     }
 
-    /// Whether there are as many as wheels, if there is one for each.
+    /// Checks the number of values against the number of wheels.
     ///
     /// # Errors
-    /// The key, and why.
+    /// A `Fault` with the key and the reason.
     pub fn check(&self, key: &str, wheels: usize) -> Result<(), Fault> {
         match self {
             Self::Each(values) if values.len() != wheels => {

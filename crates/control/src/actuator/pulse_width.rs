@@ -1,8 +1,8 @@
-//! The length of pulses: what an actuator that is on or off makes of a wanted one.
+//! Quantisation of pulse lengths of an on-off actuator.
 
 use crate::quantity::NonNegative;
 
-/// The shortest pulse, and the quantum of all.
+/// Shortest pulse, and quantum of the pulse length.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct PulseWidth {
     /// Shortest pulse (s).
@@ -12,8 +12,8 @@ pub struct PulseWidth {
 }
 
 impl PulseWidth {
-    /// The length of the pulse that comes of a wanted one (s): at most `most`, a multiple of the quantum, nothing of a
-    /// short one.
+    /// Returns the executed length of a demanded pulse (s): at most `most`, a multiple of the quantum, and 0 if it
+    /// would be shorter than the minimum.
     pub fn on_time(&self, wanted: f64, most: f64) -> f64 {
         let (minimum, quantum) = (self.minimum.get(), self.quantum.get());
         let mut on = wanted.min(most);
@@ -29,7 +29,7 @@ impl PulseWidth {
         }
     }
 
-    /// The shortest pulse that is not nothing (s); 0 if there is none.
+    /// Returns the shortest executable pulse (s); 0 without a minimum and a quantum.
     pub fn shortest(&self) -> f64 {
         self.minimum.get().max(self.quantum.get())
     }

@@ -1,4 +1,4 @@
-//! Jets at work: what is commanded, what waits, what burns, and the propellant.
+//! Run-time state of jets in groups: demands, queued pulses, current pulses, and propellant.
 
 use super::valves::Valves;
 use super::{Actuate, Demand, FiringGroup, JetCycle, Jets, OpenThruster, PulseWidth};
@@ -6,21 +6,21 @@ use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-/// A pulse of thrusters, as one that was executed or is about to be.
+/// Pulse of thrusters, executed or queued.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Pulse {
-    /// Index of the input: the group of thrusters.
+    /// Index of the input: the axis of the thruster group.
     pub input: usize,
     /// Rigid acceleration about the group's own axis, signed (rad/s²).
     pub acceleration: f64,
-    /// When it begins, after the last sample (s).
+    /// Start of the pulse after the last sample (s).
     pub start: f64,
-    /// How long it lasts (s).
+    /// Length of the pulse (s).
     pub duration: f64,
 }
 
 impl Pulse {
-    /// Whether it is a pulse, and not nonsense.
+    /// Returns true if the values are finite and the length is positive.
     pub fn is_sound(&self) -> bool {
         self.acceleration.is_finite()
             && self.start.is_finite()
@@ -29,32 +29,33 @@ impl Pulse {
     }
 }
 
-/// The jets of a body.
+/// Run-time state of the jets of a body.
 #[derive(Clone, Debug)]
 pub struct Pulsing {
     groups: [[FiringGroup; 2]; 3],
     width: PulseWidth,
     delayed: bool,
-    /// The cycle of the pulses, and when the next begins where it is not the law's.
+    /// Period of the pulses, and the start of the next cycle unless it is the law's.
     period: Span,
     next: Option<Instant>,
-    /// What laws command.
+    /// Demands of the laws about the axes.
     demands: [Demand; 3],
-    /// Signed on-times that were commanded in the last cycle, and are executed in the next (s).
+    /// Signed on-times commanded in the last cycle, to be executed in the next (s).
     waiting: [f64; 3],
-    /// Signed on-times of this cycle (s).
+    /// Signed on-times of the current cycle (s).
     executed: [f64; 3],
-    /// When the pulse of each axis ends.
+    /// End of the current pulse about each axis.
     ends: [Option<Instant>; 3],
     fuel: f64,
-    /// Pulses so far.
+    /// Number of pulses since the start.
     pulses: u64,
-    /// The valves, and the groups of each thruster, where thrusters fail.
+    /// Valves and groups of each thruster, if thrusters have failures.
     valves: Option<(Valves, Vec<Vec<[usize; 2]>>)>,
 }
 
 impl Pulsing {
-    /// The jets before the first command, of these groups; `period` is that of the law, for jets without one of their own.
+    /// Creates the jets before their first command, with their groups; `period` is the law's, for jets without their
+    /// own.
     pub fn new(
         jets: &Jets,
         (groups, nozzles): (&[[FiringGroup; 2]; 3], &[OpenThruster]),
@@ -77,12 +78,12 @@ impl Pulsing {
         }
     }
 
-    /// The group of an axis whose pulse has this sign.
+    /// Returns the group of an axis for pulses of this sign.
     fn group(&self, axis: usize, on: f64) -> &FiringGroup {
         &self.groups[axis][usize::from(on < 0.0)]
     }
 
-    /// The signed on-time that comes of the command about an axis (s).
+    /// Returns the signed on-time of the demand about an axis (s).
     fn on_time(&self, axis: usize) -> f64 {
         let period = self.period.seconds();
         let (wanted, sign) = match self.demands[axis] {
@@ -96,7 +97,7 @@ impl Pulsing {
         if sign == 0.0 { 0.0 } else { sign.signum() * self.width.on_time(wanted, period) }
     }
 
-    /// Begins a cycle with what is commanded.
+    /// Begins a cycle with the current demands.
     fn begin(&mut self, now: Instant) {
         let commanded = [0, 1, 2].map(|axis| self.on_time(axis));
         self.executed = if self.delayed { self.waiting } else { commanded };
@@ -110,7 +111,7 @@ impl Pulsing {
         self.open(now);
     }
 
-    /// Lets the valves know which groups burn from now on.
+    /// Sets the valves according to the groups that fire from `now` on.
     fn open(&mut self, now: Instant) {
         let Self { valves: Some((valves, members)), ends, executed, .. } = self else { return };
         let burns = |[axis, side]: &&[usize; 2]| {
@@ -119,7 +120,7 @@ impl Pulsing {
         valves.set(now, |index| members[index].iter().filter(burns).count() as f64);
     }
 
-    /// Propellant until the end of the pulses (kg).
+    /// Returns the propellant used until the end of the pulses (kg).
     fn fuel(&self) -> f64 {
         let Some((valves, members)) = &self.valves else { return self.fuel };
         let remaining = |[axis, side]: &[usize; 2]| {

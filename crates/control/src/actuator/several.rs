@@ -1,4 +1,4 @@
-//! Several actuators: each executes its share of what is demanded about each axis, or unloads the wheels or gyros beside it.
+//! Several actuators in one: each executes its share of the demand about each axis, or unloads the wheels or gyros.
 
 use super::unloading::Unloader;
 use super::{Actuate, Actuator, ActuatorTask, Demand, JetCycle, Pulse};
@@ -9,19 +9,19 @@ use crate::record::{self, WheelMotion};
 use crate::time::Instant;
 use crate::wrench::Wrench;
 
-/// The actuators at work.
+/// Run-time state of several actuators.
 #[derive(Clone, Debug)]
 pub struct Several {
-    /// Each with its shares, in the order of the scenario.
+    /// Actuators with their shares about the axes, in the order of the scenario.
     executing: Vec<(Box<dyn Actuate>, [f64; 3])>,
-    /// Which of them keep momentum; the first can be unloaded.
+    /// Indices of the actuators that store momentum; the first can be unloaded.
     keepers: Vec<usize>,
     unloader: Option<Unloader>,
-    /// What laws demand, about so many axes.
+    /// Demand of the laws about each axis.
     demands: Vec<Demand>,
 }
 
-/// The share of a demand. Magnetic moments are for magnetorquers alone.
+/// Returns the share of a demand. Magnetic moments are not shared: they are for magnetorquers alone.
 fn shared(demand: Demand, share: f64) -> Demand {
     match demand {
         Demand::Moment(_) => demand,
@@ -32,7 +32,7 @@ fn shared(demand: Demand, share: f64) -> Demand {
 }
 
 impl Several {
-    /// Actuators about so many axes, before they first act.
+    /// Creates the actuators of a body with `axes` axes, before their first command.
     pub fn new(axes: usize, members: Vec<(&Actuator, &ActuatorTask, Box<dyn Actuate>)>) -> Self {
         let mut several = Self {
             executing: Vec::with_capacity(members.len()),
@@ -56,7 +56,7 @@ impl Several {
         several
     }
 
-    /// All of them.
+    /// Iterates over all actuators, the unloading one included.
     fn each(&self) -> impl Iterator<Item = &dyn Actuate> {
         let executing = self.executing.iter().map(|(actuator, _)| &**actuator);
         executing.chain(self.unloader.iter().map(|unloader| &*unloader.actuator))
@@ -66,7 +66,7 @@ impl Several {
         self.each().map(of).reduce(|sum, next| sum + next).unwrap_or(0.0)
     }
 
-    /// Gives one of them its share of what is demanded.
+    /// Commands one of the actuators with its share of the demands.
     fn pass_on(&mut self, index: usize, now: Instant, rigid: [f64; 3]) {
         let (actuator, shares) = &mut self.executing[index];
         let mut own = [Demand::Torque(0.0); 3];
@@ -76,7 +76,7 @@ impl Several {
         actuator.command(now, &own[..self.demands.len()], rigid);
     }
 
-    /// Makes what keeps momentum hold against a torque from the next command on.
+    /// Makes the actuator that stores momentum counteract a torque (N m) from the next command on.
     fn hold(&mut self, torque: Vector) {
         if let Some(index) = self.keepers.first() {
             self.executing[*index].0.hold_against(torque);
@@ -122,7 +122,7 @@ impl Actuate for Several {
         self.each().for_each(|actuator| actuator.exert(now, onto));
     }
 
-    /// Of those that execute demands.
+    /// Returns the total torque demanded of the actuators that execute demands (N m).
     fn asked(&self, axis: usize) -> f64 {
         let asked = self.executing.iter().map(|(actuator, _)| actuator.asked(axis));
         asked.reduce(|sum, next| sum + next).unwrap_or(0.0)

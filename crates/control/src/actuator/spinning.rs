@@ -1,8 +1,8 @@
-//! Reaction wheels at work: what each exerts, and the momentum that it keeps.
+//! Run-time state of reaction wheels: motor torques and stored momenta.
 //!
-//! A wheel's momentum about its axis is h = I (Omega + a.w), absolute: it changes by the torque of its motor and by nothing
-//! else, h' = u, however the body turns (Euler's third equation of a rotor). So it is known exactly at every instant, and with
-//! it the instant at which it reaches its limit. The speed Omega also depends on the body's rate.
+//! A wheel's momentum about its axis is h = I (Omega + a.w), absolute: only the torque of its motor changes it, h' = u,
+//! whatever the motion of the body (Euler's third equation of a rotor). So it is known exactly at every instant, and
+//! with it the time at which it reaches its limit. The speed Omega also depends on the body's rate.
 
 use super::allocation::Allocation;
 use super::failure::Failing;
@@ -17,50 +17,50 @@ use crate::sensor::{Counting, Tachometer};
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-/// A wheel with friction is at its limit if it misses it by this part of it.
+/// Relative distance from its limit at which a wheel with friction counts as being at the limit.
 const AT_LIMIT: f64 = 1e-12;
 
-/// A wheel with friction is looked at again no sooner than this (s) on its way to its limit.
+/// Shortest time (s) to the next check of a wheel with friction on its way to its limit.
 const SOONEST: f64 = 1e-6;
 
-/// The wheels of a body.
+/// Run-time state of the wheels of a body.
 #[derive(Clone, Debug)]
 pub struct Spinning {
     allocation: Allocation,
-    /// About their axes (kg m²).
+    /// Moment of inertia of each wheel about its axis (kg m²).
     inertia: f64,
-    /// Largest torque (N m), momentum (N m s) and speed (rad/s) of each.
+    /// Largest torque (N m), momentum (N m s) and speed (rad/s) of each wheel.
     torque_limit: f64,
     momentum_limit: f64,
     speed_limit: f64,
     bias: Option<SpeedBias>,
     settings: Vec<TorquerSetting>,
-    /// The torque on the body that laws ask for, and one of others that the wheels hold against (N m).
+    /// Torque on the body that laws demand, and torque of other sources that the wheels counteract (N m).
     wanted: Vector,
     against: Vector,
     wheels: Vec<Spin>,
-    /// Since when the wheels' momenta are counted.
+    /// Time from which on the wheels' momenta are propagated.
     since: Instant,
-    /// How they are, which the motion tells of wheels in bearings.
+    /// State of wheels in bearings, as computed by the motion.
     turned: Vec<SlippedRotor>,
-    /// By what their drives know the speeds; they know them exactly without it.
+    /// Tachometer that provides the speeds to the drives; without one they are exact.
     tachometer: Option<Counting>,
-    /// The momentum that they store by its last reading (N m s).
+    /// Stored momentum by the tachometer's last reading (N m s).
     known: Option<Vector>,
     compensation: Option<Box<Compensation>>,
-    /// What each drive is to exert (N m), and its failures.
+    /// Commanded torque of each drive (N m), and its failures.
     commanded: Vec<f64>,
     failing: Vec<Option<Failing>>,
 }
 
-/// A wheel.
+/// State of a wheel.
 #[derive(Copy, Clone, Debug)]
 struct Spin {
-    /// Momentum when its torque changed last (N m s).
+    /// Momentum at the last change of the torque (N m s).
     momentum: f64,
-    /// What its motor exerts on it (N m).
+    /// Torque of the motor on the wheel (N m).
     torque: f64,
-    /// When it reaches a limit.
+    /// Time at which the wheel reaches a limit.
     full: Option<Instant>,
 }
 
@@ -71,14 +71,14 @@ impl Spin {
 }
 
 impl Wheels {
-    /// The wheels before their first command, on a body of these settings.
+    /// Creates the wheels before their first command, on a body with these settings.
     pub fn start(&self, allocation: &Allocation, settings: &[TorquerSetting]) -> Spinning {
         Spinning::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
     }
 }
 
 impl Spinning {
-    /// The wheels before their first command, at these speeds (rad/s).
+    /// Creates the wheels before their first command, at these speeds (rad/s).
     pub fn new(wheels: &Wheels, allocation: Allocation, speeds: &[f64], settings: &[TorquerSetting]) -> Self {
         let inertia = wheels.inertia.get();
         let rate = Vector::from_fn(|axis, _| settings.get(axis).map_or(0.0, |setting| setting.rate));
@@ -109,7 +109,7 @@ impl Spinning {
         }
     }
 
-    /// Makes their drives know the speeds by a tachometer alone.
+    /// Makes the drives use the tachometer's speeds only.
     #[must_use]
     pub fn read_by(mut self, tachometer: Option<(&Tachometer, Seed)>) -> Self {
         let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
@@ -121,7 +121,7 @@ impl Spinning {
         now.since(self.since).seconds()
     }
 
-    /// Momenta go on to now.
+    /// Propagates the momenta to `now`.
     fn turn(&mut self, now: Instant) {
         let seconds = self.elapsed(now);
         for wheel in &mut self.wheels {
@@ -130,7 +130,7 @@ impl Spinning {
         self.since = now;
     }
 
-    /// Speeds relative to a body that turns at this rate (rad/s), as the drives know them.
+    /// Returns the speeds relative to a body with this rate (rad/s), as available to the drives.
     fn speeds(&self, rate: &Vector) -> Vec<f64> {
         if let Some(tachometer) = &self.tachometer {
             return tachometer.speeds().to_vec();
@@ -142,7 +142,7 @@ impl Spinning {
         axes.zip(&self.wheels).map(|(axis, wheel)| wheel.momentum / self.inertia - axis.dot(rate)).collect()
     }
 
-    /// The torques of the motors that give the body what is wanted, as far as they can.
+    /// Returns the motor torques that give the body the demanded torque, within the torque limit.
     fn motors(&self, speeds: &[f64]) -> Vec<f64> {
         let mut torques = self.allocation.torques(&(self.against - self.wanted));
         let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
@@ -164,8 +164,8 @@ impl Spinning {
         torques
     }
 
-    /// What is left of a torque on a wheel at this speed, and how long until the wheel is at a limit (s). With friction that is
-    /// an instant before, from which the rest is found again.
+    /// Returns the torque within the limits of a wheel at this speed, and the time until the wheel reaches a limit (s).
+    /// With friction that is a time before the limit, at which the rest is computed again.
     fn within_limits(&self, index: usize, speed: f64, torque: f64) -> (f64, f64) {
         let ahead = libm::copysign(1.0, torque);
         let momentum = self.wheels[index].momentum;
@@ -182,7 +182,7 @@ impl Spinning {
         (torque, if net > 0.0 { (room / net).max(SOONEST) } else { f64::INFINITY })
     }
 
-    /// All wheels get the torques that give what is wanted.
+    /// Commands all wheels with the torques that give the demanded torque.
     fn drive_all(&mut self, now: Instant, rigid: &Vector) {
         let speeds = self.speeds(rigid);
         let mut torques = self.motors(&speeds);
@@ -193,7 +193,7 @@ impl Spinning {
         }
     }
 
-    /// A wheel gets a torque from now on, as far as its failures and its limits let it.
+    /// Sets the torque of a wheel from `now` on, subject to its failures and limits.
     fn drive(&mut self, now: Instant, index: usize, speed: f64, torque: f64) {
         self.commanded[index] = torque;
         let torque = self.failing[index].as_ref().map_or(torque, |failing| failing.of(torque));
@@ -202,7 +202,7 @@ impl Spinning {
         (self.wheels[index].torque, self.wheels[index].full) = (torque, full);
     }
 
-    /// The momentum that they store by the speeds that are known, of a body that turns at this rate (rad/s).
+    /// Returns the stored momentum (N m s) by the tachometer's speeds, of a body with this rate (rad/s).
     fn known_momentum(&self, rate: &Vector) -> Option<Vector> {
         let speeds = self.tachometer.as_ref()?.speeds();
         let wheels = self.allocation.axes().iter().zip(speeds);
@@ -211,7 +211,7 @@ impl Spinning {
         }))
     }
 
-    /// Failures begin and end: drives then exert something else.
+    /// Starts and ends failures, which change the torques of the drives.
     fn fail(&mut self, now: Instant, rigid: &Vector) {
         let mut any = false;
         for (failing, commanded) in self.failing.iter_mut().zip(&self.commanded) {
@@ -227,16 +227,16 @@ impl Spinning {
         }
     }
 
-    /// What a drive exerts as long as nobody knows that it fails (N m).
+    /// Returns the torque of a drive (N m) as estimators assume it: without failures.
     fn believed(&self, index: usize) -> f64 {
         if self.failing[index].is_some() { self.commanded[index] } else { self.wheels[index].torque }
     }
 
-    /// What the drives add against friction at these speeds (rad/s), to these torques (N m).
+    /// Adds the friction compensation of the drives at these speeds (rad/s) to the torques (N m).
     fn compensate(&self, speeds: &[f64], torques: &mut [f64]) {
         let Some(Compensation { coulomb, viscous }) = self.compensation.as_deref() else { return };
         for (wheel, (torque, speed)) in torques.iter_mut().zip(speeds).enumerate() {
-            // One at rest is to follow the torque.
+            // A wheel at rest is expected to move with the torque.
             let way = if *speed == 0.0 { *torque } else { *speed };
             let coulomb = if way == 0.0 { 0.0 } else { libm::copysign(coulomb.of(wheel).get(), way) };
             let added = *torque + coulomb + viscous.of(wheel).get() * speed;
@@ -264,7 +264,8 @@ impl Actuate for Spinning {
         self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).chain(failing).min()
     }
 
-    /// A wheel at its limit stays there until the next command. Tachometers are read, and compensation follows them.
+    /// Executes what is due. A wheel at its limit stays there until the next command; tachometers are read, and
+    /// compensation follows.
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
         self.fail(now, &rigid.into());
         let turned = self.turned.iter().map(|wheel| [wheel.angle, wheel.speed]);

@@ -1,9 +1,10 @@
-//! Steering of control moment gyros: gimbal rates whose torque on the body is the one that is wanted.
+//! Steering of control moment gyros: gimbal rates whose torque on the body is the demanded one.
 //!
-//! With unit vectors t_i across the spin axes, the columns of A, rotors of momentum h give the torque -h A d' at gimbal rates d'.
-//! The rates are A' (A A' + P)^-1 u, u being what is wanted for each unit of h. P = 0 is the pseudo-inverse; a weight that grows
-//! towards singular angles keeps the rates finite there (\[Nakamura86\]), and parts of it beside the diagonal that vary with time
-//! move gimbals out of angles at which the wanted torque is along the singular direction (\[Wie01\]).
+//! With unit vectors t_i perpendicular to the spin axes, the columns of A, rotors of momentum h give the torque -h A d'
+//! at gimbal rates d'. The rates are A' (A A' + P)^-1 u, with u the demanded torque per unit of h. P = 0 is the
+//! pseudo-inverse; a weight that grows towards singular angles keeps the rates finite there (\[Nakamura86\]), and
+//! time-varying off-diagonal elements of it move the gimbals out of angles at which the demanded torque is along the
+//! singular direction (\[Wie01\]).
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -74,59 +75,59 @@ pub struct NullMotion {
     pub gain: Positive,
 }
 
-/// At a smaller determinant of A A' the angles are singular to rounding: the pseudo-inverse then is that of a matrix with [`LEAST`]
-/// added, and there is no null motion.
+/// Determinant of A A' below which the angles are singular to rounding: the pseudo-inverse is then that of a matrix
+/// with [`LEAST`] added, and there is no null motion.
 const SINGULAR: f64 = 1e-12;
 
-/// See [`SINGULAR`].
+/// Diagonal element added to A A' at singular angles: see [`SINGULAR`].
 const LEAST: f64 = 1e-9;
 
-/// The axes of a control moment gyro, unit vectors of the body.
+/// Axes of a control moment gyro, unit vectors in the body's axes.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct GyroAxes {
-    /// The direction of its momentum with the gimbal at angle 0.
+    /// Direction of the momentum with the gimbal at angle 0.
     pub spin: Vector,
-    /// The direction towards which the gimbal turns it from there.
+    /// Direction in which the momentum rotates from there.
     pub across: Vector,
 }
 
 impl GyroAxes {
-    /// The direction in which the momentum changes with the gimbal at an angle (rad).
+    /// Returns the direction in which the momentum changes with the gimbal at an angle (rad).
     fn column(&self, angle: f64) -> Vector {
         let (sin, cos) = libm::sincos(angle);
         self.across * cos - self.spin * sin
     }
 }
 
-/// The columns of A with gimbals at these angles (rad).
+/// Returns the columns of A with gimbals at these angles (rad).
 pub fn columns(axes: &[GyroAxes], angles: &[f64]) -> Vec<Vector> {
     axes.iter().zip(angles).map(|(axes, angle)| axes.column(*angle)).collect()
 }
 
-/// A A'.
+/// Returns A A'.
 fn gram(columns: &[Vector]) -> Matrix3<f64> {
     columns.iter().fold(Matrix3::zeros(), |sum, column| sum + column * column.transpose())
 }
 
-/// The singularity measure, sqrt(det(A A')): 0 where the gimbals give no torque in some direction.
+/// Returns the singularity measure, sqrt(det(A A')): 0 where the gimbals give no torque in some direction.
 pub fn measure(columns: &[Vector]) -> f64 {
     f64::sqrt(gram(columns).determinant().max(0.0))
 }
 
-/// A' (A A')^-1 u: the least rates that come to u.
+/// Returns A' (A A')^-1 u: the smallest rates with A d' = u.
 fn least(columns: &[Vector], gram: &Matrix3<f64>, wanted: &Vector) -> Vec<f64> {
     let singular = gram.determinant() < SINGULAR;
     let whole = if singular { gram + Matrix3::from_diagonal_element(LEAST) } else { *gram };
     through(columns, &whole, wanted)
 }
 
-/// A' M^-1 u; nothing of a matrix without an inverse.
+/// Returns A' M^-1 u; zeros if the matrix has no inverse.
 fn through(columns: &[Vector], matrix: &Matrix3<f64>, wanted: &Vector) -> Vec<f64> {
     let solved = matrix.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * wanted);
     columns.iter().map(|column| column.dot(&solved)).collect()
 }
 
-/// Gimbal rates (rad/s) that come to A d' = `wanted`, by the rule: `t` seconds after the start.
+/// Returns gimbal rates (rad/s) with A d' = `wanted` by the steering rule, at `t` (s) after the start.
 pub fn rates(columns: &[Vector], robust: Option<&Robustness>, wanted: &Vector, t: f64) -> Vec<f64> {
     let gram = gram(columns);
     let Some(robust) = robust else { return least(columns, &gram, wanted) };
@@ -137,7 +138,7 @@ pub fn rates(columns: &[Vector], robust: Option<&Robustness>, wanted: &Vector, t
     through(columns, &whole, wanted)
 }
 
-/// What of these rates turns nothing but gimbals: without A' (A A')^-1 A d'; nothing at singular angles.
+/// Returns the null component of these rates, which gives no torque: d' - A' (A A')^-1 A d'; zeros at singular angles.
 pub fn cancelling(columns: &[Vector], rates: &[f64]) -> Vec<f64> {
     let gram = gram(columns);
     if gram.determinant() < SINGULAR {

@@ -1,4 +1,4 @@
-//! A pair of thrusters for each direction: in each period one pulse, centred in it, with the impulse that a hold would have.
+//! A pair of thrusters for each direction: one pulse per period, centred in it, with the impulse of a zero-order hold.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -30,7 +30,7 @@ pub struct Thrusters {
     pub faults: Vec<Failure>,
 }
 
-/// A pulse: this torque (N m) from one instant to another.
+/// Pulse of constant torque (N m) between two times.
 #[derive(Copy, Clone, Debug, PartialEq)]
 struct Pulse {
     torque: f64,
@@ -39,12 +39,12 @@ struct Pulse {
 }
 
 impl Thrusters {
-    /// What becomes of a wanted pulse.
+    /// Returns the quantisation of pulse lengths.
     pub fn width(&self) -> PulseWidth {
         PulseWidth { minimum: self.minimum_on, quantum: self.quantum }
     }
 
-    /// The thrusters before their first period.
+    /// Creates the thrusters before their first period.
     pub fn start(&self, setting: &TorquerSetting) -> Pulsed {
         Pulsed {
             most: self.torque.about(setting.axis).get(),
@@ -60,7 +60,7 @@ impl Thrusters {
     }
 }
 
-/// The thrusters at work.
+/// Run-time state of the thrusters.
 #[derive(Clone, Debug)]
 pub struct Pulsed {
     most: f64,
@@ -71,7 +71,7 @@ pub struct Pulsed {
     feedback: f64,
     held: f64,
     pulse: Option<Pulse>,
-    /// Impulse that the thrusters owe (N m s).
+    /// Impulse left over for the next period (N m s).
     owed: f64,
 }
 
@@ -86,8 +86,8 @@ impl Pulsed {
         self.pulse = (pulse.from < pulse.to).then_some(pulse);
     }
 
-    /// The pulse of a period that begins now and shall give this impulse (N m s), and what it leaves undone (N m s).
-    /// The rest is asked of the next period; it is at most what one period can give.
+    /// Returns the pulse of the period that begins at `now` for this impulse (N m s), and the remaining impulse (N m
+    /// s), at most that of one period, which is added to the next one.
     fn pulse(&self, now: Instant, impulse: f64) -> (Pulse, f64) {
         let period = self.period.seconds();
         let on = self.width.on_time(impulse.abs() / self.most, period);

@@ -1,4 +1,4 @@
-//! Actuators that give a torque about an axis each: one of a body with one angle, three of a body with three axes.
+//! Single-axis actuators: one of a one-axis body, or three of a three-axis body.
 
 use std::fmt;
 use std::sync::Arc;
@@ -14,34 +14,34 @@ use crate::time::{Instant, Span};
 use crate::waveform::Waveform;
 use crate::wrench::Wrench;
 
-/// What an actuator of one axis knows of what is around it.
+/// Body and manoeuvre data that a single-axis actuator needs.
 #[derive(Clone, Debug)]
 pub struct TorquerSetting {
-    /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
+    /// Index of the axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub axis: usize,
-    /// What a unit of the torque accelerates (kg m²).
+    /// Inertia about the axis (kg m²).
     pub inertia: f64,
-    /// The same of the body that the manoeuvre is planned for.
+    /// Inertia about the axis of the body that the manoeuvre is planned for (kg m²).
     pub planned_inertia: f64,
-    /// Rate at the start (rad/s).
+    /// Initial rate about the axis (rad/s).
     pub rate: f64,
-    /// The law's period, if it has one.
+    /// Period of the law, if it has one.
     pub cycle: Option<Span>,
-    /// The manoeuvre's command (N m).
+    /// Command of the manoeuvre (N m).
     pub waveform: Option<Arc<Waveform>>,
-    /// The part of what is demanded about the axis that is the actuator's; 0 of one that does not act about it.
+    /// Share of the demand about the axis that the actuator executes; 0 if it does not act about it.
     pub share: f64,
 }
 
 impl TorquerSetting {
-    /// Impulse of its share of the waveform over the next `h` seconds (N m s).
+    /// Returns the impulse of the actuator's share of the waveform over the next `h` (s), in N m s.
     pub fn planned(&self, now: Instant, h: f64) -> f64 {
         let from = now.seconds();
         self.waveform.as_ref().map_or(0.0, |waveform| self.share * waveform.impulse(from, from + h))
     }
 
-    /// The constant torque of a demand (N m): a change of the rate takes one period of the law, or 1 s without a period. A torque
-    /// stays in the unit of its demand; there is none of a magnetic moment.
+    /// Returns the constant torque of a demand (N m): a change of the rate takes one period of the law, or 1 s without
+    /// a period. A torque stays in the unit of its demand; a magnetic moment gives 0.
     pub fn demanded(&self, demand: &Demand) -> f64 {
         match demand {
             Demand::Torque(torque) => *torque,
@@ -51,67 +51,67 @@ impl TorquerSetting {
     }
 }
 
-/// An actuator of one axis at work.
+/// Run-time state of a single-axis actuator.
 pub trait AxisActuate: fmt::Debug + Send + Sync {
-    /// Takes over a command from now on: a torque (N m), or so many of its units, on a body that turns at this rigid rate
+    /// Sets a command from `now` on: a torque (N m), or a value in the actuator's unit, of a body with this rigid rate
     /// (rad/s).
     fn command(&mut self, now: Instant, command: f64, rigid_rate: f64);
 
-    /// Does what is due now.
+    /// Executes the changes due at `now`.
     fn serve(&mut self, _now: Instant, _rigid_rate: f64) {}
 
-    /// The next instant at which its torque changes by itself.
+    /// Returns the next time at which the torque changes without a command.
     fn due(&self) -> Option<Instant> {
         None
     }
 
-    /// Torque for each unit of its command (N m).
+    /// Returns the torque per unit of the command (N m).
     fn unit(&self) -> f64 {
         1.0
     }
 
-    /// The torque that it holds (N m), without a waveform and without back-EMF.
+    /// Returns the torque held (N m), without a waveform and without back-EMF.
     fn torque(&self) -> f64;
 
-    /// The torque that it would hold without a failure (N m), as who does not know of it takes it to be.
+    /// Returns the torque that would be held without failures (N m), which estimators and laws assume.
     fn believed(&self) -> f64 {
         self.torque()
     }
 
-    /// Sines of the time in its torque, on a body with three axes.
+    /// Returns the sines of time in the torque, on a three-axis body.
     fn sines(&self) -> &[Sine] {
         &[]
     }
 
-    /// The torque that is asked for (N m).
+    /// Returns the demanded torque (N m).
     fn asked(&self) -> f64;
 
-    /// Whether it executes the manoeuvre's waveform as it is.
+    /// Returns true if the actuator executes the manoeuvre's waveform exactly.
     fn follows(&self) -> bool {
         false
     }
 
-    /// The waveform in its torque from now on, on a body with one angle.
+    /// Returns the waveform in the torque from `now` on, on a one-axis body.
     fn forced(&self, _now: Instant) -> Option<Forced> {
         None
     }
 
-    /// The torque that it gives a body with this rate and this rigid rate (N m).
+    /// Returns the torque on a body with this rate and this rigid rate (rad/s), in N m.
     fn applied(&self, _now: Instant, _rates: [f64; 2]) -> f64 {
         self.torque()
     }
 
-    /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
+    /// Returns the back-EMF torque per unit of the rate (N m s), and true if the elastic rate is included.
     fn back_emf(&self) -> (f64, bool) {
         (0.0, false)
     }
 
-    /// Its rotor, of a body that turns at this rigid rate (rad/s), if it stores momentum.
+    /// Returns the rotor of a body with this rigid rate (rad/s), if it stores momentum.
     fn rotor(&self, _rigid_rate: f64) -> Option<WheelMotion> {
         None
     }
 
-    /// A copy in the same state.
+    /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn AxisActuate>;
 }
 
@@ -121,12 +121,12 @@ impl Clone for Box<dyn AxisActuate> {
     }
 }
 
-/// The actuators of all axes; none about one that others serve.
+/// Actuators of all axes; `None` about an axis on which other actuators act.
 #[derive(Clone, Debug)]
 pub struct Torquers(Vec<Option<(Box<dyn AxisActuate>, TorquerSetting)>>);
 
 impl Torquers {
-    /// An actuator in the setting of each axis about which it acts, with the failures that are its own.
+    /// Creates the actuator of each axis about which it acts, with its failures.
     pub fn new(kind: &Actuator, settings: Vec<TorquerSetting>) -> Self {
         let of = |setting: TorquerSetting| {
             let (actuator, axis) = (kind.about_an_axis(&setting), setting.axis);
@@ -136,7 +136,7 @@ impl Torquers {
         Self(settings.into_iter().map(|setting| (setting.share > 0.0).then(|| of(setting))).collect())
     }
 
-    /// A number of the actuator about an axis, 0 where there is none.
+    /// Returns a number of the actuator about an axis; 0 without an actuator.
     fn about(&self, axis: usize, number: impl Fn(&dyn AxisActuate, &TorquerSetting) -> f64) -> f64 {
         let actuator = self.0.get(axis).and_then(Option::as_ref);
         actuator.map_or(0.0, |(actuator, setting)| number(&**actuator, setting))

@@ -1,9 +1,9 @@
-//! Unloading of wheels: beyond a momentum jets or magnetorquers push the body the other way, and the wheels, which hold it,
-//! slow down.
+//! Unloading of wheels: above a momentum limit, jets or magnetorquers exert a torque that the wheels counteract, which
+//! reduces their momentum.
 //!
-//! With the momentum h of the wheels and the field B the moment of magnetorquers is k h x B/B²: its torque is -k times the part
-//! of h across B (\[Wertz78\]). What is along the field waits for the orbit to turn it: over an orbit h falls at the mean rate
-//! k (1 - <b b'>), with b the field's direction.
+//! With the momentum h of the wheels and the field B the moment of magnetorquers is k h x B/B²: its torque is -k times
+//! the part of h perpendicular to B (\[Wertz78\]). The part along the field remains until the field rotates along the
+//! orbit: over an orbit h decreases at the mean rate k (1 - <b b'>), with b the field's direction.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,19 +62,19 @@ pub struct Unloading {
 }
 
 impl Unloading {
-    /// How they unload.
+    /// Returns the settings of the unloading.
     pub(super) fn how(&self) -> Unloads {
         let Self { above, below, torque, gain, period, .. } = *self;
         Unloads { above, below, torque, gain, period, phase: None }
     }
 
-    /// By what they are unloaded.
+    /// Returns the actuator that unloads the wheels.
     pub(super) fn by(&self) -> Actuator {
         let jets = self.jets.clone().map(Actuator::Jets);
         jets.or_else(|| self.magnetorquers.clone().map(Actuator::Magnetorquers)).unwrap_or_default()
     }
 
-    /// What does not fit of by what they are unloaded: a key within the unloading, and why.
+    /// Checks the choice of the unloading actuator; returns a key within the unloading and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: &str| Some(Fault::new(key, why));
         match (&self.jets, &self.magnetorquers) {
@@ -88,7 +88,8 @@ impl Unloading {
 }
 
 impl Unloads {
-    /// What of it does not fit the actuator that unloads: a key, and why, whether the key is within the actuator.
+    /// Checks the settings against the actuator; returns a key and the reason, and true if the key is within the
+    /// actuator.
     pub fn fault(&self, kind: &Actuator) -> Option<(Fault, bool)> {
         let (above, below) = (self.above.get(), self.below.get());
         let at = |key: &str, why: String| Some((Fault::new(key, why), false));
@@ -126,7 +127,7 @@ impl Unloads {
     }
 }
 
-/// A key of jets that does not fit the unloading of wheels, and why.
+/// Checks jets that unload wheels; returns a key of the jets and the reason.
 fn jets_fault(jets: &Jets) -> Option<Fault> {
     let at = |key: &str, why: String| Some(Fault::new(key, why));
     let Some(period) = jets.period.map(Span::seconds) else {
@@ -143,26 +144,26 @@ fn jets_fault(jets: &Jets) -> Option<Fault> {
     None
 }
 
-/// An actuator that unloads wheels, at work.
+/// Run-time state of an actuator that unloads wheels.
 #[derive(Clone, Debug)]
 pub(super) struct Unloader {
     pub actuator: Box<dyn Actuate>,
-    /// Momenta at which it begins and ends (N m s).
+    /// Momenta (N m s) at which unloading begins and ends.
     limits: [f64; 2],
-    /// Of magnetorquers, the gain (1/s).
+    /// Gain of magnetorquers (1/s).
     gain: Option<f64>,
     /// Largest mean torque of jets (N m).
     torque: f64,
     period: Span,
-    /// When the next cycle begins.
+    /// Start of the next cycle.
     next: Instant,
     active: bool,
-    /// What the wheels hold against (N m).
+    /// Torque that the wheels counteract (N m).
     mean: Vector,
 }
 
 impl Unloader {
-    /// An actuator before it first acts.
+    /// Creates the unloader before its first cycle.
     pub fn new(unloads: &Unloads, kind: &Actuator, actuator: Box<dyn Actuate>) -> Self {
         let (period, phase) = match kind {
             Actuator::Jets(jets) => (jets.period, jets.phase),
@@ -180,24 +181,24 @@ impl Unloader {
         }
     }
 
-    /// When it changes what it does.
+    /// Returns the next time at which the actuator's output changes.
     pub fn due(&self) -> Option<Instant> {
         self.actuator.due().into_iter().chain([self.next]).min()
     }
 
-    /// Whether laws command it themselves: magnetorquers, by magnetic moments.
+    /// Returns true if laws command magnetic moments, so that the magnetorquers do not unload.
     pub fn is_taken(&self, demands: &[Demand]) -> bool {
         self.gain.is_some() && demands.iter().any(|demand| matches!(demand, Demand::Moment(_)))
     }
 
-    /// Does what laws demand, of magnetorquers that they command.
+    /// Executes the demands of laws that command the magnetorquers.
     pub fn take(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
         self.actuator.command(now, demands, rigid);
         (self.active, self.mean) = (false, Vector::zeros());
     }
 
-    /// Begins a cycle if one is due: as long as the wheels have too much momentum (N m s), it takes of it what it may. Returns
-    /// what they have to hold against from now on (N m), if that changes.
+    /// Begins a cycle if one is due: if the wheels' momentum `stored` (N m s) is too large, commands a torque that
+    /// reduces it. Returns the torque that the wheels must counteract from now on (N m), if it changes.
     pub fn serve(
         &mut self,
         now: Instant,
@@ -225,11 +226,11 @@ impl Unloader {
         } else {
             self.actuator.impulse() / self.period.seconds()
         };
-        // Of jets the mean torque is 0 most of the time; the field of magnetorquers is another one each time.
+        // The mean torque of jets is 0 most of the time; that of magnetorquers changes with the field each time.
         (std::mem::replace(&mut self.mean, mean) != mean || self.gain.is_some()).then_some(mean)
     }
 
-    /// The torque that shall take momentum from wheels (N m).
+    /// Returns the torque that reduces the wheels' momentum (N m).
     fn wanted(&self, stored: Vector) -> Vector {
         if !self.active {
             return Vector::zeros();
@@ -238,7 +239,7 @@ impl Unloader {
             return stored * -gain;
         }
         let wanted = stored / -self.period.seconds();
-        // The direction stays where one axis has more than the jets may give.
+        // The direction is kept if one axis exceeds the limit of the jets.
         let largest = wanted.amax();
         if largest > self.torque { wanted * (self.torque / largest) } else { wanted }
     }

@@ -1,4 +1,4 @@
-//! The valves of jets: which thrusters are open, what failures make of that, and the propellant that passes.
+//! Valves of jets: which thrusters are open, their failures, and the propellant flow.
 
 use super::failure::{Added, Failing, Failure, Lasting};
 use super::{Jets, OpenThruster, Thruster};
@@ -6,25 +6,25 @@ use crate::quantity::Finite;
 use crate::time::Instant;
 use crate::wrench::{Push, Wrench};
 
-/// The thrusters of a body, each with its failures.
+/// Thrusters of a body, each with its failures.
 #[derive(Clone, Debug)]
 pub(super) struct Valves {
     nozzles: Vec<OpenThruster>,
     failing: Vec<Option<Failing>>,
-    /// How far each is asked to be open: 1, or the number of groups that ask it.
+    /// Commanded opening of each thruster: 1, or the number of groups that open it.
     open: Vec<f64>,
-    /// Propellant so far (kg), until when, and what passes since (kg/s).
+    /// Propellant used (kg) until the time `since`, and the flow from then on (kg/s).
     fuel: f64,
     since: Instant,
     flow: f64,
 }
 
 impl Valves {
-    /// The valves of jets with these nozzles, all closed; none where nothing fails and groups act as they are.
+    /// Creates the closed valves of jets with these nozzles.
     pub fn new(jets: &Jets, nozzles: &[OpenThruster]) -> Self {
         let failing = |(nozzle, thruster): (&OpenThruster, &Thruster)| {
             let own = |of: &Lasting<'_>| of.thruster.is_none_or(|name| name == thruster.name);
-            // What is added is a part of the thrust too.
+            // An added thrust is converted to a fraction of the thrust.
             let part = |failure: &Failure| match failure {
                 Failure::Added(added) => {
                     let constant = Finite::new(added.constant.get() / nozzle.thrust).unwrap_or_default();
@@ -44,22 +44,22 @@ impl Valves {
         }
     }
 
-    /// Whether any ever fails.
+    /// Returns true if any thruster has failures.
     pub fn fail(&self) -> bool {
         self.failing.iter().any(Option::is_some)
     }
 
-    /// When a failure begins or ends next.
+    /// Returns the next time at which a failure begins or ends.
     pub fn due(&self) -> Option<Instant> {
         self.failing.iter().flatten().filter_map(Failing::due).min()
     }
 
-    /// When they changed last.
+    /// Returns the time of the last change.
     pub fn since(&self) -> Instant {
         self.since
     }
 
-    /// The part of its thrust that each gives.
+    /// Returns each thruster with the fraction of its thrust.
     fn parts(&self) -> impl Iterator<Item = (&OpenThruster, f64)> {
         let of = |((nozzle, failing), open): ((_, &Option<Failing>), &f64)| {
             (nozzle, failing.as_ref().map_or(*open, |failing| failing.of(*open)))
@@ -67,7 +67,7 @@ impl Valves {
         self.nozzles.iter().zip(&self.failing).zip(&self.open).map(of)
     }
 
-    /// Opens valves from now on: so far each, with failures that begin or end now.
+    /// Sets the opening of each valve from `now` on, and starts and ends failures.
     pub fn set(&mut self, now: Instant, open: impl Fn(usize) -> f64) {
         self.fuel += self.flow * now.since(self.since).seconds();
         self.since = now;
@@ -80,24 +80,25 @@ impl Valves {
         self.flow = self.parts().map(|(nozzle, part)| nozzle.flow * part).sum();
     }
 
-    /// Propellant until a number of seconds from the last change for each thruster (kg), if nothing else changes.
+    /// Returns the propellant used (kg) until `remaining` (s) after the last change, by thruster, without further
+    /// changes.
     pub fn fuel(&self, remaining: impl Fn(usize) -> f64) -> f64 {
         let until =
             self.parts().enumerate().map(|(index, (nozzle, part))| nozzle.flow * part * remaining(index));
         self.fuel + until.sum::<f64>()
     }
 
-    /// The part of its thrust that each gives now.
+    /// Returns the current fraction of the thrust of each thruster.
     pub fn open(&self) -> Vec<f64> {
         self.parts().map(|(_, part)| part).collect()
     }
 
-    /// The torque about an axis (N m).
+    /// Returns the torque about an axis (N m).
     pub fn torque(&self, axis: usize) -> f64 {
         self.parts().map(|(nozzle, part)| nozzle.push.torque[axis] * part).sum()
     }
 
-    /// Adds what they do.
+    /// Adds the effect of the open thrusters to `onto`.
     pub fn exert(&self, onto: &mut Wrench) {
         for (nozzle, part) in self.parts().filter(|(_, part)| *part != 0.0) {
             onto.push(&scaled(&nozzle.push, part));
@@ -105,7 +106,7 @@ impl Valves {
     }
 }
 
-/// A part of a push.
+/// Returns a push multiplied by a factor.
 pub(super) fn scaled(push: &Push, part: f64) -> Push {
     Push {
         torque: push.torque * part,

@@ -1,4 +1,4 @@
-//! A flywheel on a motor with back-EMF, with a delay, a dead zone, a quantum and a limit of its commands.
+//! A flywheel on a motor with back-EMF; commands have a delay, a dead zone, a quantum and a limit.
 
 use std::collections::VecDeque;
 
@@ -68,7 +68,7 @@ pub struct Rotor {
 }
 
 impl Wheel {
-    /// What is executed of a command: limited, quantised, nothing of a small one.
+    /// Returns the executed value of a command: limited, quantised, and 0 within the dead zone.
     pub fn shaped(&self, command: f64) -> f64 {
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
         let (dead_zone, quantum) = (self.dead_zone.get(), self.quantum.get());
@@ -83,22 +83,22 @@ impl Wheel {
     }
 }
 
-/// The wheel at work.
+/// Run-time state of the wheel.
 #[derive(Clone, Debug)]
 pub struct DrivenWheel {
     wheel: Wheel,
     setting: TorquerSetting,
-    /// What the law commands, and the torque that it comes to without back-EMF (N m).
+    /// Command of the law, and motor torque without back-EMF (N m).
     feedback: f64,
     held: f64,
-    /// Commands that the wheel has not yet taken, with the instants at which it does.
+    /// Commands not yet executed, with the times of their execution.
     delayed: VecDeque<(Instant, f64)>,
-    /// When the next part of the manoeuvre's command is due, unless the law commands earlier.
+    /// Time of the next feedforward update, unless the law commands earlier.
     next: Option<Instant>,
 }
 
 impl Wheel {
-    /// The wheel before its first command.
+    /// Creates the wheel before its first command.
     pub fn start(&self, setting: &TorquerSetting) -> DrivenWheel {
         DrivenWheel {
             wheel: self.clone(),
@@ -112,15 +112,15 @@ impl Wheel {
 }
 
 impl DrivenWheel {
-    /// Commands what the law wants, and the next part of the manoeuvre.
+    /// Queues the sum of the law's command and the feedforward of the manoeuvre.
     fn drive(&mut self, now: Instant) {
         let delay = Span::from_seconds(self.wheel.delay.get());
         let whole = self.feedback + self.feedforward(now);
         self.delayed.push_back((now + delay, self.wheel.shaped(whole)));
     }
 
-    /// What the motor has to add for its share of the waveform over the law's next period, or until the waveform ends: its mean, and the
-    /// back-EMF at its mean rate.
+    /// Returns the feedforward command for the wheel's share of the waveform over the law's next period, or until the
+    /// waveform ends: its mean torque, and the back-EMF at the mean rate.
     fn feedforward(&mut self, now: Instant) -> f64 {
         let (Some(waveform), Some(cycle)) = (&self.setting.waveform, self.setting.cycle) else { return 0.0 };
         let end = Instant::START + Span::from_seconds(waveform.end());
@@ -134,12 +134,12 @@ impl DrivenWheel {
             / self.wheel.gain.get()
     }
 
-    /// Gives the wheel the commands that have come through.
+    /// Executes the commands whose delay has elapsed.
     fn turn(&mut self, now: Instant, rigid_rate: f64) {
         while let Some((_, command)) = self.delayed.front().copied().filter(|(at, _)| *at <= now) {
             self.delayed.pop_front();
             let torque = self.wheel.gain.get() * command;
-            // What accelerates the body takes speed from the wheel.
+            // A torque that accelerates the body decelerates the wheel.
             let spent = self
                 .speed(rigid_rate)
                 .is_some_and(|(speed, limit)| speed.abs() >= limit && speed * torque < 0.0);
@@ -147,7 +147,7 @@ impl DrivenWheel {
         }
     }
 
-    /// Speed of a wheel that stores momentum, and its limit (rad/s).
+    /// Returns speed and speed limit (rad/s) of a wheel that stores momentum.
     fn speed(&self, rigid_rate: f64) -> Option<(f64, f64)> {
         let rotor = self.wheel.rotor.as_ref()?;
         let gained = self.setting.inertia * (rigid_rate - self.setting.rate) / rotor.inertia.get();
@@ -163,7 +163,8 @@ impl AxisActuate for DrivenWheel {
         self.turn(now, rigid_rate);
     }
 
-    /// A law that does not follow the manoeuvre commands nothing while it lasts: the parts of it come all the same.
+    /// Updates the feedforward when due, also under a law that gives no command during the manoeuvre, and executes
+    /// delayed commands.
     fn serve(&mut self, now: Instant, rigid_rate: f64) {
         if self.next == Some(now) {
             self.drive(now);

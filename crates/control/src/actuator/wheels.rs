@@ -1,4 +1,4 @@
-//! Reaction wheels about axes of their own, which together give a torque about three axes and keep its momentum.
+//! Reaction wheels about their own axes, which together give a torque about three axes and store its momentum.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -100,11 +100,11 @@ pub struct SpeedBias {
     pub gain: Positive,
 }
 
-/// The cant of a pyramid with equal torques about all axes: atan(1/sqrt(2)) (rad).
+/// Cant of a pyramid with equal torques about all axes: atan(1/sqrt(2)) (rad).
 const EQUAL_CANT: f64 = 0.615_479_708_670_387_3;
 
 impl Wheels {
-    /// How many there are.
+    /// Returns the number of wheels.
     pub fn count(&self) -> usize {
         match self.arrangement {
             Some(Arrangement::Orthogonal) => 3,
@@ -113,7 +113,7 @@ impl Wheels {
         }
     }
 
-    /// The failures of a wheel, if it ever fails.
+    /// Returns the failures of a wheel, if it has any.
     pub(super) fn failing(&self, wheel: usize) -> Option<Failing> {
         let own = |of: &Lasting<'_>| of.wheel.is_none_or(|number| number.get() as usize == wheel + 1);
         Failing::new(&self.faults, own)
@@ -123,10 +123,10 @@ impl Wheels {
         (0..count).map(|wheel| self.speeds.get(wheel).map_or(0.0, |speed| speed.get())).collect()
     }
 
-    /// The allocation of a torque to them, once all keys fit each other.
+    /// Checks all keys and returns the allocation of a torque to the wheels.
     ///
     /// # Errors
-    /// A key that does not fit the others, and why.
+    /// A `Fault` with a key that does not fit the others and the reason.
     pub fn allocation(&self) -> Result<Allocation, Fault> {
         let axes = self.directions()?;
         let count = axes.len();
@@ -165,7 +165,7 @@ impl Wheels {
         Ok(allocation)
     }
 
-    /// The key of what makes a wheel's motion depend on that of the body, if there is any.
+    /// Returns the key by which a wheel's motion depends on that of the body: friction, imbalance, or `None`.
     pub fn bears(&self) -> Option<&'static str> {
         match (&self.friction, &self.imbalance) {
             (Some(_), _) => Some("friction"),
@@ -174,23 +174,23 @@ impl Wheels {
         }
     }
 
-    /// The key of what makes wheels stick, or shakes the body, if there is any.
+    /// Returns the key by which wheels can stick or vibrate the body: friction, imbalance, or `None`.
     pub fn rubs_or_shakes(&self) -> Option<&'static str> {
         let wheels = self.rotors().map_or(0, |rotors| rotors.len());
         let grips = self.friction.as_ref().is_some_and(|of| (0..wheels).any(|wheel| of.holds(wheel) > 0.0));
         if grips { Some("friction") } else { self.imbalance.as_ref().map(|_| "imbalance") }
     }
 
-    /// The largest speed at the start, or of the bias (rad/s).
+    /// Returns the largest initial speed or bias speed (rad/s).
     pub fn fastest(&self) -> f64 {
         let bias = self.speed_bias.map_or(0.0, |bias| bias.speed.get().abs());
         self.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::max)
     }
 
-    /// The bearings of the wheels on a body.
+    /// Returns the bearings of the wheels on a body.
     ///
     /// # Errors
-    /// A key within the wheels, and why.
+    /// A `Fault` with a key within the wheels and the reason.
     pub fn bearings(&self, body: (&Spatial, &Flexible)) -> Result<Vec<Bearing>, Fault> {
         let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
@@ -209,16 +209,16 @@ impl Wheels {
         self.rotors()?.into_iter().enumerate().map(bearing).collect()
     }
 
-    /// The rotors.
+    /// Returns the rotors of the wheels.
     ///
     /// # Errors
-    /// A key that does not fit the others, and why.
+    /// A `Fault` with a key that does not fit the others and the reason.
     pub fn rotors(&self) -> Result<Vec<HubRotor>, Fault> {
         let spin_inertia = self.inertia.get();
         Ok(self.directions()?.into_iter().map(|axis| HubRotor { axis, spin_inertia }).collect())
     }
 
-    /// The unit axes.
+    /// Returns the unit axes of the wheels.
     fn directions(&self) -> Result<Vec<Vector>, Fault> {
         let Some(arrangement) = self.arrangement else {
             return self.given();
@@ -253,7 +253,7 @@ impl Wheels {
         self.axes.iter().enumerate().map(unit).collect()
     }
 
-    /// The first wheel with a speed at the start that it cannot have.
+    /// Returns the first wheel whose initial speed exceeds a limit, with that speed.
     fn beyond_limits(&self, speeds: &[f64]) -> Option<(usize, f64)> {
         let most = self.speed_limit.map_or(f64::INFINITY, Positive::get);
         let momentum = self.momentum.map_or(f64::INFINITY, Positive::get);

@@ -1,4 +1,4 @@
-//! Adaptation loops: they improve a parameter of the law, and never call it.
+//! Adaptation loops: they tune a parameter of the law to reduce an objective.
 
 mod objective;
 mod random_search;
@@ -27,41 +27,42 @@ pub enum Adaptation {
     Own(Own<dyn Adapt>),
 }
 
-/// What an adaptation from outside tells of itself before a run.
+/// Settings of an adaptation that another crate provides.
 pub trait Adapt: Send + Sync {
-    /// The key of the number of the law that it tunes.
+    /// Returns the key of the law's parameter that is tuned.
     fn tunes(&self) -> &str;
 
-    /// What it measures over each window.
+    /// Returns the objective that is evaluated over each window.
     fn objective(&self) -> Objective {
         Objective::default()
     }
 
-    /// Length of the windows; none of the envelope's mean, whose windows are those of its monitor.
+    /// Returns the length of the windows; `None` for the mean envelope, whose windows are those of its monitor.
     fn window(&self) -> Option<Span> {
         None
     }
 
-    /// The adaptation at work, of a number that begins with this value.
+    /// Returns the run-time state of the adaptation, for a parameter that starts at `value`.
     fn start(&self, value: f64, seed: Seed) -> Box<dyn Learn>;
 
-    /// What it is, for the program that brought it.
+    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
         None
     }
 }
 
-/// An adaptation at work.
+/// Run-time state of an adaptation.
 pub trait Learn: fmt::Debug + Send + Sync {
-    /// Learns the objective over the window that ends now; tells nothing once it has ended.
+    /// Updates the adaptation with the objective over the window that ends at `now`. Returns its step; `None` once it
+    /// has ended.
     fn learn(&mut self, now: Instant, measured: f64) -> Option<SearchStep>;
 
-    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    /// Returns the error that an adaptation of another crate failed with; the run ends there.
     fn halted(&self) -> Option<Halt> {
         None
     }
 
-    /// A copy in the same state.
+    /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Learn>;
 }
 
@@ -72,7 +73,7 @@ impl Clone for Box<dyn Learn> {
 }
 
 impl Adaptation {
-    /// The key of the number of the law that it tunes.
+    /// Returns the key of the law's parameter that is tuned.
     pub fn tunes(&self) -> &str {
         match self {
             Self::RandomSearch(search) => &search.tunes,
@@ -80,7 +81,7 @@ impl Adaptation {
         }
     }
 
-    /// What it measures over each window.
+    /// Returns the objective that is evaluated over each window.
     pub fn objective(&self) -> Objective {
         match self {
             Self::RandomSearch(search) => search.objective,
@@ -88,7 +89,7 @@ impl Adaptation {
         }
     }
 
-    /// Length of the windows, unless they are those of the envelope.
+    /// Returns the length of the windows, unless they are those of the envelope.
     pub fn window(&self) -> Option<Span> {
         match self {
             Self::RandomSearch(search) => search.window,
@@ -96,7 +97,7 @@ impl Adaptation {
         }
     }
 
-    /// The kind, as a scenario names it.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::RandomSearch(_) => "random_search",
@@ -104,7 +105,7 @@ impl Adaptation {
         }
     }
 
-    /// The adaptation at work, of a number that begins with this value.
+    /// Returns the run-time state of the adaptation, for a parameter that starts at `value`.
     pub fn start(&self, value: f64, seed: Seed) -> Box<dyn Learn> {
         match self {
             Self::RandomSearch(constants) => {

@@ -1,4 +1,4 @@
-//! The objectives of an adaptation: what it measures over each window, and makes smaller.
+//! Objectives of an adaptation: the quantities over each window that it reduces.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -31,7 +31,7 @@ pub enum Objective {
 }
 
 impl Objective {
-    /// All of them.
+    /// All objectives.
     pub const ALL: [Self; 10] = [
         Self::EnvelopeMean,
         Self::PointingErrorMean,
@@ -45,17 +45,17 @@ impl Objective {
         Self::WheelPowerMean,
     ];
 
-    /// The one of a word in a scenario.
+    /// Returns the objective with this name in a scenario.
     pub fn named(word: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|objective| objective.word() == word)
     }
 
-    /// Whether it is the default.
+    /// Returns true for the default.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The word for it in a scenario.
+    /// Returns the name of the objective in a scenario.
     pub fn word(self) -> &'static str {
         match self {
             Self::EnvelopeMean => "envelope_mean",
@@ -71,7 +71,7 @@ impl Objective {
         }
     }
 
-    /// Its unit, where torques have this one.
+    /// Returns the unit of the objective, given that of torques.
     pub fn unit(self, torque: &'static str) -> &'static str {
         match self {
             Self::EnvelopeMean

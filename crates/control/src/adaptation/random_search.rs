@@ -1,7 +1,8 @@
-//! Random search with learning: a law's gain follows the falling objective, in the paper the mean envelope (\[Silaev\], steps 1-6).
+//! Random search with learning: a law's gain is moved to reduce an objective, in the paper the mean envelope
+//! (\[Silaev\], steps 1-6).
 //!
 //! After each window the gain moves by a random part of `step`. The sign of the move is kept while the objective
-//! falls and turned when it rises, except for one rise after `memory` falls. From `earliest_freeze` on, the gain
+//! falls and reversed when it rises, except for one rise after `memory` falls. From `earliest_freeze` on, the gain
 //! is frozen once the objective has changed by less than `tolerance` in `settled` consecutive windows.
 
 use schemars::JsonSchema;
@@ -70,22 +71,22 @@ fn yes() -> bool {
     true
 }
 
-/// One step of the search, as logged.
+/// Step of the search, as logged.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SearchStep {
-    /// What was decided.
+    /// Decision of the step.
     pub decision: Decision,
-    /// Relative change of the mean since the window before; NaN after the first.
+    /// Relative change of the objective since the window before; NaN after the first.
     pub change: f64,
-    /// The random part r of the largest move, in [-1, 1]; 0 when frozen.
+    /// Random fraction r of the largest move, in [-1, 1]; 0 when frozen.
     pub draw: f64,
-    /// The gain from now on.
+    /// Gain from now on.
     pub gain: f64,
-    /// Consecutive settled windows so far.
+    /// Number of consecutive settled windows.
     pub settled: u32,
 }
 
-/// The search at work.
+/// Run-time state of the search, without its random numbers.
 #[derive(Clone, Debug)]
 pub struct SearchState {
     constants: RandomSearch,
@@ -98,13 +99,13 @@ pub struct SearchState {
 }
 
 impl SearchState {
-    /// A search that starts from the law's own gain.
+    /// Creates a search that starts from the law's own gain.
     pub fn new(constants: RandomSearch, gain: f64) -> Self {
         Self { constants, gain, draw: 0.0, previous: None, falls: 0, settled: 0, frozen: false }
     }
 
-    /// Learns the objective over the window that ends now, such as the mean envelope, with a fresh uniform number of [0, 1). Answers
-    /// nothing once the gain is frozen.
+    /// Updates the search with the objective over the window that ends at `now`, such as the mean envelope, and a
+    /// uniform random number in [0, 1). Returns `None` once the gain is frozen.
     pub fn learn(&mut self, now: Instant, mean: f64, uniform: f64) -> Option<SearchStep> {
         if self.frozen {
             return None;
@@ -113,7 +114,7 @@ impl SearchState {
             self.draw = 2.0 * uniform - 1.0;
             return Some(self.advance(Decision::Begin, f64::NAN));
         };
-        // Counts may stay at 0.
+        // The objective may stay at 0.
         let change = if mean == previous { 0.0 } else { ((mean - previous) / mean).abs() };
         self.settled = if change < self.constants.tolerance.get() { self.settled + 1 } else { 0 };
         let late_enough = now.since(Instant::START) >= self.constants.earliest_freeze;
@@ -147,7 +148,7 @@ impl SearchState {
     }
 }
 
-/// The search with the numbers that it draws, one for each window.
+/// Run-time state of the search with its random stream, of which each window draws one number.
 #[derive(Clone, Debug)]
 pub(super) struct Drawing {
     search: SearchState,
@@ -155,7 +156,7 @@ pub(super) struct Drawing {
 }
 
 impl Drawing {
-    /// A search in a run.
+    /// Creates a search for a run.
     pub fn new(search: SearchState, seed: Seed) -> Self {
         Self { search, draws: seed.stream("adaptation") }
     }

@@ -1,9 +1,9 @@
-//! No estimator: what is measured is believed.
+//! Pass-through without an estimator: the state estimate is the measurement.
 
 use super::{Estimate, Taken};
 use crate::belief::Belief;
 
-/// The belief is the measurement.
+/// Pass-through of the measured angle and rate into the state estimate.
 #[derive(Copy, Clone, Debug)]
 pub struct Direct;
 

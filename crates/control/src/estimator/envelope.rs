@@ -2,9 +2,10 @@
 //!
 //! Each mode is a phasor Z = x + i (x' + s x)/w_d with s = zeta w and w_d its damped frequency; a_i = abs(Z).
 //! Without damping that is the paper's a_i² = x_i² + (x_i'/w_i)² (\[Silaev\], equation (4)). While the torque
-//! is constant, Z turns about its equilibrium c: Z = c + W exp(-(s + i w_d) h).
+//! is constant, Z rotates about its equilibrium c: Z = c + W exp(-(s + i w_d) h).
 //!
-//! On three axes x is the size of the rotation that a free mode gives the first sensor, and c follows from its modal force.
+//! On three axes x is the size of the rotation that a free mode causes at the first sensor, and c follows from its
+//! modal force.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -46,7 +47,7 @@ pub enum Form {
     Truth,
 }
 
-/// The monitor at work.
+/// Run-time state of the envelope observer.
 #[derive(Clone, Debug)]
 pub struct EnvelopeMonitor {
     form: Form,
@@ -57,27 +58,28 @@ pub struct EnvelopeMonitor {
     integral: f64,
 }
 
-/// One mode's phasor.
+/// Phasor of one mode.
 #[derive(Clone, Debug)]
 struct Track {
     frequency: f64,
     damped: f64,
     decay: f64,
     excitability: f64,
-    /// Of three axes, the rotation of the sensor by a unit of the mode.
+    /// Rotation of the sensor per unit of the mode, of a three-axis body; else 1.
     rotation: f64,
-    /// In the turning frame, whose axis is at exp(-i w_d t): the phasor itself (dynamic), or its deviation from
+    /// Phasor in the rotating frame, whose axis is at exp(-i w_d t): Z itself (dynamic), or its deviation from
     /// equilibrium (trigonometric).
     frame: Phasor,
     equilibrium: Phasor,
-    /// Deviation from equilibrium now.
+    /// Deviation from equilibrium at the current instant.
     deviation: Phasor,
-    /// The turning frame's axis now, exp(i w_d t).
+    /// Axis of the rotating frame at the current instant, exp(i w_d t).
     axis: Phasor,
 }
 
 impl EnvelopeMonitor {
-    /// An observer of a body whose modes the scenario describes, with the inertia that turns torque to moment.
+    /// Creates the observer of a one-axis body with modes `body_modes` and `inertia` (kg m²), by which torques are
+    /// divided.
     pub fn new(spec: &Envelope, body_modes: &[Mode], inertia: f64) -> Self {
         let modes = spec.modes.as_deref().unwrap_or(body_modes);
         Self {
@@ -89,7 +91,7 @@ impl EnvelopeMonitor {
         }
     }
 
-    /// An observer of the free modes of three axes: each with its rotation at the sensor.
+    /// Creates the observer of a three-axis body: each free mode with its rotation at the sensor.
     pub fn of_three_axes(spec: &Envelope, modes: &[(SpatialMode, f64)]) -> Self {
         let track = |(mode, rotation): &(SpatialMode, f64)| {
             let start = Mode::at_rest(mode.frequency, Finite::default(), mode.damping);
@@ -108,13 +110,13 @@ impl EnvelopeMonitor {
         }
     }
 
-    /// Whether it reads the true state, which it likes to see often.
+    /// Returns true for the reference form, which reads the true state at every event.
     pub fn is_true(&self) -> bool {
         self.form == Form::Truth
     }
 
-    /// Follows the modes to `now` under the torque that held since the last call. `truth` is the body's state
-    /// now, of which only the form `truth` knows.
+    /// Advances the phasors to `now` under the torque that held since the last call. `truth` is the body's state at
+    /// `now`, which only the form `truth` uses.
     pub fn advance(&mut self, now: Instant, truth: &State) {
         let h = now.since(self.now).seconds();
         let t = now.seconds();
@@ -144,19 +146,19 @@ impl EnvelopeMonitor {
         }
     }
 
-    /// Takes over a torque that is commanded from now on (N m).
+    /// Sets the torque (N m) that acts from now on.
     pub fn command(&mut self, torque: f64) {
         let moment = torque * self.mobility;
         self.hold(|_, track| track.excitability * moment);
     }
 
-    /// Takes over modal forces of three axes that act from now on (N/sqrt(kg)).
+    /// Sets the modal forces (N/sqrt(kg)) of a three-axis body that act from now on.
     pub fn push(&mut self, forces: &[f64]) {
         let force = |index: usize| forces.get(index).copied().unwrap_or(0.0);
         self.hold(|index, track| track.rotation * force(index) / (track.frequency * track.frequency));
     }
 
-    /// Takes over displacements about which modes swing from now on (rad).
+    /// Sets the equilibrium displacements (rad) of the modes from now on.
     fn hold(&mut self, at: impl Fn(usize, &Track) -> f64) {
         for (index, track) in self.tracks.iter_mut().enumerate() {
             let equilibrium = track.phasor(at(index, track), 0.0);
@@ -169,8 +171,9 @@ impl EnvelopeMonitor {
         }
     }
 
-    /// Takes over what was followed elsewhere until an instant: the integral since the window began (rad s), and of each mode the
-    /// phasor in the turning frame, that frame's axis, the real part of the equilibrium, and the deviation from it.
+    /// Loads the state that a batch has computed up to `now`: the integral since the window began (rad s), and of each
+    /// mode the phasor in the rotating frame, that frame's axis, the real part of the equilibrium, and the deviation
+    /// from it.
     pub fn take_over(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
         (self.now, self.integral) = (now, integral);
         for (track, [re, im, cos, sin, equilibrium, x, y]) in
@@ -183,13 +186,13 @@ impl EnvelopeMonitor {
         }
     }
 
-    /// Integral of the total envelope since the last call (rad s), and a new window.
+    /// Returns the integral of the total envelope since the last call (rad s), and starts a new window.
     pub fn close_window(&mut self) -> f64 {
         std::mem::take(&mut self.integral)
     }
 
-    /// The envelope of each mode at an instant (rad) that is not before the last call of `advance`, under the
-    /// torque that holds.
+    /// Returns the envelope of each mode (rad) at `now`, not before the last call of `advance`, under the current
+    /// torque.
     pub fn at(&self, now: Instant) -> impl Iterator<Item = f64> + '_ {
         let h = now.since(self.now).seconds();
         self.tracks.iter().map(move |track| {
@@ -213,7 +216,7 @@ impl Track {
             deviation: Phasor::default(),
             axis: Complex { re: 1.0, im: 0.0 },
         };
-        // The equilibrium is 0 until the first command, and the frame not yet turned.
+        // The equilibrium is 0 until the first command, and the frame has not rotated yet.
         track.frame = track.phasor(mode.displacement.get(), mode.rate.get());
         track.deviation = track.frame;
         track
@@ -223,7 +226,8 @@ impl Track {
         Complex { re: displacement, im: (rate + self.decay * displacement) / self.damped }
     }
 
-    /// Integral of the mode's envelope over the last `h` seconds, in which its deviation was this at first.
+    /// Returns the integral of the mode's envelope (rad s) over the last `h` (s); `from` is the deviation at their
+    /// start.
     fn integral(&self, from: Phasor, h: f64) -> f64 {
         let Self { equilibrium, deviation, decay, damped, frequency, .. } = *self;
         let ends = [[from.re, from.im], [deviation.re, deviation.im]];

@@ -1,21 +1,21 @@
-//! What an actuator has given about each axis since the last sample, pulse by pulse.
+//! Record of the pulses that an actuator has applied about each axis since the last sample.
 
 use super::adaptive::Pulse;
 use crate::actuator::Actuate;
 use crate::time::Instant;
 
-/// The record of it.
+/// Pulses applied about each axis since the last sample.
 #[derive(Clone, Debug, Default)]
 pub struct GivenRecord {
     moments: [f64; 3],
     since: Instant,
-    /// When the record began.
+    /// Start of the record: the last sample.
     began: Instant,
     pulses: Vec<Pulse>,
 }
 
 impl GivenRecord {
-    /// Takes over the reduced moments (rad/s²) from now on.
+    /// Sets the reduced moments (rad/s²) that act from `now` on.
     pub fn change(&mut self, now: Instant, moments: [f64; 3]) {
         if now > self.since && self.moments != [0.0; 3] {
             let duration = now.since(self.since).seconds();
@@ -27,7 +27,8 @@ impl GivenRecord {
         (self.moments, self.since) = (moments, now);
     }
 
-    /// The pulses since the last sample, which is now. Those of jets are as long as they were commanded, to the last bit.
+    /// Returns the pulses since the last sample and starts a new record at `now`; those of jets have exactly their
+    /// commanded lengths.
     pub fn take(&mut self, now: Instant, actuator: &dyn Actuate) -> Vec<Pulse> {
         self.change(now, self.moments);
         self.began = now;

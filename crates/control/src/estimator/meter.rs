@@ -1,7 +1,8 @@
-//! The meter of an objective: what is measured over consecutive windows, from which the adaptation learns.
+//! The meter of an adaptation's objective: it evaluates the objective over consecutive windows.
 //!
-//! About one axis integrals and peaks are those of the exact motion, stretch by stretch. About three they are means over the
-//! control cycles, as the metrics of these bodies are; torques hold between the instants at which the actuator acts.
+//! On one axis, integrals and peaks are those of the exact motion, piece by piece. On three axes they are means over
+//! the control cycles, like the metrics of these bodies; torques are constant between the instants at which the
+//! actuator acts.
 
 use super::searching::Searching;
 use crate::adaptation::Objective;
@@ -12,51 +13,51 @@ use crate::numerics::quadrature;
 use crate::record;
 use crate::time::{Instant, Span};
 
-/// The meter at work.
+/// Run-time state of the objective meter.
 #[derive(Clone, Debug)]
 pub struct Meter {
-    /// What it measures.
+    /// Objective that is evaluated.
     pub objective: Objective,
-    /// Where the body shall be about one axis.
+    /// Setpoint of a one-axis body.
     goal: Goal,
     window: Span,
     opened: Instant,
-    /// When the window closes.
+    /// Time at which the current window closes.
     pub closes: Instant,
     index: u64,
     sum: f64,
-    /// Of samples, how many.
+    /// Number of samples in `sum`.
     count: u64,
-    /// What was held last, and since when.
+    /// Value held last, and the time from which on it holds.
     held: (f64, Instant),
-    /// Until when the motion was measured.
+    /// Time up to which the motion has been evaluated.
     pub measured: Instant,
-    /// Signs of the torques about the axes that were applied last, and pulses of jets that were counted.
+    /// Signs of the torques about the axes that were applied last, and the count of jet pulses.
     burning: [bool; 3],
     pulses: u64,
     search: Searching,
 }
 
-/// What a window that ends brings.
+/// Results of a window that has ended.
 #[derive(Clone, Debug)]
 pub struct WindowMeans {
-    /// What was measured.
+    /// Log row with the value of the objective.
     pub row: record::Objective,
-    /// The step of the adaptation, with the value before it.
+    /// Step of the adaptation, with the parameter before it; `None` without a step.
     pub step: Option<(record::Adaptation, f64)>,
 }
 
-/// What is seen of one axis over a stretch of the exact motion, beside its angle and torque.
+/// Motion of one axis over a piece of the trajectory, apart from its angle and torque.
 #[derive(Clone, Debug)]
 pub struct Beside {
     /// Rigid part of the angle (rad).
     pub rigid: Polynomial,
-    /// Speed of the wheel at rest and its change with the rigid rate (rad/s, 1), if there is one.
+    /// Wheel speed at zero rigid rate (rad/s) and its change per unit of rigid rate (1), if there is a wheel.
     pub wheel: Option<[f64; 2]>,
 }
 
 impl Meter {
-    /// The meter of a run; windows begin with the goal.
+    /// Creates the meter of a run; the first window starts with the setpoint `goal`.
     pub fn new(objective: Objective, window: Span, goal: Goal, search: Searching) -> Self {
         Self {
             objective,
@@ -75,17 +76,17 @@ impl Meter {
         }
     }
 
-    /// The adaptation.
+    /// Returns the adaptation that reads the meter.
     pub fn search(&self) -> &Searching {
         &self.search
     }
 
-    /// Whether it integrates the motion about one axis.
+    /// Returns true if the objective is an integral or a peak of the motion about one axis.
     pub fn integrates(&self) -> bool {
         !matches!(self.objective, Objective::EnvelopeMean | Objective::Switchings | Objective::Firings)
     }
 
-    /// Takes a stretch of the motion about one axis.
+    /// Adds a piece of the exact motion about one axis.
     pub fn stretch(&mut self, stretch: &Stretch, beside: &Beside) {
         let length = stretch.length;
         let since = stretch.from - self.goal.from.seconds();
@@ -101,7 +102,7 @@ impl Meter {
                 return;
             }
             Objective::RateErrorRms => {
-                // The rate is a derivative with time.
+                // The rate is a derivative with respect to time.
                 let rate = error().derivative();
                 mean_of_square(&rate) / (length * length)
             }
@@ -116,7 +117,7 @@ impl Meter {
         self.sum += part * length;
     }
 
-    /// Takes a sample of three axes: what the objective is the mean, the root mean square or the largest of.
+    /// Adds a sample of a three-axis body, of which the objective is the mean, root mean square or maximum.
     pub fn sample(&mut self, value: f64) {
         match self.objective {
             Objective::PointingErrorPeak => self.sum = self.sum.max(value),
@@ -128,7 +129,7 @@ impl Meter {
         self.count += 1;
     }
 
-    /// Takes a value that holds from now on.
+    /// Sets a value that holds from `now` on, and integrates the previous one.
     pub fn hold(&mut self, now: Instant, value: f64) {
         let (before, since) = self.held;
         if now > since {
@@ -137,14 +138,14 @@ impl Meter {
         self.held = (value, now.max(since));
     }
 
-    /// Counts switchings of the law.
+    /// Counts `switchings` of the law.
     pub fn switched(&mut self, now: Instant, switchings: u32) {
         if now >= self.opened {
             self.sum += f64::from(switchings);
         }
     }
 
-    /// Counts pulses: those of jets so far, or those that begin with these torques about the axes.
+    /// Counts pulses: from the total `pulses` of jets, or, without it, the torques about the axes that start now.
     pub fn fired(&mut self, now: Instant, pulses: Option<u64>, torques: [f64; 3]) {
         let begun = torques.map(|torque| torque != 0.0);
         let new = match pulses {
@@ -157,7 +158,7 @@ impl Meter {
         }
     }
 
-    /// Closes the window that ends now, and lets the adaptation learn.
+    /// Closes the window that ends at `now` and updates the adaptation.
     pub fn close(&mut self, now: Instant) -> WindowMeans {
         if self.objective == Objective::TorqueMean && self.count == 0 {
             self.hold(now, self.held.0);
@@ -184,12 +185,12 @@ impl Meter {
     }
 }
 
-/// The mean of the square over a stretch; a stretch is so short that the quadrature is exact to rounding.
+/// Returns the mean of the square over a piece; a piece is so short that the quadrature is exact to rounding.
 fn mean_of_square(of: &Polynomial) -> f64 {
     quadrature::integral(&[0.0, 1.0], 1.0, |_, s| of.at(s) * of.at(s))
 }
 
-/// The mean of the absolute value of a product over a stretch, broken where a factor changes its sign.
+/// Returns the mean of the absolute value of a product over a piece, split where a factor changes its sign.
 fn mean_of_absolute(factors: &[&Polynomial]) -> f64 {
     let mut breaks = vec![0.0, 1.0];
     for factor in factors {

@@ -1,4 +1,4 @@
-//! Estimators: they turn what was commanded and measured into beliefs.
+//! Estimators: they compute the laws' state estimate from commands and measurements.
 
 pub mod adaptive;
 pub mod attitude;
@@ -64,12 +64,12 @@ pub enum Estimator {
     Own(Own<dyn Observe>),
 }
 
-/// What an estimator from outside tells of itself before a run. It acts at samples.
+/// Settings of an estimator that another crate provides. Such an estimator acts at samples.
 pub trait Observe: Send + Sync {
-    /// The estimator at work, in what it is told of a scenario.
+    /// Returns the run-time state of the estimator in a scenario.
     fn start(&self, known: &Known<'_>, seed: Seed) -> Box<dyn Estimate>;
 
-    /// What it is, for the program that brought it.
+    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
         None
     }
@@ -85,77 +85,79 @@ pub struct Truth {
     pub feeds: Option<Feeds>,
 }
 
-/// What an estimator knows of a scenario before a run.
+/// Scenario data that an estimator is built from.
 #[derive(Clone, Debug)]
 pub struct Known<'a> {
-    /// The estimator that the scenario asks for.
+    /// Estimator that the scenario asks for, if any.
     pub estimator: Option<&'a Estimator>,
-    /// The body about each of its axes, as if that axis were alone.
+    /// Single-axis models of the body, one for each of its axes.
     pub axes: &'a [Planar],
-    /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
+    /// Back-EMF torque of a wheel per unit of rate (N m s); true if the rate is that of the elastic body, not the rigid
+    /// one.
     pub back_emf: (f64, bool),
-    /// How the natural frequencies drift.
+    /// Drift of the natural frequencies.
     pub drift: Option<&'a Drift>,
-    /// The period of the samples, if there are any.
+    /// Sampling period; `None` without sampling.
     pub sampling: Option<Span>,
-    /// Standard deviation of the measured angle (rad).
+    /// Standard deviation of the sensor's angle (rad).
     pub angle_noise: f64,
-    /// The same of the measured rate (rad/s) about each axis, if it is measured.
+    /// Standard deviation of the measured rate (rad/s) about each axis; `None` where no rate is measured.
     pub rate_noise: Vec<Option<f64>>,
-    /// What the law about each axis reads.
+    /// Estimates that the law about each axis reads.
     pub reads: Vec<Reads>,
-    /// The design of adaptive observers.
+    /// Design of adaptive observers, if they are used.
     pub adaptive: Option<&'a adaptive::ObserverDesign>,
-    /// What the sensors are to an attitude filter.
+    /// Noise, latency and role of each sensor for an attitude filter.
     pub attitude: Option<&'a attitude::AttitudeSetting>,
 }
 
-/// A sample of the sensor, and what is around it.
+/// Sensor sample with its time, the target, the actuator and the true state.
 pub struct Taken<'a> {
-    /// When.
+    /// Time of the sample.
     pub now: Instant,
-    /// Angle (rad) and rate (rad/s) about each axis; none of a sensor that is silent.
+    /// Angle (rad) and rate (rad/s) about each axis; `None` if the sensor is silent.
     pub measured: Option<&'a [[f64; 2]]>,
-    /// What each sensor measured now, in the order of the scenario; nothing of one that was not due, or silent.
+    /// Reading of each sensor now, in the order of the scenario; `None` of a sensor that is not due or silent.
     pub readings: &'a [Option<Reading>],
-    /// From where angles count.
+    /// Orientation from which angles are measured.
     pub origin: &'a Orientation,
-    /// The true motion about an axis, for ideal observers.
+    /// True motion about an axis, for ideal observers.
     pub truth: &'a dyn Fn(usize) -> Cow<'a, State>,
-    /// The actuator.
+    /// Actuator with its executed and waiting pulses.
     pub actuator: &'a dyn Actuate,
-    /// How far ahead laws want to know elastic rates (s).
+    /// Longest lead time (s) for which laws read predicted elastic rates.
     pub ahead: f64,
 }
 
-/// An estimator at work: it writes the whole belief.
+/// Run-time state of an estimator, which writes the whole state estimate of each axis.
 pub trait Estimate: fmt::Debug + Send + Sync {
-    /// Takes over the reduced moments about each axis (rad/s²) that the actuator gives from now on.
+    /// Sets the reduced moments about the axes (rad/s²) that the actuator applies from now on.
     fn given(&mut self, _now: Instant, _moments: [f64; 3]) {}
 
-    /// Takes over what a waveform has added to the rate about the first axis (rad/s).
+    /// Adds the rate change about the first axis (rad/s) that a command waveform has caused.
     fn pushed(&mut self, _impulse: f64) {}
 
-    /// Takes a sample.
+    /// Updates the state estimate with a sample.
     fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]);
 
-    /// Carries the belief on from the last sample to now, with angles that count from an origin.
+    /// Predicts the state estimate from the last sample to now, with angles from `origin`.
     fn carry(&self, _now: Instant, _origin: &Orientation, _beliefs: &mut [Belief]) {}
 
-    /// Takes over that angles count from other targets: by so much more about each axis (rad).
+    /// Shifts the angle estimates by `by` (rad, about each axis) after a change of the target.
     fn shift(&mut self, _by: [f64; 3]) {}
 
-    /// Whether it has lost the body, about each axis.
+    /// Returns true about each axis whose filter has lost lock.
     fn lost(&self) -> [bool; 3] {
         [false; 3]
     }
 
-    /// What a filter made of the last sample about an axis, beside the true motion.
+    /// Returns the filter's log row about `axis` after the last sample, with its error against the true motion.
     fn estimate(&self, _axis: usize, _now: Instant, _truth: &State) -> Option<record::Estimate> {
         None
     }
 
-    /// What an attitude filter knows, beside the true orientation and the true bias of its gyro (rad/s).
+    /// Returns the attitude filter's log row, with its errors against the true orientation and the true gyro bias
+    /// (rad/s).
     fn attitude(
         &self,
         _now: Instant,
@@ -165,12 +167,12 @@ pub trait Estimate: fmt::Debug + Send + Sync {
         None
     }
 
-    /// What an attitude filter knows of elastic modes, if it knows any.
+    /// Returns the attitude filter's log row of the elastic modes; `None` if it does not estimate any.
     fn elastic(&self) -> Option<record::ElasticEstimates> {
         None
     }
 
-    /// What adaptive observers know, beside the true rates of the body's modes, and what damping makes of it.
+    /// Returns the log row of adaptive observers, with the true modal rates and the status of active damping.
     fn tracking(
         &self,
         _modal_rates: &dyn Fn() -> Vec<f64>,
@@ -179,23 +181,23 @@ pub trait Estimate: fmt::Debug + Send + Sync {
         None
     }
 
-    /// The filter of a body with one angle, and the mean reduced moment (rad/s²) since its last sample, if now is one; none before
-    /// the first.
+    /// Returns the filter of a one-axis body, and the mean reduced moment (rad/s²) from its last sample to `now`; the
+    /// moment is `None` before the first sample.
     fn filter(&mut self, _now: Instant) -> Option<(&mut kalman::KalmanFilter, Option<f64>)> {
         None
     }
 
-    /// The true state of that filter's components.
+    /// Returns the true values of the state components of the filter from [`Estimate::filter`].
     fn true_state(&self, _now: Instant, _truth: &State) -> Vec<f64> {
         Vec::new()
     }
 
-    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    /// Returns the error that an estimator of another crate failed with; the run ends there.
     fn halted(&self) -> Option<Halt> {
         None
     }
 
-    /// A copy in the same state.
+    /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Estimate>;
 }
 
@@ -205,7 +207,7 @@ impl Clone for Box<dyn Estimate> {
     }
 }
 
-/// The estimator of a scenario at work.
+/// Returns the run-time state of the scenario's estimator.
 pub fn start(known: &Known<'_>, seed: Seed) -> Box<dyn Estimate> {
     if let Some(sampled) = sampled::SampledEstimators::new(known, seed) {
         return Box::new(sampled);
@@ -235,11 +237,11 @@ pub enum Feeds {
 }
 
 impl Estimator {
-    /// Why one that acts at samples needs some.
+    /// Error text for an estimator that needs samples where there are none.
     pub const AT_SAMPLES: &str = "acts at each sample of a `[sensor.sampled]` or a `[sensor.gyro]`, or of a law with a period, and \
                                   there is none";
 
-    /// The kind, as a scenario names it.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Envelope(_) => "envelope",
@@ -254,32 +256,32 @@ impl Estimator {
         }
     }
 
-    /// The attitude filter, if it is one.
+    /// Returns the attitude filter, if the estimator is one.
     pub fn attitude(&self) -> Option<&AttitudeFilter> {
         if let Self::Attitude(filter) = self { Some(filter) } else { None }
     }
 
-    /// The envelope's observer, if it is one.
+    /// Returns the envelope monitor, if the estimator is one.
     pub fn envelope(&self) -> Option<&Envelope> {
         if let Self::Envelope(envelope) = self { Some(envelope) } else { None }
     }
 
-    /// Whether it makes one belief of several sensors.
+    /// Returns true if the estimator fuses several sensors into one state estimate.
     pub fn combines(&self) -> bool {
         matches!(self, Self::Attitude(_) | Self::Own(_))
     }
 
-    /// Whether it leaves angles as they are measured.
+    /// Returns true if the estimator estimates rates only and leaves angles as measured.
     pub fn reads_rates_alone(&self) -> bool {
         matches!(self, Self::RigidRate(_) | Self::Adaptive(_))
     }
 
-    /// Whether it filters measurements.
+    /// Returns true if the estimator is a Kalman filter of angle and rate measurements.
     pub fn filters(&self) -> bool {
         matches!(self, Self::Kalman(_) | Self::ExtendedKalman(_) | Self::UnscentedKalman(_))
     }
 
-    /// Whether it is there to be assessed only.
+    /// Returns true if the estimator runs for assessment only, so that the law does not read it.
     pub fn watches_only(&self) -> bool {
         match self {
             Self::Kalman(filter) => filter.watch_only,
@@ -291,7 +293,8 @@ impl Estimator {
         }
     }
 
-    /// What it writes into the belief, under a law that reads the dominant mode or one that does not.
+    /// Returns the estimates that the law reads in addition to the dominant mode; `dominant`: the law reads the
+    /// dominant mode.
     pub fn feeds(&self, dominant: bool) -> Feeds {
         let given = match self {
             Self::Kalman(filter) => filter.feeds,
@@ -308,7 +311,7 @@ impl Estimator {
         }
     }
 
-    /// The modes that it knows instead of the body's.
+    /// Returns the modes of the estimator's model, if they differ from the body's.
     pub fn modes(&self) -> Option<&[Mode]> {
         match self {
             Self::Envelope(Envelope { modes, .. })
@@ -321,7 +324,7 @@ impl Estimator {
         }
     }
 
-    /// The standard deviation of the measured angle (rad) that it takes instead of the sensor's.
+    /// Returns the standard deviation of the measured angle (rad) that replaces the sensor's own, if given.
     pub fn angle_noise(&self) -> Option<f64> {
         match self {
             Self::Kalman(Kalman { angle_noise, .. })
@@ -336,7 +339,7 @@ impl Estimator {
         }
     }
 
-    /// How many states it estimates of a body with so many modes.
+    /// Returns the number of states that are estimated of a body with `modes` modes.
     pub fn states(&self, modes: usize) -> usize {
         match self {
             Self::Attitude(_) => 6,
@@ -348,7 +351,7 @@ impl Estimator {
         }
     }
 
-    /// The times (s) between which the metrics judge it.
+    /// Returns the interval (s) in which the metrics assess the estimator.
     pub fn assess(&self) -> [f64; 2] {
         let window = match self {
             Self::Kalman(Kalman { assess, .. })

@@ -1,4 +1,4 @@
-//! The envelope monitor: its observer, its windows, and the adaptation that learns from their means.
+//! The envelope monitor: its observer, its windows, and the adaptation that reads their means.
 
 use super::{Envelope, EnvelopeMonitor, Searching};
 use crate::body::Planar;
@@ -7,36 +7,36 @@ use crate::motion::State;
 use crate::record::{self, ModeEnvelope, WindowMean};
 use crate::time::{Instant, Span};
 
-/// The observer at work, window by window.
+/// Run-time state of the envelope monitor: observer and windows.
 #[derive(Clone, Debug)]
 pub struct Monitor {
     observer: EnvelopeMonitor,
     window: Span,
     opened: Instant,
-    /// When the window closes.
+    /// Time at which the current window closes.
     pub closes: Instant,
     index: u64,
-    /// Mean of the window that was closed last (rad).
+    /// Mean envelope over the window closed last (rad); NaN before the first.
     pub mean: f64,
     search: Option<Searching>,
 }
 
-/// What a window that ends brings.
+/// Results of a window that has ended.
 #[derive(Clone, Debug)]
 pub struct WindowEnd {
-    /// Its mean.
+    /// Mean of the envelope over the window.
     pub mean: WindowMean,
-    /// The step of the adaptation, with the value before it.
+    /// Step of the adaptation, with the parameter before it; `None` without a step.
     pub step: Option<(record::Adaptation, f64)>,
 }
 
 impl Monitor {
-    /// The monitor of a body, with the adaptation that learns from it.
+    /// Creates the monitor of a one-axis body, with the adaptation that reads its means.
     pub fn new(spec: &Envelope, model: &Planar, search: Option<Searching>) -> Self {
         Self::of(spec, EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()), search)
     }
 
-    /// The same of three axes: each free mode with its rotation at the sensor.
+    /// Creates the monitor of a three-axis body: each free mode with its rotation at the sensor.
     pub fn of_three_axes(spec: &Envelope, modes: &[(SpatialMode, f64)], search: Option<Searching>) -> Self {
         Self::of(spec, EnvelopeMonitor::of_three_axes(spec, modes), search)
     }
@@ -53,38 +53,39 @@ impl Monitor {
         }
     }
 
-    /// Takes over a torque that is commanded from now on.
+    /// Sets the torque (N m) that is commanded from `now` on.
     pub fn command(&mut self, now: Instant, state: &State, torque: f64) {
         self.observer.advance(now, state);
         self.observer.command(torque);
     }
 
-    /// The same of modal forces of three axes (N/sqrt(kg)).
+    /// Sets the modal forces (N/sqrt(kg)) that act on the modes of a three-axis body from `now` on.
     pub fn push(&mut self, now: Instant, state: &State, forces: &[f64]) {
         self.observer.advance(now, state);
         self.observer.push(forces);
     }
 
-    /// Follows the true state, if that is what it reads.
+    /// Advances the observer to `now` if it uses the true state.
     pub fn see(&mut self, now: Instant, state: impl FnOnce() -> State) {
         if self.observer.is_true() {
             self.observer.advance(now, &state());
         }
     }
 
-    /// Takes over what was followed elsewhere until an instant: see [`EnvelopeMonitor::take_over`].
+    /// Loads the state that a batch has computed up to `now`: see [`EnvelopeMonitor::take_over`].
     pub fn take_over(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
         self.observer.take_over(now, integral, tracks);
     }
 
-    /// Closes the window that ends now, while the law had this tunable number, and lets the adaptation learn.
+    /// Closes the window that ends at `now` and updates the adaptation; `gain`: the law's tuned parameter in the
+    /// window.
     pub fn close(&mut self, now: Instant, state: &State, gain: f64) -> WindowEnd {
         self.observer.advance(now, state);
         let integral = self.observer.close_window();
         self.conclude(now, integral, gain)
     }
 
-    /// The same with the integral of the envelope over the window (rad s).
+    /// Closes the window that ends at `now` with the given integral of the envelope over it (rad s).
     pub fn conclude(&mut self, now: Instant, integral: f64, gain: f64) -> WindowEnd {
         self.mean = integral / self.window.seconds();
         let mean = WindowMean {
@@ -101,12 +102,12 @@ impl Monitor {
         WindowEnd { mean, step }
     }
 
-    /// The adaptation that learns from it.
+    /// Returns the adaptation that reads the window means.
     pub fn search(&self) -> Option<&Searching> {
         self.search.as_ref()
     }
 
-    /// The envelope now, as logged.
+    /// Returns the log row of the envelope at `now`.
     pub fn envelope(&self, now: Instant) -> record::Envelope {
         let modes: Vec<_> = self.observer.at(now).map(|envelope_rad| ModeEnvelope { envelope_rad }).collect();
         record::Envelope { envelope_rad: modes.iter().map(|mode| mode.envelope_rad).sum(), modes }

@@ -1,4 +1,5 @@
-//! The rigid rates: predicted by the actuator's pulses and a steady torque, corrected a little by the measured rates.
+//! Rigid rate estimator: predicted by the actuator's pulses and a steady torque, corrected slightly by the measured
+//! rates.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -23,18 +24,18 @@ pub struct RigidRate {
     pub rate: Each<Finite>,
 }
 
-/// The estimator at work.
+/// Run-time state of the rigid rate estimator.
 #[derive(Clone, Debug)]
 pub struct RateFilter {
     correction: f64,
     rates: Vec<f64>,
-    /// What a steady torque changes from sample to sample (rad/s).
+    /// Rate change per sample due to a steady torque (rad/s).
     drifts: Vec<f64>,
     given: GivenRecord,
 }
 
 impl RigidRate {
-    /// The estimator at the start of a run of a body with so many axes.
+    /// Returns the estimator's state at the start of a run of a body with `axes` axes.
     pub fn start(&self, axes: usize) -> RateFilter {
         RateFilter {
             correction: self.correction.get(),
@@ -46,8 +47,8 @@ impl RigidRate {
 }
 
 impl RateFilter {
-    /// Takes a measured rate about an axis (rad/s), if there is one, and the change of the rigid rate that the pulses since
-    /// the last sample have made (rad/s); returns the estimated rigid rate.
+    /// Updates the estimate about an axis with the measured rate (rad/s), if any, and the rate change `pushed` (rad/s)
+    /// by the pulses since the last sample. Returns the estimated rigid rate (rad/s).
     fn step(&mut self, axis: usize, measured: Option<f64>, pushed: f64) -> f64 {
         let predicted = self.rates[axis] + pushed + self.drifts[axis];
         let innovation = measured.map_or(0.0, |measured| measured - predicted);
@@ -83,7 +84,7 @@ impl Estimate for RateFilter {
 mod tests {
     use super::*;
 
-    /// Without the drift the rates would stay (1 - l)/l = 99 cycles behind.
+    /// Checks the drift term, without which the rates would stay (1 - l)/l = 99 cycles behind.
     #[test]
     fn rates_do_not_stay_behind_a_steady_torque() {
         let correction = Fraction::new(0.01).expect("a fraction");

@@ -1,4 +1,4 @@
-//! Estimators that act at each sample of an axis: what the actuator gave and the sensor measured become a belief of the motion.
+//! Estimators of single axes that act at each sample: ideal observers and Kalman filters.
 
 use super::kalman::{Innovation, KalmanFilter, KalmanSetting, Prediction};
 use super::{Estimate, Estimator, Feeds, Known, Taken};
@@ -13,35 +13,36 @@ use crate::time::Instant;
 #[derive(Clone, Debug)]
 pub struct SampledEstimators(Vec<Track>);
 
-/// The estimator of one axis at work.
+/// Run-time state of the estimator of one axis.
 #[derive(Clone, Debug)]
 struct Track {
     eye: Eye,
     feeds: Feeds,
-    /// Natural frequencies at the start (rad/s), and how they drift.
+    /// Natural frequencies at the start (rad/s); the following fields are the excitabilities and the drift of the
+    /// modes.
     frequencies: Vec<f64>,
     excitability: Vec<f64>,
     drift: Option<Drift>,
-    /// The reduced moment since an instant, and its integral from the last sample until then (rad/s², rad/s).
+    /// Reduced moment (rad/s²) that acts from `since` on, and its integral (rad/s) from the last sample until `since`.
     moment: f64,
     since: Instant,
     impulse: f64,
-    /// The last sample.
+    /// Time of the last sample.
     sampled: Option<Instant>,
     told: Innovation,
 }
 
-/// Who looks.
+/// Estimation method of an axis.
 #[derive(Clone, Debug)]
 enum Eye {
-    /// An ideal observer.
+    /// Ideal observer, which uses the true state.
     Ideal,
-    /// A filter.
+    /// Kalman filter.
     Filter(Box<KalmanFilter>),
 }
 
 impl SampledEstimators {
-    /// The estimators that a scenario asks for, if they act at samples.
+    /// Creates the estimators of all axes; `None` if the scenario's estimator does not act at samples of single axes.
     pub fn new(known: &Known<'_>, seed: Seed) -> Option<Self> {
         let axes = 0..known.axes.len();
         axes.map(|axis| Track::new(known, axis, seed)).collect::<Option<_>>().map(Self)
@@ -149,13 +150,13 @@ impl Track {
         })
     }
 
-    /// Takes over the reduced moment (rad/s²) that the actuator gives from now on.
+    /// Sets the reduced moment (rad/s²) that the actuator applies from `now` on.
     fn given(&mut self, now: Instant, moment: f64) {
         self.impulse += self.moment * now.since(self.since).seconds();
         (self.moment, self.since) = (moment, now);
     }
 
-    /// Takes a sample, at which the sensor measured something or not.
+    /// Updates the state estimate at a sample, with or without a measurement.
     fn take(&mut self, axis: usize, taken: &Taken<'_>, belief: &mut Belief) {
         let now = taken.now;
         self.given(now, self.moment);
@@ -201,7 +202,7 @@ impl Track {
         }
     }
 
-    /// What an ideal observer knows.
+    /// Returns the true dominant mode at time `t` (s).
     fn ideal(&self, t: f64, state: &State) -> Dominant {
         let all = match &self.drift {
             None => Some(1.0),
@@ -220,30 +221,30 @@ impl Track {
         }
     }
 
-    /// The true state of a filter's components.
+    /// Returns the true values of a filter's state components at time `t` (s).
     fn truth(&self, t: f64, state: &State, filter: &KalmanFilter) -> Vec<f64> {
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
         let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         let slope = |mode: usize| self.drift.as_ref().map_or(0.0, |drift| drift.slope(mode, t));
         let mut truth = state.to_vector(&self.frequencies).as_slice().to_vec();
         for at in (model.motion()..model.order()).step_by(2) {
-            // A ratio of all modes is judged by the dominant one.
+            // The true value of a ratio common to all modes is that of the dominant one.
             let mut owners = (0..model.modes()).filter(|owner| model.ratio_of(*owner) == Some(at));
             let of = if model.ratio_of(mode) == Some(at) { mode } else { owners.next().unwrap_or(mode) };
-            // Relative to the frequency that the filter knows.
+            // The ratio is relative to the nominal frequency in the filter's model.
             let own = self.frequencies[of] * mean[at] / model.frequency(of, mean.as_slice());
             truth.extend([own * ratio(of), own * slope(of)]);
         }
         truth
     }
 
-    /// What is logged of a filter.
+    /// Returns the filter's log row at time `t` (s).
     fn row(&self, t: f64, state: &State) -> Option<record::Estimate> {
         let Eye::Filter(filter) = &self.eye else { return None };
         let told = self.told;
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
         let true_ratio = self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
-        // Beside others its covariance is not here, and nothing but the metrics looks.
+        // In a batch, the covariance is kept there, and only the metrics use this row.
         let lent = filter.is_lent();
         let known = model.ratio_of(mode);
         let value = |offset: usize| known.map_or(1.0 - offset as f64, |at| mean[at + offset]);

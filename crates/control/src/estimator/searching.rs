@@ -1,4 +1,4 @@
-//! An adaptation at work, with the number that it tunes.
+//! Run-time state of an adaptation, with the law's parameter that it tunes.
 
 use crate::adaptation::{Adaptation, Learn};
 use crate::own::Halt;
@@ -6,23 +6,24 @@ use crate::random::Seed;
 use crate::record;
 use crate::time::Instant;
 
-/// The adaptation at work.
+/// Run-time state of an adaptation and the current value of its parameter.
 #[derive(Clone, Debug)]
 pub struct Searching {
     search: Box<dyn Learn>,
-    /// The number of the law that it tunes.
+    /// Key of the law's parameter that the adaptation tunes.
     key: String,
-    /// Its value.
+    /// Current value of the parameter.
     value: f64,
 }
 
 impl Searching {
-    /// An adaptation in a run, of a number of the law that begins with this value.
+    /// Creates the run-time state of an adaptation whose parameter starts at `value`.
     pub fn new(adaptation: &Adaptation, value: f64, seed: Seed) -> Self {
         Self { search: adaptation.start(value, seed), key: adaptation.tunes().to_owned(), value }
     }
 
-    /// Learns what was measured over a window that ends now: its step, and the value before it.
+    /// Updates the adaptation with the objective's value over the window that ends at `now`. Returns its step and the
+    /// parameter before it.
     pub fn learn(&mut self, now: Instant, window: u64, measured: f64) -> Option<(record::Adaptation, f64)> {
         let step = self.search.learn(now, measured)?;
         let row = record::Adaptation {
@@ -36,12 +37,12 @@ impl Searching {
         Some((row, std::mem::replace(&mut self.value, step.gain)))
     }
 
-    /// The key of the number that it tunes, and its value.
+    /// Returns the key and the value of the tuned parameter.
     pub fn tunes(&self) -> (&str, f64) {
         (&self.key, self.value)
     }
 
-    /// Why one from outside cannot go on.
+    /// Returns the error that an adaptation of another crate failed with.
     pub fn halted(&self) -> Option<Halt> {
         self.search.halted()
     }

@@ -1,8 +1,8 @@
 //! The sampled attitude law: the acceleration about an axis that gives its error a bandwidth and a damping ratio.
 //!
-//! With e the angle beyond the target and w the rate beyond the reference's, it commands -(wn² (e + z/t) + 2 zeta wn w), z being
-//! the integral of e, sends that through its filters, and adds the reference's own acceleration. An acceleration about each of
-//! three axes becomes one torque by the whole inertia (\[Wie08\], quaternion feedback).
+//! With e the angle and w the rate relative to the reference, it commands -(wn² (e + z/t) + 2 zeta wn w), with z the
+//! integral of e, applies its filters, and adds the reference's acceleration. The accelerations about three axes are
+//! converted to one torque by the full inertia (\[Wie08\], quaternion feedback).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -62,13 +62,13 @@ fn damping() -> Positive {
 }
 
 impl AttitudeLaw {
-    /// The torque on a body of this inertia (kg m²) that is at rest so far from its target (rad): its size (N m).
+    /// Returns the size of the torque (N m) on a body at rest with this angle error (rad) and inertia (kg m²).
     pub fn first_torque(&self, angle: f64, inertia: f64) -> f64 {
         let wn = self.bandwidth.get();
         inertia * wn * wn * angle.abs()
     }
 
-    /// What single values cannot show to be wrong: a key within the law, and why.
+    /// Checks the settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         if let Some(inertia) = &self.inertia {
             let inertia = tensor(inertia);
@@ -107,7 +107,7 @@ impl Rule for AttitudeLaw {
         Some(self.period)
     }
 
-    /// The usual 5 % of a step.
+    /// Returns the usual 5 % of a step.
     fn promise(&self) -> Promise {
         Promise::Part(0.05)
     }
@@ -131,7 +131,7 @@ impl Rule for AttitudeLaw {
     }
 }
 
-/// The law at work about an axis.
+/// Run-time state of the law about an axis.
 #[derive(Clone, Debug)]
 struct AtSamples {
     spec: AttitudeLaw,
@@ -140,17 +140,18 @@ struct AtSamples {
     rate_limit: Option<f64>,
     /// Time constant of the integral (s).
     time: f64,
-    /// The number that was tuned last.
+    /// Value of the parameter tuned last.
     tuned: f64,
     filters: Vec<Biquad>,
-    /// Largest accelerations of plus and minus (rad/s²).
+    /// Largest accelerations in the positive and the negative direction (rad/s²).
     accelerations: [f64; 2],
-    /// The integral of the error (rad s).
+    /// Integral of the error (rad s).
     integral: f64,
 }
 
 impl AtSamples {
-    /// The fed-back acceleration (rad/s²) for an error of angle (rad) and rate (rad/s), and whether something is at its limit.
+    /// Returns the feedback acceleration (rad/s²) for an error of angle (rad) and rate (rad/s), and true if the rate
+    /// limit acts.
     fn feedback(&mut self, error: f64, rate: f64) -> (f64, bool) {
         let (wn, zeta) = (self.bandwidth, self.damping);
         let kept = self.spec.integral.map_or(0.0, |_| self.integral / self.time);
@@ -165,7 +166,7 @@ impl AtSamples {
         (self.filters.iter_mut().fold(feedback, |sample, filter| filter.filter(sample)), limited)
     }
 
-    /// Gives a filter another frequency; what is in it stays.
+    /// Changes the frequency of a filter and keeps its state.
     fn retune(&mut self, key: &str, value: f64) {
         let period = self.spec.period.seconds();
         for (index, (filter, at_work)) in self.spec.filters.iter().zip(&mut self.filters).enumerate() {
@@ -178,7 +179,7 @@ impl AtSamples {
         }
     }
 
-    /// Integrates the error over a period, unless that drove what is at its limit further.
+    /// Integrates the error over a period, unless a limit acts and the integral would grow.
     fn integrate(&mut self, error: f64, limited: bool) {
         let Some(integral) = self.spec.integral else { return };
         if !(limited && error * self.integral > 0.0) {
@@ -207,7 +208,7 @@ impl Control for AtSamples {
         Phase::Feedback
     }
 
-    /// Its reference has an acceleration to follow.
+    /// Returns true, because the reference has an acceleration to follow.
     fn tracks(&self) -> bool {
         true
     }
@@ -258,7 +259,7 @@ mod tests {
 
     #[test]
     fn the_error_of_a_rigid_body_has_the_bandwidth_and_damping_that_are_asked_for() {
-        // Feedback that is held over a period, of e'' = u: the sampled poles are near exp((-zeta +- i sqrt(1 - zeta²)) wn T).
+        // Feedback held over a period, on e'' = u: the sampled poles are near exp((-zeta +- i sqrt(1 - zeta²)) wn T).
         let mut law = start("", f64::INFINITY);
         let (mut angle, mut rate) = (1e-3, 0.0);
         let mut peak = 0.0_f64;
@@ -268,7 +269,7 @@ mod tests {
             rate += u * PERIOD;
             peak = peak.min(angle);
         }
-        // exp(-pi zeta/sqrt(1 - zeta²)) of the step is the overshoot: 1.52 %; the sampling adds a little.
+        // The overshoot is exp(-pi zeta/sqrt(1 - zeta²)) of the step, 1.52 %; the sampling adds a little.
         assert!((peak / -1e-3 - 0.0152).abs() < 2e-3, "{peak}");
         assert!(angle.abs() < 1e-6 && rate.abs() < 1e-7);
     }
@@ -287,7 +288,7 @@ mod tests {
     #[test]
     fn an_error_is_taken_back_at_the_rate_limit() {
         let mut law = start("rate_limit = 0.002", f64::INFINITY);
-        // At this rate nothing is left to do, however far it is.
+        // At this rate nothing is left to do, whatever the angle.
         assert!(command(&mut *law, 1.0, -0.002, 0.0).abs() < 1e-18);
         let mut free = start("", f64::INFINITY);
         let [limited, free] = [&mut law, &mut free].map(|law| command(&mut **law, 1e-3, 1e-4, 0.0));
@@ -304,9 +305,9 @@ mod tests {
             angle += rate * PERIOD + 0.5 * u * PERIOD * PERIOD;
             rate += u * PERIOD;
         }
-        // Without it the angle would be 1e-5/wn² = 1e-3.
+        // Without the integral the angle would be 1e-5/wn² = 1e-3.
         assert!(angle.abs() < 1e-9, "{angle}");
-        // Where the actuator is at its limit the integral stands still; where not it goes on to its own.
+        // At the actuator's limit the integral stops; otherwise it grows to its own limit.
         for (most, integral) in [(1e-4, PERIOD), (f64::INFINITY, 0.5)] {
             let mut law = start(keys, most);
             for _ in 0..10 {

@@ -1,8 +1,8 @@
-//! The B-dot law: magnetic moments against the change of the field take the rotation away (\[Wertz78\]).
+//! The B-dot law: magnetic moments against the change of the field, which reduce the rotation (\[Wertz78\]).
 //!
-//! In a body that turns at w the field changes by B x w, more than it does along the orbit. A moment -k dB/dt has the torque
-//! -k (dB/dt) x B, which is -k B² times the part of w across the field. Each axis needs only its own part of the field, as a
-//! magnetometer measures it.
+//! In a body that rotates at w the field changes by B x w, more than along the orbit. A moment -k dB/dt has the torque
+//! -k (dB/dt) x B, which is -k B² times the part of w perpendicular to the field. Each axis needs only its own
+//! component of the field, as a magnetometer measures it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -40,12 +40,12 @@ impl Rule for BDot {
     }
 }
 
-/// The law at work along an axis.
+/// Run-time state of the law along an axis.
 #[derive(Copy, Clone, Debug)]
 struct Detumbling {
     law: BDot,
     gain: f64,
-    /// The number that was tuned last.
+    /// Value of the parameter tuned last.
     tuned: f64,
 }
 

@@ -1,4 +1,4 @@
-//! The laws of a run at work, one about each axis, with what each holds.
+//! Run-time state of the laws of a run, one about each axis, with their current outputs.
 
 use super::{Authority, Cause, Command, Control, Damped, Goal, Hold, Law, Phase};
 use crate::belief::Belief;
@@ -6,41 +6,41 @@ use crate::guard::Guard;
 use crate::own::Halt;
 use crate::time::Instant;
 
-/// The laws at work.
+/// Run-time state of the laws of all axes.
 #[derive(Clone, Debug)]
 pub struct Controls {
     axes: Vec<Held>,
-    /// When any of them wants to be asked again.
+    /// Earliest time of the laws' next decision.
     until: Option<Instant>,
-    /// What is commanded in their place, from outside.
+    /// Commands set from outside, which replace the laws' outputs.
     steered: Option<[Command; 3]>,
 }
 
-/// A law, and what it holds.
+/// Law with its current output.
 #[derive(Clone, Debug)]
 struct Held {
     law: Box<dyn Control>,
     hold: Hold,
-    /// Where it stands within a law of its own about each axis.
+    /// Key prefix of the law within a law `per_axis`; else empty.
     place: String,
 }
 
-/// What has come up at an instant.
+/// Event to which laws respond.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Event {
-    /// The run begins.
+    /// Start of the run.
     Start,
-    /// A guard of the one angle tripped.
+    /// Trip of a guard on the angle of a one-axis body.
     Guard(usize),
-    /// A sample was taken, or the time of a hold has come.
+    /// Sample, or time of the next decision.
     Due {
-        /// Whether a sample was taken, at which guards are tested.
+        /// True if a sample was taken, at which guards are tested.
         sampled: bool,
     },
 }
 
 impl Controls {
-    /// The laws before a run, about axes on which the actuator has these authorities.
+    /// Creates the laws before a run, about axes with these actuator authorities.
     pub fn new(law: &Law, authorities: &[Authority]) -> Self {
         let axis = |(axis, authority)| {
             let place = if let Law::PerAxis(laws) = law { laws.place(axis) } else { String::new() };
@@ -49,7 +49,7 @@ impl Controls {
         Self { axes: authorities.iter().enumerate().map(axis).collect(), until: None, steered: None }
     }
 
-    /// Commands in the place of the laws from now on, which nobody asks any more.
+    /// Sets commands that replace the laws' outputs from now on; the laws no longer decide.
     pub fn steer(&mut self, commands: [Command; 3]) {
         if self.steered.replace(commands).is_none() {
             self.until = None;
@@ -57,12 +57,12 @@ impl Controls {
         }
     }
 
-    /// Whether commands come from outside.
+    /// Returns true if commands are set from outside.
     pub fn are_steered(&self) -> bool {
         self.steered.is_some()
     }
 
-    /// Asks the laws that an event concerns; tells the cause for the first of them that answers.
+    /// Lets the laws that an event concerns decide. Returns the cause of the first decision, if any.
     pub fn decide(
         &mut self,
         now: Instant,
@@ -91,7 +91,7 @@ impl Controls {
         first
     }
 
-    /// Puts the one relay law into a state that begins at an instant, after a push that began at another.
+    /// Sets the state of the single relay law, which starts at `now`, after a push that started at `pushed`.
     pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) {
         let [held] = &mut self.axes[..] else { return };
         if let Some(relay) = held.law.relay() {
@@ -100,7 +100,7 @@ impl Controls {
         }
     }
 
-    /// Whether a law is concerned by a sample, or by the time that has come.
+    /// Returns true if a law must decide at `now`, because of its time or of a sample.
     pub fn concerned(&self, now: Instant, sampled: bool, beliefs: &[Belief]) -> bool {
         self.until == Some(now)
             || sampled
@@ -111,17 +111,17 @@ impl Controls {
                     .any(|(held, belief)| held.hold.guards.iter().any(|guard| guard.holds(belief.angle)))
     }
 
-    /// When any of them wants to be asked again.
+    /// Returns the earliest time of the laws' next decision.
     pub fn until(&self) -> Option<Instant> {
         self.until
     }
 
-    /// The guards of the first axis.
+    /// Returns the guards of the first axis.
     pub fn guards(&self) -> &[Guard] {
         &self.axes[0].hold.guards
     }
 
-    /// What they command, about each axis.
+    /// Returns the command about each axis.
     pub fn commands(&self) -> [Command; 3] {
         if let Some(commands) = self.steered {
             return commands;
@@ -133,17 +133,17 @@ impl Controls {
         commands
     }
 
-    /// The law about an axis.
+    /// Returns the law about an axis.
     pub fn about(&self, axis: usize) -> &dyn Control {
         &*self.axes[axis].law
     }
 
-    /// Why one from outside cannot go on.
+    /// Returns the error that a law of another crate failed with.
     pub fn halted(&self) -> Option<Halt> {
         self.axes.iter().find_map(|held| held.law.halted())
     }
 
-    /// Tunes a number of all of them, or of the one about an axis that the key names.
+    /// Sets a parameter of all laws, or of the law about one axis that the key selects.
     pub fn tune(&mut self, key: &str, value: f64) {
         for held in &mut self.axes {
             if let Some(key) = key.strip_prefix(held.place.as_str()) {
@@ -152,12 +152,12 @@ impl Controls {
         }
     }
 
-    /// How far ahead of a sample they want to know elastic rates (s).
+    /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
     pub fn ahead(&self) -> f64 {
         self.axes.iter().map(|held| held.law.ahead()).fold(0.0, f64::max)
     }
 
-    /// What active damping did in the last cycle, about each axis; of laws without it, nothing.
+    /// Returns the status of active damping in the last cycle about each axis; the default for laws without it.
     pub fn damped(&self) -> Vec<Damped> {
         self.axes.iter().map(|held| held.law.damped().copied().unwrap_or_default()).collect()
     }

@@ -1,7 +1,7 @@
-//! Active damping beside the phase-plane law: where the rigid motion needs no jets, they push against the elastic rate.
+//! Active damping with the phase-plane law: while the rigid motion needs no jets, they fire against the elastic rate.
 //!
 //! In \[Timakov14\] (pages 37 and 48) a relay on the estimated elastic rate acts in the dead zone of the attitude law.
-//! Threshold, hysteresis and guards are ours.
+//! Threshold, hysteresis and guards are our design.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,15 +12,15 @@ use crate::belief::{Belief, Damped, ElasticRate};
 use crate::numerics::delay_margin::delay_margin;
 use crate::quantity::{Fraction, Positive};
 
-/// From this phase factor on a late push is worth its propellant.
+/// Smallest phase factor at which a delayed pulse is worth its propellant.
 const ELIGIBLE: f64 = 0.5;
-/// So many cycles with a push make a window of the watchdog.
+/// Number of cycles with a pulse in a window of the watchdog.
 const WINDOW: u32 = 75;
-/// From window to window the elastic rate must fall to this part.
+/// Fraction to which the elastic rate must fall from one window to the next.
 const FALL: f64 = 0.9;
-/// For so many cycles the watchdog keeps the jets quiet.
+/// Number of cycles for which the watchdog pauses damping.
 const REST: u32 = 300;
-/// The threshold is at least so many times the amplitude of the limit cycle, and the elastic rate of so many whole cycles.
+/// Factors of the default threshold: on the amplitude of the limit cycle, and cycles of elastic acceleration at least.
 const LIMIT_CYCLES: f64 = 1.5;
 const CYCLES: f64 = 2.0;
 
@@ -71,8 +71,9 @@ impl Default for DampingGuards {
 }
 
 impl ActiveDamping {
-    /// The threshold about an axis (rad/s) for modes of these frequencies (rad/s) and elastic accelerations a (rad/s²), in
-    /// cycles of a period (s), with a delay (s) and a damping ratio: of the mode that a long burn excites most.
+    /// Returns the threshold about an axis (rad/s): the given one, or that of the mode that a long burn excites most.
+    /// Each of `modes` has a frequency (rad/s) and an elastic acceleration a (rad/s²); `period` and `delay` are in s,
+    /// `damping` is a ratio.
     pub fn threshold(&self, axis: usize, modes: &[[f64; 2]], period: f64, delay: f64, damping: f64) -> f64 {
         if let Some(given) = &self.threshold {
             return given[axis].get();
@@ -87,27 +88,28 @@ impl ActiveDamping {
     }
 }
 
-/// Active damping about one axis at work.
+/// Run-time state of active damping about one axis.
 #[derive(Clone, Debug)]
 pub struct DampingRelay {
     spec: ActiveDamping,
     authority: Authority,
     period: f64,
     latched: bool,
-    /// Cycles for which the watchdog still keeps it quiet.
+    /// Number of remaining cycles of the watchdog's pause.
     rest: u32,
-    /// Sum of the absolute elastic rate over the cycles with a push (rad/s), how many they were, and the mean before.
+    /// Sum of the absolute elastic rate over the cycles with a pulse (rad/s), their number, and the mean of the window
+    /// before.
     window: (f64, u32, Option<f64>),
 }
 
 impl DampingRelay {
-    /// It at the start, in cycles of a period (s).
+    /// Creates the state at the start, for cycles of `period` (s).
     pub fn new(spec: &ActiveDamping, period: f64, authority: &Authority) -> Self {
         let (spec, authority) = (spec.clone(), *authority);
         Self { spec, authority, period, latched: false, rest: 0, window: (0.0, 0, None) }
     }
 
-    /// How far ahead of a sample it needs the elastic rate (s).
+    /// Returns the lead time after a sample for which the elastic rate is predicted (s).
     pub fn ahead(&self) -> f64 {
         if self.spec.predictor { self.authority.delay + 0.5 * self.period } else { 0.0 }
     }
@@ -118,8 +120,8 @@ impl DampingRelay {
         mode.influence > 0.0 && (!late || timing.phase_factor(mode.frequency) >= ELIGIBLE)
     }
 
-    /// What to do in a cycle: `free` tells whether the rigid motion leaves the jets free; then how far the rigid rate is from
-    /// where it should be, and how far it may be above and below (rad/s).
+    /// Decides on the pulse of a cycle. `free` is true if the rigid motion needs no jets; `excess` is the deviation of
+    /// the rigid rate from its target, and `allowed` its largest values above and below (rad/s).
     pub fn decide(&mut self, belief: &Belief, free: bool, (excess, allowed): (f64, [f64; 2])) -> Damped {
         let Belief { elastic: modes, trusted, .. } = belief;
         let threshold = self.authority.threshold;
@@ -151,7 +153,7 @@ impl DampingRelay {
         damped
     }
 
-    /// Takes a cycle with a push: where a window's mean has not fallen enough, it rests.
+    /// Records a cycle with a pulse; pauses damping if the mean of the window has not fallen enough.
     fn watch(&mut self, rate: f64) {
         let (sum, count, before) = &mut self.window;
         *sum += rate;
@@ -168,7 +170,7 @@ impl DampingRelay {
     }
 }
 
-/// Whether a rate is further from where it should be than is allowed above and below (rad/s).
+/// Returns true if a rate deviates from its target by more than the limits above and below (rad/s).
 pub(super) fn is_beyond(excess: f64, [above, below]: [f64; 2]) -> bool {
     excess > above || -excess > below
 }

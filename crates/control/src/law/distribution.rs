@@ -1,4 +1,4 @@
-//! From what laws command to what the actuator is asked for: accelerations become torques J a + w x (J w + h).
+//! Conversion of the laws' commands to demands on the actuator: accelerations become torques J a + w x (J w + h).
 
 use nalgebra::Matrix3;
 
@@ -7,27 +7,27 @@ use crate::actuator::Demand;
 use crate::attitude::Vector;
 use crate::belief::Belief;
 
-/// What it takes to turn the body as laws command.
+/// Distribution of commands to demands, with the inertia in the model.
 #[derive(Clone, Debug, PartialEq)]
 pub struct TorqueDistribution {
-    /// The inertia tensor, without the rotors' own about their axes (kg m²); of a body with one angle the first element
-    /// alone counts.
+    /// Inertia tensor, without the rotors' own about their axes (kg m²); of a one-axis body only the first element is
+    /// used.
     inertia: Matrix3<f64>,
 }
 
 impl TorqueDistribution {
-    /// For a body with one angle and this inertia (kg m²).
+    /// Creates the distribution of a one-axis body with this inertia (kg m²).
     pub fn of_one_angle(inertia: f64) -> Self {
         Self { inertia: Matrix3::from_diagonal_element(inertia) }
     }
 
-    /// For a body with three axes and this inertia tensor (kg m²).
+    /// Creates the distribution of a three-axis body with this inertia tensor (kg m²).
     pub fn of_three_axes(inertia: Matrix3<f64>) -> Self {
         Self { inertia }
     }
 
-    /// What is demanded about each axis, of a body that is believed to move so, and whose rotors store this momentum in its
-    /// axes (N m s).
+    /// Returns the demand about each axis, for the estimated motion of a body whose rotors store the momentum `stored`
+    /// (N m s, body axes).
     pub fn demands(
         &self,
         commands: [Command; 3],

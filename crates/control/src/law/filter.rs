@@ -1,4 +1,4 @@
-//! Filters of what a law commands, as a scenario writes them: each becomes a digital filter at the law's period.
+//! Filters of a law's output: settings in a scenario, and the digital filters at the law's period.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -75,7 +75,8 @@ fn butterworth() -> Positive {
 }
 
 impl Filter {
-    /// Its frequency, which an adaptation may tune, at samples this far apart (s); none of a lead and of coefficients.
+    /// Returns the filter's frequency as a tunable parameter, for samples `period` (s) apart; `None` of a lead or of
+    /// coefficients.
     pub fn tunable(&self, period: f64) -> Option<Tunable> {
         let most = std::f64::consts::PI / period;
         match self {
@@ -85,7 +86,7 @@ impl Filter {
         }
     }
 
-    /// The same filter at another frequency (rad/s), if it has one.
+    /// Returns the filter with another frequency (rad/s), if it has one.
     pub fn at(&self, frequency: f64) -> Option<Self> {
         let frequency = Positive::new(frequency)?;
         match self {
@@ -95,10 +96,10 @@ impl Filter {
         }
     }
 
-    /// The digital filter at samples this far apart (s).
+    /// Returns the digital filter for samples `period` (s) apart.
     ///
     /// # Errors
-    /// A key that does not fit the period, and why.
+    /// A `Fault` with a key that does not fit the period and the reason.
     pub fn sampled(&self, period: f64) -> Result<Biquad, Fault> {
         match self {
             Self::Notch(notch) => {
@@ -118,7 +119,7 @@ impl Filter {
             }
             Self::Lead(lead) => {
                 let (zero, pole) = (lead.zero.get(), lead.pole.get());
-                // Where the phase is largest.
+                // The frequency with the largest phase.
                 let middle = f64::sqrt(zero) * f64::sqrt(pole);
                 below_nyquist(middle, period).map_err(|why| {
                     Fault::new("lead.pole", format!("makes the middle of zero and pole one that {why}"))
@@ -134,7 +135,7 @@ impl Filter {
     }
 }
 
-/// A filter knows nothing of a frequency that its samples show as another.
+/// Checks that a frequency is below the Nyquist frequency, above which samples show an alias.
 fn below_nyquist(frequency: f64, period: f64) -> Result<(), String> {
     let most = std::f64::consts::PI / period;
     if frequency < most {
@@ -167,7 +168,7 @@ mod tests {
             let mut biquad = filter(text).sampled(0.25).unwrap();
             [1.0, 0.0, 0.0, 0.0].map(|sample| biquad.filter(sample))
         };
-        // The impulse response of given coefficients: b0, b1 - a1 b0, ...
+        // Returns the impulse response of given coefficients: b0, b1 - a1 b0, ...
         let impulse = |b: [f64; 3], a: [f64; 2]| {
             let mut biquad = Biquad::new(b, a);
             [1.0, 0.0, 0.0, 0.0].map(|sample| biquad.filter(sample))

@@ -1,4 +1,4 @@
-//! The axes that a target's attitude is from: inertial ones, the local ones of the orbit, or the Sun's.
+//! Reference frames of target attitudes: inertial, local orbital, or Sun-pointing.
 
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -24,7 +24,7 @@ pub enum Frame {
 }
 
 impl Frame {
-    /// Its attitude, rate and acceleration so many seconds after the start, under a sky that has what it is from.
+    /// Returns attitude, rate and acceleration of the frame `t` (s) after the start, under a sky that defines it.
     pub fn at(self, sky: &Sky, t: f64) -> Pose {
         let inertial = || Pose::at_rest(Quaternion::new(1.0, 0.0, 0.0, 0.0));
         match self {
@@ -36,7 +36,7 @@ impl Frame {
             }),
             Self::Sun => sky.sun().map_or_else(inertial, |sun| {
                 let across = Vector::z().cross(sun);
-                // Of a Sun along the planet's axis any will do.
+                // If the Sun is along the planet's axis, any direction will do.
                 let y = if across.norm() > 1e-9 { across.normalize() } else { Vector::y() };
                 let y = (y - sun * sun.dot(&y)).normalize();
                 Pose::at_rest(of_axes(&[y.cross(sun), y, *sun]))
@@ -44,12 +44,12 @@ impl Frame {
         }
     }
 
-    /// Whether it turns.
+    /// Returns true if the frame rotates.
     pub fn turns(self) -> bool {
         self == Self::Nadir
     }
 
-    /// What it is from, in words.
+    /// Returns the name of the reference frame for messages.
     pub fn words(self) -> &'static str {
         match self {
             Self::Inertial => "",
@@ -58,7 +58,7 @@ impl Frame {
         }
     }
 
-    /// Why there is no such frame under a sky.
+    /// Checks that the frame is defined under a sky; returns the key and the reason if not.
     pub fn fault(self, sky: &Sky) -> Option<Fault> {
         let why = match self {
             Self::Nadir if sky.orbit().is_none() => {

@@ -1,4 +1,4 @@
-//! The way from target to target: at once, along a turn with limits, or through a table, in axes that may turn themselves.
+//! Attitude profile from target to target: steps, slews with limits, or tables, relative to frames that may rotate.
 
 use nalgebra::Quaternion;
 
@@ -10,15 +10,15 @@ use crate::manoeuvre::{AttitudeTable, Pose, Profile, RestToRest, Slew};
 use crate::quantity::Positive;
 use crate::time::Instant;
 
-/// The ways to targets, in the order of their times.
+/// Attitude profile through targets, in the order of their times.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Itinerary {
     legs: Vec<Leg>,
-    /// What targets point to.
+    /// Sky that defines the frames of the targets.
     sky: Sky,
 }
 
-/// The way to a target.
+/// Segment of the profile to one target.
 #[derive(Clone, Debug, PartialEq)]
 struct Leg {
     begins: Instant,
@@ -26,7 +26,7 @@ struct Leg {
     path: Path,
 }
 
-/// How it goes within its frame.
+/// Path of a segment within its frame.
 #[derive(Clone, Debug, PartialEq)]
 enum Path {
     Turn(Slew),
@@ -61,14 +61,14 @@ impl Path {
 }
 
 impl Itinerary {
-    /// The way to these targets under a sky, of a body with these modes. Before the first the attitude is the inertial one; a turn begins where the body
-    /// should be then.
+    /// Creates the profile through these targets under a sky, of a body with these modes. Before the first target the
+    /// attitude is inertial; a slew starts at the reference of its start time.
     pub fn new(targets: &[Target], sky: &Sky, modes: &[Mode]) -> Self {
-        // What has no turn for its modes is refused before.
+        // Targets whose slews cannot be planned were rejected before.
         Self::of(targets, sky, modes).unwrap_or_default()
     }
 
-    /// The same, or the key of a target that does not fit the modes.
+    /// Creates the profile, or returns the key of a target that does not fit the modes.
     fn of(targets: &[Target], sky: &Sky, modes: &[Mode]) -> Result<Self, Fault> {
         let mut way = Self { legs: Vec::new(), sky: sky.clone() };
         for (index, target) in targets.iter().enumerate() {
@@ -95,7 +95,7 @@ impl Itinerary {
         Ok(way)
     }
 
-    /// The largest rate of the turn to a target (rad/s), if it is made for modes.
+    /// Returns the largest rate of the slew to a target (rad/s), if it is planned for modes.
     pub fn fastest(&self, target: usize) -> Option<f64> {
         match &self.legs.get(target)?.path {
             Path::Shaped(turn) => Some(turn.fastest()),
@@ -103,7 +103,7 @@ impl Itinerary {
         }
     }
 
-    /// Where the way so far is at an instant, from a frame.
+    /// Returns the attitude of the profile at an instant relative to a frame.
     fn seen_from(&self, frame: Frame, now: Instant) -> Quaternion<f64> {
         let here = self.at(now).attitude;
         if frame == Frame::Inertial {
@@ -116,7 +116,7 @@ impl Itinerary {
         self.legs.iter().rev().find(|leg| leg.begins <= now)
     }
 
-    /// Where the body shall be at an instant, and how it shall turn there.
+    /// Returns the reference attitude with its rate and acceleration at an instant.
     pub fn at(&self, now: Instant) -> Pose {
         self.leg(now).map_or_else(
             || Pose::at_rest(Target::INERTIAL.attitude()),
@@ -124,7 +124,7 @@ impl Itinerary {
         )
     }
 
-    /// A pose in a frame, as it is in inertial axes.
+    /// Converts a pose in a frame to inertial axes.
     fn seen(&self, frame: Frame, now: Instant, pose: Pose) -> Pose {
         if frame == Frame::Inertial {
             return pose;
@@ -132,31 +132,31 @@ impl Itinerary {
         pose.within(&frame.at(&self.sky, now.seconds()))
     }
 
-    /// The target that the body is on its way to at an instant.
+    /// Returns the attitude of the current target at an instant.
     pub fn target(&self, now: Instant) -> Quaternion<f64> {
         let there = |leg: &Leg| self.seen(leg.frame, now, Pose::at_rest(leg.path.to())).attitude;
         self.leg(now).map_or_else(|| Target::INERTIAL.attitude(), there)
     }
 
-    /// The same as it is written: the frame, and the attitude in it.
+    /// Returns the current target as written: the frame, and the attitude in it.
     pub fn written(&self, now: Instant) -> (Frame, Quaternion<f64>) {
         let leg = self.leg(now);
         leg.map_or_else(|| (Frame::Inertial, Target::INERTIAL.attitude()), |leg| (leg.frame, leg.path.to()))
     }
 
-    /// When the next target begins after an instant.
+    /// Returns the start time of the next target after an instant.
     pub fn next(&self, now: Instant) -> Option<Instant> {
         self.legs.iter().map(|leg| leg.begins).find(|begins| *begins > now)
     }
 
-    /// Whether the reference moves at an instant.
+    /// Returns true if the reference moves at an instant.
     pub fn moves(&self, now: Instant) -> bool {
         self.leg(now)
             .is_some_and(|leg| leg.frame.turns() || now.since(leg.begins).seconds() < leg.path.duration())
     }
 
-    /// The first target without the axes that it is from, whose keys do not fit, or that begins before the way to the one before
-    /// has ended: its key, and why.
+    /// Checks the targets: frames that are not defined, inconsistent keys, or a start before the end of the previous
+    /// slew. Returns the first such key and the reason.
     pub fn fault(targets: &[Target], sky: &Sky, modes: &[Mode]) -> Option<Fault> {
         for (index, target) in targets.iter().enumerate() {
             if let Some(fault) = target.fault(sky) {
@@ -182,7 +182,7 @@ impl Itinerary {
 }
 
 impl Target {
-    /// Keys that do not fit each other or the sky: the key, and why.
+    /// Checks the target's keys against each other and the sky; returns the key and the reason.
     fn fault(&self, sky: &Sky) -> Option<Fault> {
         if let Some(fault) = self.frame.fault(sky) {
             return Some(fault);
@@ -218,7 +218,7 @@ impl Target {
             .then(|| Fault::new("profile", "needs the `acceleration` that it shapes"))
     }
 
-    /// The largest rate on the way to it, in its frame (rad/s), if it has one.
+    /// Returns the largest rate of the slew or the table in the target's frame (rad/s) with its key, if it has one.
     pub fn fastest(&self) -> Option<(&'static str, f64)> {
         if self.table.len() > 1 {
             return Some(("table", AttitudeTable::new(&self.table).fastest()));
@@ -254,7 +254,7 @@ mod tests {
         assert_eq!(Itinerary::fault(&two, &sky, &[]), None);
         let way = Itinerary::new(&two, &sky, &[]);
         let yaw = |seconds: f64| crate::attitude::angles(&way.at(at(seconds)).attitude)[2];
-        // 0.02 rad/s after 10 s; 0.4 rad take 30 s.
+        // The rate is 0.02 rad/s after 10 s; 0.4 rad take 30 s.
         for (seconds, exact) in
             [(9.0, 0.0), (10.0, 0.5), (20.0, 0.5), (30.0, 0.6), (35.0, 0.7), (50.0, 0.9), (90.0, 0.9)]
         {
@@ -301,13 +301,13 @@ mod tests {
         };
         assert!((there(10.0, Vector::z()) - Vector::new(1.0, 2.0, 3.0).normalize()).norm() < 1e-15);
         assert!(!way.moves(at(10.0)) && way.moves(at(60.0)) && way.moves(at(390.0)));
-        // The turn begins where the target before was.
+        // The slew starts at the previous target.
         assert!((way.at(at(50.0)).attitude - way.at(at(49.999_999_999)).attitude).norm() < 1e-9);
-        // At its end the body's z is 0.2 rad beyond the nadir about the local x.
+        // At its end the body's z is 0.2 rad from the nadir about the local x.
         let local = sky.place(390.0).unwrap().local;
         assert!((there(390.0, Vector::x()) - local[0]).norm() < 1e-14);
         assert!((there(390.0, Vector::z()).dot(&local[2]) - libm::cos(0.2)).abs() < 1e-14);
-        // Rate and acceleration are derivatives, on the turn, on the orbit and through the table.
+        // Rate and acceleration are derivatives: during the slew, along the orbit and through the table.
         let h = 1e-3;
         for seconds in [60.0, 150.0, 390.0, 410.0, 435.0, 470.0] {
             let [before, now, after] = [seconds - h, seconds, seconds + h].map(|t| way.at(at(t)));

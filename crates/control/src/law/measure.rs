@@ -1,4 +1,4 @@
-//! How a rotation counts as an error: by the vector of its quaternion, or by Rodrigues parameters.
+//! Measures of the attitude error: by the vector part of the quaternion, or by Rodrigues parameters.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -17,12 +17,12 @@ pub enum Measure {
 }
 
 impl Measure {
-    /// Whether it is the default.
+    /// Returns true for the default.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The error about the axis of a belief (rad).
+    /// Returns the error about the axis of a state estimate (rad).
     pub fn of(self, belief: &Belief) -> f64 {
         match self {
             Self::Quaternion => belief.angle,
@@ -41,7 +41,7 @@ mod tests {
 
     #[test]
     fn both_are_the_angle_for_small_ones_and_differ_for_large_ones() {
-        // 1.2 rad about (3, 0, 4)/5.
+        // Rotation by 1.2 rad about (3, 0, 4)/5.
         for (angle, share) in [(1.2, 0.6), (1.2, 0.8), (-1e-4, 0.6), (3.1, 1.0)] {
             let whole = 2.0 * libm::sin(0.5 * angle);
             let belief = Belief { angle: share * whole, whole, ..Belief::default() };

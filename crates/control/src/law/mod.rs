@@ -1,4 +1,4 @@
-//! Control laws: state machines that answer every event about an axis with a hold.
+//! Control laws: state machines that respond to every event about an axis with a command.
 
 mod attitude;
 mod b_dot;
@@ -84,82 +84,82 @@ pub enum Law {
     Own(Own<dyn Rule + Send + Sync>),
 }
 
-/// What every kind of law tells of itself before a run. It acts about one axis; on a body with three, one about each.
+/// Settings of a law. A law acts about one axis; on a three-axis body there is one about each axis.
 pub trait Rule {
-    /// The law at work about an axis on which an actuator has this authority.
+    /// Returns the run-time state of the law about an axis with this actuator authority.
     fn start(&self, authority: &Authority) -> Box<dyn Control>;
 
-    /// Its own period, at which it samples and commands; none if events make it decide.
+    /// Returns the law's own period, at which it samples and commands; `None` if it decides at events.
     fn period(&self) -> Option<Span> {
         None
     }
 
-    /// Whether the law's switchings are all that it does: its torque changes with its state alone.
+    /// Returns true if the law is a relay, whose torque changes only with its state.
     fn switches(&self) -> bool {
         false
     }
 
-    /// How near to the goal the law promises to stay.
+    /// Returns the error band about the setpoint within which the law is expected to stay.
     fn promise(&self) -> Promise {
         Promise::Nothing
     }
 
-    /// What it reads of an estimator.
+    /// Returns the estimates that the law reads.
     fn reads(&self) -> Reads {
         Reads::Motion
     }
 
-    /// The numbers that an adaptation may tune.
+    /// Returns the parameters that an adaptation may tune.
     fn tunable(&self) -> Vec<Tunable> {
         Vec::new()
     }
 
-    /// What it is, for the program that brought it.
+    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
         None
     }
 }
 
-/// A law at work about one axis.
+/// Run-time state of a law about one axis.
 pub trait Control: fmt::Debug + Send + Sync {
-    /// Answers an event.
+    /// Responds to an event with a command, and the conditions of the next decision.
     fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold;
 
-    /// The state that the law is in.
+    /// Returns the state of the law.
     fn state(&self) -> Phase;
 
-    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    /// Returns the error that a law of another crate failed with; the run ends there.
     fn halted(&self) -> Option<Halt> {
         None
     }
 
-    /// A copy in the same state.
+    /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Control>;
 
-    /// The value of the number that was tuned last, or of its tunable number; NaN if it has none.
+    /// Returns the value of the parameter tuned last, or of the law's tunable parameter; NaN if there is none.
     fn tuned(&self) -> f64 {
         f64::NAN
     }
 
-    /// Takes a number of [`Rule::tunable`] over.
+    /// Sets a parameter of [`Rule::tunable`].
     fn tune(&mut self, _key: &str, _value: f64) {}
 
-    /// The relay law that it is, if it is one.
+    /// Returns the relay law, if the law is one.
     fn relay(&mut self) -> Option<&mut Relay> {
         None
     }
 
-    /// Whether it follows a manoeuvre while it lasts, and not only from its end on.
+    /// Returns true if the law tracks a manoeuvre while it lasts, and not only from its end on.
     fn tracks(&self) -> bool {
         false
     }
 
-    /// How far ahead of a sample it wants to know the elastic rates (s).
+    /// Returns the lead time after a sample for which the law reads predicted elastic rates (s).
     fn ahead(&self) -> f64 {
         0.0
     }
 
-    /// What its active damping did in the last cycle, if it has any.
+    /// Returns the status of active damping in the last cycle, if the law has it.
     fn damped(&self) -> Option<&Damped> {
         None
     }
@@ -171,18 +171,18 @@ impl Clone for Box<dyn Control> {
     }
 }
 
-/// What an actuator can do about an axis, as laws know it.
+/// Authority of an actuator about an axis, in the laws' model.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Authority {
-    /// The axis: 0, or 0 to 2 for roll, pitch and yaw.
+    /// Index of the axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub axis: usize,
-    /// Accelerations of plus and minus (rad/s²); endless without a limit.
+    /// Largest accelerations in the positive and the negative direction (rad/s²); infinite without a limit.
     pub accelerations: [f64; 2],
-    /// What it makes of a wanted pulse.
+    /// Quantisation of the actuator's pulse lengths.
     pub width: PulseWidth,
     /// Time from a command to its execution (s).
     pub delay: f64,
-    /// The elastic rate beyond which active damping acts (rad/s).
+    /// Elastic rate above which active damping acts (rad/s).
     pub threshold: f64,
 }
 
@@ -205,12 +205,12 @@ impl Deref for Law {
 }
 
 impl Law {
-    /// The law about an axis: 0, or 0 to 2 for roll, pitch and yaw.
+    /// Returns the law about an axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub fn about(&self, axis: usize) -> &Self {
         if let Self::PerAxis(laws) = self { laws.about(axis) } else { self }
     }
 
-    /// What single values cannot show to be wrong in its own keys: a key within the law, and why.
+    /// Checks the law's own settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         match self {
             Self::Attitude(law) => law.inconsistency(),
@@ -226,17 +226,17 @@ impl Law {
         }
     }
 
-    /// The number that an adaptation tunes unless it names another; NaN of a law without any.
+    /// Returns the parameter that an adaptation tunes by default; NaN if the law has none.
     pub fn tuned(&self) -> f64 {
         self.tunable().first().map_or(f64::NAN, |number| number.value)
     }
 
-    /// The inertia tensor that it takes a body with three axes to have, row by row (kg m²), if it has one of its own.
+    /// Returns the inertia tensor in the law's model of a three-axis body, row by row (kg m²), if the law has its own.
     pub fn inertia(&self) -> Option<&[[Finite; 3]; 3]> {
         if let Self::Attitude(law) = self { law.inertia.as_ref() } else { None }
     }
 
-    /// The kind, as a scenario names it.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Relay(_) => "relay",
@@ -259,41 +259,41 @@ impl Default for Law {
     }
 }
 
-/// Where the body shall be: from an instant on at this angle, which from there moves at this rate.
+/// Setpoint of the body: from a time on, this angle, which changes at this rate.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Goal {
-    /// When it begins: at the start, or at the end of the manoeuvre.
+    /// Start of the setpoint: the start of the run, or the end of the manoeuvre.
     pub from: Instant,
-    /// Angle there (rad).
+    /// Angle at the start of the setpoint (rad).
     pub angle: f64,
-    /// Rate from there on (rad/s).
+    /// Constant rate (rad/s).
     pub rate: f64,
-    /// Acceleration there (rad/s²), of a target that the body is led to.
+    /// Feedforward acceleration (rad/s²), of a moving reference.
     pub acceleration: f64,
 }
 
 impl Goal {
-    /// Angle and rate at an instant.
+    /// Returns angle (rad) and rate (rad/s) at an instant.
     pub fn at(&self, now: Instant) -> (f64, f64) {
-        // Of a goal at rest the time that has passed does not count.
+        // Without a rate, the elapsed time has no effect.
         let travel = if self.rate == 0.0 { self.rate } else { self.rate * now.since(self.from).seconds() };
         (self.angle + travel, self.rate)
     }
 }
 
-/// How near to its goal a body shall stay.
+/// Expected error band of a law about the setpoint.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Promise {
-    /// Nothing is promised.
+    /// No error band.
     Nothing,
-    /// Within so much of it (rad).
+    /// Half width of the band (rad).
     Within(f64),
-    /// Within this part of the distance at which the goal begins.
+    /// Half width of the band as a fraction of the initial distance from the setpoint.
     Part(f64),
 }
 
 impl Promise {
-    /// Half width of the band about the goal (rad), where the goal begins at this distance; NaN without one.
+    /// Returns the half width of the band (rad) for an initial distance (rad); NaN without a band.
     pub fn band(self, distance: f64) -> f64 {
         match self {
             Self::Nothing => f64::NAN,
@@ -303,60 +303,60 @@ impl Promise {
     }
 }
 
-/// Why a law is asked.
+/// Cause of a decision.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Cause {
-    /// The run begins.
+    /// Start of the run.
     Start,
-    /// The guard of this index tripped.
+    /// Trip of the guard with this index.
     Guard(usize),
-    /// The time of the hold has come.
+    /// Time set by the previous decision.
     Timeout,
 }
 
-/// A law's answer: the command from now on, and when to be asked again.
+/// Output of a law: the command from now on, and the conditions of the next decision.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Hold {
-    /// What the actuator shall do.
+    /// Command to the actuator.
     pub command: Command,
-    /// Ask again at this instant.
+    /// Time of the next decision.
     pub until: Option<Instant>,
-    /// Ask again when one of these trips.
+    /// Guards, of which any trip causes the next decision.
     pub guards: Guards,
 }
 
-/// A command about one axis.
+/// Command about one axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Command {
-    /// A torque (N m), or reduced moment (rad/s²) on a body without inertia; of a wheel, units of its command.
+    /// Torque (N m), or reduced moment (rad/s²) on a body without inertia; for a wheel, units of its command.
     Torque(f64),
-    /// A change of the rigid rate within the law's period (rad/s): the actuator makes a pulse of it.
+    /// Change of the rigid rate within the law's period (rad/s), which the actuator converts to a pulse.
     Change(f64),
-    /// An angular acceleration (rad/s²): the inertia makes a torque of those about all axes.
+    /// Angular acceleration (rad/s²); those about all axes are converted to a torque by the inertia.
     Acceleration(f64),
-    /// A magnetic moment along the axis (A m²).
+    /// Magnetic moment along the axis (A m²).
     Moment(f64),
 }
 
 impl Hold {
-    /// No torque, for good.
+    /// No torque, without a further decision.
     pub const NONE: Self = Self { command: Command::Torque(0.0), until: None, guards: Guards::NONE };
 }
 
-/// At most two guards.
+/// Set of at most two guards.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Guards([Guard; 2], usize);
 
 impl Guards {
-    /// No guard.
+    /// Empty set of guards.
     pub const NONE: Self = Self([Guard::at_least(0.0); 2], 0);
 
-    /// One guard, of index 0.
+    /// Creates a set of one guard, of index 0.
     pub const fn one(guard: Guard) -> Self {
         Self([guard; 2], 1)
     }
 
-    /// Two guards, of indices 0 and 1.
+    /// Creates a set of two guards, of indices 0 and 1.
     pub const fn two(first: Guard, second: Guard) -> Self {
         Self([first, second], 2)
     }

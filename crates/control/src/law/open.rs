@@ -1,4 +1,4 @@
-//! No law: the body moves as the manoeuvre and the disturbances drive it.
+//! The open loop: no feedback, so that only the manoeuvre and the disturbances drive the body.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

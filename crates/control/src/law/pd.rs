@@ -1,7 +1,7 @@
 //! The sampled PD law, u = -k_p (y - y_goal) - k_d (y' - y'_goal), held between its samples.
 //!
-//! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the dominant
-//! mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
+//! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the
+//! dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -84,14 +84,14 @@ pub struct ScheduledGain {
 }
 
 impl Pd {
-    /// The gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
+    /// Returns the gain of the extra loop at a frequency of the dominant mode (rad/s); 0 without that loop.
     pub fn extra_gain(&self, frequency: f64) -> f64 {
         self.extra.as_ref().map_or(0.0, |extra| extra.gain(frequency))
     }
 }
 
 impl Extra {
-    /// The gain at a frequency of the dominant mode (rad/s).
+    /// Returns the gain at a frequency of the dominant mode (rad/s).
     pub fn gain(&self, frequency: f64) -> f64 {
         match self {
             Self::Gain(gain) => gain.get(),
@@ -121,7 +121,7 @@ impl Rule for Pd {
         Some(self.period)
     }
 
-    /// The usual 5 % of a step.
+    /// Returns the usual 5 % of a step.
     fn promise(&self) -> Promise {
         Promise::Part(0.05)
     }

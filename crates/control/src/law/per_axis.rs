@@ -1,4 +1,4 @@
-//! A law of its own about each of three axes.
+//! Separate laws about three axes.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -19,12 +19,12 @@ pub struct PerAxis {
 }
 
 impl PerAxis {
-    /// The law about an axis.
+    /// Returns the law about an axis.
     pub fn about(&self, axis: usize) -> &Law {
         [&self.roll, &self.pitch, &self.yaw][axis.min(2)]
     }
 
-    /// Where the law about an axis stands within this one: `roll.pd.` and the like.
+    /// Returns the key prefix of the law about an axis: `roll.pd.` and the like.
     pub fn place(&self, axis: usize) -> String {
         format!("{}.{}.", ["roll", "pitch", "yaw"][axis.min(2)], self.about(axis).kind())
     }
@@ -39,7 +39,7 @@ impl Rule for PerAxis {
         self.roll.start(authority)
     }
 
-    /// The shortest of its laws, at which sensors are read that have no period of their own.
+    /// Returns the shortest period of the laws, at which sensors without their own period are read.
     fn period(&self) -> Option<Span> {
         self.all().into_iter().filter_map(|law| law.period()).min()
     }

@@ -1,9 +1,9 @@
-//! The phase-plane law: about each axis a relay with hysteresis on the rate, and pulses of measured length.
+//! The phase-plane law: about each axis a relay with hysteresis on the rate, and pulses of computed length.
 //!
 //! In \[Timakov14\] the station's jets follow a relay law with pulse-width modulation in the phase plane; its switching
-//! lines are not known. Here, about each axis, s is how far the rigid rate, what is on its way included, is from the rate that
-//! the [`SwitchingLines`] want at the angle beyond the goal. Where it is further than they allow the jets fire against s, for
-//! |s|/m or the whole cycle if that is longer, until it is within `switch_off` and half of what is allowed.
+//! lines are not known. Here, about each axis, s is the rigid rate, queued changes included, minus the target rate of
+//! the [`SwitchingLines`] at the angle error. If it exceeds their tolerance, the jets fire against s for |s|/m, or for
+//! the whole cycle if that is longer, until it is within `switch_off` and half of the tolerance.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -109,7 +109,7 @@ fn is_trapezoid(profile: &Profile) -> bool {
 }
 
 impl Target {
-    /// The inertial attitude, from the start on.
+    /// Inertial attitude, from the start on.
     pub const INERTIAL: Self = Self {
         from: Time::ZERO,
         frame: Frame::Inertial,
@@ -125,17 +125,17 @@ impl Target {
         table: Vec::new(),
     };
 
-    /// The attitude.
+    /// Returns the attitude of the target.
     pub fn attitude(&self) -> nalgebra::Quaternion<f64> {
         turned(self.roll.get(), self.pitch.get(), self.yaw.get())
     }
 
-    /// When it begins.
+    /// Returns the start time of the target.
     pub fn begins(&self) -> Instant {
         Instant::START + Span::from_seconds(self.from.get())
     }
 
-    /// The first of some that is not later than the one before: its index, and why that is wrong.
+    /// Checks the order of targets; returns the index of the first one not later than the one before, and the reason.
     pub fn disorder(targets: &[Self]) -> Option<(usize, String)> {
         let late = targets.windows(2).position(|pair| pair[0].from >= pair[1].from)? + 1;
         Some((late, format!("must be later than the one before, got {}", targets[late].from.get())))
@@ -143,7 +143,7 @@ impl Target {
 }
 
 impl PhasePlane {
-    /// What single values cannot show to be wrong: a key within the law, and why.
+    /// Checks the settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         let (on, off) = (self.switch_on.get(), self.switch_off.get());
         if off >= on {
@@ -190,7 +190,7 @@ impl Rule for PhasePlane {
     }
 }
 
-/// The law at work about an axis.
+/// Run-time state of the law about an axis.
 #[derive(Clone, Debug)]
 struct InPhasePlane {
     spec: PhasePlane,
@@ -199,12 +199,12 @@ struct InPhasePlane {
     firing: bool,
     damping: Option<DampingRelay>,
     damped: Damped,
-    /// The number that was tuned last.
+    /// Value of the parameter tuned last.
     tuned: f64,
 }
 
 impl Control for InPhasePlane {
-    /// The change of the rate that the pulses of the cycle shall make.
+    /// Commands the change of the rate by the pulses of the cycle.
     fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
         if now < goal.from {
             return Hold { until: Some(goal.from), ..Hold::NONE };
@@ -212,7 +212,7 @@ impl Control for InPhasePlane {
         let (angle, rate) = goal.at(now);
         let angle = belief.angle - angle;
         let excess = belief.rate - rate + belief.queued - self.lines.wanted(angle);
-        // On the side to which the rate exceeds what it should be.
+        // Tolerance on the side of the excess.
         let allowed = self.lines.allowed_above(if excess < 0.0 { -angle } else { angle });
         let mut change = self.relay(excess, allowed);
         if let Some(damping) = &mut self.damping {
@@ -264,7 +264,7 @@ impl Control for InPhasePlane {
 }
 
 impl InPhasePlane {
-    /// Draws the switching lines anew after a number was tuned.
+    /// Recomputes the switching lines after a parameter was tuned.
     fn draw(&mut self, tuned: f64) {
         self.tuned = tuned;
         self.lines = SwitchingLines::new(&self.spec, &self.authority);
@@ -280,7 +280,7 @@ impl InPhasePlane {
             return 0.0;
         }
         let acceleration = self.authority.accelerations[usize::from(excess > 0.0)];
-        // What is too little for a pulse ends the firing.
+        // A change too small for a pulse ends the firing.
         self.firing =
             self.authority.width.on_time(excess.abs() / acceleration, self.spec.period.seconds()) > 0.0;
         if self.firing { -excess } else { 0.0 }

@@ -62,8 +62,9 @@ impl Rule for Relay {
         true
     }
 
-    /// The dead zone, and as much again as the hysteresis for the overshoot. In the cycle of a rigid body under a small weak
-    /// torque that is (1 - k_t)²/(4 k_t) times the hysteresis: less than once for k_t from 0.172 on.
+    /// Returns the dead zone plus the hysteresis, as a margin for the overshoot. In the cycle of a rigid body under a
+    /// small weak torque the overshoot is (1 - k_t)²/(4 k_t) times the hysteresis: less than once for k_t from 0.172
+    /// on.
     fn promise(&self) -> Promise {
         Promise::Within(self.dead_zone.get() + self.hysteresis.get())
     }
@@ -102,7 +103,7 @@ impl Control for Relay {
         Some(self)
     }
 
-    /// Always k_t, by which limit cycles are judged.
+    /// Returns always k_t, by which limit cycles are judged.
     fn tuned(&self) -> f64 {
         self.tuned.of("k_t", self.k_t.get())
     }
@@ -113,13 +114,13 @@ impl Control for Relay {
 }
 
 impl Relay {
-    /// Begins a state at an instant, after a push that began at another.
+    /// Starts a state at `now`, after a push that started at `pushed`, and returns its output.
     pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) -> Hold {
         (self.phase, self.pushed_at) = (Some(phase), pushed);
         self.hold(phase, now)
     }
 
-    /// The state that an event leads to.
+    /// Returns the state after an event.
     fn next(&self, cause: Cause, belief: &Belief) -> Phase {
         match (self.state(), cause) {
             (_, Cause::Start) if self.right().holds(belief.angle) => Phase::RightPush,
@@ -131,13 +132,13 @@ impl Relay {
             (Phase::RightBrake, _) => Phase::WeakRight,
             (Phase::LeftPush, _) => Phase::LeftBrake,
             (Phase::LeftBrake, _) => Phase::WeakLeft,
-            // The dead zone is left through the right boundary, guard 0, or the left one.
+            // The body leaves the dead zone through the right boundary, guard 0, or the left one.
             (_, Cause::Guard(0) | Cause::Timeout) => Phase::RightPush,
             (_, Cause::Guard(_)) => Phase::LeftPush,
         }
     }
 
-    /// What a state that begins now commands.
+    /// Returns the output of a state that starts at `now`.
     fn hold(&self, phase: Phase, now: Instant) -> Hold {
         let back = self.zone() - self.tuned.of("hysteresis", self.hysteresis.get());
         let strong = self.tuned.of("strong", self.strong.get());
@@ -159,7 +160,7 @@ impl Relay {
             Phase::LeftPush => until_guards(strong, Guards::one(Guard::at_least(-back))),
             Phase::RightBrake => until_braked(strong),
             Phase::LeftBrake => until_braked(-strong),
-            // At the start, and after the right brake.
+            // Start, and the state after the right brake.
             _ => until_guards(weak, boundaries),
         }
     }

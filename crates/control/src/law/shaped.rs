@@ -1,4 +1,4 @@
-//! The turn to a target that leaves modes at rest: a command planned for them, or a turn with limits through a shaper.
+//! The slew to a target that leaves modes at rest: a command planned for them, or a slew with limits through a shaper.
 
 use nalgebra::Quaternion;
 
@@ -9,15 +9,15 @@ use crate::manoeuvre::{Profile, RestToRest, Slew, Task, shaped};
 use crate::quantity::Positive;
 
 impl Target {
-    /// Whether the turn to it is made for modes.
+    /// Returns true if the slew to the target is planned or shaped for modes.
     pub(super) fn is_shaped(&self) -> bool {
         self.command.is_some() || self.shaper.is_some()
     }
 
-    /// The turn to it, of a body with these modes.
+    /// Returns the slew to the target, of a body with these modes.
     ///
     /// # Errors
-    /// The key that does not fit the modes, and why.
+    /// A `Fault` with the key that does not fit the modes and the reason.
     pub(super) fn turn(&self, ways: [Quaternion<f64>; 2], modes: &[Mode]) -> Result<RestToRest, Fault> {
         RestToRest::new(ways, |angle| {
             let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
@@ -34,7 +34,7 @@ impl Target {
         })
     }
 
-    /// Keys of a shaped turn that do not fit each other.
+    /// Checks the keys of a shaped slew against each other; returns the key and the reason.
     pub(super) fn shape_fault(&self) -> Option<Fault> {
         let limits = [
             ("acceleration", self.acceleration.is_some()),
@@ -75,8 +75,8 @@ mod tests {
         toml::from_str(&format!("from = 0\n{keys}")).unwrap_or_else(|error| panic!("{keys}: {error}"))
     }
 
-    /// What is left of a mode after a turn, in parts of what one push with its largest acceleration leaves: by steps of Simpson's
-    /// rule over the poses of the turn, which know nothing of waveforms.
+    /// Returns the residual of a mode after a slew, relative to that of a pulse with the largest acceleration, by
+    /// Simpson's rule over the poses of the slew, independent of waveforms.
     fn left(turn: &RestToRest, mode: &Mode, axis: Vector) -> f64 {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
         let damped = w * f64::sqrt(1.0 - zeta * zeta);
@@ -84,7 +84,7 @@ mod tests {
         let (mut cosine, mut sine, mut most) = (0.0, 0.0, 0.0_f64);
         let count = 200_000;
         let h = end / f64::from(count);
-        // Rates are continuous: in parts, of the acceleration's integral.
+        // Rates are continuous, so the integral of the acceleration is taken by parts.
         for k in 0..=count {
             let t = h * f64::from(k);
             let weight = if k == 0 || k == count {
@@ -109,7 +109,7 @@ mod tests {
         let axis = Vector::new(1.0, 2.0, 2.0) / 3.0;
         let from = rotation(&Vector::new(0.3, -0.2, 0.5));
         let to = from * rotation(&(axis * 0.8));
-        // By Simpson's rule, of turns whose rate has kinks.
+        // Tolerances of Simpson's rule for rates with kinks.
         let cases = [
             ("acceleration = 2e-3\nrate_limit = 0.02\nshaper = { zv = { modes = [0] } }", vec![0], 1e-7),
             (
@@ -132,7 +132,7 @@ mod tests {
                 let left = left(&turn, &modes()[mode], axis);
                 assert!(left < bound, "{keys}: mode {mode} keeps {left:e}");
             }
-            // It ends at its target, at rest, and goes there about one axis.
+            // The slew ends at its target, at rest, and has a single axis.
             let near_end = turn.at(turn.duration() * (1.0 - 1e-12));
             assert!((near_end.attitude - to).norm() < 1e-12 && near_end.rate.norm() < 1e-11, "{keys}");
             assert!((turn.at(0.4 * turn.duration()).rate.cross(&axis)).norm() < 1e-15);
@@ -141,7 +141,7 @@ mod tests {
         let plain = target("acceleration = 2e-3\nrate_limit = 0.02");
         let plain = plain.turn([from, to], &modes()).expect("a turn");
         assert!(left(&plain, &modes()[0], axis) > 1e-2);
-        // Without a shaper it is the turn in closed form.
+        // Without a shaper it is the closed-form slew.
         let slew = Slew::new([from, to], 2e-3, 0.02, Profile::Trapezoid);
         for k in 0..60 {
             let (a, b) = (plain.at(f64::from(k)), slew.at(f64::from(k)));

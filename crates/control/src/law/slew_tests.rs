@@ -1,5 +1,5 @@
-//! A turn of 60 degrees by law, allocation and wheels on a flexible spacecraft, against a second code: tests/golden/turning/d.csv
-//! without friction, e.csv with it.
+//! Test of a 60 degree slew by law, allocation and wheels on a flexible spacecraft, against a second code:
+//! tests/golden/turning/d.csv without friction, e.csv with friction.
 
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
@@ -13,7 +13,7 @@ use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
 const MODES: &str = include_str!("../../../../tests/golden/turning/modes.csv");
-/// t, attitude, rate, speeds of the wheels, angle beyond the reference.
+/// Columns: t, attitude, rate, wheel speeds, angle relative to the reference.
 const TURN: &str = include_str!("../../../../tests/golden/turning/d.csv");
 const RUBBING: &str = include_str!("../../../../tests/golden/turning/e.csv");
 const PERIOD: f64 = 0.25;
@@ -23,7 +23,7 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
     text.lines().filter_map(row).collect()
 }
 
-/// The spacecraft without first moments, its damping matrix whole.
+/// Returns the spacecraft without first moments, with its full damping matrix.
 fn craft() -> Flexible {
     let rows = rows(MODES);
     let mode = |row: &Vec<f64>| FreeMode {
@@ -57,7 +57,7 @@ fn wheels(speed: f64) -> Spinning {
     wheels.start(&wheels.allocation().unwrap(), &[0, 1, 2].map(setting))
 }
 
-/// When a wheel came to rest (s), which one, and how it slipped then.
+/// Time at which a wheel stopped (s), index of the wheel, and its slip afterwards.
 type Met = (f64, usize, Slip);
 
 #[test]
@@ -66,7 +66,8 @@ fn sixty_degrees_by_four_wheels() {
     assert!(met.is_empty());
 }
 
-/// Six times a wheel comes to rest; each time it slips on the other way. The instants of the first two are those of both codes.
+/// Checks the slew with friction: six times a wheel stops and then slips in the other direction; the first two times
+/// are those of both codes.
 #[test]
 fn the_same_with_friction() {
     let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
@@ -81,7 +82,7 @@ fn the_same_with_friction() {
     }
 }
 
-/// The turn against a table of a second code; tells when wheels came to rest.
+/// Runs the slew against a table of the second code; returns the times at which wheels stopped.
 fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let craft = craft();
     let mut turning = Turning::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
@@ -111,7 +112,7 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
             met += 1;
             let three = |from: usize| Vector::from_row_slice(&row[from..from + 3]);
             let q = Quaternion::new(row[1], row[2], row[3], row[4]);
-            // The table has 13 digits; the two codes agree to 1e-13, 1e-14, 2e-10 and 2e-13.
+            // The reference table has 13 digits; the two codes agree to 1e-13, 1e-14, 2e-10 and 2e-13.
             assert!((attitude - q).norm() < 1e-12, "{t} {:e}", (attitude - q).norm());
             assert!((rate - three(5)).norm() < 1e-13, "{t} {:e}", (rate - three(5)).norm());
             for (wheel, speed) in wheels.wheels(now, rate.into()).iter().zip(&row[8..12]) {
@@ -160,7 +161,7 @@ fn go(turning: &mut Turning, t: f64) -> Option<f64> {
 
 #[test]
 fn a_reference_is_seen_in_the_axes_of_the_body() {
-    // A body a quarter turn about z beyond it sees its rate about x as one about -y.
+    // The rate about x appears about -y on a body a quarter turn about z from it.
     let pose = Slew::at_once(Quaternion::identity()).at(0.0);
     let pose = crate::manoeuvre::Pose { rate: Vector::x(), acceleration: Vector::z(), ..pose };
     let by = Vector::new(0.0, 0.0, std::f64::consts::SQRT_2);

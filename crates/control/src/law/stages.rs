@@ -1,4 +1,4 @@
-//! Laws one after the other, each from a time on.
+//! Sequence of laws, each from a given time on.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -32,22 +32,22 @@ impl Stage {
 }
 
 impl Stages {
-    /// Its laws.
+    /// Iterates over the laws.
     pub fn laws(&self) -> impl Iterator<Item = &Law> {
         self.0.iter().map(|stage| &stage.law)
     }
 
-    /// Where the law of a stage stands within this one: `[0].law.pd.` and the like.
+    /// Returns the key prefix of the law of a stage: `[0].law.pd.` and the like.
     fn place(&self, index: usize) -> String {
         format!("[{index}].law.{}.", self.0[index].law.kind())
     }
 
-    /// When the last of them begins.
+    /// Returns the start time of the last stage.
     pub fn settles(&self) -> Instant {
         self.0.last().map_or(Instant::START, Stage::begins)
     }
 
-    /// What single values cannot show to be wrong: a key within the stages, and why.
+    /// Checks the stages; returns a key within them and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         let Some(first) = self.0.first() else {
             return Some(Fault::new("", "must have one law or more, got none"));
@@ -86,12 +86,12 @@ impl Rule for Stages {
         Box::new(InTurn { stages: stages.collect(), active: 0, places, tuned: None })
     }
 
-    /// The shortest of its laws.
+    /// Returns the shortest period of the laws.
     fn period(&self) -> Option<Span> {
         self.laws().filter_map(|law| law.period()).min()
     }
 
-    /// That of the last.
+    /// Returns the error band of the last law.
     fn promise(&self) -> Promise {
         self.0.last().map_or(Promise::Nothing, |stage| stage.law.promise())
     }
@@ -111,13 +111,13 @@ impl Rule for Stages {
     }
 }
 
-/// The laws at work about an axis.
+/// Run-time state of the laws about an axis.
 #[derive(Clone, Debug)]
 struct InTurn {
     stages: Vec<(Instant, Box<dyn Control>)>,
-    /// The one that acts.
+    /// Index of the active stage.
     active: usize,
-    /// Where each stands among the stages, and which was tuned last.
+    /// Key prefix of each law among the stages, and index of the one tuned last.
     places: Vec<String>,
     tuned: Option<usize>,
 }

@@ -1,8 +1,8 @@
-//! A compensator given by its matrices, x' = A x + B e, u = C x + D e, at samples: what design programs bring.
+//! A compensator given by its matrices, x' = A x + B e, u = C x + D e, at samples, as design programs export it.
 //!
-//! e is what is wanted less what is believed, of the angle and, with a second column of B and D, of the rate: a PD law is
-//! D = \[\[k_p, k_d\]\]. Matrices of continuous time become those of samples, under an error that is held over a period
-//! exactly, or by Tustin's rule (\[FranklinPowell98\]).
+//! e is the setpoint minus the estimate, of the angle and, with a second column of B and D, of the rate: a PD law is D
+//! = \[\[k_p, k_d\]\]. Matrices in continuous time are discretised exactly, with the error held over a period, or by
+//! Tustin's rule (\[FranklinPowell98\]).
 
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
@@ -16,7 +16,7 @@ use crate::numerics::exponential::exponential;
 use crate::quantity::{Finite, Positive};
 use crate::time::{Instant, Span};
 
-/// The most states.
+/// Largest number of states.
 const MOST: usize = 64;
 
 /// The compensator.
@@ -87,7 +87,7 @@ pub enum Commands {
     Acceleration,
 }
 
-/// The matrices at samples.
+/// Matrices in discrete time.
 #[derive(Clone, Debug, PartialEq)]
 struct Matrices {
     a: DMatrix<f64>,
@@ -96,7 +96,7 @@ struct Matrices {
     d: DMatrix<f64>,
 }
 
-/// A matrix of so many columns.
+/// Returns a matrix with `columns` columns, or the key of the first row with another length.
 fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64>, Fault> {
     match rows.iter().position(|row| row.len() != columns) {
         Some(row) => Err(Fault::new(
@@ -112,7 +112,7 @@ fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64
 }
 
 impl StateSpace {
-    /// The matrices at samples.
+    /// Returns the matrices in discrete time.
     fn sampled(&self) -> Result<Matrices, Fault> {
         let wrong = |key: &str, why: String| Err(Fault::new(key, why));
         let order = self.a.len();
@@ -160,7 +160,7 @@ impl StateSpace {
         }
     }
 
-    /// What single values cannot show to be wrong: a key within the law, and why.
+    /// Checks the settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         match self.sampled() {
             Err(fault) => Some(fault),
@@ -172,7 +172,7 @@ impl StateSpace {
         }
     }
 
-    /// The command for an angle that is so far from its target (rad) when nothing has been before: its size.
+    /// Returns the size of the first command at an angle error (rad), with the compensator's states at 0.
     pub fn first_command(&self, angle: f64) -> f64 {
         let direct = self.d.first().and_then(|row| row.first()).map_or(0.0, |entry| entry.get());
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
@@ -181,7 +181,7 @@ impl StateSpace {
 }
 
 impl Matrices {
-    /// Those of samples `h` seconds apart, of an input that is held between them.
+    /// Discretises the matrices for samples `h` (s) apart, with the input held between them.
     fn held(self, h: f64) -> Self {
         let (order, inputs) = (self.a.nrows(), self.b.ncols());
         let mut whole = DMatrix::zeros(order + inputs, order + inputs);
@@ -192,8 +192,8 @@ impl Matrices {
         Self { a: a.into_owned(), b: b.into_owned(), ..self }
     }
 
-    /// The same by s = 2/h (z - 1)/(z + 1), if there are any: with L = (1 - A h/2)^-1, states (L (1 + A h/2) x), inputs L B h,
-    /// outputs C L, and D + C L B h/2.
+    /// Discretises the matrices by s = 2/h (z - 1)/(z + 1), if possible: with L = (1 - A h/2)^-1, states (L (1 + A h/2)
+    /// x), inputs L B h, outputs C L, and D + C L B h/2.
     fn tustin(self, h: f64) -> Option<Self> {
         let one = DMatrix::identity(self.a.nrows(), self.a.nrows());
         let half = &self.a * (0.5 * h);
@@ -207,7 +207,7 @@ impl Matrices {
 
 impl Rule for StateSpace {
     fn start(&self, _: &Authority) -> Box<dyn Control> {
-        // One that cannot be sampled was refused.
+        // Invalid matrices were rejected before.
         let none = || Matrices {
             a: DMatrix::zeros(0, 0),
             b: DMatrix::zeros(0, 1),
@@ -232,7 +232,7 @@ impl Rule for StateSpace {
         Some(self.period)
     }
 
-    /// The usual 5 % of a step.
+    /// Returns the usual 5 % of a step.
     fn promise(&self) -> Promise {
         Promise::Part(0.05)
     }
@@ -246,15 +246,15 @@ impl Rule for StateSpace {
     }
 }
 
-/// The law at work about an axis.
+/// Run-time state of the compensator about an axis.
 #[derive(Clone, Debug)]
 struct AtSamples {
     matrices: Matrices,
-    /// One column.
+    /// State x, a column.
     state: DMatrix<f64>,
     period: Span,
     command: Commands,
-    /// Factor on the output, and how it was tuned last.
+    /// Factor on the output, and its last tuned value.
     gain: f64,
     tuned: f64,
     limit: f64,
@@ -291,7 +291,7 @@ impl Control for AtSamples {
         if self.active { Phase::Feedback } else { Phase::Open }
     }
 
-    /// With accelerations its reference has one to follow.
+    /// Returns true also for accelerations, because their reference has one to follow.
     fn tracks(&self) -> bool {
         self.track || self.command == Commands::Acceleration
     }

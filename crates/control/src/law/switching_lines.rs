@@ -1,43 +1,44 @@
-//! Switching lines in the phase plane of one axis: the rate that the body shall have at an angle, and how far off it may be.
+//! Switching lines in the phase plane of one axis: target rate as a function of the angle, and its tolerance.
 //!
-//! With the jets' acceleration m, the angle e beyond the target, and d what of it lies outside an edge c just within the dead
-//! zone, the body shall return at the rate
+//! With the jets' acceleration m, the angle e relative to the target, and d the part of it outside an edge c just
+//! within the dead zone, the target rate of return is
 //!
 //! ```text
 //! r(d) = min(rate_limit, max(k d, min(slow, steep d, sqrt(2 b m d)))),   k = min(slope, b m/rate_limit)
 //! slow = max(switch_off, 2 least),   steep = max(slope, 2 least/(dead_zone - c))
 //! ```
 //!
-//! with b = `braking` and least, what the smallest pulse changes: along k d it brakes in time from the largest rate; jets for
-//! which that line is flat do not wait on it, but return at the rate slow until sqrt(2 b m d), from which they can brake.
-//! Beyond the edge half of r is the least rate of return that is left alone: of slow, it is never less than a pulse can change,
-//! so that no body rests beyond the dead zone. Within it a rate outwards is left alone as long as the jets can stop the body
-//! before the edge, and none above `switch_on` is. Where a pulse changes more than `switch_on` or half of `rate_limit`, these are
-//! raised to it. Parabolas are as in \[Wie08\]; the rest is ours.
+//! with b = `braking` and `least` the rate change by the smallest pulse. Along k d the body can brake in time from the
+//! largest rate. Weak jets, for which that line is flat, do not use it alone: they return at the rate slow until the
+//! parabola, from which they can brake. Beyond the edge a return rate of at least r/2 is tolerated; since slow is at
+//! least 2 least, no body comes to rest beyond the dead zone. Within the edge a rate outwards is tolerated while the
+//! jets can stop the body before the edge, and none above `switch_on`. If a pulse changes more than `switch_on` or half
+//! of `rate_limit`, these are raised to it. Parabolas are as in \[Wie08\]; the rest is our design.
 
 use super::{Authority, PhasePlane};
 
-/// The switching lines of an axis.
+/// Switching lines of an axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SwitchingLines {
-    /// From this angle on the body is turned back (rad).
+    /// Angle from which on the body is returned (rad).
     edge: f64,
     rate_limit: f64,
-    /// Rates for each rad beyond the edge: at most, and as far as jets can brake along it from the largest rate (1/s).
+    /// Slopes of the rate beyond the edge (1/s): the steepest one, and one along which jets can brake from the largest
+    /// rate.
     slope: f64,
     flat: f64,
-    /// Twice the deceleration (rad/s²).
+    /// Twice the deceleration of braking (rad/s²).
     parabola: f64,
     on: f64,
     off: f64,
-    /// What the smallest pulse changes (rad/s): less is not worth one.
+    /// Rate change by the smallest pulse (rad/s), below which a pulse is not worthwhile.
     least: f64,
-    /// Rate of the return that is wanted however weak the jets are (rad/s).
+    /// Smallest target rate of return, whatever the authority of the jets (rad/s).
     slow: f64,
 }
 
 impl SwitchingLines {
-    /// The lines about an axis on which an actuator has this authority.
+    /// Creates the lines about an axis with this actuator authority.
     pub fn new(spec: &PhasePlane, authority: &Authority) -> Self {
         let [plus, minus] = authority.accelerations;
         let (on, off) = (spec.switch_on.get(), spec.switch_off.get());
@@ -50,7 +51,7 @@ impl SwitchingLines {
         Self {
             edge,
             rate_limit,
-            // At the end of the dead zone the return is worth the smallest pulse.
+            // At the boundary of the dead zone the return is worth the smallest pulse.
             slope: slope.max(2.0 * least / (zone - edge)),
             flat: slope.min(braking / rate_limit),
             parabola: 2.0 * braking,
@@ -61,12 +62,12 @@ impl SwitchingLines {
         }
     }
 
-    /// The rate that the body shall have at an angle (rad/s).
+    /// Returns the target rate at an angle (rad/s).
     pub fn wanted(&self, angle: f64) -> f64 {
         -self.returning(angle.abs() - self.edge).copysign(angle)
     }
 
-    /// Rate of the return from so far beyond the edge (rad/s).
+    /// Returns the target rate of return at an angle `beyond` the edge (rad/s).
     fn returning(&self, beyond: f64) -> f64 {
         if beyond <= 0.0 {
             return 0.0;
@@ -75,12 +76,12 @@ impl SwitchingLines {
         (self.flat * beyond).max(slow).min(self.rate_limit)
     }
 
-    /// How far the rate may be above, and below, the one that it shall have at an angle (rad/s).
+    /// Returns the tolerances of the rate above and below the target rate at an angle (rad/s).
     pub fn allowed(&self, angle: f64) -> [f64; 2] {
         [angle, -angle].map(|ahead| self.allowed_above(ahead))
     }
 
-    /// How far the rate may be above the one that it shall have at an angle (rad/s).
+    /// Returns the tolerance of the rate above the target rate at an angle (rad/s).
     #[inline]
     pub fn allowed_above(&self, angle: f64) -> f64 {
         let beyond = angle - self.edge;
@@ -89,23 +90,23 @@ impl SwitchingLines {
         allowed.clamp(self.least, self.on)
     }
 
-    /// Below which excess of the rate the jets end to fire, where so much is allowed (rad/s).
+    /// Returns the rate error below which the jets stop firing, for a tolerance (rad/s).
     pub fn release(&self, allowed: f64) -> f64 {
         self.off.min(0.5 * allowed)
     }
 }
 
-/// No rate below this part of `switch_on` is worth a pulse, however short pulses may be.
+/// Fraction of `switch_on` below which a rate error is not worth a pulse, however short pulses may be.
 const LEAST: f64 = 1e-3;
 
-/// What the smallest pulse of the stronger sign changes (rad/s).
+/// Returns the rate change by the smallest pulse in the stronger direction (rad/s).
 fn smallest_change(authority: &Authority) -> f64 {
     let [plus, minus] = authority.accelerations;
     plus.max(minus) * authority.width.shortest()
 }
 
-/// How near to its target the law keeps the body about an axis (rad): the dead zone, and what the smallest pulse turns it
-/// until the next one can act.
+/// Returns the expected error band about an axis (rad): the dead zone, plus the rotation by the smallest pulse until
+/// the next one can act.
 pub fn band(spec: &PhasePlane, authority: &Authority) -> f64 {
     let period = spec.period.seconds();
     let cycles = libm::round(authority.delay / period) + 2.0;

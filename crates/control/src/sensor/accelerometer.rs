@@ -1,4 +1,5 @@
-//! An accelerometer at a point: the specific force along its axes, with noise, a bias that walks, rounding, latency and failures.
+//! An accelerometer at a point: the specific force along its axes, with noise, bias random walk, rounding, latency and
+//! failures.
 
 use std::collections::VecDeque;
 
@@ -56,7 +57,7 @@ pub struct Accelerometer {
 }
 
 impl Accelerometer {
-    /// What single values cannot show to be wrong: a key within the accelerometer, and why.
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         if !self.watch_only {
             let why = "must be true: an accelerometer is only logged, and the law does not use it";
@@ -70,12 +71,12 @@ impl Accelerometer {
         Some(document::Fault::new(format!("along[{none}]"), "must not be zero, got [0, 0, 0]"))
     }
 
-    /// Along how many axes it measures.
+    /// Returns the number of measurement axes.
     pub fn axis_count(&self) -> usize {
         if self.along.is_empty() { 3 } else { self.along.len() }
     }
 
-    /// The unit vectors along which it measures.
+    /// Returns the unit vectors of the measurement axes.
     fn axes(&self) -> Vec<Vector> {
         if self.along.is_empty() {
             return vec![Vector::x(), Vector::y(), Vector::z()];
@@ -83,7 +84,7 @@ impl Accelerometer {
         self.along.iter().map(|along| crate::attitude::vector(along).normalize()).collect()
     }
 
-    /// The accelerometer in a run, after so many others.
+    /// Creates the accelerometer's run-time state; `ordinal` counts earlier accelerometers.
     pub fn start(&self, seed: Seed, ordinal: usize) -> Accelerating {
         let axes = self.axes();
         let draws = |name: &str| -> Vec<Stream> {
@@ -102,18 +103,18 @@ impl Accelerometer {
     }
 }
 
-/// What is measured along an axis.
+/// Measurement along an axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct MeasuredAcceleration {
-    /// As it is told (m/s²).
+    /// Measured specific force (m/s²).
     pub measured: f64,
-    /// As it is (m/s²).
+    /// True specific force (m/s²).
     pub exact: f64,
-    /// The bias (m/s²).
+    /// Bias (m/s²).
     pub bias: f64,
 }
 
-/// An accelerometer at work.
+/// Run-time state of an accelerometer.
 #[derive(Clone, Debug)]
 pub struct Accelerating {
     spec: Accelerometer,
@@ -121,33 +122,33 @@ pub struct Accelerating {
     noise: Vec<Stream>,
     walk: Vec<Stream>,
     bias: Vec<f64>,
-    /// When it samples next.
+    /// Time of the next sample.
     exposes: Instant,
-    /// What was sampled, and when it is told.
+    /// Samples in the latency queue, with the times of their output.
     waiting: VecDeque<(Instant, Vec<MeasuredAcceleration>)>,
-    /// What was measured last.
+    /// Last measured values.
     last: Option<Vec<f64>>,
 }
 
 impl Accelerating {
-    /// When it samples or tells next.
+    /// Returns the next time of a sample or an output.
     pub fn due(&self) -> Instant {
         self.waiting.front().map_or(self.exposes, |(told, _)| self.exposes.min(*told))
     }
 
-    /// Whether it samples now.
+    /// Returns true if the accelerometer samples at `now`.
     pub fn exposes(&self, now: Instant) -> bool {
         self.exposes <= now
     }
 
-    /// Takes a sample where this is the specific force along the hub's axes, as its mount is turned (m/s²).
+    /// Samples the specific force `force` in the hub's axes, rotated with the mount (m/s²).
     pub fn sample(&mut self, now: Instant, force: &Vector) {
         let Self { spec, axes, noise, walk, bias, .. } = self;
         self.exposes = now + spec.period;
         let step = if now == Instant::START { 0.0 } else { f64::sqrt(spec.period.seconds()) };
         let mut felt = Vec::with_capacity(axes.len());
         for (index, axis) in axes.iter().enumerate() {
-            // Draws are made in a failure too: those after it do not depend on it.
+            // Random numbers are drawn during a failure too, so that later ones do not depend on it.
             let draws = [walk[index].normal(), noise[index].normal()];
             bias[index] += spec.bias_random_walk.about(index).get() * step * draws[0];
             let exact = axis.dot(force);
@@ -170,7 +171,7 @@ impl Accelerating {
         self.waiting.push_back((told, felt));
     }
 
-    /// What is told now.
+    /// Returns the sample whose latency has elapsed, if any.
     pub fn told(&mut self, now: Instant) -> Option<Vec<MeasuredAcceleration>> {
         self.waiting.front().filter(|(told, _)| *told <= now)?;
         self.waiting.pop_front().map(|(_, felt)| felt)

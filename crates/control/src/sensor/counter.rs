@@ -1,56 +1,56 @@
-//! What a gyro that integrates adds to the angle of each of its periods: random walks, and a quantum whose remainder it keeps.
+//! Errors of an integrating gyro: random walks, and a quantum of the angle whose remainder carries over.
 //!
-//! Over a period D its mean rate is y = M w + (b + b')/2 + v: the bias walks from b to b' = b + s_u sqrt(D) n, and v has the
-//! variance s_v²/D + s_u² D/12. That is exactly what b' = n_u and y = w + b + n_v integrated over D come to, with n_v and n_u
-//! white of the densities s_v² and s_u² (\[LeffertsMarkleyShuster82\]).
+//! Over a period D the mean rate is y = M w + (b + b')/2 + v: the bias walks from b to b' = b + s_u sqrt(D) n, and v
+//! has the variance s_v²/D + s_u² D/12. That is the exact integral of b' = n_u and y = w + b + n_v over D, with white
+//! n_v and n_u of the densities s_v² and s_u² (\[LeffertsMarkleyShuster82\]).
 
 use super::wander::Wander;
 use super::{Gyro, Truth};
 use crate::random::Stream;
 use crate::time::Instant;
 
-/// The counter at work.
+/// Run-time state of the rate integrator.
 #[derive(Clone, Debug)]
 pub(super) struct Counter {
-    /// When it was read last, and the integrals of the rates then (rad).
+    /// Time of the last reading, and the integrals of the rates then (rad).
     read: Option<(Instant, [f64; 3])>,
-    /// The period that was read last (s).
+    /// Period of the last reading (s).
     period: f64,
-    /// Standard deviations about each axis over such a period: of the bias's walk and of v (rad/s).
+    /// Standard deviations of the bias's walk and of v over this period, about each axis (rad/s).
     deviations: [[f64; 2]; 3],
-    /// The bias now (rad/s).
+    /// Current bias (rad/s).
     pub bias: [f64; 3],
-    /// Angles that are counted with the next (rad).
+    /// Remainder of the angle that is added to the next reading (rad).
     remainder: [f64; 3],
 }
 
-/// Standard deviation of the mean rate of such a period about an axis (rad/s), that of its quantum included.
+/// Returns the standard deviation of the mean rate over a period about an axis (rad/s), including the quantum.
 pub(super) fn deviation(gyro: &Gyro, axis: usize, period: f64) -> f64 {
     let [white, walk, quantum] =
         [gyro.angle_random_walk, gyro.rate_random_walk, gyro.quantum].map(|each| each.about(axis).get());
-    // A rounding now and one before.
+    // One rounding now and one before.
     f64::sqrt(spread(white, walk, period) + quantum * quantum / (6.0 * period * period))
 }
 
-/// Variance of v.
+/// Returns the variance of v.
 fn spread(white: f64, walk: f64, period: f64) -> f64 {
     white * white / period + walk * walk * period / 12.0
 }
 
-/// Standard deviations over such a period about an axis: of the bias's walk and of v (rad/s).
+/// Returns the standard deviations of the bias's walk and of v over a period about an axis (rad/s).
 fn deviations(gyro: &Gyro, axis: usize, period: f64) -> [f64; 2] {
     let [white, walk] = [gyro.angle_random_walk, gyro.rate_random_walk].map(|each| each.about(axis).get());
     [walk * f64::sqrt(period), f64::sqrt(spread(white, walk, period))]
 }
 
 impl Counter {
-    /// The counter before it is read.
+    /// Creates the integrator before the first reading.
     pub fn new(gyro: &Gyro) -> Self {
         let bias = [0, 1, 2].map(|axis| gyro.bias.about(axis).get());
         Self { read: None, period: 0.0, deviations: [[0.0; 2]; 3], bias, remainder: [0.0; 3] }
     }
 
-    /// The mean rates since it was read last (rad/s); at first the rates themselves.
+    /// Returns the mean rates since the last reading (rad/s); the current rates at the first reading.
     pub fn mean(&mut self, gyro: &Gyro, now: Instant, truth: &Truth) -> [f64; 3] {
         let before = self.read.replace((now, truth.turned));
         let period = before.map_or(0.0, |(then, _)| now.since(then).seconds());
@@ -66,7 +66,7 @@ impl Counter {
         }
     }
 
-    /// What is read of these mean rates (rad/s).
+    /// Returns the reading for these mean rates (rad/s), with all errors.
     pub fn count(
         &mut self,
         gyro: &Gyro,
@@ -87,7 +87,8 @@ impl Counter {
         rate
     }
 
-    /// The bias walks; what that and the white noise add to the rate with the bias before (rad/s).
+    /// Advances the bias; returns its contribution and that of the white noise to the rate, beyond the bias before
+    /// (rad/s).
     fn walk(&mut self, axis: usize, noise: &mut Stream) -> f64 {
         let [walk, white] = self.deviations[axis];
         let step = walk * noise.normal();

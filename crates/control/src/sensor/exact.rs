@@ -1,9 +1,9 @@
-//! What a continuous sensor tells: the motion itself.
+//! Ideal sensor: the exact motion.
 
 use super::{Reading, Sense, Truth};
 use crate::time::Instant;
 
-/// The true orientation and rates, at every instant.
+/// Ideal sensor of orientation and rates, at every instant.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Exact;
 

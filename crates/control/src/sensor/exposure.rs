@@ -1,4 +1,4 @@
-//! Exposures: what a star tracker sees while it gathers light, and the mean of it.
+//! Exposures of a star tracker, and the mean attitude over them.
 
 use nalgebra::Quaternion;
 
@@ -12,18 +12,19 @@ use crate::time::Span;
 pub struct Exposure(Vec<(f64, Quaternion<f64>)>);
 
 impl Exposure {
-    /// Takes an attitude that lasts so long (s).
+    /// Adds an attitude with the time `lasts` (s) that it represents.
     pub fn see(&mut self, attitude: Quaternion<f64>, lasts: f64) {
         self.0.push((lasts, attitude));
     }
 
-    /// Forgets all.
+    /// Removes all attitudes.
     pub fn clear(&mut self) {
         self.0.clear();
     }
 
-    /// The mean attitude: that of the middle, turned by the mean of the vectors by which the others are turned from it. What
-    /// another attitude in place of the middle's would make of it differs in the third order of the angles turned.
+    /// Returns the mean attitude: that of the middle, rotated by the mean of the rotation vectors of the others
+    /// relative to it. A different reference attitude would change the result in the third order of the rotation
+    /// angles.
     pub fn mean(&self, middle: &Quaternion<f64>) -> Quaternion<f64> {
         let (mut whole, mut sum) = (0.0, Vector::zeros());
         for (lasts, attitude) in &self.0 {
@@ -35,14 +36,15 @@ impl Exposure {
 }
 
 impl Sensor {
-    /// The time over which it gathers light for a reading.
+    /// Returns the exposure time.
     pub fn exposure(&self) -> Span {
         if let Self::StarTracker(tracker) = self { tracker.exposure() } else { Span::ZERO }
     }
 }
 
 impl Parts<Sensor> {
-    /// The trackers that gather light over a time: the place of each among the sensors, its period, and half that time.
+    /// Iterates over the star trackers with an exposure time: index among the sensors, period, and half the exposure
+    /// time.
     pub fn exposed(&self) -> impl Iterator<Item = (usize, [Span; 2])> {
         self.iter().enumerate().filter_map(|(index, sensor)| match sensor {
             Sensor::StarTracker(tracker) if tracker.exposes() => {
@@ -58,7 +60,8 @@ mod tests {
     use super::*;
     use crate::numerics::quadrature::nodes;
 
-    /// The mean over pieces between these instants, from the attitude at 0, of what turns so (rad) at no more than 40 rad/s.
+    /// Returns the mean over pieces between these instants, relative to the attitude at 0, for rotations up to 40
+    /// rad/s.
     fn mean(breaks: &[f64], turned: impl Fn(f64) -> Vector) -> Quaternion<f64> {
         let at = |t: f64| rotation(&Vector::new(0.4, -1.1, 0.3)) * rotation(&turned(t));
         let mut exposure = Exposure::default();
@@ -76,7 +79,7 @@ mod tests {
 
     #[test]
     fn a_constant_rate_gives_the_middle() {
-        // Of a fast one too.
+        // Valid for a fast rate too.
         for rate in [1e-3, 0.05, 3.0] {
             let found = mean(&[-0.25, 0.1, 0.25], |t| Vector::new(0.6, -0.8, 0.5) * (rate * t));
             assert!(off(&found, Vector::zeros()) < 4e-16, "{rate}");
@@ -97,17 +100,17 @@ mod tests {
             let found = mean(&ends, |t| along * (swing(t) - swing(0.0)));
             assert!(off(&found, along * (swing(0.0) * (left - 1.0))) < 3e-16, "{w}");
         }
-        // An acceleration that sets in d after the middle: alpha (e/2 - d)³/6 of e.
+        // Acceleration that starts d after the middle: alpha (e/2 - d)³/6 of e.
         let (alpha, d) = (0.02, 0.07);
         let found = mean(&[ends[0], d, ends[1]], |t| along * (0.5 * alpha * (t - d).max(0.0) * (t - d)));
         let late = ends[1] - d;
         assert!(off(&found, along * (alpha * late * late * late / 6.0 / e)) < 3e-16);
-        // In one piece it would not be exact.
+        // In one piece it is not exact.
         let found = mean(&ends, |t| along * (0.5 * alpha * (t - d).max(0.0) * (t - d)));
         assert!(off(&found, along * (alpha * late * late * late / 6.0 / e)) > 1e-9);
     }
 
-    /// About axes that change, it is the mean of the quaternions but for third orders.
+    /// Checks that about changing axes the mean is that of the quaternions up to third-order terms.
     #[test]
     fn the_mean_is_that_of_the_chords() {
         for size in [0.01, 0.04] {

@@ -1,4 +1,4 @@
-//! A gyro: at a point of the structure, whose elastic motion it sees.
+//! A gyro at a point of the structure, whose elastic motion it measures.
 
 use std::collections::VecDeque;
 
@@ -83,23 +83,23 @@ fn is_none(each: &Each<Finite>) -> bool {
     *each == Each::default()
 }
 
-/// A gyro at work: each axis has a stream of noise of its own.
+/// Run-time state of a gyro, with a stream of noise for each axis.
 #[derive(Clone, Debug)]
 pub struct AtCycles {
     gyro: Gyro,
     noise: Vec<Stream>,
     counter: Option<Counter>,
     wander: Wander,
-    /// The rates that it told last, and those that it has measured since, if it is late (rad/s).
+    /// Rates of the last reading, and later ones in the latency queue (rad/s).
     told: Option<[f64; 3]>,
     waiting: VecDeque<[f64; 3]>,
 }
 
-/// No gyro is later (periods).
+/// Largest latency of a gyro (periods).
 const LATEST: u64 = 10_000;
 
 impl Gyro {
-    /// The gyro in a run of a body with so many axes, after so many others.
+    /// Creates the gyro's run-time state on a body with `axes` axes; `ordinal` counts earlier gyros.
     pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> AtCycles {
         let draws = |axis: usize| stream("gyro", (axis, axes), ordinal, seed);
         let counter = self.integrates().then(|| Counter::new(self));
@@ -113,7 +113,7 @@ impl Gyro {
         }
     }
 
-    /// The key of a number that is given for each of three axes, if there is one.
+    /// Returns the first key that is given for each of three axes, if there is one.
     pub fn three(&self) -> Option<&'static str> {
         let keys = [
             ("noise", self.noise.is_three()),
@@ -129,36 +129,37 @@ impl Gyro {
         keys.into_iter().find(|(_, three)| *three).map(|(key, _)| key)
     }
 
-    /// Whether it tells the mean rate of each of its periods.
+    /// Returns true if the gyro measures the mean rate over each of its periods.
     pub fn integrates(&self) -> bool {
         !(is_zero(&self.angle_random_walk) && is_zero(&self.rate_random_walk) && is_zero(&self.quantum))
     }
 
-    /// How late it reports a rate.
+    /// Returns the latency of a reading.
     pub fn latency(&self) -> Span {
         Span::from_seconds(self.latency.get())
     }
 
-    /// By how many periods.
+    /// Returns the latency in periods.
     fn late(&self) -> u64 {
         let (Some(period), latency) = (self.period, self.latency()) else { return 0 };
         (latency.seconds() / period.seconds()).round() as u64
     }
 
-    /// Standard deviation (rad/s) and correlation time (s) of the part of the bias about an axis that wanders, if one does.
+    /// Returns standard deviation (rad/s) and correlation time (s) of the correlated part of the bias about an axis, if
+    /// any.
     pub fn wandering(&self, axis: usize) -> Option<(f64, f64)> {
         let deviation = self.bias_instability.about(axis).get();
         self.correlation_time.filter(|_| deviation > 0.0).map(|time| (deviation, time.get()))
     }
 
-    /// Random walk of its bias about an axis (rad/s^1.5): what wanders walks so within a short time.
+    /// Returns the random walk of the bias about an axis (rad/s^1.5), including the correlated part's at short times.
     pub fn walk(&self, axis: usize) -> f64 {
         let own = self.rate_random_walk.about(axis).get();
         self.wandering(axis)
             .map_or(own, |(deviation, time)| f64::sqrt(own * own + 2.0 * deviation * deviation / time))
     }
 
-    /// What it measures about an axis of these rates.
+    /// Returns the rate measured about an axis for these rates, with scale error and misalignment (rad/s).
     pub(super) fn scaled(&self, axis: usize, rates: &[f64; 3]) -> f64 {
         let own = rates[axis] + self.scale.about(axis).get() * rates[axis];
         self.misalignment.as_ref().map_or(own, |rows| {
@@ -166,7 +167,7 @@ impl Gyro {
         })
     }
 
-    /// What single values cannot show to be wrong: a key within the gyro, and why.
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         let samples = [("noise", is_zero(&self.noise)), ("resolution", is_zero(&self.resolution))];
         if self.integrates() {
@@ -193,7 +194,7 @@ impl Gyro {
         Some(Fault::new(format!("misalignment[{axis}][{axis}]"), why))
     }
 
-    /// Why it cannot be so late.
+    /// Checks the latency; returns the key and the reason.
     fn lateness(&self) -> Option<Fault> {
         let latency = self.latency();
         if latency == Span::ZERO {
@@ -214,7 +215,7 @@ impl Gyro {
         (whole != latency).then(|| Fault::new("latency", why()))
     }
 
-    /// Standard deviation of the rate about an axis (rad/s), that of its quantisation included.
+    /// Returns the standard deviation of the rate about an axis (rad/s), including quantisation.
     pub fn rate_noise(&self, axis: usize) -> f64 {
         if self.integrates() {
             let period = self.period.map_or(1.0, Span::seconds);
@@ -227,7 +228,8 @@ impl Gyro {
 
 impl Sense for AtCycles {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
-        // Draws are made in a failure too, and what turns is counted: what follows does not depend on it.
+        // Random numbers are drawn and rates are integrated during a failure too, so that later readings do not depend
+        // on it.
         let rate = self.rates(now, truth);
         let rate = self.queued(rate);
         let seen = Reading { at: truth.orientation, rate: Some(rate), sight: None };
@@ -247,7 +249,7 @@ impl Sense for AtCycles {
 }
 
 impl AtCycles {
-    /// What it tells when it measures these rates: those of so many periods before, and until then those of the start.
+    /// Queues the measured rates; returns those measured one latency earlier, or the first ones until then.
     fn queued(&mut self, rate: [f64; 3]) -> [f64; 3] {
         let late = self.gyro.late();
         let Some(told) = &mut self.told else { return *self.told.insert(rate) };
@@ -258,7 +260,7 @@ impl AtCycles {
         *told
     }
 
-    /// The rates that it measures now (rad/s).
+    /// Returns the rates measured now (rad/s).
     fn rates(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
         let Self { gyro, noise, counter, wander, .. } = self;
         if let Some(counter) = counter {

@@ -1,4 +1,4 @@
-//! What a sensor from outside of this crate tells of itself before a run.
+//! Settings of a sensor that another crate provides.
 
 use std::any::Any;
 
@@ -6,25 +6,25 @@ use super::Sense;
 use crate::random::Seed;
 use crate::time::Span;
 
-/// What a sensor from outside tells of itself before a run.
+/// Settings of a sensor that another crate provides.
 pub trait Instrument: Send + Sync {
-    /// The sensor in a run of a body with so many axes.
+    /// Returns the sensor's run-time state on a body with `axes` axes.
     fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sense>;
 
-    /// The period of its samples.
+    /// Returns the period of the samples.
     fn period(&self) -> Span;
 
-    /// Standard deviation of the measured angle (rad).
+    /// Returns the standard deviation of the measured angle (rad).
     fn angle_noise(&self) -> f64 {
         0.0
     }
 
-    /// Standard deviation of the measured rate (rad/s), if rates are measured.
+    /// Returns the standard deviation of the measured rate (rad/s), if rates are measured.
     fn rate_noise(&self) -> Option<f64> {
         None
     }
 
-    /// What it is, for the program that brought it.
+    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
         None
     }

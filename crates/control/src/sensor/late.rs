@@ -1,47 +1,47 @@
-//! Exposures that are told some time later.
+//! Latency queue of a sensor: exposures whose readings are available later.
 
 use std::collections::VecDeque;
 
 use super::{Fault, Orientation, Reading};
 use crate::time::{Instant, Span};
 
-/// What was seen and is not told yet.
+/// Readings delayed by the sensor's latency.
 #[derive(Clone, Debug)]
 pub(super) struct Late {
     period: Span,
     latency: Span,
-    /// When it exposes next.
+    /// Time of the next exposure.
     exposes: Instant,
-    /// What was seen, and when it is told.
+    /// Delayed readings, with the times at which they become available.
     waiting: VecDeque<(Instant, Reading)>,
 }
 
 impl Late {
-    /// Nothing was seen yet, of a sensor that exposes at this period and tells so late.
+    /// Creates an empty queue of a sensor with this period of exposures and this latency.
     pub fn new(period: Span, latency: Span) -> Self {
         Self { period, latency, exposes: Instant::START, waiting: VecDeque::new() }
     }
 
-    /// Whether it exposes now.
+    /// Returns true if the sensor exposes at `now`.
     pub fn exposes(&self, now: Instant) -> bool {
         now >= self.exposes
     }
 
-    /// Takes what was seen in an exposure. What is seen at the start is told then, as if it had been exposed before.
+    /// Queues the reading of an exposure. A reading at the start is available at once, as if exposed before.
     pub fn take(&mut self, now: Instant, seen: Option<Reading>) {
         let told = if now == Instant::START { now } else { now + self.latency };
         self.exposes = now + self.period;
         self.waiting.extend(seen.map(|reading| (told, reading)));
     }
 
-    /// Makes something else of the orientation that was seen last.
+    /// Replaces the orientation of the last queued reading.
     pub fn amend(&mut self, at: Orientation) {
         if let Some((_, reading)) = self.waiting.back_mut() {
             reading.at = at;
         }
     }
 
-    /// What is told now.
+    /// Returns the reading whose latency has elapsed, if any.
     pub fn told(&mut self, now: Instant) -> Option<Reading> {
         let (told, reading) = *self.waiting.front()?;
         (told <= now).then(|| {
@@ -50,13 +50,14 @@ impl Late {
         })
     }
 
-    /// When there is something to see or to tell next.
+    /// Returns the next time of an exposure or a reading.
     pub fn next(&self) -> Instant {
         self.waiting.front().map_or(self.exposes, |(told, _)| self.exposes.min(*told))
     }
 }
 
-/// What a sensor with these failures makes of what it would see now, after the last reading.
+/// Returns the reading of a sensor at `now` under its failures, given the reading without failures and the last
+/// reading.
 pub(super) fn failing(
     faults: &[Fault],
     now: Instant,

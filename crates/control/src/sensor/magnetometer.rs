@@ -49,22 +49,22 @@ pub struct Magnetometer {
 }
 
 impl Magnetometer {
-    /// The sensor in a run, after so many others.
+    /// Creates the sensor's run-time state; `ordinal` counts earlier sensors of the same kind.
     pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
         Box::new(Looking::new(self, seed, ordinal))
     }
 
-    /// How late a reading is told.
+    /// Returns the latency of a reading.
     pub fn latency(&self) -> Span {
         Span::from_seconds(self.latency.get())
     }
 
-    /// Covariance of its noise, that of its rounding included.
+    /// Returns the covariance of the noise, including quantisation.
     pub fn covariance(&self) -> Matrix3<f64> {
         self.errors().covariance()
     }
 
-    /// What single values cannot show to be wrong: a key within the magnetometer, and why.
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         self.errors().fault()
     }

@@ -1,4 +1,4 @@
-//! Sensors: what is measured of the angle or of the attitude, and of the rates, and when.
+//! Sensors of angle, attitude, rates, vectors and accelerations, with their timing.
 
 mod accelerometer;
 mod counter;
@@ -65,30 +65,30 @@ pub enum Sensor {
     Own(Own<dyn Instrument>),
 }
 
-/// A sensor at work.
+/// Run-time state of a sensor.
 pub trait Sense: fmt::Debug + Send + Sync {
-    /// What is measured now, after the last reading; nothing of a sensor that is silent.
+    /// Returns the reading at `now`, given the last one; `None` if the sensor is silent or has no new reading.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading>;
 
-    /// When it acts next after now, of a sensor with this period.
+    /// Returns the next time after `now` at which the sensor acts, for a sensor with this period.
     fn after(&mut self, now: Instant, period: Span) -> Instant {
         now + period
     }
 
-    /// Takes what was seen over the exposure that ends now, of a sensor that gathers light.
+    /// Replaces the last attitude of a sensor with an exposure time by the mean over the exposure that ends now.
     fn gather(&mut self, _: &Exposure) {}
 
-    /// The true bias of its rates now (rad/s), of a gyro.
+    /// Returns the true bias of the rates (rad/s), of a gyro.
     fn bias(&self) -> Option<[f64; 3]> {
         None
     }
 
-    /// Why it cannot go on, of one from outside that cannot: the run ends there.
+    /// Returns the error that a sensor of another crate failed with; the run ends there.
     fn halted(&self) -> Option<Halt> {
         None
     }
 
-    /// A copy in the same state.
+    /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Sense>;
 }
 
@@ -98,28 +98,30 @@ impl Clone for Box<dyn Sense> {
     }
 }
 
-/// Where a body points.
+/// Orientation of a body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Orientation {
-    /// Its one angle (rad).
+    /// Angle of a one-axis body (rad).
     Angle(f64),
-    /// The attitude of its axes: it turns their vectors into inertial ones.
+    /// Attitude of a three-axis body: the rotation from body axes to inertial axes.
     Attitude(Quaternion<f64>),
 }
 
 impl Orientation {
-    /// How far it is turned beyond another, about each axis (rad); about the first alone for one angle.
+    /// Returns the rotation relative to another orientation, about each axis (rad); of one angle about the first axis
+    /// only.
     #[inline]
     pub fn beyond(&self, other: &Self) -> [f64; 3] {
         match (self, other) {
             (Self::Attitude(q), Self::Attitude(goal)) => beyond(goal, q).into(),
             (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
-            // A run has one kind.
+            // All orientations of a run are of the same kind.
             _ => [f64::NAN; 3],
         }
     }
 
-    /// The orientation that is seen as these angles: one angle itself, or small rotations of this attitude (rad).
+    /// Returns the orientation measured with these angles (rad): the first angle itself, or the attitude with these
+    /// small rotations.
     #[must_use]
     #[inline]
     pub fn at(&self, angles: [f64; 3]) -> Self {
@@ -130,25 +132,25 @@ impl Orientation {
     }
 }
 
-/// What there is to measure at an instant.
+/// True state that sensors measure at an instant.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Truth {
-    /// Where the body points: one angle with its elastic part, or the attitude of its axes.
+    /// Orientation of the body: one angle with its elastic part, or the attitude of its axes.
     pub orientation: Orientation,
-    /// The elastic rotations at the sensor beside an attitude (rad).
+    /// Elastic rotations at the sensor relative to the attitude (rad).
     pub elastic: [f64; 3],
     /// Rates at the sensor, elastic part included (rad/s).
     pub rate: [f64; 3],
-    /// Rates of the body as if it were rigid (rad/s).
+    /// Rigid rates of the body (rad/s).
     pub rigid: [f64; 3],
-    /// The integral of `rate` (rad), but for a constant: what a gyro that counts angles has counted.
+    /// Integral of `rate` (rad), up to a constant, which integrating gyros read.
     pub turned: [f64; 3],
-    /// What there is of the sky.
+    /// Vectors of the environment: magnetic field and direction to the Sun.
     pub sky: SkySight,
 }
 
 impl Truth {
-    /// What a sensor of angles sees: one angle, or the small rotations by which its place differs from the attitude (rad).
+    /// Returns the angles of an angle sensor: the angle itself, or the elastic rotations of its mount (rad).
     #[inline]
     pub fn seen(&self) -> [f64; 3] {
         match self.orientation {
@@ -158,30 +160,30 @@ impl Truth {
     }
 }
 
-/// A reading.
+/// Reading of a sensor.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// Where the body points.
+    /// Measured orientation of the body.
     pub at: Orientation,
-    /// Rates (rad/s), of a sensor that measures them.
+    /// Measured rates (rad/s), if the sensor measures them.
     pub rate: Option<[f64; 3]>,
-    /// A vector, of a sensor that measures one.
+    /// Measured vector, if the sensor measures one.
     pub sight: Option<VectorSight>,
 }
 
-/// A vector that was measured.
+/// Measured vector, with its reference in inertial axes.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct VectorSight {
-    /// In the body's axes, as measured.
+    /// Vector in the body's axes, as measured.
     pub vector: Vector,
-    /// What it is in inertial axes.
+    /// Vector in inertial axes.
     pub inertial: Vector,
-    /// Whether its direction alone was measured, and it has length 1.
+    /// True if only the direction is measured, as a unit vector.
     pub is_direction: bool,
 }
 
 impl Sensor {
-    /// What single values cannot show to be wrong: a key within the sensor, and why.
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         match self {
             Self::Gyro(gyro) => gyro.inconsistency(),
@@ -193,7 +195,8 @@ impl Sensor {
         }
     }
 
-    /// The sensor in a run of a body with so many axes, after so many others of its kind.
+    /// Creates the sensor's run-time state on a body with `axes` axes; `ordinal` counts earlier sensors of the same
+    /// kind.
     pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
         match self {
             Self::Continuous => Box::new(exact::Exact),
@@ -207,17 +210,17 @@ impl Sensor {
         }
     }
 
-    /// Whether it measures how the body points or turns.
+    /// Returns true if the sensor measures orientation or rates of the body.
     pub fn sees_body(&self) -> bool {
         !matches!(self, Self::Tachometer(_) | Self::Accelerometer(_))
     }
 
-    /// Whether it knows the motion at every instant.
+    /// Returns true if the sensor measures the motion at every instant.
     pub fn is_continuous(&self) -> bool {
         matches!(self, Self::Continuous)
     }
 
-    /// The kind, as a scenario names it.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Continuous => "continuous",
@@ -232,8 +235,8 @@ impl Sensor {
         }
     }
 
-    /// The period of its samples of the body under a law with a period of its own or none; none of a continuous sensor, and of
-    /// a tachometer or an accelerometer, which tell nothing of how the body turns.
+    /// Returns the period of the samples of the body's motion, under a law with period `law`; `None` for a continuous
+    /// sensor, a tachometer or an accelerometer.
     pub fn period(&self, law: Option<Span>) -> Option<Span> {
         match self {
             Self::Continuous | Self::Tachometer(_) | Self::Accelerometer(_) => None,
@@ -246,17 +249,17 @@ impl Sensor {
         }
     }
 
-    /// How late it reports rates.
+    /// Returns the latency of the rates.
     pub fn rate_latency(&self) -> Span {
         if let Self::Gyro(gyro) = self { gyro.latency() } else { Span::ZERO }
     }
 
-    /// Whether it measures the mean rate over each of its periods.
+    /// Returns true if the sensor measures the mean rate over each of its periods.
     pub fn integrates(&self) -> bool {
         matches!(self, Self::Gyro(gyro) if gyro.integrates())
     }
 
-    /// The point of the structure at which it is, if it names one.
+    /// Returns the point of the structure at which the sensor is mounted, if given.
     pub fn point(&self) -> Option<&str> {
         match self {
             Self::Continuous | Self::Tachometer(_) | Self::Own(_) => None,
@@ -269,7 +272,7 @@ impl Sensor {
         }
     }
 
-    /// Standard deviation of a measured rate about an axis (rad/s), if rates are measured.
+    /// Returns the standard deviation of a measured rate about an axis (rad/s), if rates are measured.
     pub fn rate_noise(&self, axis: usize) -> Option<f64> {
         match self {
             Self::Continuous
@@ -284,7 +287,7 @@ impl Sensor {
         }
     }
 
-    /// Standard deviation of the measured angle (rad), that of its quantisation included.
+    /// Returns the standard deviation of the measured angle (rad), including quantisation.
     pub fn angle_noise(&self) -> f64 {
         match self {
             Self::Sampled(sampled) => sampled.angle_noise(),
@@ -299,17 +302,17 @@ impl Sensor {
         }
     }
 
-    /// Whether it measures a vector, which tells the attitude only beside another.
+    /// Returns true if the sensor measures a vector, which alone does not determine the attitude.
     pub fn is_of_a_vector(&self) -> bool {
         matches!(self, Self::Magnetometer(_) | Self::SunSensor(_))
     }
 
-    /// Whether it measures the magnetic field.
+    /// Returns true if the sensor measures the magnetic field.
     pub fn measures_field(&self) -> bool {
         matches!(self, Self::Magnetometer(_))
     }
 
-    /// Its failures.
+    /// Returns the sensor's failures.
     pub fn faults(&self) -> &[Fault] {
         match self {
             Self::Sampled(sampled) => &sampled.faults,
@@ -324,7 +327,7 @@ impl Sensor {
     }
 }
 
-/// The stream of draws about an axis of a body with so many, of a sensor after so many others of its kind.
+/// Returns the random stream of an axis, out of `axes`, of a sensor with index `ordinal` among those of its kind.
 fn stream(name: &str, (axis, axes): (usize, usize), ordinal: usize, seed: Seed) -> Stream {
     let name = if ordinal == 0 { name.to_owned() } else { format!("{name} {ordinal}") };
     match axes {
@@ -334,17 +337,17 @@ fn stream(name: &str, (axis, axes): (usize, usize), ordinal: usize, seed: Seed) 
 }
 
 impl Parts<Sensor> {
-    /// The first: the only one, in most scenarios.
+    /// Returns the first sensor, the only one in most scenarios.
     pub fn first(&self) -> &Sensor {
         &self[0]
     }
 
-    /// How many measure the body.
+    /// Returns the number of sensors that measure the body's motion.
     pub fn of_body(&self) -> usize {
         self.iter().filter(|sensor| sensor.sees_body()).count()
     }
 
-    /// The tachometer, and its place among the sensors, if there is one.
+    /// Returns the tachometer and its index among the sensors, if there is one.
     pub fn tachometer(&self) -> Option<(usize, &Tachometer)> {
         self.iter().enumerate().find_map(|(index, sensor)| match sensor {
             Sensor::Tachometer(tachometer) => Some((index, tachometer)),
@@ -352,7 +355,7 @@ impl Parts<Sensor> {
         })
     }
 
-    /// The accelerometers, each with its place among the sensors.
+    /// Iterates over the accelerometers, each with its index among the sensors.
     pub fn accelerometers(&self) -> impl Iterator<Item = (usize, &Accelerometer)> {
         self.iter().enumerate().filter_map(|(index, sensor)| match sensor {
             Sensor::Accelerometer(accelerometer) => Some((index, accelerometer)),
@@ -360,13 +363,13 @@ impl Parts<Sensor> {
         })
     }
 
-    /// How many of its kind come before a sensor.
+    /// Returns the number of sensors of the same kind before a sensor.
     pub fn ordinal(&self, index: usize) -> usize {
         let kind = self[index].kind();
         self[..index].iter().filter(|sensor| sensor.kind() == kind).count()
     }
 
-    /// Whether a sensor tells where the body points: a gyro only where no other does, which then is known exactly.
+    /// Returns true if a sensor provides the attitude: a gyro only without another such sensor, and then exactly.
     pub fn orients(&self, index: usize) -> bool {
         let rates = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
         let of_body = |sensor: &Sensor| sensor.sees_body() && !sensor.is_of_a_vector();
@@ -375,17 +378,17 @@ impl Parts<Sensor> {
         of_body(&self[index]) && (!rates(&self[index]) || alone && is_first)
     }
 
-    /// The shortest period of their samples under a law with a period of its own or none; none of a continuous sensor.
+    /// Returns the shortest sampling period, under a law with period `law`; `None` if all sensors are continuous.
     pub fn period(&self, law: Option<Span>) -> Option<Span> {
         self.iter().filter_map(|sensor| sensor.period(law)).min()
     }
 
-    /// Standard deviation of a measured rate about an axis (rad/s), if rates are measured.
+    /// Returns the standard deviation of a measured rate about an axis (rad/s), if rates are measured.
     pub fn rate_noise(&self, axis: usize) -> Option<f64> {
         self.iter().find_map(|sensor| sensor.rate_noise(axis))
     }
 
-    /// Standard deviation of the measured angle (rad), that of its quantisation included.
+    /// Returns the standard deviation of the measured angle (rad), including quantisation.
     pub fn angle_noise(&self) -> f64 {
         (0..self.len()).find(|index| self.orients(*index)).map_or(0.0, |index| self[index].angle_noise())
     }

@@ -1,4 +1,5 @@
-//! A sampled sensor of the angle, or about three axes of the attitude: noise, bias, resolution, faults, and maybe a rate gyro.
+//! A sampled sensor of the angle, or of a three-axis attitude: noise, bias, resolution, faults, and an optional rate
+//! gyro.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -48,13 +49,13 @@ pub enum Fault {
 }
 
 impl Fault {
-    /// How long it lasts.
+    /// Returns the interval of the failure.
     pub fn outage(&self) -> Outage {
         let (Self::Stuck(outage) | Self::Silent(outage)) = self;
         *outage
     }
 
-    /// The kind, as a scenario names it.
+    /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Stuck(_) => "stuck",
@@ -64,13 +65,14 @@ impl Fault {
 }
 
 impl Sampled {
-    /// The sensor in a run of a body with so many axes, after so many others of its kind.
+    /// Creates the sensor's run-time state on a body with `axes` axes; `ordinal` counts earlier sensors of the same
+    /// kind.
     pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> SampledSensor {
         let draws = |axis: usize| stream("sensor", (axis, axes), ordinal, seed);
         SampledSensor { sampled: self.clone(), noise: (0..axes).map(draws).collect() }
     }
 
-    /// Standard deviation of the measured angle (rad), that of its quantisation included.
+    /// Returns the standard deviation of the measured angle (rad), including quantisation.
     pub fn angle_noise(&self) -> f64 {
         let (noise, resolution) = (self.noise.get(), self.resolution.get());
         f64::sqrt(noise * noise + resolution * resolution / 12.0)
@@ -86,7 +88,7 @@ impl Sampled {
     }
 }
 
-/// The sensor at work: each axis has a stream of noise of its own.
+/// Run-time state of the sensor, with a stream of noise for each axis.
 #[derive(Clone, Debug)]
 pub struct SampledSensor {
     sampled: Sampled,
@@ -96,7 +98,7 @@ pub struct SampledSensor {
 impl Sense for SampledSensor {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         let Self { sampled, noise } = self;
-        // Draws are made in a failure too: those after it do not depend on it.
+        // Random numbers are drawn during a failure too, so that later ones do not depend on it.
         let mut angles = truth.seen();
         let mut rate = truth.rate;
         let gyro = sampled.rate_noise.map(Positive::get);

@@ -1,4 +1,4 @@
-//! A star tracker: the attitude at its exposures or the mean over each, with noise in its own axes, told some time later.
+//! A star tracker: the attitude at its exposures or the mean over each, with noise in its own axes and a latency.
 
 use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
@@ -48,7 +48,7 @@ fn is_instant(exposure: &Time) -> bool {
 }
 
 impl StarTracker {
-    /// The tracker in a run, after so many others.
+    /// Creates the tracker's run-time state; `ordinal` counts earlier star trackers.
     pub fn start(&self, seed: Seed, ordinal: usize) -> Exposing {
         let draws = |axis: usize| stream("star tracker", (axis, 3), ordinal, seed);
         Exposing {
@@ -59,7 +59,7 @@ impl StarTracker {
         }
     }
 
-    /// What single values cannot show to be wrong: a key within the tracker, and why.
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         let (exposure, latency) = (self.exposure.get(), self.latency.get());
         if self.exposure() > self.period {
@@ -75,32 +75,32 @@ impl StarTracker {
         (self.half() > self.latency()).then(|| document::Fault::new("exposure", why()))
     }
 
-    /// How late a reading is told.
+    /// Returns the latency of a reading.
     pub fn latency(&self) -> Span {
         Span::from_seconds(self.latency.get())
     }
 
-    /// The time over which it gathers light.
+    /// Returns the exposure time.
     pub fn exposure(&self) -> Span {
         Span::from_seconds(self.exposure.get())
     }
 
-    /// Half of it.
+    /// Returns half the exposure time.
     pub fn half(&self) -> Span {
         Span::from_seconds(0.5 * self.exposure.get())
     }
 
-    /// Whether that is a time at all.
+    /// Returns true if the exposure time is not 0.
     pub fn exposes(&self) -> bool {
         self.half() > Span::ZERO
     }
 
-    /// Standard deviation of the worst angle (rad).
+    /// Returns the largest standard deviation about an axis (rad).
     pub fn angle_noise(&self) -> f64 {
         self.noise.map(NonNegative::get).into_iter().fold(0.0, f64::max)
     }
 
-    /// Covariance of the error in the body's axes, of these standard deviations in its own (rad).
+    /// Returns the error covariance in the body's axes, for these standard deviations in the tracker's axes (rad).
     pub fn covariance(&self, deviations: [f64; 3]) -> Matrix3<f64> {
         let axes = [Vector::x(), Vector::y(), Vector::z()].map(|axis| self.turned_to_body(&axis));
         axes.iter().zip(deviations).fold(Matrix3::zeros(), |sum, (axis, deviation)| {
@@ -108,28 +108,28 @@ impl StarTracker {
         })
     }
 
-    /// A vector in the tracker's axes, in the body's.
+    /// Rotates a vector from the tracker's axes to the body's.
     fn turned_to_body(&self, vector: &Vector) -> Vector {
         let turn = self.axes.get();
         (turn * Quaternion::from_imag(*vector) * turn.conjugate()).vector().into_owned()
     }
 }
 
-/// A tracker at work.
+/// Run-time state of a star tracker.
 #[derive(Clone, Debug)]
 pub struct Exposing {
     tracker: StarTracker,
-    /// Draws about each of its axes.
+    /// Random stream about each of the tracker's axes.
     noise: [Stream; 3],
     late: Late,
-    /// The attitude in the middle of the exposure that is under way, and the error of its reading (rad).
+    /// Attitude in the middle of the current exposure, and the error of its reading (rad).
     gathers: Option<(Quaternion<f64>, Vector)>,
 }
 
 impl Exposing {
-    /// What is seen now.
+    /// Returns the reading of an exposure at `now`.
     fn expose(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
-        // Draws are made in a failure too: those after it do not depend on it.
+        // Random numbers are drawn during a failure too, so that later ones do not depend on it.
         let deviations = self.tracker.noise.map(NonNegative::get);
         let draws: [f64; 3] = std::array::from_fn(|axis| deviations[axis] * self.noise[axis].normal());
         self.gathers = None;
@@ -143,7 +143,7 @@ impl Exposing {
         }
         let faults = &self.tracker.faults;
         let told = failing(faults, now, Some(seen), last);
-        // What is told again was gathered before, and so was what is told at the start.
+        // A repeated reading, and the reading at the start, already have their exposure.
         let again = failing(faults, now, None, last).is_some() || now == Instant::START;
         self.gathers = (told.is_some() && !again && self.tracker.exposes()).then_some((attitude, error));
         told
@@ -151,7 +151,8 @@ impl Exposing {
 }
 
 impl Sense for Exposing {
-    /// What is told now. At the start that is what is seen then, as if it had been exposed before.
+    /// Returns the reading whose latency has elapsed; the reading at the start is available at once, as if exposed
+    /// before.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         if self.late.exposes(now) {
             let seen = self.expose(now, truth, last);
@@ -215,7 +216,7 @@ mod tests {
         }
     }
 
-    /// An exposure that is over before the reading is told, and one that is over just then.
+    /// Checks an exposure that ends before its reading is available, and one that ends at that time.
     #[test]
     fn a_reading_is_the_mean_over_its_exposure() {
         let turned = |t: f64| rotation(&Vector::new(0.0, 0.01 * t, 0.0));
@@ -233,7 +234,7 @@ mod tests {
                         seen.see(turned(middle) * rotation(&smear), lasts);
                     }
                     tracker.gather(&seen);
-                    // It was told what it gathered: more does not count.
+                    // The mean is already set: further attitudes have no effect.
                     seen.see(turned(9.0), 100.0);
                     tracker.gather(&seen);
                     gathered = Instant::START;
@@ -246,7 +247,7 @@ mod tests {
                 }
                 assert_eq!(one.is_some(), other.is_some());
                 if let (Some(one), Some(other)) = (one, other) {
-                    // The noise is the same, after what was gathered. At the start it was gathered before.
+                    // Both have the same noise; only the mean over the exposure differs, except at the start.
                     let by = crate::attitude::turn(&attitude(other), &attitude(one));
                     let exact = if now == Instant::START { Vector::zeros() } else { smear };
                     assert!((by - exact).norm() < 1e-8, "{by}");
@@ -277,7 +278,7 @@ mod tests {
 
     #[test]
     fn noise_is_in_its_own_axes_and_elastic_rotation_is_seen() {
-        // Its boresight z is the body's x.
+        // The boresight z is the body's x.
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let keys = format!("noise = [1e-5, 2e-5, 1e-3]\naxes = [{half}, 0.0, {half}, 0.0]");
         let mut tracker = start(&keys);

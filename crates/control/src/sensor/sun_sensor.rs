@@ -1,4 +1,4 @@
-//! A Sun sensor: the direction to the Sun in the body's axes, as long as it is lit and within the field of view.
+//! A Sun sensor: the direction to the Sun in the body's axes, if it is visible and within the field of view.
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -63,22 +63,22 @@ fn all_around() -> NonNegative {
 }
 
 impl SunSensor {
-    /// The sensor in a run, after so many others.
+    /// Creates the sensor's run-time state; `ordinal` counts earlier sensors of the same kind.
     pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
         Box::new(Looking::new(self, seed, ordinal))
     }
 
-    /// How late a reading is told.
+    /// Returns the latency of a reading.
     pub fn latency(&self) -> Span {
         Span::from_seconds(self.latency.get())
     }
 
-    /// Covariance of its noise, that of its rounding included.
+    /// Returns the covariance of the noise, including quantisation.
     pub fn covariance(&self) -> Matrix3<f64> {
         self.errors().covariance()
     }
 
-    /// What single values cannot show to be wrong: a key within the sensor, and why.
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<document::Fault> {
         if self.boresight.iter().all(|part| part.get() == 0.0) {
             return Some(document::Fault::new("boresight", "must not be zero, got [0, 0, 0]"));
@@ -96,7 +96,7 @@ impl Measures for SunSensor {
 
     fn told(&self, exact: &Vector, measured: Vector) -> Option<Vector> {
         let boresight = vector(&self.boresight);
-        // The angle itself: its cosine tells little of a narrow field.
+        // The angle itself is compared, because its cosine is insensitive for a narrow field.
         let off = libm::atan2(boresight.cross(exact).norm(), boresight.dot(exact));
         (off <= self.field_of_view.get()).then(|| measured.normalize())
     }

@@ -1,4 +1,4 @@
-//! A tachometer on each wheel: pulses that are counted over its period, with noise and failures.
+//! A tachometer on each wheel: pulses counted over its period, or the speed itself, with noise and failures.
 
 use std::f64::consts::TAU;
 use std::num::NonZeroU32;
@@ -32,20 +32,20 @@ pub struct Tachometer {
     pub faults: Vec<Fault>,
 }
 
-/// Tachometers at work.
+/// Run-time state of the tachometers.
 #[derive(Clone, Debug)]
 pub struct Counting {
     spec: Tachometer,
     noise: Vec<Stream>,
     /// Pulses counted at the last reading.
     counted: Vec<f64>,
-    /// What was read last (rad/s).
+    /// Last readings (rad/s).
     speeds: Vec<f64>,
     next: Instant,
 }
 
 impl Tachometer {
-    /// The tachometers of wheels that turn at these speeds at the start (rad/s), which they know.
+    /// Creates the tachometers of wheels with these initial speeds (rad/s), which are the readings at the start.
     pub fn start(&self, speeds: Vec<f64>, seed: Seed) -> Counting {
         Counting {
             noise: (1..=speeds.len()).map(|wheel| seed.stream(&format!("tachometer {wheel}"))).collect(),
@@ -58,12 +58,12 @@ impl Tachometer {
 }
 
 impl Counting {
-    /// When they are read next.
+    /// Returns the time of the next reading.
     pub fn due(&self) -> Instant {
         self.next
     }
 
-    /// Reads the wheels, each with its angle (rad) and its speed (rad/s) against the body.
+    /// Reads the wheels, each with its angle (rad) and its speed (rad/s) relative to the body.
     pub fn read(&mut self, now: Instant, wheels: impl Iterator<Item = [f64; 2]>) {
         let Self { spec, noise, counted, speeds, next } = self;
         *next = now + spec.period;
@@ -77,7 +77,7 @@ impl Counting {
                 read = (count - *counted) * quantum / spec.period.seconds();
                 *counted = count;
             }
-            // Draws are made in a failure too.
+            // Random numbers are drawn during a failure too.
             if spec.noise.get() > 0.0 {
                 read += spec.noise.get() * noise.normal();
             }
@@ -87,13 +87,13 @@ impl Counting {
         }
     }
 
-    /// The speeds that are known (rad/s).
+    /// Returns the last readings (rad/s).
     pub fn speeds(&self) -> &[f64] {
         &self.speeds
     }
 }
 
-/// What it tells of the body: nothing.
+/// Placeholder for sensors that do not measure the body's motion.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Blind;
 
@@ -122,7 +122,8 @@ mod tests {
         tachometer.speeds()[0]
     }
 
-    /// 24 pulses a turn are 2.618 rad/s for each pulse in 0.1 s; what is left counts in the next reading.
+    /// Checks that 24 pulses per turn are 2.618 rad/s per pulse in 0.1 s, and that the remainder counts in the next
+    /// reading.
     #[test]
     fn pulses_are_counted_and_none_is_lost() {
         let mut tachometer = start("pulses = 24");
@@ -134,9 +135,9 @@ mod tests {
             assert!(speed == 0.0 || (speed - quantum).abs() < 1e-12);
             sum += speed;
         }
-        // 100 rad are 381 pulses and a part of one.
+        // 100 rad are 381 pulses and a fraction.
         assert!((sum * 0.1 - 381.0 * TAU / 24.0).abs() < 1e-9, "{sum}");
-        // Backwards the first pulse is passed at once.
+        // In the negative direction the first pulse comes at once.
         let mut tachometer = start("pulses = 24");
         assert!((read(&mut tachometer, 1, -1e-6, -1e-5) + quantum).abs() < 1e-12);
     }

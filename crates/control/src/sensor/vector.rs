@@ -1,4 +1,4 @@
-//! A sensor of a vector that is known in inertial axes: its errors, its latency and its failures.
+//! A sensor of a vector with a known reference in inertial axes: errors, latency and failures.
 
 use std::fmt;
 
@@ -14,7 +14,7 @@ use crate::quantity::{Finite, NonNegative};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
-/// What a sensor makes of a vector along its axes: y = M v + bias + noise, then rounded.
+/// Errors of a vector measurement in the sensor's axes: y = M v + bias + noise, then rounded.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct Errors {
     pub noise: Each<NonNegative>,
@@ -25,7 +25,7 @@ pub(super) struct Errors {
 }
 
 impl Errors {
-    /// What is measured of a vector, with these draws.
+    /// Returns the measurement of a vector, with these normal random numbers.
     fn measured(&self, v: &Vector, draws: &[f64; 3]) -> Vector {
         Vector::from_fn(|axis, _| {
             let row = &self.misalignment[axis];
@@ -37,18 +37,18 @@ impl Errors {
         })
     }
 
-    /// Standard deviation along an axis, that of the rounding included.
+    /// Returns the standard deviation along an axis, including quantisation.
     pub fn deviation(&self, axis: usize) -> f64 {
         let (noise, quantum) = (self.noise.about(axis).get(), self.resolution.about(axis).get());
         f64::sqrt(noise * noise + quantum * quantum / 12.0)
     }
 
-    /// Their covariance.
+    /// Returns the covariance of the errors.
     pub fn covariance(&self) -> Matrix3<f64> {
         Matrix3::from_diagonal(&Vector::from_fn(|axis, _| self.deviation(axis) * self.deviation(axis)))
     }
 
-    /// A misalignment with a diagonal: the key, and why that is wrong.
+    /// Checks that the misalignment has a zero diagonal; returns the key and the reason if not.
     pub fn fault(&self) -> Option<document::Fault> {
         let rows = &self.misalignment;
         let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
@@ -57,31 +57,32 @@ impl Errors {
     }
 }
 
-/// What is special to a sensor of a vector.
+/// Interface of a specific vector sensor.
 pub(super) trait Measures: Clone + fmt::Debug + Send + Sync + 'static {
-    /// The name of its streams of noise.
+    /// Name of the random streams of the noise.
     const STREAM: &'static str;
 
-    /// The vector that there is to measure, in inertial axes.
+    /// Returns the reference vector in inertial axes, if there is one.
     fn of(&self, sky: &SkySight) -> Option<Vector>;
 
-    /// What is told of a vector that is this in the sensor's axes and measured as this; nothing of what it does not see.
+    /// Returns the output for the true vector `exact` and the measured one, in the body's axes; `None` outside the
+    /// field of view.
     fn told(&self, exact: &Vector, measured: Vector) -> Option<Vector>;
 
-    /// Whether the direction alone is told.
+    /// Returns true if the sensor measures a direction only.
     fn is_direction(&self) -> bool;
 
-    /// Its errors.
+    /// Returns the errors of the measurement.
     fn errors(&self) -> Errors;
 
-    /// Its period and its latency.
+    /// Returns period and latency.
     fn timing(&self) -> [Span; 2];
 
-    /// Its failures.
+    /// Returns the sensor's failures.
     fn faults(&self) -> &[Fault];
 }
 
-/// Such a sensor at work.
+/// Run-time state of a vector sensor.
 #[derive(Clone, Debug)]
 pub(super) struct Looking<S> {
     sensor: S,
@@ -91,7 +92,7 @@ pub(super) struct Looking<S> {
 }
 
 impl<S: Measures> Looking<S> {
-    /// The sensor in a run, after so many others of its kind.
+    /// Creates the run-time state; `ordinal` counts earlier sensors of the same kind.
     pub fn new(sensor: &S, seed: Seed, ordinal: usize) -> Self {
         let [period, latency] = sensor.timing();
         Self {
@@ -103,7 +104,7 @@ impl<S: Measures> Looking<S> {
     }
 
     fn look(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
-        // Draws are made in a failure too: those after it do not depend on it.
+        // Random numbers are drawn during a failure too, so that later ones do not depend on it.
         let draws: [f64; 3] = std::array::from_fn(|axis| self.noise[axis].normal());
         let Orientation::Attitude(attitude) = truth.orientation.at(truth.seen()) else { return None };
         let seen = self.sensor.of(&truth.sky).and_then(|inertial| {

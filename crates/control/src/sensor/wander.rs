@@ -1,29 +1,29 @@
-//! A bias that wanders about its mean: exponentially correlated noise, a first-order Gauss-Markov process (\[Gelb74\]).
+//! Bias instability as exponentially correlated noise about a mean, a first-order Gauss-Markov process (\[Gelb74\]).
 //!
-//! b' = -b/T + n has the standard deviation s in the end. Over D, b goes to e^(-D/T) b + s sqrt(1 - e^(-2D/T)) n; its mean over D,
-//! where both ends are known, is (b + b') tanh(z)/2z, and normal about that with the variance
-//! s² (z - tanh z)/z² with z = D/2T. Both are exact, and come to those of a random walk where D is short.
+//! b' = -b/T + n has the stationary standard deviation s. Over D, b changes to e^(-D/T) b + s sqrt(1 - e^(-2D/T)) n;
+//! its mean over D, given both ends, is (b + b') tanh(z)/2z, and normal about that with the variance s² (z - tanh z)/z²
+//! with z = D/2T. Both are exact, and approach those of a random walk for short D.
 
 use super::Gyro;
 use crate::random::Stream;
 use crate::time::Instant;
 
-/// The bias of a gyro beyond its mean.
+/// Correlated part of a gyro's bias.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Wander {
-    /// When it was asked for last.
+    /// Time of the last evaluation.
     read: Option<Instant>,
-    /// What it is now about each axis (rad/s).
+    /// Current value about each axis (rad/s).
     pub bias: [f64; 3],
 }
 
 impl Wander {
-    /// Goes on to now; tells how long that is (s).
+    /// Advances the time to `now`. Returns the time since the last evaluation (s).
     pub fn go(&mut self, now: Instant) -> f64 {
         self.read.replace(now).map_or(0.0, |then| now.since(then).seconds())
     }
 
-    /// The bias about an axis now, so long (s) after the last (rad/s).
+    /// Returns the bias about an axis (rad/s) `seconds` after the last evaluation.
     #[inline(never)]
     pub fn now(&mut self, gyro: &Gyro, axis: usize, seconds: f64, noise: &mut Stream) -> f64 {
         if let Some((deviation, time)) = gyro.wandering(axis).filter(|_| seconds > 0.0) {
@@ -34,8 +34,8 @@ impl Wander {
         self.bias[axis]
     }
 
-    /// Its mean over the time since the last (rad/s). Inlined, its divisions and exponentials would be done ahead of the question
-    /// whether there is a bias that wanders.
+    /// Returns the mean of the bias (rad/s) over the time since the last evaluation. Not inlined: otherwise the
+    /// compiler computes the divisions and exponentials before the check for a correlated bias.
     #[inline(never)]
     pub fn mean(&mut self, gyro: &Gyro, axis: usize, seconds: f64, noise: &mut Stream) -> f64 {
         let Some((deviation, time)) = gyro.wandering(axis).filter(|_| seconds > 0.0) else {
@@ -49,12 +49,12 @@ impl Wander {
     }
 }
 
-/// x - tanh x.
+/// Returns x - tanh x.
 fn beyond_tanh(x: f64) -> f64 {
     if x > 0.25 {
         return x - libm::tanh(x);
     }
-    // Its series, whose next part is below 1e-15 of it.
+    // Taylor series; the next term is below 1e-15 of it.
     let square = x * x;
     let parts = [
         1.0 / 3.0,
@@ -99,7 +99,7 @@ mod tests {
             }
             let ratio: f64 = period / time;
             let exact = 2.0 * (ratio - 1.0 + libm::exp(-ratio)) / (ratio * ratio);
-            // Of so many draws that each hang together over 2T/D of them, three standard errors.
+            // Three standard errors of draws that are correlated over 2T/D of them.
             let three = 3.0 * f64::sqrt(2.0 * (1.0 + 1.0 / ratio) / f64::from(count));
             assert!((ends - 1.0).abs() < three, "{ends}");
             assert!((means / exact - 1.0).abs() < three, "{means} {exact}");
@@ -110,7 +110,7 @@ mod tests {
 
     #[test]
     fn what_tanh_leaves_is_exact_on_both_sides_of_the_series() {
-        // 40 digits, by mpmath.
+        // Reference values of 40 digits, by mpmath.
         for (x, exact) in [
             (1e-3, 3.333_332_000_000_54e-10),
             (0.25, 5.081_337_596_290_871e-3),
@@ -119,7 +119,7 @@ mod tests {
         ] {
             assert!((beyond_tanh(x) / exact - 1.0).abs() < 1e-12, "{x} {:e}", beyond_tanh(x));
         }
-        // The bias is asked for over the time between readings.
+        // The time between readings is returned.
         let mut wander = Wander::default();
         assert_eq!(wander.go(Instant::START), 0.0);
         assert_eq!(wander.go(Instant::START + Span::from_seconds(0.5)), 0.5);

@@ -1,4 +1,4 @@
-//! Control moment gyros: their steering against numpy, limits, failures, and singular angles.
+//! Tests of control moment gyros: steering against numpy, limits, failures, and singular angles.
 
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
@@ -48,7 +48,7 @@ const NULL: [f64; 4] =
 const ANGLES: &str = "angles = [0.2, -0.4, 0.1, 0.7]";
 const TORQUE: [f64; 3] = [0.5, -0.25, 1.0];
 
-/// numpy.linalg.pinv(A) @ (-T/h), with A = ACROSS cos d - SPIN sin d by columns, and sqrt(det(A A')).
+/// Checks against numpy.linalg.pinv(A) @ (-T/h), with A = ACROSS cos d - SPIN sin d by columns, and sqrt(det(A A')).
 #[test]
 fn the_pseudo_inverse_is_that_of_numpy() {
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
@@ -57,7 +57,7 @@ fn the_pseudo_inverse_is_that_of_numpy() {
     assert!((applied(&gimbals, at(0.0)) - Vector::from(TORQUE)).norm() < 1e-14);
     let row = gimbals.gimbals(at(0.0)).unwrap();
     assert!((row.singularity - MEASURE).abs() < 1e-14, "{}", row.singularity);
-    // Far from singular angles the robust rule gives nearly the same.
+    // Far from singular angles the robust rule gives nearly the same rates.
     let mut robust = start(ANGLES);
     ask(&mut robust, at(0.0), TORQUE);
     for (robust, exact) in robust.rates.iter().zip(&gimbals.rates) {
@@ -65,7 +65,7 @@ fn the_pseudo_inverse_is_that_of_numpy() {
     }
 }
 
-/// A' (A A' + w E)^-1 (-T/h) at 0.3 s, by numpy.linalg.solve.
+/// Checks against A' (A A' + w E)^-1 (-T/h) at 0.3 s, by numpy.linalg.solve.
 #[test]
 fn near_singular_angles_the_robust_rates_are_those_of_numpy() {
     let angles = "angles = [-1.4, 0.1, 1.5, -0.05]";
@@ -85,7 +85,7 @@ fn the_torque_is_the_rate_of_the_momentum_while_gimbals_turn() {
     ask(&mut gimbals, at(0.0), [5.0, -2.5, 10.0]);
     let stored = |t: f64| Vector::from(gimbals.stored(at(t)));
     for t in [0.3, 0.9] {
-        // A difference of order 4.
+        // Difference quotient of order 4.
         let step = 1e-3;
         let near = (stored(t + step) - stored(t - step)) * (8.0 / (12.0 * step));
         let far = (stored(t + 2.0 * step) - stored(t - 2.0 * step)) / (12.0 * step);
@@ -111,7 +111,7 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
     let steered = gimbals.steered().unwrap();
     assert!((steered.largest_rate_rad_s - 0.02).abs() < 1e-16);
     assert!((steered.largest_error_nm - (given - Vector::from(TORQUE)).norm()).abs() < 1e-14);
-    // What they hold against is part of what they give.
+    // The torque they counteract is part of their torque.
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
     gimbals.hold_against(Vector::new(0.1, 0.2, -0.3));
     ask(&mut gimbals, at(0.0), TORQUE);
@@ -119,8 +119,8 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
     assert!((given - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
 }
 
-/// Gimbals under a constant torque along -x, so that their momentum along x grows, updated each 0.05 s for so many: the largest
-/// momentum along x, for each unit of a rotor's, and the largest rate.
+/// Drives gimbals by a constant torque along -x, so that their momentum along x grows, for `updates` of 0.05 s. Returns
+/// the largest momentum along x, in units of a rotor's, and the largest rate.
 fn driven(keys: &str, updates: u32) -> (f64, f64) {
     let mut gimbals = start(&format!("rate_limit = 2.0\nperiod = 0.05\n{keys}"));
     ask(&mut gimbals, at(0.0), [-1.5, 0.0, 0.0]);
@@ -133,8 +133,8 @@ fn driven(keys: &str, updates: u32) -> (f64, f64) {
     (most, gimbals.steered().unwrap().largest_rate_rad_s)
 }
 
-/// From angles of 0 the momentum along x ends at angles of -90, 0, 90 and 0 degrees, an elliptic singularity within the envelope:
-/// 2 cos(cant) = 1.155 of 2 + 2 cos(cant) = 3.155. No null motion leaves it.
+/// Checks steering from angles of 0: the momentum along x ends at -90, 0, 90 and 0 degrees, an elliptic singularity
+/// within the envelope: 2 cos(cant) = 1.155 of 2 + 2 cos(cant) = 3.155. Null motion cannot leave it.
 #[test]
 fn the_robust_rule_passes_a_singularity_at_which_the_pseudo_inverse_stays() {
     let (stays, saturated) = driven("steering = \"pseudo_inverse\"", 400);
@@ -142,13 +142,13 @@ fn the_robust_rule_passes_a_singularity_at_which_the_pseudo_inverse_stays() {
     assert!(saturated > 1.99, "{saturated}");
     let (passes, _) = driven("", 1200);
     assert!(passes > 3.15, "{passes}");
-    // Without its varying part the weight alone locks the gimbals.
+    // Without its time-varying part, the weight alone locks the gimbals.
     let (locked, slow) = driven("robust = { dither = 0.0 }", 1200);
     assert!(locked < 1.16 && slow < 1.9, "{locked} {slow}");
 }
 
-/// At angles of -90, 0, 90 and 0 degrees A A' is diag(0, 2 + 2 cos², 2 sin²) of the cant, diag(0, 8/3, 4/3): with u = -T/h the
-/// rates of the first and the third are 3 u_y/8, those of the others -+ cos 3 u_y/8 + sin 3 u_z/4.
+/// Checks angles of -90, 0, 90 and 0 degrees, where A A' is diag(0, 2 + 2 cos², 2 sin²) of the cant, diag(0, 8/3, 4/3):
+/// with u = -T/h the rates of the first and the third are 3 u_y/8, those of the others -+ cos 3 u_y/8 + sin 3 u_z/4.
 #[test]
 fn at_singular_angles_the_torques_that_can_be_are_given_without_null_motion() {
     let angles = "angles = [-1.5707963267948966, 0, 1.5707963267948966, 0]";
@@ -166,8 +166,9 @@ fn at_singular_angles_the_torques_that_can_be_are_given_without_null_motion() {
     assert_eq!(null.rates, gimbals.rates);
 }
 
-/// At angles of 0 A A' is diag(2 cos², 2 cos², 4 sin²) of the cant: the largest torques are 2 h cos and 4 h sin of the rate limit.
-/// At others they are h of it by the largest number in a column of numpy.linalg.pinv(A).
+/// Checks the largest torques: at angles of 0 A A' is diag(2 cos², 2 cos², 4 sin²) of the cant, and they are 2 h cos
+/// and 4 h sin times the rate limit. At others they are h times the limit over the largest number in a column of
+/// numpy.linalg.pinv(A).
 #[test]
 fn the_largest_torques_are_those_of_the_rate_limit() {
     let most = |keys: &str| {
@@ -188,7 +189,7 @@ fn the_largest_torques_are_those_of_the_rate_limit() {
     assert_eq!(most(ANGLES), [f64::INFINITY; 3]);
 }
 
-/// A change of 2e-3 rad/s within the law's 0.1 s is 2 N m on 100 kg m².
+/// Checks that a change of 2e-3 rad/s within the law's 0.1 s is 2 N m on 100 kg m².
 #[test]
 fn a_change_of_the_rate_takes_a_period_of_the_law() {
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
@@ -204,7 +205,7 @@ fn null_motion_gives_no_torque_and_goes_where_it_shall() {
     ask(&mut gimbals, at(0.0), [0.0; 3]);
     assert_near(&gimbals.rates, NULL);
     assert!(applied(&gimbals, at(0.0)).norm() < 1e-14);
-    // The torque comes first, and what is left of the limit is null motion.
+    // The torque has priority: null motion uses what is left of the limit.
     let mut gimbals = start(&format!("{keys}\nrate_limit = 0.08\n{ANGLES}"));
     ask(&mut gimbals, at(0.0), TORQUE);
     assert!((applied(&gimbals, at(0.0)) - Vector::from(TORQUE)).norm() < 1e-13);

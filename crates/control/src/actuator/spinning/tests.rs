@@ -1,4 +1,4 @@
-//! Reaction wheels: what they take up, their limits, and torques that cancel.
+//! Tests of reaction wheels: stored momentum, limits, and cancelling torques.
 
 use super::*;
 
@@ -48,7 +48,7 @@ fn wheels_take_the_momentum_that_the_body_gets() {
     assert!((after + Vector::from(torque) * 2.0).norm() < 1e-14, "{after}");
     let speed = wheels.wheels(at(2.0), [0.0; 3])[0].speed_rad_s;
     assert!((speed - (200.0 - 2.0 * 0.108_752_79 / 0.04)).abs() < 1e-5, "{speed}");
-    // A body that turns makes a wheel of the same momentum slower.
+    // If the body rotates, a wheel of the same momentum is slower.
     let turning = wheels.wheels(at(2.0), [0.0, 0.0, 1.0])[0].speed_rad_s;
     assert!((speed - turning - 0.573_576_436_351_046).abs() < 1e-12);
 }
@@ -57,7 +57,7 @@ fn wheels_take_the_momentum_that_the_body_gets() {
 fn a_torque_that_is_too_large_keeps_its_axis() {
     let mut wheels = start("torque = 0.4");
     ask(&mut wheels, at(0.0), [1.0, -0.5, 2.0]);
-    // Ten times the torque that asks 0.1519 of a wheel.
+    // Ten times the torque that requires 0.1519 N m of a wheel.
     let part = 0.4 / 1.519_136_9;
     for (found, exact) in given(&wheels).into_iter().zip([1.0, -0.5, 2.0]) {
         assert!((found - part * exact).abs() < 1e-7, "{found}");
@@ -66,14 +66,14 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
 
 #[test]
 fn a_wheel_stops_at_its_limit_exactly() {
-    // Of 8 N m s at the start, 1 more at |u| = 0.4 takes 2.5 s.
+    // From 8 N m s at the start to 9 takes 2.5 s at |u| = 0.4 N m.
     let mut wheels = start("torque = 0.4\nmomentum = 9.0");
     ask(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
     assert_eq!(wheels.due(), Some(at(2.5)));
     wheels.serve(at(2.5), [0.0; 3]);
     let motion = wheels.wheels(at(9.0), [0.0; 3]);
     assert!((motion[0].momentum_nm_s - 9.0).abs() < 1e-14 && (motion[1].momentum_nm_s + 4.4).abs() < 1e-13);
-    // Two of four are left, which go on; away from the limit all do.
+    // The two wheels away from the limit continue; all do away from the limit.
     ask(&mut wheels, at(9.0), [0.0, 0.0, -5.0]);
     assert_eq!(wheels.wheels.iter().filter(|wheel| wheel.torque == 0.0).count(), 2);
     ask(&mut wheels, at(9.0), [0.0, 0.0, 5.0]);
@@ -97,7 +97,7 @@ fn a_speed_bias_gives_the_body_nothing() {
     }
     let speeds: Vec<f64> = wheels.wheels(at(400.0), [0.0; 3]).iter().map(|wheel| wheel.speed_rad_s).collect();
     let bias = (speeds[0] - speeds[1] + speeds[2] - speeds[3]) / 4.0;
-    // (1 - gain T)^1600 of the 100 rad/s that were too many are left.
+    // (1 - gain T)^1600 of the initial 100 rad/s of excess remain.
     assert!((bias - 100.0 - 100.0 * libm::pow(0.995, 1600.0)).abs() < 0.1, "{bias}");
 }
 

@@ -1,4 +1,4 @@
-//! The adaptive observers of a run: what they are fed with, what laws believe of them, and how that compares with the body.
+//! Run-time state of the adaptive observers: inputs, state estimate, and log row with the true values.
 
 use super::{Channel, Merged, ModeEstimate, ObserverDesign};
 use crate::belief::Damped;
@@ -7,20 +7,20 @@ use crate::estimator::{self, GivenRecord, Taken};
 use crate::record::{ChannelState, TrackedMode, Tracking};
 use crate::time::Instant;
 
-/// The observers of all axes.
+/// Adaptive observers of all axes.
 #[derive(Clone, Debug)]
 pub struct Observers {
     plan: ObserverDesign,
     channels: Vec<Channel>,
-    /// What they know of their modes after the last sample.
+    /// Mode estimates of each axis after the last sample.
     modes: Vec<Vec<ModeEstimate>>,
     given: GivenRecord,
-    /// Whether there was a sample.
+    /// True after the first sample.
     sampled: bool,
 }
 
 impl Observers {
-    /// The observers at the start of a run.
+    /// Creates the observers at the start of a run.
     pub fn new(plan: &ObserverDesign) -> Self {
         let channels = plan.channels();
         let modes = vec![Vec::new(); channels.len()];
@@ -100,7 +100,7 @@ impl estimator::Estimate for Observers {
     }
 }
 
-/// The mode that moves most: its angle is what its quadrature tells.
+/// Returns the mode with the largest amplitude; its displacement follows from the quadrature.
 fn dominant(modes: &[ModeEstimate]) -> Dominant {
     let largest = modes.iter().max_by(|a, b| a.amplitude().total_cmp(&b.amplitude()));
     largest.map_or_else(Dominant::default, |mode| Dominant {

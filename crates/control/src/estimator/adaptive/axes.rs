@@ -1,4 +1,4 @@
-//! Adaptive observers of a spatial body, one for each axis of its gyro, as a scenario describes them.
+//! Settings of the adaptive observers in a scenario, one observer for each axis.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,7 +7,7 @@ use super::{Gradient, Recurrence, Tracker};
 use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative};
 
-/// Modes nearer than this to each other cannot be distinguished.
+/// Relative frequency difference below which modes cannot be distinguished.
 const MERGE: f64 = 0.08;
 
 /// Estimates the rigid rates and, for each axis of the gyro, its dominant elastic modes with their parameters.
@@ -62,7 +62,7 @@ pub struct Given {
 }
 
 impl Given {
-    /// The modes of each axis.
+    /// Returns the modes of each axis.
     pub fn axes(&self) -> [&[Tracker]; 3] {
         [&self.roll, &self.pitch, &self.yaw]
     }
@@ -90,22 +90,22 @@ impl Default for Adaptive {
 }
 
 impl Adaptive {
-    /// Whether it is the recurrence.
+    /// Returns true for the form `recurrence`.
     fn recurs(&self) -> bool {
         matches!(self.form, Form::Recurrence(_))
     }
 
-    /// How many modes each axis tracks.
+    /// Returns the number of modes that each axis tracks.
     pub fn count(&self) -> usize {
         self.count.map_or(if self.recurs() { 1 } else { 2 }, |count| count as usize)
     }
 
-    /// Whether the jets of other axes are inputs of an axis.
+    /// Returns true if the jets of other axes are inputs of an axis.
     pub fn crosses(&self) -> bool {
         self.cross_axis.unwrap_or(!self.recurs())
     }
 
-    /// Its form, with the identification at rest if it is not wanted.
+    /// Returns the form of the observers, with zero adaptation gains if `adapt` is false.
     pub fn working_form(&self) -> Form {
         let mut form = self.form.clone();
         if !self.adapt {
@@ -120,7 +120,7 @@ impl Adaptive {
         form
     }
 
-    /// What single values cannot show to be wrong: a key within the estimator, and why.
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
         for (key, error) in

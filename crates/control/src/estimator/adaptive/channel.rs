@@ -1,15 +1,15 @@
-//! The observer of one axis at work, between the jets of a spatial body and the belief of its law.
+//! Run-time observer of one axis, between the actuator's pulses and the state estimate.
 
 use super::{
     AxisObserver, Form, GradientObserver, ModeEstimate, MovingResidual, Observer, ObserverDesign, Pulse,
     RecurrenceObserver,
 };
 
-/// The innovations are small if below this part of the elastic rate, in mean square, or below the floor (rad/s); ours.
+/// Share of the elastic rate, in mean square, or floor (rad/s) below which innovations are small; our choice.
 const SHARE: f64 = 0.1;
 const FLOOR: f64 = 3.16e-6;
 
-/// The observer of one axis.
+/// Run-time observer of one axis.
 #[derive(Clone, Debug)]
 pub struct Channel {
     observer: Either,
@@ -40,7 +40,7 @@ impl Either {
 }
 
 impl ObserverDesign {
-    /// The observers at the start of a run.
+    /// Creates the observers at the start of a run.
     pub fn channels(&self) -> Vec<Channel> {
         let channel = |axis: usize| {
             let design: &AxisObserver = &self.axes[axis];
@@ -48,7 +48,7 @@ impl ObserverDesign {
                 (Form::Recurrence(of), Some(tracker)) => {
                     Either::Recurrence(of.observer(tracker, self.period))
                 }
-                // Without a mode a recurrence is a rigid rate, as a gradient is.
+                // Without a mode, the recurrence is a rigid rate observer, like the gradient form.
                 (Form::Recurrence(_), None) => {
                     Either::Gradient(super::Gradient::default().observer(&[], &design.rigid, self.period))
                 }
@@ -63,48 +63,49 @@ impl ObserverDesign {
 }
 
 impl Channel {
-    /// Takes the rate measured at a sample (rad/s).
+    /// Updates the estimates with the rate measured at a sample (rad/s).
     pub fn update(&mut self, measured: f64) {
         self.observer.observer().update(measured);
     }
 
-    /// Carries the estimates over a cycle under the pulses of all axes, whose inputs are axes.
+    /// Propagates the estimates over a cycle under the pulses of all axes, whose inputs are axis indices.
     pub fn advance(&mut self, pulses: &[Pulse]) {
         let pulses = self.mine(pulses);
         self.observer.observer().advance(&pulses);
     }
 
-    /// The elastic rates of each mode (rad/s) so long after the last sample (s), under the pulses until then.
+    /// Predicts the elastic rate of each mode (rad/s) at `ahead` (s) after the last sample, under the pulses until
+    /// then.
     pub fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
         self.observer.seen().predict(ahead, &self.mine(pulses))
     }
 
-    /// Rigid rate (rad/s).
+    /// Returns the rigid rate (rad/s).
     pub fn rate(&self) -> f64 {
         self.observer.seen().rate()
     }
 
-    /// Writes down the modes, in the place of those of the sample before.
+    /// Writes the mode estimates into `modes`, replacing its contents.
     pub fn put_modes(&self, modes: &mut Vec<ModeEstimate>) {
         self.observer.seen().put_modes(modes);
     }
 
-    /// The influence of the axis' own jets on a mode.
+    /// Returns the influence of the axis' own actuator on a mode.
     pub fn influence(&self, mode: &ModeEstimate) -> f64 {
         mode.influence.get(self.own).copied().unwrap_or(0.0)
     }
 
-    /// How well it follows.
+    /// Returns the moving mean squares of innovation and elastic rate.
     pub fn residual(&self) -> MovingResidual {
         self.observer.seen().residual()
     }
 
-    /// Whether the elastic rates may be acted on.
+    /// Returns true if the innovations are small enough for laws to act on the elastic rates.
     pub fn is_trusted(&self) -> bool {
         self.residual().is_small(SHARE, FLOOR)
     }
 
-    /// The pulses that are inputs, by their index among them.
+    /// Returns the pulses that are inputs of this observer, with their indices among its inputs.
     fn mine(&self, pulses: &[Pulse]) -> Vec<Pulse> {
         let of = |pulse: &Pulse| {
             let input = self.inputs.iter().position(|input| *input == pulse.input)?;

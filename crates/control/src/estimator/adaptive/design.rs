@@ -1,63 +1,63 @@
-//! What the observer of one axis is built on: the modes of the design, where the observer starts, and what it is fed with.
+//! Design of the observer of each axis: true modes, initial values and inputs.
 
 use super::{Adaptive, Form, Merged, Tracker, bounds, merged};
 use crate::attitude::AXES;
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency};
 
-/// The observers of all axes, as the scenario and its body make them.
+/// Design of the observers of all axes, from the scenario and its body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObserverDesign {
     /// Form and settings of the observers.
     pub form: Form,
-    /// Each axis.
+    /// Design of each axis.
     pub axes: Vec<AxisObserver>,
     /// Period of the samples (s).
     pub period: f64,
 }
 
-/// The observer of one axis.
+/// Design of the observer of one axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AxisObserver {
-    /// What really is, by frequency.
+    /// True modes, by frequency.
     pub modes: Vec<Merged>,
-    /// What the observer starts with.
+    /// Initial values of the observer.
     pub start: Vec<Tracker>,
-    /// The axes whose groups of jets are its inputs, in their order.
+    /// Axes whose groups of jets are the observer's inputs, in the order of the inputs.
     pub inputs: Vec<usize>,
-    /// What each input adds to the rigid rate of this axis, for each unit that it adds to that of its own.
+    /// Change of the rigid rate of this axis by each input, per unit of its change of the rigid rate of its own axis.
     pub rigid: Vec<f64>,
     /// Rotations of the body's modes about this axis at the gyro (rad/(m sqrt(kg))).
     pub seen: Vec<f64>,
 }
 
-/// What rates are measured of a body, and what changes them.
+/// Data of a body whose rates are measured: modes, measurement and actuation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct MeasuredRates {
     /// Natural frequencies of the modes.
     pub frequencies: Vec<Frequency>,
-    /// For each axis, the rotation of each mode where rates are measured.
+    /// Rotation per unit of each mode at the rate sensor, for each axis.
     pub seen: Vec<Vec<f64>>,
-    /// For each axis, what its actuator does.
+    /// Effect of the actuator of each axis.
     pub inputs: Vec<ActuatorInput>,
 }
 
-/// What the actuator of an axis does while it gives a torque.
+/// Effect of an axis' actuator while it exerts a torque.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ActuatorInput {
-    /// Modal forces.
+    /// Modal forces of the modes.
     pub forces: Vec<f64>,
-    /// Acceleration about its own axis (rad/s²).
+    /// Angular acceleration about the actuator's own axis (rad/s²).
     pub acceleration: f64,
-    /// What it adds to the rigid rate about each axis, for each unit that it adds to that about its own.
+    /// Change of the rigid rate about each axis, per unit of its change about the actuator's own axis.
     pub turning: Vec<f64>,
 }
 
 impl ObserverDesign {
-    /// The observers of what is measured, sample by sample of a period (s).
+    /// Creates the design for sampled rates with the period `period` (s).
     ///
     /// # Errors
-    /// A key within the estimator, and why.
+    /// A `Fault` with a key within the estimator and the reason.
     pub fn of(spec: &Adaptive, measured: &MeasuredRates, period: f64) -> Result<Self, Fault> {
         if let Some(fault) = spec.inconsistency() {
             return Err(fault);
@@ -97,7 +97,7 @@ impl AxisObserver {
             influence: influence.into_iter().map(|value| Finite::new(value).unwrap_or_default()).collect(),
             bounds: None,
         };
-        // Which modes dominate is what the axis' own jets tell: those are to damp them.
+        // The dominant modes follow from the axis' own jets, which are to damp them.
         let sampled = |mode: &usize| frequencies[*mode].get() * period < std::f64::consts::PI;
         let there: Vec<usize> =
             (0..frequencies.len()).filter(sampled).filter(|mode| influence(axis, *mode) != 0.0).collect();
@@ -122,14 +122,14 @@ impl AxisObserver {
         Ok(Self { modes, start, rigid, inputs, seen: seen[axis].clone() })
     }
 
-    /// The index of the axis' own jets among the inputs.
+    /// Returns the index of the axis' own jets among the inputs.
     pub fn own(&self, axis: usize) -> usize {
         self.inputs.iter().position(|input| *input == axis).unwrap_or(0)
     }
 }
 
-/// So many of the modes that a long burn of an input excites most, by frequency: a step of the elastic acceleration a makes
-/// an elastic rate of a/w.
+/// Returns the `count` modes that a long burn of an input excites most, by frequency: a step a of the elastic
+/// acceleration causes an elastic rate of a/w.
 fn strongest(all: &[Merged], input: usize, count: usize) -> Vec<Merged> {
     let strength = |mode: &Merged| mode.tracker.influence[input].get().abs() / mode.tracker.frequency.get();
     let mut modes = all.to_vec();
@@ -139,7 +139,7 @@ fn strongest(all: &[Merged], input: usize, count: usize) -> Vec<Merged> {
     modes
 }
 
-/// The mode that is nearest to each tracker; one of nothing where there is no mode.
+/// Returns the mode nearest to each tracker; the tracker without modes if there is none.
 fn nearest(all: &[Merged], trackers: &[Tracker]) -> Vec<Merged> {
     let of = |tracker: &Tracker| {
         let far = |mode: &&Merged| (mode.tracker.frequency.get() - tracker.frequency.get()).abs();
@@ -149,7 +149,7 @@ fn nearest(all: &[Merged], trackers: &[Tracker]) -> Vec<Merged> {
     trackers.iter().map(of).collect()
 }
 
-/// The trackers with the errors of the start, as far as the bounds of the design allow.
+/// Returns the trackers with the initial errors of the scenario, limited to the bounds of the design.
 fn started(
     spec: &Adaptive,
     form: &Form,
@@ -188,7 +188,7 @@ fn started(
             Finite::new(influence.get() * factor(spec.influence_error)).unwrap_or(*influence)
         });
         Tracker {
-            // Beyond its bounds it would be taken for another mode.
+            // Beyond its bounds, it would be identified as another mode.
             frequency: frequency((known.get() * factor(spec.frequency_error)).clamp(low, high), known),
             influence: influence.collect(),
             bounds: Some([low, high].map(|bound| frequency(bound, known))),
@@ -211,7 +211,8 @@ mod tests {
             },
             modes: vec![index],
         };
-        // An elastic rate of 0.2, 2, -1.5 and 0.5 for a unit of acceleration: the largest influence is not the strongest.
+        // Elastic rates of 0.2, 2, -1.5 and 0.5 per unit of acceleration: the largest influence is not the strongest
+        // mode.
         let all = [mode(0, 1.0, 0.2), mode(1, 2.0, 4.0), mode(2, 3.0, -4.5), mode(3, 10.0, 5.0)];
         let followed = |count: usize| -> Vec<usize> {
             strongest(&all, 0, count).iter().flat_map(|mode| mode.modes.clone()).collect()

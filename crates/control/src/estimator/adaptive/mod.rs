@@ -1,8 +1,9 @@
-//! Adaptive observers of one channel of a rate sensor: the rigid rate, the dominant elastic modes, and their parameters.
+//! Adaptive observers of one channel of a rate sensor: rigid rate, dominant elastic modes, and their parameters.
 //!
-//! y = w + sum g_i: the measured rate is the rigid one and the elastic rates of some modes, which known pulses of thrusters
-//! excite. The natural frequencies and the influence of the thrusters on each mode are identified as the observer runs. Two
-//! forms: the recurrence of \[Timakov14\] (pages 41 to 46) and a recursive gradient with exact pulses.
+//! y = w + sum g_i: the measured rate is the rigid one plus the elastic rates of some modes, which known pulses of
+//! thrusters excite. The natural frequencies and the influence of the thrusters on each mode are identified as the
+//! observer runs. Two forms exist: the recurrence of \[Timakov14\] (pages 41 to 46) and a recursive gradient with exact
+//! pulses.
 
 mod at_work;
 mod axes;
@@ -30,10 +31,10 @@ pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
 pub use residual::MovingResidual;
 pub use tracker::{Merged, Tracker, bounds, merged};
 
-/// An observer's estimate of a mode.
+/// Observer's estimate of a mode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModeEstimate {
-    /// Elastic rate g of the mode in the channel, and s, a quarter of a period behind it (rad/s).
+    /// Elastic rate g of the mode in the channel, and s, which lags it by a quarter of a period (rad/s).
     pub phase: ModelPhase,
     /// Natural frequency (rad/s).
     pub frequency: f64,
@@ -42,19 +43,19 @@ pub struct ModeEstimate {
 }
 
 impl ModeEstimate {
-    /// Amplitude of the elastic rate (rad/s).
+    /// Returns the amplitude of the elastic rate (rad/s).
     pub fn amplitude(&self) -> f64 {
         libm::hypot(self.phase[0], self.phase[1])
     }
 
-    /// The angle of the mode (rad), as the part a quarter of a period behind tells it.
+    /// Returns the angle of the mode (rad), from the component s that lags the rate by a quarter of a period.
     pub fn displacement(&self) -> f64 {
         self.phase[1] / self.frequency
     }
 }
 
-/// The first key of either form that does not fit the others, these trackers, so many inputs or the period of the samples
-/// (s), and what is wrong with it. Bounds and reach are relative to a start.
+/// Returns the first key of either form that is inconsistent with the others, the trackers, the number of inputs or the
+/// sampling period (s), and the reason. Bounds and reach are relative to the initial values.
 fn inconsistency(
     damping: NonNegative,
     influence_bounds: [NonNegative; 2],
@@ -79,30 +80,31 @@ fn inconsistency(
     tracker::inconsistency(trackers, reach, inputs, period)
 }
 
-/// An observer at work: at each sample `update`, then `advance` over the cycle that follows.
+/// Run-time observer of one axis: at each sample `update`, then `advance` over the cycle that follows.
 pub trait Observer {
-    /// Takes the rate measured at a sample (rad/s). One that is not finite, or off by more than any motion, is dropped.
+    /// Updates the estimates with the measured rate (rad/s). A value that is not finite, or unrealistic, is dropped.
     fn update(&mut self, measured: f64);
 
-    /// Carries the estimates over a cycle to the next sample under the pulses that are executed in it.
+    /// Propagates the estimates over a cycle to the next sample under the pulses that are executed in it.
     fn advance(&mut self, pulses: &[Pulse]);
 
-    /// The elastic rates of each mode (rad/s) so long after the last sample (s), under all pulses until then.
+    /// Predicts the elastic rate of each mode (rad/s) at `ahead` (s) after the last sample, under all pulses until
+    /// then.
     fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64>;
 
-    /// Rigid rate (rad/s).
+    /// Returns the rigid rate (rad/s).
     fn rate(&self) -> f64;
 
-    /// Writes down the modes, in the place of those of the sample before.
+    /// Writes the mode estimates into `modes`, replacing its contents.
     fn put_modes(&self, modes: &mut Vec<ModeEstimate>);
 
-    /// The modes.
+    /// Returns the mode estimates.
     fn modes(&self) -> Vec<ModeEstimate> {
         let mut modes = Vec::new();
         self.put_modes(&mut modes);
         modes
     }
 
-    /// How well it follows.
+    /// Returns the moving mean squares of innovation and elastic rate.
     fn residual(&self) -> MovingResidual;
 }

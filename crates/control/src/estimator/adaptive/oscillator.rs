@@ -1,12 +1,12 @@
-//! One mode's exact motion under pulses, and how it changes with the mode's natural frequency.
+//! Exact motion of one mode under pulses, and its derivative with respect to the mode's natural frequency.
 //!
 //! q'' + 2 zeta w q' + w² q = u in the state [p, s] = [q', w q], so that x' = K x + [u, 0] with
 //! K = [[-2 zeta w, -w], [w, 0]] (\[Timakov14\], equation (2); the closed forms are ours).
 
-/// A vector of the state: the modal rate p and, a quarter of a period behind it, s = w q, in the same unit.
+/// State vector: the modal rate p, and s = w q, which lags p by a quarter of a period, in the same unit.
 pub type ModelPhase = [f64; 2];
 
-/// A mode of a model.
+/// Oscillator that models one mode.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct ModelOscillator {
     /// Natural frequency w (rad/s).
@@ -16,7 +16,7 @@ pub struct ModelOscillator {
 }
 
 impl ModelOscillator {
-    /// The transition over a time (s), exp(K t), by rows.
+    /// Returns the transition exp(K t) over `time` (s), row by row.
     pub fn transition(&self, time: f64) -> [ModelPhase; 2] {
         let zeta = self.damping;
         let root = f64::sqrt((1.0 - zeta) * (1.0 + zeta));
@@ -26,7 +26,7 @@ impl ModelOscillator {
         [[shrink * (cos - zeta * sin), -shrink * sin], [shrink * sin, shrink * (cos + zeta * sin)]]
     }
 
-    /// What a transition over a time (s) makes of a state, and its derivative by ln w.
+    /// Returns the state after a transition over `time` (s), and its derivative with respect to ln w.
     pub fn turned(
         &self,
         transition: &[ModelPhase; 2],
@@ -38,14 +38,14 @@ impl ModelOscillator {
         (at, [turn * (-2.0 * self.damping * at[0] - at[1]), turn * at[0]])
     }
 
-    /// State that a pulse of unit acceleration leaves, which began and ended so long ago (s), and its derivative by ln w.
-    /// Of a pulse that has not yet ended, with a negative time, only what was counts.
+    /// Returns the state after a pulse of unit acceleration that began and ended this long ago (s), and its derivative
+    /// with respect to ln w. A negative time lies in the future: only the past part of the pulse counts.
     pub fn pulse(&self, began: f64, ended: f64) -> (ModelPhase, ModelPhase) {
         let (whole, rest) = (self.step(began.max(0.0)), self.step(ended.max(0.0)));
         (minus(whole.0, rest.0), minus(whole.1, rest.1))
     }
 
-    /// State after a unit acceleration over a time (s), and its derivative by ln w.
+    /// Returns the state after a unit acceleration over `time` (s), and its derivative with respect to ln w.
     fn step(&self, time: f64) -> (ModelPhase, ModelPhase) {
         if time == 0.0 {
             return ([0.0; 2], [0.0; 2]);
@@ -56,7 +56,7 @@ impl ModelOscillator {
     }
 }
 
-/// A matrix, by rows, times a vector.
+/// Returns the product of a matrix (rows) and a vector.
 fn times(matrix: &[ModelPhase; 2], v: ModelPhase) -> ModelPhase {
     [matrix[0][0] * v[0] + matrix[0][1] * v[1], matrix[1][0] * v[0] + matrix[1][1] * v[1]]
 }
@@ -115,7 +115,7 @@ mod tests {
     #[test]
     fn a_pulse_to_come_does_nothing() {
         assert_eq!(MODE.pulse(-0.1, -0.3).0, [0.0, 0.0]);
-        // Of one that is under way, the part so far counts.
+        // Of a pulse in progress, only the past part counts.
         assert_eq!(MODE.pulse(0.1, -0.1), MODE.pulse(0.1, 0.0));
     }
 }

@@ -1,4 +1,4 @@
-//! The observers on clean data, against tests/golden/observer_oracle.py, and fed with nonsense.
+//! Tests of the observers on clean data, against tests/golden/observer_oracle.py, and with invalid measurements.
 
 use std::f64::consts::PI;
 
@@ -26,7 +26,7 @@ fn recurrence(hertz: f64, influence: f64) -> RecurrenceObserver {
     Recurrence::default().observer(&tracker(hertz, influence), CYCLE)
 }
 
-/// Ten cycles of every 65 under one sign, then under the other.
+/// Returns bursts: ten cycles of every 65 with one sign, then with the other.
 fn burst(cycle: usize) -> Vec<Pulse> {
     let sign = if (cycle / 65).is_multiple_of(2) { 1.0 } else { -1.0 };
     if (5..15).contains(&(cycle % 65)) {
@@ -36,7 +36,7 @@ fn burst(cycle: usize) -> Vec<Pulse> {
     }
 }
 
-/// The measured rate at each sample under the bursts, without noise.
+/// Returns the measured rate at each sample under the bursts, without noise.
 fn measured() -> Vec<f64> {
     let of = ModelOscillator { frequency: MODE.0, damping: 0.005 };
     let (mut rate, mut phase) = (0.0, [0.0; 2]);
@@ -53,7 +53,7 @@ fn measured() -> Vec<f64> {
     (0..1300).map(sample).collect()
 }
 
-/// The measured rate as the recurrence itself has it.
+/// Returns the measured rate according to the recurrence itself.
 fn recurred() -> Vec<f64> {
     let (w, zeta) = (MODE.0, 0.005);
     let turn = 2.0 * libm::exp(-zeta * w * CYCLE) * libm::cos(w * f64::sqrt(1.0 - zeta * zeta) * CYCLE);
@@ -69,7 +69,7 @@ fn recurred() -> Vec<f64> {
     (0..1300).map(sample).collect()
 }
 
-/// Frequency (Hz) and influence after some samples.
+/// Returns frequency (Hz) and influence after some samples.
 fn identified(observer: &mut dyn Observer, measured: &[f64], at: &[usize]) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     for (cycle, y) in measured.iter().enumerate() {
@@ -206,7 +206,7 @@ fn recurrence_is_exact_on_data_of_its_own() {
         right.update(*y);
         right.advance(&burst(cycle));
     }
-    // The frequency is read without the root of 1 - zeta².
+    // The frequency is computed without the root of 1 - zeta².
     close(right.modes()[0].frequency / (2.0 * PI), 0.199_997_5, 1e-7);
     close(right.modes()[0].influence[0], 2.0, 1e-12);
     assert!(right.residual().innovation < 1e-36, "{:?}", right.residual());
@@ -227,7 +227,7 @@ fn predictions_are_what_comes() {
                 observer.advance(&burst(cycle));
             }
         }
-        // The sample 72 is in the middle of a burst, which goes on for five samples more.
+        // Sample 72 is in the middle of a burst, which continues for five more samples.
         let pulses: Vec<Pulse> = (0..5)
             .flat_map(|cycle| burst(72 + cycle).into_iter().map(move |pulse| (cycle, pulse)))
             .map(|(cycle, pulse)| Pulse { start: CYCLE * cycle as f64, ..pulse })
@@ -268,7 +268,7 @@ fn still_modes_teach_no_frequency() {
     assert!(drift(1e-12) > 0.03, "{}", drift(1e-12));
 }
 
-/// The reading of a gyro at a sample.
+/// Reading of a gyro at a sample.
 type Measured = fn(usize) -> f64;
 
 #[test]
@@ -311,7 +311,7 @@ fn nonsense_is_never_passed_on() {
             }
         }
     }
-    // An observer without samples is not trusted, one that follows is.
+    // An observer without samples is not trusted; one in lock is.
     let mut observer = gradient(0.3, 1.2);
     for (cycle, y) in measured().into_iter().enumerate() {
         observer.update(if cycle < 1200 { y } else { f64::NAN });

@@ -1,4 +1,5 @@
-//! What an observer tracks: modes of one measured channel, near ones merged, each in an interval of frequency of its own.
+//! Modes that an observer tracks: those of one measured channel, with close ones merged, each in its own frequency
+//! interval.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -6,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency};
 
-/// The part of the Nyquist frequency up to which a frequency can be distinguished from its alias.
+/// Fraction of the Nyquist frequency up to which a frequency can be distinguished from its alias.
 const SAMPLED: f64 = 0.98;
 
 /// Initial values of one mode in the observer of a channel.
@@ -25,12 +26,12 @@ pub struct Tracker {
 }
 
 impl Tracker {
-    /// The influence of all inputs together, by absolute values.
+    /// Returns the sum of the absolute influences of all inputs.
     pub fn strength(&self) -> f64 {
         self.influence.iter().map(|influence| influence.get().abs()).sum()
     }
 
-    /// Both as one: the frequency by the strengths, the influences summed.
+    /// Returns both trackers merged: mean frequency weighted by strength, sum of influences.
     fn merged(&self, other: &Self) -> Self {
         let (a, b) = (self.strength(), other.strength());
         let (a, b) = if a + b > 0.0 { (a / (a + b), b / (a + b)) } else { (0.5, 0.5) };
@@ -44,17 +45,17 @@ impl Tracker {
     }
 }
 
-/// A tracker, and the modes that it stands for.
+/// Tracker and the modes that it represents.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Merged {
-    /// The modes as one.
+    /// Tracker of the merged modes.
     pub tracker: Tracker,
-    /// Their indices.
+    /// Indices of the modes.
     pub modes: Vec<usize>,
 }
 
-/// The trackers of a channel's modes, by frequency: two nearer to each other than a ratio, such as 0.08, cannot be told
-/// apart and become one. The nearest are merged first. Bounds are not kept.
+/// Returns the trackers of a channel's modes, by frequency. Two whose relative difference is below `merge`, such as
+/// 0.08, cannot be distinguished and are merged, the closest first. Bounds are dropped.
 pub fn merged(modes: &[Tracker], merge: f64) -> Vec<Merged> {
     let alone = |(index, mode): (usize, &Tracker)| Merged {
         tracker: Tracker { bounds: None, ..mode.clone() },
@@ -71,7 +72,7 @@ pub fn merged(modes: &[Tracker], merge: f64) -> Vec<Merged> {
     merged
 }
 
-/// The first of the nearest pair within a ratio.
+/// Returns the index of the first tracker of the closest pair within a ratio.
 fn nearest(merged: &[Merged], merge: f64) -> Option<usize> {
     let at = |index: usize| merged[index].tracker.frequency.get();
     let ratio = |index: usize| at(index + 1) / at(index) - 1.0;
@@ -79,9 +80,9 @@ fn nearest(merged: &[Merged], merge: f64) -> Option<usize> {
     pairs.min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))
 }
 
-/// The bounds of each tracker (rad/s): its own, or from its frequency divided by `reach` to its frequency times `reach`, and
-/// no further than the geometric mean with a neighbour, the neighbour's own bound, or what a period (s) of samples can resolve
-/// from its alias.
+/// Returns the bounds of each tracker (rad/s): its own, or from its frequency divided by `reach` to its frequency times
+/// `reach`, limited by the geometric mean with a neighbour, the neighbour's own bound, and 0.98 of the Nyquist
+/// frequency at the sampling period `period` (s).
 pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
     let highest = SAMPLED * std::f64::consts::PI / period;
     let of = |tracker: &Tracker| {
@@ -104,8 +105,8 @@ pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
     trackers.iter().map(of).collect()
 }
 
-/// The first key of the trackers that does not fit so many inputs, this period of samples (s) or another tracker, and what is
-/// wrong with it.
+/// Checks the trackers against the number of inputs, the sampling period (s) and each other; returns the first
+/// inconsistent key and the reason.
 pub fn inconsistency(trackers: &[Tracker], reach: f64, inputs: usize, period: f64) -> Option<Fault> {
     if trackers.is_empty() {
         return Some(Fault::new("trackers", "must have at least one mode to track, got none"));
@@ -184,7 +185,7 @@ mod tests {
         };
         let found = trackers(0.08);
         let found_at = |tracker: &Tracker| tracker.frequency.get() / (2.0 * PI);
-        // The pair first, 0.60741 Hz; then 0.65 Hz is within 8 % of it.
+        // The pair is merged first, to 0.60741 Hz; then 0.65 Hz is within 8 % of it.
         assert_eq!(found.len(), 3);
         close(found_at(&found[0]), 0.2476, 1e-12);
         let pair = (1.6 * 0.6096 + 1.4 * 0.6049) / 3.0;

@@ -1,4 +1,4 @@
-//! The attitude filter at work: it reads the gyro and what measures the attitude or a vector, and writes the belief about three axes.
+//! Run-time state of the attitude filter: from sensor readings to the state estimate about three axes.
 
 use nalgebra::Quaternion;
 
@@ -14,28 +14,28 @@ use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEsti
 use crate::sensor::{Orientation, Reading};
 use crate::time::Instant;
 
-/// The filter at work.
+/// Run-time state of the attitude filter.
 #[derive(Clone, Debug)]
 pub struct Tracking {
     spec: AttitudeFilter,
     setting: AttitudeSetting,
     draws: Stream,
-    /// From the first sample on.
+    /// Filter and its recent past; `None` before the first sample.
     history: Option<FilterHistory>,
-    /// The last gyro reading (rad/s), and when the filter took a gyro reading last.
+    /// Last gyro reading (rad/s), and the time at which its interval ended.
     rate: Vector,
     since: Instant,
-    /// The attitude after the last sample, and when that was.
+    /// Time of the last sample and the attitude after it.
     sampled: Option<(Instant, Quaternion<f64>)>,
-    /// The torque that the modes feel (N m).
+    /// Torque on the body about its axes (N m), which excites the modes.
     torque: Vector,
-    /// What the last sample told of the attitude, and whether it told any.
+    /// Correction by the last sample, and true if it had any.
     told: Correction,
     used: bool,
 }
 
 impl Tracking {
-    /// The filter before the first sample; `draws` gives a drawn prior.
+    /// Creates the filter before the first sample; `draws` supplies a drawn prior.
     pub fn new(spec: &AttitudeFilter, setting: AttitudeSetting, draws: Stream) -> Self {
         Self {
             spec: spec.clone(),
@@ -51,7 +51,7 @@ impl Tracking {
         }
     }
 
-    /// What the filter takes for the truth at the start, where this is the true attitude.
+    /// Returns the filter's initial state for the true attitude at the start.
     fn prior(&mut self, attitude: &Quaternion<f64>) -> AttitudeFilterState {
         let deviations = [self.spec.initial.angle.get(), self.spec.initial.bias.get()];
         let mut off = [Vector::zeros(); 2];
@@ -67,14 +67,14 @@ impl Tracking {
         filter
     }
 
-    /// Takes what each sensor measured now.
+    /// Propagates and corrects the filter with the readings of this sample.
     fn read(&mut self, now: Instant, readings: &[Option<Reading>]) {
         let Some(history) = &mut self.history else { return };
         let mut corrections = Vec::new();
-        // First the gyro: a measurement of now then finds the filter there.
+        // The gyro comes first: then the filter has reached the time of any other measurement of this sample.
         for (role, (_, reading)) in self.setting.of(readings, &|role| matches!(role, Role::Gyro { .. })) {
             if let (Some(rate), Role::Gyro { latency }) = (reading.rate, role) {
-                // Until it tells a rate of later, it tells that of the start.
+                // Before the first latency has elapsed, the rate is that at the start.
                 let of = if now < Instant::START + *latency { Instant::START } else { now.before(*latency) };
                 self.rate = rate.into();
                 corrections.extend(history.read(of, self.rate));
@@ -90,7 +90,7 @@ impl Tracking {
                 (None, Orientation::Attitude(attitude)) => AttitudeMeasurement::Attitude(attitude),
                 (None, Orientation::Angle(_)) => continue,
             };
-            // What is told at the start is of the start.
+            // A measurement at the start has no latency.
             let exposed = if now == Instant::START { now } else { now.before(*latency) };
             corrections.extend(history.fix(Fix {
                 exposed,
@@ -104,7 +104,7 @@ impl Tracking {
         self.told = corrections.pop().unwrap_or_default();
     }
 
-    /// The attitude now, by the last gyro reading since.
+    /// Returns the attitude at `now`, propagated with the last gyro reading.
     fn attitude(&self, now: Instant) -> Option<Quaternion<f64>> {
         if let Some((_, attitude)) = self.sampled.filter(|(sampled, _)| *sampled == now) {
             return Some(attitude);
@@ -117,7 +117,7 @@ impl Tracking {
         Some(filter.attitude * rotation(&turn))
     }
 
-    /// What of the last gyro reading is elastic, as far as laws do not read it (rad/s).
+    /// Returns the elastic part of the last gyro reading (rad/s) that is removed from the rate for the laws.
     fn elastic_rate(&self) -> Vector {
         let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
         swinging.map_or_else(Vector::zeros, |swinging| {
@@ -126,7 +126,8 @@ impl Tracking {
         })
     }
 
-    /// The attitude that laws read, where this is that of the hub: without what modes that are known turn.
+    /// Returns the attitude that laws read, from that of the hub: without the rotation by known modes if laws read the
+    /// rigid motion.
     fn read_by_laws(&self, hub: Quaternion<f64>) -> Quaternion<f64> {
         let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
         match swinging.filter(|swinging| swinging.known.rigid) {
@@ -137,7 +138,7 @@ impl Tracking {
 }
 
 impl AttitudeSetting {
-    /// The readings of sensors with a role.
+    /// Iterates over the readings of the sensors whose role satisfies `wanted`, with their indices.
     fn of<'a>(
         &'a self,
         readings: &'a [Option<Reading>],

@@ -1,20 +1,21 @@
-//! The covariance of attitude and bias through an interval in which the body turns: products of 3x3 blocks, a column in the lanes of
-//! a register.
+//! Propagation of the covariance of attitude and bias through an interval in which the body rotates: products of 3x3
+//! blocks, one column in the lanes of a register.
 
 use nalgebra::Matrix6;
 
 use crate::attitude::Vector;
 use crate::lanes::{LaneWork, Real};
 
-/// Columns of a matrix of three rows; the fourth lane is nobody's.
+/// Columns of a matrix with three rows; the fourth lane is unused.
 type Columns = [[f64; 4]; 3];
 
 const ONE: Columns = [[1.0, 0.0, 0.0, 0.0], [0.0, 1.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0]];
 
-/// Theta becomes `turned` theta - `drifted` beta, exactly for a constant rate, with the exact covariance of what noise adds.
+/// Propagates theta to `turned` theta - `drifted` beta, exactly for a constant rate, with the exact covariance added by
+/// noise.
 pub(super) struct Carried<'a> {
     pub covariance: &'a mut Matrix6<f64>,
-    /// How far the body turns (rad), and the Stumpff functions of its square.
+    /// Rotation of the body (rad), and the Stumpff functions of its square.
     pub turn: Vector,
     pub phis: [f64; 5],
     pub seconds: f64,
@@ -36,7 +37,7 @@ impl LaneWork for Carried<'_> {
         let one = columns(kind, &ONE);
         let along = kind.load(&[x, y, z, 0.0]);
         let (mut turned, mut drifted) = ([kind; 3], [kind; 3]);
-        // The covariance that noise adds to theta, and takes from that of theta with beta.
+        // Covariance that noise adds to theta, and subtracts from the cross-covariance of theta and beta.
         let (mut angle, mut both) = ([kind; 3], [kind; 3]);
         for at in 0..3 {
             let twice = product(&cross, &sides[at]);
@@ -92,7 +93,7 @@ fn stored<R: Real>(of: [R; 3]) -> Columns {
     to
 }
 
-/// What a matrix makes of a vector.
+/// Returns the product of a matrix and a vector.
 #[inline(always)]
 fn product<R: Real>(of: &[R; 3], vector: &[f64; 4]) -> R {
     of[0] * vector[0] + of[1] * vector[1] + of[2] * vector[2]

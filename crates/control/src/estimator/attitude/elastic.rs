@@ -1,8 +1,9 @@
-//! Elastic modes in an attitude filter, as a scenario describes them and as the filter knows them.
+//! Elastic modes in an attitude filter: their settings in a scenario, and the filter's model of them.
 //!
-//! The attitude that the filter knows is that of the hub. A gyro where modes turn its mount by g beyond the hub reads w + g q' + b,
-//! a tracker sees the attitude of the hub turned by s q, and q'' + 2 zeta W q' + W² q = phi (T + n) with the torque T that is
-//! commanded and white noise n of a modal force. What the law reads may be the hub's, or what is left without phi q and phi q'.
+//! The filter's attitude is that of the hub. A gyro whose mount is rotated by g relative to the hub reads w + g q' + b,
+//! a star tracker measures the attitude of the hub rotated by s q, and q'' + 2 zeta W q' + W² q = phi (T + n) with the
+//! commanded torque T and white noise n. The law reads the motion of the hub, or the rigid motion without phi q and phi
+//! q'.
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -55,59 +56,60 @@ fn displacement() -> Positive {
     Positive::new(1e-3).unwrap_or(Positive::ONE)
 }
 
-/// A mode as the filter knows it.
+/// Mode in the filter's model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownMode {
     /// Natural frequency at the start (rad/s).
     pub frequency: f64,
-    /// That of the body (rad/s).
+    /// True natural frequency of the body (rad/s).
     pub true_frequency: f64,
     /// Damping ratio.
     pub damping: f64,
-    /// Rotation of the hub for a unit of it (rad/(m sqrt(kg))).
+    /// Rotation of the hub per unit of the mode (rad/(m sqrt(kg))).
     pub hub: Vector,
-    /// Rotation of the gyro's mount beyond that of the hub.
+    /// Rotation of the gyro's mount relative to the hub (rad/(m sqrt(kg))).
     pub gyro: Vector,
-    /// The same of the mount of each sensor, in the order of the scenario.
+    /// Rotation of each sensor's mount relative to the hub (rad/(m sqrt(kg))), in the order of the scenario.
     pub mounts: Vec<Vector>,
     /// Standard deviations at the start, of displacement (m sqrt(kg)) and rate over the frequency (m sqrt(kg)).
     pub initial: [f64; 2],
 }
 
-/// How a filter identifies frequencies.
+/// Parameters of the frequency identification.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Identified {
-    /// Standard deviation of the logarithm of each at the start.
+    /// Standard deviation of the logarithm of each frequency at the start.
     pub deviation: f64,
-    /// Its random walk (1/sqrt(s)).
+    /// Random walk of the logarithm of each frequency (1/sqrt(s)).
     pub walk: f64,
 }
 
-/// The modes that a filter knows.
+/// Modes in the filter's model.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct KnownModes {
-    /// Each.
+    /// Parameters of each mode.
     pub each: Vec<KnownMode>,
-    /// By how much random forces let a rate walk (m sqrt(kg)/s^1.5).
+    /// Random walk of each modal rate due to random forces (m sqrt(kg)/s^1.5).
     pub noise: f64,
-    /// How it identifies their frequencies, if it does.
+    /// Parameters of the frequency identification, if the filter identifies frequencies.
     pub identified: Option<Identified>,
-    /// What turns a moment that is told (rad/s²) into a torque about each axis (kg m²).
+    /// Inertia about each axis (kg m²), by which a reduced moment (rad/s²) becomes a torque.
     pub inertia: Vector,
-    /// Whether the law reads angle and rate without the modes.
+    /// True if the law reads the rigid angle and rate, without the modes.
     pub rigid: bool,
 }
 
 impl ElasticStates {
-    /// Whether the filter identifies their frequencies.
+    /// Returns true if the filter identifies the frequencies.
     pub fn identifies(&self) -> bool {
         self.frequency_deviation.is_some()
     }
 
-    /// The modes of a body whose sensors are at these points, of which one is the gyro's; torques act on the hub, its first point.
+    /// Returns the filter's model of the modes of a body with sensors at the points `at`, where `gyro` is the gyro's
+    /// index in `at`; torques act on the hub, the first point of the body.
     ///
     /// # Errors
-    /// The key, and why.
+    /// A `Fault` with the key and the reason.
     pub fn known(&self, body: &Spatial, at: &[String], gyro: usize) -> Result<KnownModes, Fault> {
         if self.modes.is_empty() {
             return Err(Fault::new("modes", "must name at least one mode"));
@@ -166,7 +168,8 @@ impl ElasticStates {
 }
 
 impl KnownModes {
-    /// By how much displacements (m sqrt(kg)), or their rates, turn a place.
+    /// Returns the rotation, or its rate, of a place whose rotation per unit of a mode is `of`, for these displacements
+    /// or rates.
     pub fn turned(&self, of: impl Fn(&KnownMode) -> Vector, by: impl Iterator<Item = f64>) -> Vector {
         self.each.iter().zip(by).fold(Vector::zeros(), |sum, (mode, by)| sum + of(mode) * by)
     }

@@ -1,10 +1,11 @@
 //! A multiplicative extended Kalman filter of attitude and gyro bias (\[LeffertsMarkleyShuster82\]).
 //!
-//! The attitude is Q = Q^ exp(theta), the bias b = b^ + beta; theta and beta, three numbers each, have the covariance P. A gyro
-//! reading y covers an interval: w^ = y - b^ turns Q^ through it, and theta' = -w^ x theta - beta - n_v, beta' = n_u is solved
-//! exactly for constant w^, with the exact covariance of what n_v and n_u add. An attitude z corrects by 2 vec(Q^* z), in the
-//! form of Joseph. So does a vector y that is r in inertial axes: with b = Q^* r it is b + b x theta, of a direction the part across
-//! b alone. Errors stay on the right of Q^: nothing has to be reset but Q^ itself.
+//! The attitude is Q = Q^ exp(theta), the bias b = b^ + beta; theta and beta, three numbers each, have the covariance
+//! P. A gyro reading y covers an interval: w^ = y - b^ rotates Q^ through it, and theta' = -w^ x theta - beta - n_v,
+//! beta' = n_u is solved exactly for constant w^, with the exact covariance that n_v and n_u add. An attitude z
+//! corrects by 2 vec(Q^* z), in Joseph's form. A vector y, r in inertial axes, corrects too: with b = Q^* r it is b + b
+//! x theta, of which a direction has only the part perpendicular to b. Errors stay on the right of Q^: a reset changes
+//! Q^ alone.
 
 use nalgebra::{
     Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
@@ -19,32 +20,33 @@ use crate::lanes::Four;
 use crate::numerics::stumpff::stumpff;
 use crate::sensor::VectorSight;
 
-/// The filter: what it knows at one instant.
+/// State of the attitude filter at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttitudeFilterState {
-    /// The attitude, which turns vectors of the body's axes into inertial ones.
+    /// Attitude: the rotation from body axes to inertial axes.
     pub attitude: Quaternion<f64>,
-    /// The bias of the gyro (rad/s).
+    /// Gyro bias (rad/s).
     pub bias: Vector,
     /// Covariance of the errors of attitude (rad) and bias (rad/s).
     pub covariance: Matrix6<f64>,
-    /// Elastic modes that it knows too: the covariance of all is theirs, and the one above a part of it.
+    /// Elastic modes that the filter estimates too: they hold the full covariance, of which `covariance` is the leading
+    /// block.
     pub swinging: Option<Box<Swinging>>,
 }
 
-/// What a measured attitude or vector told a filter.
+/// Innovation of a measured attitude or vector.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Correction {
-    /// How far the measured attitude was beyond the predicted one, in the body's axes (rad); of a vector the part across it.
+    /// Measured attitude relative to the predicted one, in body axes (rad); for a vector, the part perpendicular to it.
     pub innovation: Vector,
-    /// The normalised square of the innovation, of a direction, which has two numbers, times 3/2.
+    /// Normalised innovation squared; for a direction, which has two components, multiplied by 3/2.
     pub nis: f64,
-    /// How many numbers it has.
+    /// Number of components of the measurement.
     pub numbers: u64,
 }
 
 impl AttitudeFilterState {
-    /// The filter that knows an attitude and a bias with these standard deviations about each axis (rad, rad/s).
+    /// Creates a filter with this attitude, bias and standard deviations about each axis (rad, rad/s).
     pub fn new(attitude: Quaternion<f64>, bias: Vector, deviations: [f64; 2]) -> Self {
         let variance = |row: usize, _| deviations[row / 3] * deviations[row / 3];
         let covariance =
@@ -52,7 +54,7 @@ impl AttitudeFilterState {
         Self { attitude, bias, covariance, swinging: None }
     }
 
-    /// Goes on through an interval of so many seconds, of which the gyro tells the mean rate (rad/s).
+    /// Propagates the filter over `seconds` with `reading`, the gyro's mean rate over the interval (rad/s).
     pub fn predict(&mut self, reading: &Vector, seconds: f64, noise: &GyroNoise) {
         let turn = (reading - self.bias) * seconds;
         let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
@@ -69,7 +71,7 @@ impl AttitudeFilterState {
         });
     }
 
-    /// The same with modes, under torques (N m) each for so long (s).
+    /// Propagates the filter and its modes over `seconds`, under torques (N m), each with its duration (s).
     pub fn predict_under(
         &mut self,
         reading: &Vector,
@@ -86,7 +88,7 @@ impl AttitudeFilterState {
         self.swinging = Some(swinging);
     }
 
-    /// Takes what a sensor measured whose mount the modes turn.
+    /// Corrects the filter by a measurement of a sensor whose mount is rotated by the modes.
     pub fn correct_at(
         &mut self,
         sensor: usize,
@@ -109,8 +111,8 @@ impl AttitudeFilterState {
         Some(Correction { innovation, nis, numbers: measured.numbers() })
     }
 
-    /// Takes a measured attitude whose error in the body's axes has this covariance (rad²). It tells nothing where the
-    /// covariance of the innovation is not positive.
+    /// Corrects the filter by a measured attitude whose error has the covariance `noise` in body axes (rad²). Returns
+    /// `None` and changes nothing if the covariance of the innovation is not positive definite.
     pub fn correct(&mut self, measured: &Quaternion<f64>, noise: &Matrix3<f64>) -> Option<Correction> {
         let innovation = beyond(&self.attitude, measured);
         let to_attitude = self.covariance.fixed_columns::<3>(0).into_owned();
@@ -123,7 +125,7 @@ impl AttitudeFilterState {
         Some(Correction { innovation, nis: innovation.dot(&(inverse * innovation)), numbers: 3 })
     }
 
-    /// Takes a measured vector whose error in the body's axes has this covariance.
+    /// Corrects the filter by a measured vector whose error has the covariance `noise` in body axes.
     pub fn correct_by(&mut self, sight: &VectorSight, noise: &Matrix3<f64>) -> Option<Correction> {
         let expected = into(&self.attitude, &sight.inertial);
         let (off, moved) = (sight.vector - expected, expected.cross_matrix());
@@ -137,8 +139,8 @@ impl AttitudeFilterState {
         Some(Correction { innovation: off.cross(&expected) / expected.norm_squared(), nis, numbers })
     }
 
-    /// The same with a constant gain from the angle that is measured beyond the attitude. The covariance is that of the errors
-    /// which this gain leaves.
+    /// Corrects the filter with a constant gain on the measured angle relative to the attitude. The covariance becomes
+    /// that of the errors which this gain leaves.
     pub fn correct_with(
         &mut self,
         measured: &AttitudeMeasurement,
@@ -171,15 +173,16 @@ impl AttitudeFilterState {
         Some(Correction { innovation, nis, numbers })
     }
 
-    /// Takes errors over that were found with a gain of which this acts on the attitude, and adds this to the covariance.
+    /// Applies the estimated `error`, and updates the covariance for the gain's action `told` on the attitude and the
+    /// term `added`.
     fn take(&mut self, error: &SMatrix<f64, 6, 1>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) {
         self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
         self.bias += error.fixed_rows::<3>(3);
         self.covariance = left(&self.covariance, told, added);
     }
 
-    /// Takes D numbers that are beyond what is expected by so much, where a unit of theta moves them so, and errors have this
-    /// covariance; returns the normalised square.
+    /// Updates the filter with D components `off` of an innovation, their derivatives `moved` with respect to theta,
+    /// and their covariance `noise`; returns the normalised innovation squared.
     fn update<const D: usize>(
         &mut self,
         moved: &SMatrix<f64, D, 3>,
@@ -196,23 +199,24 @@ impl AttitudeFilterState {
         Some(off.dot(&(inverse * off)))
     }
 
-    /// Its error where these are attitude and bias: so far is the truth beyond the estimate (rad, rad/s).
+    /// Returns the errors against a true attitude and bias: truth relative to the estimate (rad, rad/s).
     pub fn error(&self, attitude: &Quaternion<f64>, bias: &Vector) -> [Vector; 2] {
         [beyond(&self.attitude, attitude), bias - self.bias]
     }
 
-    /// The normalised square of its error where these are attitude and bias; NaN of a covariance that is not positive.
+    /// Returns the normalised squared error against a true attitude and bias; NaN if the covariance is not positive
+    /// definite.
     pub fn nees(&self, attitude: &Quaternion<f64>, bias: &Vector) -> f64 {
         self.normalised(&self.error(attitude, bias))
     }
 
-    /// The normalised square of such an error (rad, rad/s); NaN of a covariance that is not positive.
+    /// Returns the normalised square of an error (rad, rad/s); NaN if the covariance is not positive definite.
     pub fn normalised(&self, [angle, rate]: &[Vector; 2]) -> f64 {
         let error = SMatrix::<f64, 6, 1>::from_fn(|row, _| if row < 3 { angle[row] } else { rate[row - 3] });
         Cholesky::new(self.covariance).map_or(f64::NAN, |factor| error.dot(&factor.solve(&error)))
     }
 
-    /// Standard deviations of attitude (rad) and bias (rad/s) about each axis.
+    /// Returns the standard deviations of attitude (rad) and bias (rad/s) about each axis.
     pub fn deviations(&self) -> [[f64; 3]; 2] {
         [0, 3].map(|from| [0, 1, 2].map(|axis| f64::sqrt(self.covariance[(from + axis, from + axis)])))
     }
@@ -222,10 +226,10 @@ fn unit(q: Quaternion<f64>) -> Quaternion<f64> {
     q / q.norm()
 }
 
-/// The covariance that is left where a correction takes so much of theta, and this is added: K P K' with K = 1 - [told, 0].
+/// Returns the covariance after a correction: K P K' + `added` with K = 1 - [told, 0].
 fn left(covariance: &Matrix6<f64>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) -> Matrix6<f64> {
     let kept = Matrix6x3::identity() - told;
-    // The other columns of K are those of 1.
+    // The other columns of K are those of the identity.
     let mut once = kept * covariance.fixed_rows::<3>(0);
     let mut below = once.fixed_rows_mut::<3>(3);
     below += covariance.fixed_rows::<3>(3);

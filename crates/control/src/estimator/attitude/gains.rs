@@ -1,7 +1,7 @@
-//! Filters of attitude and bias with constant gains: the steady state of the optimal one, and a complementary filter.
+//! Attitude filters with constant gains: the steady state of the optimal filter, and a complementary filter.
 //!
-//! Of one axis, with theta' = -beta between corrections a period T apart and theta- before one, a correction makes
-//! theta+ = (1 - k) theta-, beta+ = beta - b theta-. The poles of that have the product 1 - k and the sum 2 - k + b T.
+//! For one axis, with theta' = -beta between corrections of period T and theta- before a correction, a correction gives
+//! theta+ = (1 - k) theta-, beta+ = beta - b theta-. The two poles have the product 1 - k and the sum 2 - k + b T.
 
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
@@ -39,7 +39,7 @@ fn damping() -> Positive {
 }
 
 impl Complementary {
-    /// k and b (1/s) at this period of corrections (s): the poles are those of the continuous error, sampled.
+    /// Returns k and b (1/s) for this period of corrections (s): the poles are those of the continuous error, sampled.
     fn gains(&self, period: f64) -> [f64; 2] {
         let (angle, ratio) = (self.bandwidth.get() * period, self.damping.get());
         let decay = libm::exp(-ratio * angle);
@@ -51,7 +51,8 @@ impl Complementary {
     }
 }
 
-/// k and b (1/s) of the optimal filter in the end, at this period of corrections (s) of this standard deviation (rad).
+/// Returns k and b (1/s) of the optimal filter in steady state, for corrections of this period (s) and standard
+/// deviation (rad).
 fn steady(noise: &GyroNoise, period: f64, deviation: f64) -> [f64; 2] {
     let (white, walk) = (noise.angle_random_walk, noise.rate_random_walk);
     let (sv, su) = (white * f64::sqrt(period) / deviation, walk * f64::sqrt(period) * period / deviation);
@@ -62,8 +63,8 @@ fn steady(noise: &GyroNoise, period: f64, deviation: f64) -> [f64; 2] {
 }
 
 impl Form {
-    /// The constant gain from a measured angle beyond the estimated one, in the body's axes, to attitude and bias; none where the
-    /// covariance gives it. Corrections come at this period (s), and their errors have this covariance (rad²).
+    /// Returns the constant gain from a measured angle relative to the estimate, in body axes, to attitude and bias;
+    /// `None` of the extended filter. `period` (s) is that of corrections, `covariance` (rad²) that of their errors.
     pub fn gain(&self, noise: &GyroNoise, period: f64, covariance: &Matrix3<f64>) -> Option<Matrix6x3<f64>> {
         let assemble = |attitude: Matrix3<f64>, bias: Matrix3<f64>| {
             let mut gain = Matrix6x3::zeros();
@@ -78,7 +79,7 @@ impl Form {
                 Some(assemble(gains[0], gains[1]))
             }
             Self::Steady => {
-                // About the axes in which errors do not depend on each other.
+                // Gains are computed about the principal axes of the covariance, in which errors are independent.
                 let axes = covariance.symmetric_eigen();
                 let of = |variance: f64| steady(noise, period, f64::sqrt(variance));
                 let [attitude, bias] = [0, 1].map(|part| {
@@ -128,7 +129,7 @@ mod tests {
             let filter = Complementary { bandwidth: positive(bandwidth), damping: positive(ratio) };
             let [k, b] = filter.gains(period);
             assert!((1.0 - k - libm::exp(-2.0 * ratio * bandwidth * period)).abs() < 1e-15);
-            // An error of the attitude that is left alone falls as that of the continuous filter does at samples.
+            // A free error of the attitude decays as the continuous filter's error at the samples.
             let (mut theta, mut beta) = (1.0, 0.0);
             let mut seen = vec![theta];
             for _ in 0..50 {

@@ -1,8 +1,8 @@
-//! The recent past of an attitude filter, so that a measurement that arrives late corrects it where the body was exposed.
+//! Recent past of an attitude filter: a delayed measurement corrects the state at its exposure.
 //!
-//! Each entry holds the filter after what happened at its instant, with the gyro reading of the interval that ends there and
-//! what was measured there. A late measurement is put where it belongs, and all that is later is done again:
-//! the result is that of a filter to which nothing is late.
+//! Each entry holds the filter after the events at its instant, with the gyro reading of the interval that ends there
+//! and the measurements exposed there. A delayed measurement is inserted at its exposure, and all later steps are
+//! repeated: the result is that of a filter without delays.
 
 use std::collections::VecDeque;
 
@@ -13,18 +13,18 @@ use super::measurement::{AttitudeMeasurement, GyroNoise};
 use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 
-/// A measurement that corrects.
+/// Measurement that corrects the filter.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Fix {
-    /// When the body was exposed.
+    /// Time of the exposure.
     pub exposed: Instant,
-    /// What was measured.
+    /// Measured attitude or vector.
     pub measured: AttitudeMeasurement,
-    /// Covariance of its error in the body's axes (rad², or that of the vector's unit).
+    /// Covariance of the measurement error in the body's axes (rad², or that of the vector's unit).
     pub noise: Matrix3<f64>,
-    /// The constant gain of a filter that has one.
+    /// Constant gain, of a filter that has one.
     pub gain: Option<Matrix6x3<f64>>,
-    /// Which of the sensors measured it.
+    /// Index of the sensor.
     pub sensor: usize,
 }
 
@@ -41,27 +41,27 @@ impl Fix {
     }
 }
 
-/// A filter and its recent past.
+/// Filter and its recent past.
 #[derive(Clone, Debug)]
 pub struct FilterHistory {
     between: Between,
-    /// How late a measurement may be.
+    /// Largest delay of a measurement.
     reach: Span,
     entries: VecDeque<Entry>,
-    /// Measurements of instants that no gyro reading covers yet.
+    /// Measurements whose exposure no gyro reading covers yet.
     early: Vec<Fix>,
 }
 
-/// What carries a filter on between entries.
+/// Inputs of the propagation between entries.
 #[derive(Clone, Debug)]
 struct Between {
     noise: GyroNoise,
-    /// Torques that act on the modes (N m), each from an instant on.
+    /// Torques on the modes (N m), each with the time from which on it acts.
     torques: VecDeque<(Instant, Vector)>,
 }
 
 impl Between {
-    /// The torques between two instants, each with how long it acts (s).
+    /// Returns the torques (N m) between two instants, each with its duration (s).
     fn pushed(&self, from: Instant, to: Instant) -> Vec<(f64, Vector)> {
         let mut pieces = Vec::new();
         let mut now = from;
@@ -80,7 +80,7 @@ impl Between {
         pieces
     }
 
-    /// Carries a filter on from one instant to another, with a reading of an interval that has both in it.
+    /// Propagates a filter between two instants with the gyro reading of an interval that contains both.
     fn carry(&self, filter: &mut AttitudeFilterState, reading: &Vector, [from, to]: [Instant; 2]) {
         let seconds = to.since(from).seconds();
         if filter.swinging.is_some() {
@@ -94,32 +94,32 @@ impl Between {
 #[derive(Clone, Debug)]
 struct Entry {
     at: Instant,
-    /// The gyro reading of the interval that ends here (rad/s).
+    /// Gyro reading of the interval that ends at this entry (rad/s).
     reading: Vector,
     fixes: Vec<Fix>,
     filter: AttitudeFilterState,
 }
 
 impl FilterHistory {
-    /// The history of a filter that begins at an instant, to which nothing is later than `reach`.
+    /// Creates the history of a filter at its first instant; `reach` is the largest delay of a measurement.
     pub fn new(at: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
         let entry = Entry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
         let between = Between { noise, torques: VecDeque::new() };
         Self { between, reach, entries: VecDeque::from([entry]), early: Vec::new() }
     }
 
-    /// The filter after all that it was told.
+    /// Returns the filter after everything it has received.
     pub fn latest(&self) -> &AttitudeFilterState {
-        // There is always an entry.
+        // The history always has an entry.
         &self.entries[self.entries.len() - 1].filter
     }
 
-    /// The last gyro reading (rad/s).
+    /// Returns the last gyro reading (rad/s).
     pub fn reading(&self) -> Vector {
         self.entries[self.entries.len() - 1].reading
     }
 
-    /// Takes over the torque that acts on the modes from now on (N m).
+    /// Sets the torque on the modes (N m) from `now` on.
     pub fn push(&mut self, now: Instant, torque: Vector) {
         let torques = &mut self.between.torques;
         if torques.back().is_some_and(|(from, _)| *from == now) {
@@ -132,13 +132,14 @@ impl FilterHistory {
         }
     }
 
-    /// Takes a gyro reading of the interval that ends now (rad/s); tells what measurements that waited for it made of it.
+    /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the corrections by measurements that
+    /// waited for it.
     pub fn read(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
         let last = &self.entries[self.entries.len() - 1];
         if now <= last.at {
             return Vec::new();
         }
-        // It is carried on where it stays: filters are large.
+        // The entry's own filter is propagated in place: filters are large.
         let (from, filter) = (last.at, last.filter.clone());
         self.entries.push_back(Entry { at: now, reading, fixes: Vec::new(), filter });
         if let Some(entry) = self.entries.back_mut() {
@@ -149,21 +150,21 @@ impl FilterHistory {
             let waiting = std::mem::take(&mut self.early);
             told.extend(waiting.into_iter().filter_map(|fix| self.fix(fix)));
         }
-        // The last entry that is older stays: from there begins the interval with the oldest that may still be exposed.
+        // The last older entry stays: the interval with the oldest exposure still accepted begins there.
         while self.entries.get(1).is_some_and(|second| second.at + self.reach <= now) {
             self.entries.pop_front();
         }
         told
     }
 
-    /// Takes a measurement, as late as it may be; nothing comes of one that is later, and of one that waits for a reading.
+    /// Adds a measurement, delayed or not; returns `None` if it is older than the history, or waits for a gyro reading.
     pub fn fix(&mut self, fix: Fix) -> Option<Correction> {
         let Some(index) = self.entries.iter().position(|entry| fix.exposed <= entry.at) else {
             self.early.push(fix);
             return None;
         };
         if self.entries[index].at > fix.exposed {
-            // Older than all that is kept.
+            // Exposures before the oldest entry are rejected.
             let before = index.checked_sub(1)?;
             let (reading, from) = (self.entries[index].reading, &self.entries[before]);
             let mut filter = from.filter.clone();
@@ -177,7 +178,7 @@ impl FilterHistory {
         Some(correction)
     }
 
-    /// Does again what the entries from this index on hold.
+    /// Repeats the propagation and the corrections of all entries from index `from` on.
     fn again(&mut self, from: usize) {
         let entries = self.entries.make_contiguous();
         for index in from..entries.len() {

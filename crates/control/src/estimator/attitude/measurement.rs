@@ -1,11 +1,11 @@
-//! What an attitude filter takes: the noise of a gyro, and what corrects an attitude.
+//! Inputs of an attitude filter: the gyro's noise, and the measurements that correct an attitude.
 
 use nalgebra::{Quaternion, SMatrix};
 
 use crate::attitude::Vector;
 use crate::sensor::VectorSight;
 
-/// Noise of a gyro as the filter knows it, the same about each axis.
+/// Gyro noise in the filter's model, the same about each axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct GyroNoise {
     /// Angle random walk (rad/sqrt(s)).
@@ -14,23 +14,23 @@ pub struct GyroNoise {
     pub rate_random_walk: f64,
 }
 
-/// What corrects an attitude.
+/// Measurement that corrects an attitude.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum AttitudeMeasurement {
-    /// An attitude.
+    /// Measured attitude.
     Attitude(Quaternion<f64>),
-    /// A vector.
+    /// Measured vector.
     Vector(VectorSight),
 }
 
 impl AttitudeMeasurement {
-    /// How many numbers it has: a direction has two.
+    /// Returns the number of components: 2 of a direction, else 3.
     pub fn numbers(&self) -> u64 {
         if matches!(self, Self::Vector(VectorSight { is_direction: true, .. })) { 2 } else { 3 }
     }
 }
 
-/// Two unit vectors across a vector and each other, as rows.
+/// Returns two unit vectors perpendicular to `v` and to each other, as rows.
 pub fn across(v: &Vector) -> SMatrix<f64, 2, 3> {
     let first = v.cross(&Vector::ith(v.iamin(), 1.0)).normalize();
     let second = v.cross(&first).normalize();

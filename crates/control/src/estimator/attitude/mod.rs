@@ -1,4 +1,4 @@
-//! Attitude and gyro bias, by a multiplicative extended Kalman filter to which measurements may be late.
+//! Attitude and gyro bias, by a multiplicative extended Kalman filter that accepts delayed measurements.
 
 mod at_work;
 mod carried;

@@ -1,4 +1,4 @@
-//! The attitude filter as a scenario describes it, and what it makes of the scenario's sensors.
+//! Settings of the attitude filter in a scenario, and the filter's setup for the scenario's sensors.
 
 use std::sync::Arc;
 
@@ -65,57 +65,57 @@ pub struct Initial {
 }
 
 impl Default for Initial {
-    /// A milliradian, and 2 degrees an hour.
+    /// Returns deviations of 1 mrad, and of 2 degrees per hour.
     fn default() -> Self {
         let positive = |value: f64| Positive::new(value).unwrap_or(Positive::ONE);
         Self { angle: positive(1e-3), bias: positive(1e-5) }
     }
 }
 
-/// What a sensor is to the filter.
+/// Role of a sensor in the filter.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Role {
-    /// Its rates carry the attitude on.
+    /// The gyro, whose rates propagate the attitude.
     Gyro {
-        /// How late it tells them.
+        /// Latency of a reading.
         latency: Span,
     },
-    /// It measures the attitude or a vector, so late, with errors of this covariance in the body's axes.
+    /// Sensor of the attitude or of a vector, which corrects the attitude.
     Corrects {
-        /// From exposure to when it is told.
+        /// Time from exposure to reading.
         latency: Span,
-        /// The covariance (rad², or T² of a magnetic field).
+        /// Covariance of the error in body axes (rad², or T² of a magnetic field).
         noise: Matrix3<f64>,
-        /// The constant gain of a filter that has one.
+        /// Constant gain, of a filter that has one.
         gain: Option<Box<Matrix6x3<f64>>>,
     },
-    /// The filter does not read it.
+    /// Sensor that the filter does not read.
     None,
 }
 
-/// What the sensors of a scenario are to a filter.
+/// Setup of a filter for the sensors of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct AttitudeSetting {
-    /// Each sensor, in the order of the scenario.
+    /// Role of each sensor, in the order of the scenario.
     pub roles: Vec<Role>,
     /// Noise of the gyro.
     pub noise: GyroNoise,
     /// Bias of the gyro at the start (rad/s).
     pub bias: Vector,
-    /// How late a measurement may be.
+    /// Largest delay of a measurement.
     pub reach: Span,
-    /// The modes that it knows.
+    /// Elastic modes that the filter estimates, if any.
     pub modes: Option<Arc<KnownModes>>,
 }
 
-/// A body, the points at which its sensors are, and whether jets turn it.
+/// Body, points at which its sensors are mounted, and true if jets drive it.
 pub type Mounted<'a> = (&'a Spatial, &'a [String], bool);
 
 impl AttitudeFilter {
-    /// What these sensors are to the filter, under a law with this period or none, on a body at these points.
+    /// Returns the setup for these sensors, with the law's period `cycle` and the sensors' mounts, if there are any.
     ///
     /// # Errors
-    /// Why they do not do, and the key.
+    /// A `Fault` with the key and the reason if the sensors do not suit the filter.
     pub fn setting(
         &self,
         sensors: &[Sensor],
@@ -163,7 +163,7 @@ impl AttitudeFilter {
         Ok(AttitudeSetting { roles, noise: gyro_noise, bias, reach: latest + period, modes })
     }
 
-    /// The modes that it shall know of a body with sensors at these points.
+    /// Returns the model of the modes that the filter estimates of a body with sensors at these points.
     fn modes(
         &self,
         gyro: &Gyro,
@@ -188,7 +188,7 @@ impl AttitudeFilter {
         elastic.known(body, at, read).map(Some).map_err(|fault| fault.within("elastic"))
     }
 
-    /// How late a sensor measures the attitude or a vector, and the covariance of its errors; nothing of one that does not.
+    /// Returns latency and error covariance of a sensor of the attitude or of a vector; `None` of another sensor.
     fn measured(&self, sensor: &Sensor) -> Option<(Span, Result<Matrix3<f64>, Fault>)> {
         let given = self.attitude_noise.map(|noise| noise.map(Positive::get));
         let known = |own: [f64; 3]| {
@@ -225,7 +225,7 @@ impl AttitudeFilter {
         }
     }
 
-    /// Noise of the gyro: white noise of sampled rates is that of an angle that walks.
+    /// Returns the gyro's noise; white noise of sampled rates is converted to an angle random walk.
     fn gyro_noise(&self, gyro: &Gyro, period: f64) -> Result<GyroNoise, Fault> {
         let largest = |of: &dyn Fn(usize) -> f64| (0..3).map(of).fold(0.0, f64::max);
         let own = if gyro.integrates() {
@@ -246,7 +246,7 @@ impl AttitudeFilter {
     }
 }
 
-/// The covariance of a vector, of this deviation along each axis or its sensor's own.
+/// Returns the covariance of a vector sensor, with the standard deviation `given` along each axis, or its `own`.
 fn vector(given: Option<Positive>, own: Matrix3<f64>, key: &str) -> Result<Matrix3<f64>, Fault> {
     let noise = given.map_or(own, |given| Matrix3::from_diagonal_element(given.get() * given.get()));
     let why = "must be given where the sensor has no noise along an axis";

@@ -1,9 +1,9 @@
-//! The states of an attitude filter's modes, with the covariance of all that it knows.
+//! States of the modes in an attitude filter, with the covariance of the whole filter.
 //!
-//! Errors are theta, beta, and of each mode those of q and q'/W. Through an interval theta' = -w^ x theta - beta - g dq' - n_v,
-//! beta' = n_u, and the modes swing; transition and added covariance are those of Van Loan for constant w^, exact. Where the
-//! filter identifies frequencies, the errors of each ln W follow; what they do to attitude and modes is the derivative of the
-//! estimate at the end of the interval, exact, and their random walk is added there.
+//! Errors are theta, beta, and of each mode those of q and q'/W. Through an interval theta' = -w^ x theta - beta - g
+//! dq' - n_v, beta' = n_u, and the modes oscillate; transition and added covariance are Van Loan's for constant w^,
+//! exact. If the filter identifies frequencies, the errors of each ln W follow; their effect on attitude and modes is
+//! the exact derivative of the estimate at the end of the interval, and their random walk is added there.
 
 use std::sync::Arc;
 
@@ -17,33 +17,33 @@ use crate::numerics::exponential::exponential;
 use crate::numerics::stumpff::stumpff;
 use crate::sensor::VectorSight;
 
-/// The modes of a filter at one instant.
+/// States of the elastic modes of a filter at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Swinging {
-    /// What it knows of them.
+    /// Parameters of the modes.
     pub known: Arc<KnownModes>,
-    /// W of each, as identified so far (rad/s).
+    /// Natural frequency W of each mode, as currently identified (rad/s).
     pub frequencies: Vec<f64>,
-    /// q and q'/W of each (m sqrt(kg)).
+    /// q and q'/W of each mode (m sqrt(kg)).
     pub state: Vec<[f64; 2]>,
-    /// By how much q and q'/W of each grow over the last interval for a unit of ln W.
+    /// Derivatives of q and q'/W of each mode over the last interval with respect to ln W.
     grown: Vec<[f64; 2]>,
-    /// Mean rate of each over the last interval (m sqrt(kg)/s).
+    /// Mean rate of each mode over the last interval (m sqrt(kg)/s).
     pub mean: Vec<f64>,
-    /// Covariance of the errors of attitude, bias and modes, and of the logarithms of frequencies that are identified.
+    /// Covariance of the errors of attitude, bias and modes, and of the logarithms of identified frequencies.
     pub covariance: DMatrix<f64>,
 }
 
-/// What a measurement told beyond what was expected.
+/// Result of a correction.
 pub struct SwingInnovation {
-    /// The error that it finds in attitude and bias (rad, rad/s).
+    /// Estimated error of attitude and bias (rad, rad/s).
     pub error: [Vector; 2],
-    /// Normalised square of the innovation.
+    /// Normalised innovation squared.
     pub nis: f64,
 }
 
 impl Swinging {
-    /// The modes at rest, beside attitude and bias of this covariance.
+    /// Creates modes at rest, with the covariance of attitude and bias.
     pub fn new(known: Arc<KnownModes>, covariance: &Matrix6<f64>) -> Self {
         let count = known.each.len();
         let order = 6 + 2 * count + if known.identified.is_some() { count } else { 0 };
@@ -65,7 +65,7 @@ impl Swinging {
         Self { frequencies, state, grown, mean: vec![0.0; count], covariance: whole, known }
     }
 
-    /// Standard deviations of the frequencies (rad/s): 0 of those that are taken for known.
+    /// Returns the standard deviations of the frequencies (rad/s); 0 of frequencies that are not identified.
     pub fn deviations(&self) -> Vec<f64> {
         let first = 6 + 2 * self.frequencies.len();
         let relative =
@@ -74,22 +74,23 @@ impl Swinging {
         each.map(|(index, frequency)| frequency * f64::sqrt(relative(first + index))).collect()
     }
 
-    /// The covariance of attitude and bias.
+    /// Returns the covariance of attitude and bias.
     pub fn first(&self) -> Matrix6<f64> {
         self.covariance.fixed_view::<6, 6>(0, 0).into_owned()
     }
 
-    /// By how much the modes turn the mount of a sensor beyond the hub (rad).
+    /// Returns the rotation of a sensor's mount relative to the hub by the modes (rad).
     pub fn mounted(&self, sensor: usize) -> Vector {
         self.known.turned(|mode| mode.mounts[sensor], self.state.iter().map(|[q, _]| *q))
     }
 
-    /// By how much they turn the hub (rad).
+    /// Returns the rotation of the hub by the modes (rad).
     pub fn bent(&self) -> Vector {
         self.known.turned(|mode| mode.hub, self.state.iter().map(|[q, _]| *q))
     }
 
-    /// What of the gyro's last reading they make, that of the hub and of its mount beyond it (rad/s).
+    /// Returns the elastic part of the last gyro reading (rad/s): that of the hub, and that of its mount relative to
+    /// the hub.
     pub fn rates(&self) -> [Vector; 2] {
         [
             self.known.turned(|mode| mode.hub, self.mean.iter().copied()),
@@ -97,8 +98,8 @@ impl Swinging {
         ]
     }
 
-    /// Swings through an interval of so many seconds, under torques (N m) each for so long (s); tells by how much the mount of the
-    /// gyro turns beyond the hub (rad).
+    /// Propagates the modes over `seconds` under torques (N m), each with its duration (s). Returns the rotation of the
+    /// gyro's mount relative to the hub over the interval (rad).
     pub fn swing(&mut self, seconds: f64, torques: &[(f64, Vector)]) -> Vector {
         let known = self.known.clone();
         let mut turned = Vector::zeros();
@@ -114,7 +115,7 @@ impl Swinging {
                 let (x, y) = (state[0] - rest, state[1]);
                 let (swung, rate) = (a * x + b * y, c * x + d * y);
                 *state = [rest + a * x + b * y, rate];
-                // exp(W t K) grows by W t K exp(W t K), and the rest by -2 of it.
+                // The derivative of exp(W t K) is W t K exp(W t K), and that of the equilibrium is -2 times it.
                 let (x, y, angle) = (grown[0] + 2.0 * rest, grown[1], frequency * lasts);
                 *grown = [
                     a * x + b * y + angle * rate - 2.0 * rest,
@@ -127,7 +128,7 @@ impl Swinging {
         turned
     }
 
-    /// Carries the covariance through an interval in which the body turns so far (rad).
+    /// Propagates the covariance over `seconds`, in which the body rotates by `turn` (rad).
     pub fn spread(&mut self, turn: &Vector, seconds: f64, noise: &GyroNoise) {
         let order = 6 + 2 * self.state.len();
         let mut flow = DMatrix::zeros(order, order);
@@ -164,7 +165,7 @@ impl Swinging {
         self.covariance = 0.5 * (&carried + carried.transpose());
     }
 
-    /// The transition and what noise adds over an interval, with the frequencies if they are identified.
+    /// Extends the transition and the added covariance of an interval by the frequencies, if they are identified.
     fn identifying(
         &self,
         (transition, added): (DMatrix<f64>, DMatrix<f64>),
@@ -178,7 +179,7 @@ impl Swinging {
         let ([_, half, sixth, ..], across) = (stumpff(turn.norm_squared()), turn.cross_matrix());
         for (index, (mode, [grown, rate])) in self.known.each.iter().zip(&self.grown).enumerate() {
             let at = first + index;
-            // What the gyro's turn beyond the hub grows by turns the estimate the other way.
+            // The derivative of the gyro mount's rotation relative to the hub enters the hub's attitude with a minus.
             let off = mode.gyro * -*grown;
             let off = off - across * off * half + across * (across * off) * sixth;
             for axis in 0..3 {
@@ -192,7 +193,8 @@ impl Swinging {
         (transition, added)
     }
 
-    /// Takes what a sensor sees of the hub at this attitude: an attitude whose error has this covariance.
+    /// Corrects the filter by the attitude that a sensor measured, where the hub's is `attitude` and the error's
+    /// covariance `noise`.
     pub fn correct(
         &mut self,
         attitude: &Quaternion<f64>,
@@ -206,7 +208,7 @@ impl Swinging {
         Some((off, told))
     }
 
-    /// The same of a vector, of which `rows` pick what is told.
+    /// Corrects the filter by the vector that a sensor measured, where the hub's attitude is `attitude`.
     pub fn correct_by(
         &mut self,
         attitude: &Quaternion<f64>,
@@ -231,8 +233,8 @@ impl Swinging {
         Some((off.cross(&expected) / expected.norm_squared(), told))
     }
 
-    /// Takes numbers that are beyond what is expected by so much, where a turn of the sensor's mount moves them so, and errors have
-    /// this covariance.
+    /// Updates the states with the innovation `off`, its derivatives `moved` with respect to a rotation of the sensor's
+    /// mount, and the covariance `noise` of the measurement.
     fn take(
         &mut self,
         moved: &DMatrix<f64>,
@@ -269,7 +271,7 @@ impl Swinging {
     }
 }
 
-/// The transition of q and q'/W of a free mode, row by row.
+/// Returns the transition of q and q'/W of a free mode, row by row.
 fn transition(frequency: f64, damping: f64, seconds: f64) -> [f64; 4] {
     let root = f64::sqrt((1.0 - damping) * (1.0 + damping));
     let (sin, cos) = libm::sincos(root * frequency * seconds);

@@ -1,4 +1,4 @@
-//! The filter against one in forty digits.
+//! Test of the attitude filter against a 40-digit reference.
 
 use nalgebra::{Matrix3, Quaternion};
 
@@ -9,10 +9,10 @@ use crate::attitude::Vector;
 use crate::sensor::VectorSight;
 use crate::time::{Instant, Span};
 
-/// Gyro readings, measured attitudes and truth of a made-up run; a filter in forty digits with the covariance of Van Loan,
-/// which lives at exposures (k of `tests/golden/attitude-filter-in.csv`, 0.25 s apart).
+/// Gyro readings, measured attitudes and truth of a synthetic run; the reference is a 40-digit filter with Van Loan's
+/// covariance, which steps at exposures (k of `tests/golden/attitude-filter-in.csv`, 0.25 s apart).
 const READ: &str = include_str!("../../../../../tests/golden/attitude-filter-in.csv");
-/// What that filter gave.
+/// Results of the reference filter.
 const GIVEN: &str = include_str!("../../../../../tests/golden/attitude-filter-out.csv");
 
 const NOISE: GyroNoise = GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 };
@@ -36,7 +36,7 @@ fn first() -> AttitudeFilterState {
     AttitudeFilterState::new(attitude, Vector::zeros(), [1e-3, 1e-5])
 }
 
-/// Variances in the tracker's axes, with its boresight z, turned into the body's.
+/// Returns the covariance of a star tracker with boresight z, rotated to body axes.
 fn tracker() -> Matrix3<f64> {
     let axes = Matrix3::new(0.6, 0.0, 0.8, 0.0, 1.0, 0.0, -0.8, 0.0, 0.6);
     let (across, about) = (2.4e-5 * 2.4e-5, 1.5e-4 * 1.5e-4);
@@ -57,7 +57,8 @@ fn fix(read: &[Vec<f64>], k: usize) -> Fix {
     }
 }
 
-/// The run, with the filter after each reading, where attitudes arrive this many readings after exposure.
+/// Returns the filter's history after each reading and the corrections, with attitudes that arrive `late` readings
+/// after exposure.
 fn replay(late: usize) -> (Vec<FilterHistory>, Vec<Correction>) {
     let read = rows(READ);
     let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(0.5));
@@ -80,7 +81,7 @@ fn late_attitudes_give_what_forty_digits_give() {
         let k = row[0] as usize;
         let filter = states[k].latest();
         let q = quaternion(&row[2..6]);
-        // The table has 14 digits.
+        // The reference table has 14 digits.
         assert!((filter.attitude - q).norm() < 1e-14, "{k} {:e}", (filter.attitude - q).norm());
         for axis in 0..3 {
             let [angle, rate] = filter.deviations();
@@ -99,7 +100,8 @@ fn late_attitudes_give_what_forty_digits_give() {
 #[test]
 fn whatever_is_late_comes_to_the_same() {
     let [soon, later] = [0, 2].map(|late| replay(late).0);
-    // Where both have taken the same attitudes; out of order and with an exposure between readings too.
+    // Compares instants at which both have received the same attitudes; then an exposure between readings, out of
+    // order.
     for k in (7..soon.len()).step_by(4) {
         let (a, b) = (soon[k].latest(), later[k].latest());
         assert!((a.attitude - b.attitude).norm() < 1e-14 && (a.bias - b.bias).norm() < 1e-18, "{k}");
@@ -134,8 +136,7 @@ fn a_measurement_waits_for_its_reading_and_not_for_ever() {
     assert!(history.fix(fix(&read, 8)).is_none(), "0.75 s late");
 }
 
-/// A vector that is measured with small noise along each axis tells of the attitude what a measured attitude tells whose noise
-/// about that vector is endless.
+/// Checks that a vector measured with small noise corrects like an attitude whose noise about the vector is infinite.
 #[test]
 fn a_vector_corrects_across_itself_alone() {
     let truth = crate::attitude::rotation(&Vector::new(0.3, -0.7, 1.1));
@@ -151,7 +152,8 @@ fn a_vector_corrects_across_itself_alone() {
         let noise = Matrix3::from_diagonal_element(deviation * deviation / (scale * scale));
         let mut filter = begins.clone();
         let correction = filter.correct_by(&sight, &noise).unwrap();
-        // The attitude that is left of an error across the vector, with its variance; along it nothing is told.
+        // Remaining attitude error perpendicular to the vector, and its variance; along the vector there is no
+        // information.
         let [left, _] = filter.error(&truth, &Vector::zeros());
         let variance = deviation * deviation / body.norm_squared();
         let part = variance / (variance + 1e-6);

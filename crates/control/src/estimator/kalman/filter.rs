@@ -1,4 +1,4 @@
-//! The filters at work: a normal distribution that is predicted over each period and updated by each sample.
+//! Run-time state of the Kalman filters: a normal distribution, predicted over each period and updated by each sample.
 
 mod beside;
 mod lent;
@@ -13,84 +13,84 @@ use crate::belief::Dominant;
 
 pub use beside::Filters;
 
-/// An innovation of more standard deviations than this is no measurement.
+/// Standard deviations of an innovation above which a measurement is rejected.
 const FARTHEST: f64 = 1e6;
 
-/// How the distribution is predicted.
+/// Prediction method of the distribution.
 #[derive(Clone, Debug)]
 pub enum Prediction {
-    /// Kalman: by the transition over a period, and what a unit moment adds to it.
+    /// Linear Kalman: the transition over a period, and the state change by a unit moment.
     Linear(DMatrix<f64>, DVector<f64>),
-    /// Extended Kalman: the mean along the flow, the covariance by the flow's derivative.
+    /// Extended Kalman: the mean by the flow, the covariance by the flow's derivative.
     Extended,
-    /// Unscented Kalman: both by points around the mean.
+    /// Unscented Kalman: mean and covariance by points around the mean.
     Unscented,
 }
 
-/// All numbers of a filter.
+/// Parameters of a filter.
 #[derive(Clone, Debug)]
 pub struct Tuning {
-    /// What the body is taken for.
+    /// Model of the body.
     pub model: Model,
-    /// How the distribution is predicted.
+    /// Prediction method.
     pub prediction: Prediction,
     /// Period of the samples (s).
     pub period: f64,
-    /// Mean at the start.
+    /// Mean of the state at the start.
     pub mean: DVector<f64>,
-    /// Standard deviations at the start.
+    /// Standard deviations of the state at the start.
     pub spread: DVector<f64>,
     /// Spectral density of the moment's white noise ((rad/s²)² s).
     pub moment_noise: f64,
     /// Spectral densities of the white noises that drive a ratio (1/s) and its rate (1/s³).
     pub ratio_noise: [f64; 2],
-    /// Standard deviations of the measured angle (rad) and, with a gyro, of the measured rate (rad/s).
+    /// Standard deviation of the measured angle (rad).
     pub angle_noise: f64,
-    /// See `angle_noise`.
+    /// Standard deviation of the measured rate (rad/s), if there is a gyro.
     pub rate_noise: Option<f64>,
-    /// The ratios stay within.
+    /// Bounds of the ratios.
     pub bounds: [f64; 2],
-    /// Amplitude of the dominant mode (rad) below which the ratios learn nothing.
+    /// Amplitude of the dominant mode (rad) below which the ratios are not updated.
     pub gate: f64,
-    /// What makes a mode the dominant one.
+    /// Criterion for the dominant mode.
     pub ranking: Ranking,
 }
 
-/// A filter.
+/// Kalman filter of the motion about one axis.
 #[derive(Clone, Debug)]
 pub struct KalmanFilter {
     tuning: Tuning,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
     noise: DMatrix<f64>,
-    /// Room for the derivative of the flow, transposed, and for a product.
+    /// Buffers for the derivative of the flow, transposed, and for a product.
     tangent: DMatrix<f64>,
     room: DMatrix<f64>,
-    /// The distribution that a step began with.
+    /// Mean and covariance before the current step.
     before: (DVector<f64>, DMatrix<f64>),
     lock: Lock,
-    /// Whether the distribution cannot be carried on.
+    /// True if the distribution could not be propagated.
     broken: bool,
     mode: usize,
     gated: bool,
-    /// For how long (s).
+    /// Time for which the filter has been gated (s).
     gated_for: f64,
     trusted: Dominant,
-    /// What a step beside other filters came to, whose covariance is kept there.
+    /// Results of a step in a batch, where the covariance is kept.
     beside: lent::LentStep,
 }
 
-/// What a sample told the filter.
+/// Innovation of a sample.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Innovation {
-    /// Measured angle less the predicted one (rad); 0 if the sample was dropped.
+    /// Measured angle minus the predicted one (rad); 0 if the sample was dropped.
     pub innovation: f64,
-    /// Normalised innovation squared, summed over the measurements; none if the sample was dropped.
+    /// Normalised innovation squared, summed over the measurements; `None` if the sample was dropped.
     pub nis: Option<f64>,
 }
 
 impl KalmanFilter {
-    /// A filter before its first sample.
+    /// Creates a filter before its first sample.
     pub fn new(tuning: Tuning) -> Self {
         let order = tuning.model.order();
         let covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
@@ -122,58 +122,58 @@ impl KalmanFilter {
         filter
     }
 
-    /// Its numbers.
+    /// Returns the filter's parameters.
     pub(super) fn tuning(&self) -> &Tuning {
         &self.tuning
     }
 
-    /// What noise adds to the covariance in a period.
+    /// Returns the process noise covariance of a period.
     pub(super) fn noise(&self) -> &DMatrix<f64> {
         &self.noise
     }
 
-    /// Mean of the state.
+    /// Returns the mean of the state.
     pub fn mean(&self) -> &DVector<f64> {
         &self.mean
     }
 
-    /// Covariance of the state.
+    /// Returns the covariance of the state.
     pub fn covariance(&self) -> &DMatrix<f64> {
         &self.covariance
     }
 
-    /// What the body is taken for.
+    /// Returns the filter's model of the body.
     pub fn model(&self) -> &Model {
         &self.tuning.model
     }
 
-    /// The dominant mode's index.
+    /// Returns the dominant mode's index.
     pub fn mode(&self) -> usize {
         self.mode
     }
 
-    /// Takes over that the angle counts from elsewhere: it is so much larger from now on (rad).
+    /// Shifts the angle by `by` (rad) after a change of the target.
     pub fn shift(&mut self, by: f64) {
         self.mean[0] += by;
     }
 
-    /// Whether the filter has lost the body: its innovations are not what it expects, or it cannot go on.
+    /// Returns true if the filter has lost lock: its innovations are improbable, or it cannot be propagated.
     pub fn is_lost(&self) -> bool {
         self.broken || self.lock.is_lost()
     }
 
-    /// Whether the dominant mode moves too little for its frequency to be seen.
+    /// Returns true if the dominant mode moves too little for its frequency to be observable.
     pub fn is_gated(&self) -> bool {
         self.gated
     }
 
-    /// Frequency and displacement of the dominant mode that a law may rely on: while the mode moves too little, the
-    /// frequency is held; of a lost body the frequency is the last one and the displacement 0, which asks for nothing.
+    /// Returns frequency and displacement of the dominant mode for the law. While the filter is gated, the frequency is
+    /// held; without lock, it is the last one and the displacement is 0, so that the law does not act on it.
     pub fn dominant(&self) -> Dominant {
         self.trusted
     }
 
-    /// Predicts the state over one period, in which the mean reduced moment was this (rad/s²).
+    /// Predicts the state over one period with the mean reduced moment `moment` (rad/s²).
     pub fn predict(&mut self, moment: f64) {
         let moment = if moment.is_finite() { moment } else { 0.0 };
         self.keep();
@@ -214,8 +214,8 @@ impl KalmanFilter {
         }
     }
 
-    /// Updates the state by the measured angle (rad) and, of a filter with a gyro, the measured rate (rad/s); by nothing
-    /// if there is no measurement.
+    /// Updates the state by the measured angle (rad) and, if the filter has a gyro, the measured rate (rad/s); `None`:
+    /// no measurement.
     pub fn update(&mut self, measured: Option<(f64, f64)>) -> Innovation {
         self.keep();
         let gated = self.is_still();
@@ -232,7 +232,7 @@ impl KalmanFilter {
         self.settle(gated, innovation, nis).0
     }
 
-    /// What follows from a measurement; tells whether the ratios are taken to stand still from now on.
+    /// Completes an update: gate, lock, bounds and dominant mode. Returns true if the ratios' rates were set to 0.
     fn settle(&mut self, gated: bool, innovation: f64, nis: Option<f64>) -> (Innovation, bool) {
         let rests = self.rest(gated);
         self.lock.take(nis.map(|nis| (nis, innovation)));
@@ -252,12 +252,13 @@ impl KalmanFilter {
         self.covariance.copy_from(&self.before.1);
     }
 
-    /// The sum of every other component: of the angles from 0 on, of the rates from 1 on.
+    /// Returns the sum of every other component: of the angles from 0 on, of the rates from 1 on.
     fn seen(&self, first: usize) -> f64 {
         (first..self.tuning.model.motion()).step_by(2).map(|i| self.mean[i]).sum()
     }
 
-    /// One scalar measurement, the sum of every other component. Its normalised innovation squared; none if it is none.
+    /// Updates by a scalar measurement, the sum of every other component. Returns its normalised innovation squared, if
+    /// valid.
     fn learn(&mut self, first: usize, measured: f64, noise: f64, gated: bool) -> Option<f64> {
         let (order, motion) = (self.tuning.model.order(), self.tuning.model.motion());
         let innovation = measured - self.seen(first);
@@ -267,7 +268,7 @@ impl KalmanFilter {
         }
         let variance = (first..motion).step_by(2).map(|i| seen[i]).sum::<f64>() + noise * noise;
         let nis = innovation * innovation / variance;
-        // A variance that is not positive, or an innovation that is no number, fails here too.
+        // A variance that is not positive, or an innovation that is NaN, fails here too.
         if !(variance > 0.0 && nis <= FARTHEST * FARTHEST) {
             return None;
         }
@@ -276,7 +277,7 @@ impl KalmanFilter {
             gain.rows_mut(motion, order - motion).fill(0.0);
         }
         self.mean.axpy(innovation, &gain, 1.0);
-        // Joseph's form, (1 - K H) P (1 - K H)' + K R K', right for any gain, with its products written out.
+        // Joseph's form, (1 - K H) P (1 - K H)' + K R K', valid for any gain, with its products written out.
         for column in 0..order {
             for row in 0..=column {
                 let value = self.covariance[(row, column)]
@@ -289,7 +290,7 @@ impl KalmanFilter {
         Some(nis)
     }
 
-    /// Whether mean and covariance are numbers, and no variance is negative.
+    /// Returns true if mean and covariance are finite, and no variance is negative.
     fn is_sound(&self) -> bool {
         self.mean.iter().all(|m| m.is_finite())
             && self.covariance.iter().all(|p| p.is_finite())
@@ -301,8 +302,9 @@ impl KalmanFilter {
             && self.amplitude(self.mode).0 < self.tuning.gate
     }
 
-    /// Whether the dominant mode is too still from this sample on. After a whole period of it the ratios are taken to stand
-    /// still, too: nothing shows how far their rates would carry them. That they may move stays in the covariance.
+    /// Sets whether the filter is gated from this sample on. After a whole period of the mode the ratios' rates are set
+    /// to 0, too, since nothing shows how they continue; their uncertainty stays in the covariance. Returns true when
+    /// that happens.
     fn rest(&mut self, gated: bool) -> bool {
         self.gated = gated;
         let before = self.gated_for;
@@ -319,7 +321,7 @@ impl KalmanFilter {
         rests
     }
 
-    /// Keeps the ratios within their bounds: one that reaches them has lost the body.
+    /// Clamps the ratios to their bounds; a ratio that reaches them causes the loss of lock.
     fn hold_ratios(&mut self) {
         let [low, high] = self.tuning.bounds;
         let model = &self.tuning.model;

@@ -1,33 +1,34 @@
-//! Whether a filter follows the body: its innovations, squared and weighed, are about what it expects, and to follow again
-//! they must be white.
+//! Lock detection of a filter: lock is lost if the normalised innovations are too large, and regained only if they are
+//! white.
 
 use std::collections::VecDeque;
 
-/// Samples over which the innovations are judged.
+/// Number of samples over which the innovations are judged.
 const WINDOW: usize = 50;
-/// Above so many times its mean, the sum over the window shows that the filter has lost the body. A body that leaves the
-/// ramp of its frequencies brings three or four times the mean for a while, and the estimate is still of use.
+/// Lock is lost if the sum over the window exceeds its mean by this factor. A body that leaves the ramp of its
+/// frequencies causes three or four times the mean for a while, and the estimate is still useful.
 const LOST: f64 = 10.0;
-/// Below so many standard deviations of a normal above the mean, it follows again.
+/// Lock is regained below the mean plus this number of standard deviations of a normal distribution.
 const FOUND: f64 = 6.0;
-/// How many autocorrelations tell whether the innovations are white.
+/// Number of autocorrelations in the test for whiteness.
 const LAGS: usize = 8;
-/// Above so many standard deviations of a normal they are not. Of white innovations one window in a thousand is.
+/// Standard deviations of a normal above which innovations are not white; one window of white ones in a thousand
+/// exceeds them.
 const WHITE: f64 = 3.0;
 
-/// The innovations of late.
+/// Lock detector with the recent innovations.
 #[derive(Clone, Debug)]
 pub struct Lock {
-    /// NIS of each sample, and the sign of its innovation, the oldest first.
+    /// NIS of each sample, and the sign of its innovation; the oldest first.
     recent: VecDeque<(f64, f64)>,
-    /// Above the first the filter is lost, below the second it follows again.
+    /// Sum of NIS above which lock is lost, and below which it is regained.
     bounds: [f64; 2],
-    /// Up to this the squared autocorrelations, times the samples, are those of white noise.
+    /// Limit of the squared autocorrelations, times the samples, of white noise.
     white: f64,
     lost: bool,
 }
 
-/// The quantile of chi-square that lies so many standard deviations of a normal above its mean.
+/// Returns the quantile of chi-square that corresponds to `deviations` standard deviations above the mean of a normal.
 fn quantile(degrees: f64, deviations: f64) -> f64 {
     // Wilson and Hilferty: the cube root of chi-square over its degrees of freedom is about normal.
     let spread = 2.0 / (9.0 * degrees);
@@ -36,7 +37,7 @@ fn quantile(degrees: f64, deviations: f64) -> f64 {
 }
 
 impl Lock {
-    /// A filter that follows so far, with so many measurements in each sample.
+    /// Creates the detector in lock, for `measurements` measurements per sample.
     pub fn new(measurements: usize) -> Self {
         let degrees = (WINDOW * measurements) as f64;
         Self {
@@ -47,9 +48,9 @@ impl Lock {
         }
     }
 
-    /// Takes the NIS of a sample and its innovation, or none for a dropped measurement.
+    /// Updates the detector with NIS and innovation of a sample, or with `None` for a dropped measurement.
     pub fn take(&mut self, told: Option<(f64, f64)>) {
-        // A window of nothing but dropped measurements is above the band, a few of them are not.
+        // A window of dropped measurements only is above the bound, a few dropped ones are not.
         let (nis, innovation) = told.unwrap_or((2.0 * self.bounds[0] / WINDOW as f64, 0.0));
         if self.recent.len() == WINDOW {
             self.recent.pop_front();
@@ -62,10 +63,10 @@ impl Lock {
         }
     }
 
-    /// Whether no innovation tells of the next ones, by the test of Box and Pierce on their signs, which no outlier sways.
+    /// Returns true if the innovations are white, by the Box-Pierce test on their signs, which is robust to outliers.
     ///
-    /// A filter that fits other frequencies to a sensor that sticks makes the innovations small, but never white: what
-    /// repeats itself has no noise.
+    /// A filter that fits other frequencies to a stuck sensor makes the innovations small but not white: a repeated
+    /// reading has no noise.
     fn is_white(&self) -> bool {
         let products = |lag: usize| -> f64 {
             self.recent.iter().zip(self.recent.iter().skip(lag)).map(|(a, b)| a.1 * b.1).sum()
@@ -74,13 +75,13 @@ impl Lock {
         squares <= self.white * WINDOW as f64
     }
 
-    /// The filter has lost the body for another reason: it has to prove itself over a whole window.
+    /// Declares lock lost for another reason; a whole window of good innovations is needed to regain it.
     pub fn lose(&mut self) {
         self.lost = true;
         self.recent.clear();
     }
 
-    /// Whether the filter has lost the body.
+    /// Returns true if the filter has lost lock.
     pub fn is_lost(&self) -> bool {
         self.lost
     }

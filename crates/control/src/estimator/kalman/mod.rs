@@ -1,7 +1,7 @@
 //! Kalman filters of the body's motion: linear, extended and unscented (\[BarShalom01\]).
 //!
-//! The measured angle, and with a gyro the rate, determines the rigid motion and every mode. The extended and the unscented
-//! filter estimate ratios of the natural frequencies, which drift as integrated random walks.
+//! The measured angle, and with a gyro the rate, determines the rigid motion and every mode. The extended and the
+//! unscented filter estimate ratios of the natural frequencies, which drift as integrated random walks.
 
 mod filter;
 mod lock;
@@ -170,18 +170,18 @@ pub enum Ratios {
 }
 
 impl Ratios {
-    /// How many ratios so many modes have.
+    /// Returns the number of frequency ratios of `modes` modes.
     pub fn count(self, modes: usize) -> usize {
         if self == Self::Common { 1 } else { modes }
     }
 }
 
-/// The part of a study that a filter uses.
+/// Data of a scenario that a filter is built from.
 #[derive(Clone, Debug)]
 pub struct KalmanSetting<'a> {
-    /// The body.
+    /// Single-axis model of the body.
     pub body: &'a Planar,
-    /// Back-EMF of the wheel on it (1/s), and whether it opposes the total rate.
+    /// Back-EMF of the wheel per unit of inertia (1/s); true if it opposes the total rate, not the rigid one.
     pub back_emf: (f64, bool),
     /// Period of the samples (s).
     pub period: f64,
@@ -192,7 +192,7 @@ pub struct KalmanSetting<'a> {
 }
 
 impl Kalman {
-    /// The filter in a setting; `draws` gives a drawn prior.
+    /// Creates the filter for a setting; `draws` supplies a drawn prior.
     pub fn filter(&self, setting: &KalmanSetting<'_>, draws: &mut Stream) -> KalmanFilter {
         let body = believed(setting.body, self.modes.as_deref());
         let ones = vec![1.0; body.modes.len()];
@@ -218,7 +218,7 @@ impl Kalman {
 }
 
 impl FrequencyTracking {
-    /// The filter in a setting, extended or unscented; `draws` gives a drawn prior.
+    /// Creates the filter for a setting, extended or unscented by `prediction`; `draws` supplies a drawn prior.
     pub fn filter(
         &self,
         setting: &KalmanSetting<'_>,
@@ -255,12 +255,13 @@ impl FrequencyTracking {
     }
 }
 
-/// The body with the modes of a filter's model.
+/// Returns the body with the modes of the filter's model.
 fn believed(body: &Planar, modes: Option<&[Mode]>) -> Planar {
     Planar { modes: modes.unwrap_or(&body.modes).to_vec(), ..body.clone() }
 }
 
-/// Mean and standard deviations at the start; a ratio has its own mean, its standard deviation, and that of its rate.
+/// Returns mean and standard deviations at the start; each of `ratios` has its mean, its deviation, and that of its
+/// rate.
 fn start(
     body: &Planar,
     model: &Model,
@@ -284,7 +285,7 @@ fn start(
         spread.extend([*sd, *rate_sd]);
     }
     if prior == Prior::Drawn {
-        // The rate of a ratio is unknown by nature: its mean stays 0.
+        // The rate of a ratio is unknown: its mean stays 0.
         for (index, (mean, sd)) in mean.iter_mut().zip(&spread).enumerate() {
             if index < model.motion() || (index - model.motion()).is_multiple_of(2) {
                 *mean += sd * draws.normal();
@@ -332,12 +333,12 @@ impl Default for Initial {
 pub struct Substeps(#[schemars(range(min = 1, max = 100))] u32);
 
 impl Substeps {
-    /// The number, if it is 1 to 100.
+    /// Creates the number if it is 1 to 100.
     pub fn new(value: u32) -> Option<Self> {
         (1..=100).contains(&value).then_some(Self(value))
     }
 
-    /// The number itself.
+    /// Returns the number.
     pub const fn get(self) -> u32 {
         self.0
     }

@@ -1,24 +1,24 @@
-//! What a filter takes the body for: coupled modes whose frequencies are those at the start, times ratios.
+//! Model of the body in a filter: coupled modes whose frequencies are those at the start, times ratios.
 //!
 //! The state is (x_r, x_r', x_1, x_1', ..., theta_1, theta_1', ...). Between back-EMF and free motion the flow is split
 //! (Strang): each half is exact, whatever the damping of the modes, and so is the derivative of the split flow. The
-//! ratios move on straight lines, and each substep has those of its middle.
+//! ratios change linearly, and each substep has those of its middle.
 
 use nalgebra::DMatrix;
 
 use crate::body::Mode;
 use crate::flow::ModeFlow;
 
-/// The model.
+/// Model of the body in a Kalman filter.
 #[derive(Clone, Debug)]
 pub struct Model {
     pub(super) modes: Vec<ModeModel>,
-    /// How many ratios the state has: none, one for all modes, or one for each.
+    /// Number of ratios in the state: none, one for all modes, or one for each.
     ratios: usize,
-    /// Back-EMF a (1/s), and whether it opposes the total rate or the rigid one.
+    /// Back-EMF a (1/s); true if it opposes the total rate, not the rigid one.
     pub(super) back_emf: (f64, bool),
     pub(super) substeps: u32,
-    /// The ratios stay within.
+    /// Bounds of the ratios.
     pub(super) bounds: [f64; 2],
 }
 
@@ -30,16 +30,17 @@ pub(super) struct ModeModel {
     pub(super) drag: f64,
 }
 
-/// One mode's free flow over a substep: x+ = a x + b x' + push, x'+ = c x + d x' + kick.
+/// Free flow of one mode over a substep: x+ = a x + b x' + shift[0], x'+ = c x + d x' + shift[1].
 struct Turn {
     matrix: [f64; 4],
     shift: [f64; 2],
-    /// Derivative of what comes out by the ratio.
+    /// Derivative of (x+, x'+) with respect to the ratio.
     slope: [f64; 2],
 }
 
 impl Model {
-    /// The model of a body with these modes and so many ratios. Back-EMF in 1/s opposes the total rate, or the rigid rate alone.
+    /// Creates the model of a body with these modes. `back_emf` (1/s) opposes the total rate if true, else the rigid
+    /// rate alone.
     pub fn new(
         modes: &[Mode],
         ratios: usize,
@@ -56,44 +57,45 @@ impl Model {
         Self { modes: modes.iter().map(swing).collect(), ratios, back_emf, substeps, bounds }
     }
 
-    /// How many components of the state move: rigid angle and rate, and two for each mode.
+    /// Returns the number of motion states: rigid angle and rate, and two for each mode.
     pub fn motion(&self) -> usize {
         2 + 2 * self.modes.len()
     }
 
-    /// How many components the state has.
+    /// Returns the number of states.
     pub fn order(&self) -> usize {
         self.motion() + 2 * self.ratios
     }
 
-    /// Where the ratio of a mode is in the state; nowhere if the frequencies are constant.
+    /// Returns the index of a mode's ratio in the state; `None` if the frequencies are constant.
     pub fn ratio_of(&self, mode: usize) -> Option<usize> {
         let index = if self.ratios == 1 { 0 } else { mode };
         (index < self.ratios).then(|| self.motion() + 2 * index)
     }
 
-    /// The ratio of a mode in a state.
+    /// Returns the ratio of a mode in a state.
     pub fn ratio(&self, mode: usize, state: &[f64]) -> f64 {
         self.ratio_of(mode).map_or(1.0, |at| state[at])
     }
 
-    /// The natural frequency of a mode in a state (rad/s).
+    /// Returns the natural frequency of a mode in a state (rad/s).
     pub fn frequency(&self, mode: usize, state: &[f64]) -> f64 {
         self.modes[mode].frequency * self.ratio(mode, state)
     }
 
-    /// How many modes there are.
+    /// Returns the number of modes.
     pub fn modes(&self) -> usize {
         self.modes.len()
     }
 
-    /// Excitability k/w² of a mode in a state (s²).
+    /// Returns the excitability k/w² of a mode in a state (s²).
     pub fn excitability(&self, mode: usize, state: &[f64]) -> f64 {
         let w = self.frequency(mode, state);
         self.modes[mode].gain / (w * w)
     }
 
-    /// What a unit of the reduced moment accelerates: 1 for the rigid rate, k_i for that of a mode, 0 else.
+    /// Returns the derivative of a state component's rate by the reduced moment: 1 for the rigid rate, k_i for that of
+    /// a mode, else 0.
     pub fn input(&self, component: usize) -> f64 {
         match component {
             1 => 1.0,
@@ -102,8 +104,8 @@ impl Model {
         }
     }
 
-    /// Carries a state over `h` seconds under a constant reduced moment (rad/s²). `tangent` holds the derivative of the
-    /// state by something, transposed: column i is the gradient of component i.
+    /// Propagates a state over `h` (s) under a constant reduced moment (rad/s²). `tangent` holds the derivative of the
+    /// state with respect to some variables, transposed: column i is the gradient of component i.
     pub fn propagate(&self, h: f64, moment: f64, state: &mut [f64], mut tangent: Option<&mut DMatrix<f64>>) {
         let step = h / f64::from(self.substeps);
         for substep in 0..self.substeps {
@@ -124,7 +126,7 @@ impl Model {
         }
     }
 
-    /// Free motion, with the ratios that the state comes to `middle` seconds after the start of the period.
+    /// Propagates the free motion, with the ratios that the state has `middle` (s) after the start of the period.
     fn coast(
         &self,
         h: f64,
@@ -149,7 +151,8 @@ impl Model {
             let Some(tangent) = tangent.as_deref_mut() else { continue };
             mix_columns(tangent, x, turn.matrix);
             if let Some(at) = at {
-                // The gradient of the ratio at `middle`: what moves the period's first ratio and its rate.
+                // Gradient of the ratio at `middle`: that of the ratio at the period's start, and that of its rate
+                // times `middle`.
                 add_column(tangent, x, at, turn.slope[0]);
                 add_column(tangent, x, at + 1, turn.slope[0] * middle);
                 add_column(tangent, v, at, turn.slope[1]);
@@ -158,19 +161,19 @@ impl Model {
         }
     }
 
-    /// The rates of so many modes are opposed by the back-EMF.
+    /// Returns the number of modes whose rates the back-EMF opposes.
     pub(super) fn felt(&self) -> usize {
         if self.back_emf.1 { self.modes.len() } else { 0 }
     }
 
-    /// What part of the rate back-EMF takes from the rigid one in `h` seconds.
+    /// Returns the factor of the total rate that back-EMF subtracts from the rigid rate in `h` (s).
     pub(super) fn taken(&self, h: f64) -> f64 {
         let a = self.back_emf.0;
         let s = 1.0 + self.modes[..self.felt()].iter().map(|swing| swing.gain).sum::<f64>();
         if s == 0.0 { a * h } else { -libm::expm1(-a * h * s) / s }
     }
 
-    /// Back-EMF alone: z' = -a g c z, a matrix of rank one, whose exponential is z - g (1 - exp(-a s h))/s c z with s = c g.
+    /// Applies back-EMF alone: z' = -a g c z, of rank one, with the exponential z - g (1 - exp(-a s h))/s c z, s = c g.
     fn brake(&self, h: f64, state: &mut [f64], tangent: Option<&mut DMatrix<f64>>) {
         let (felt, part) = (self.felt(), self.taken(h));
         let rate = (0..=felt).map(|i| state[1 + 2 * i]).sum::<f64>();
@@ -193,7 +196,7 @@ impl Model {
 
 impl ModeModel {
     fn turn(&self, h: f64, ratio: f64, moment: f64, (x, v): (f64, f64), with_slope: bool) -> Turn {
-        // The flow in (x, x'/w) depends on w h alone, so that of another frequency is that of another time.
+        // The flow in (x, x'/w) depends on w h alone, so a different frequency is equivalent to a different time.
         let [a, b, c, d] = self.flow.transition(ratio * h);
         let w = ratio * self.frequency;
         let (b, c) = (b / w, c * w);
@@ -201,7 +204,8 @@ impl ModeModel {
         let mut turn =
             Turn { matrix: [a, b, c, d], shift: [centre * (1.0 - a), -centre * c], slope: [0.0; 2] };
         if with_slope {
-            // With A the generator, E = diag(0, 1): dR/dw = (h A R + E R - R E)/w, and the centre falls as 1/w².
+            // With the generator A and E = diag(0, 1): dR/dw = (h A R + E R - R E)/w, and the equilibrium scales with
+            // 1/w².
             let (p, q) = (a * (x - centre) + b * v, c * (x - centre) + d * v);
             let slope = [
                 h * q - b * v - 2.0 * centre * (1.0 - a),
@@ -213,7 +217,7 @@ impl ModeModel {
     }
 }
 
-/// Adds a multiple of one column to another.
+/// Adds a multiple of a column to another one.
 fn add_column(matrix: &mut DMatrix<f64>, to: usize, from: usize, factor: f64) {
     let rows = matrix.nrows();
     let all = matrix.as_mut_slice();
@@ -222,7 +226,7 @@ fn add_column(matrix: &mut DMatrix<f64>, to: usize, from: usize, factor: f64) {
     }
 }
 
-/// Turns a column and the one after it by a 2 x 2 matrix.
+/// Transforms a column and the one after it by a 2 x 2 matrix.
 fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) {
     let rows = matrix.nrows();
     let pair = &mut matrix.as_mut_slice()[first * rows..(first + 2) * rows];
@@ -240,7 +244,7 @@ mod tests {
 
     const WIDE: [f64; 2] = [0.1, 3.0];
 
-    /// Four modes, of which the third is damped and the last overdamped.
+    /// Returns a body with four modes: the third is damped, the last overdamped.
     fn body() -> Planar {
         let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165, damping = 0.02 }, \
@@ -250,7 +254,7 @@ mod tests {
 
     const STATE: [f64; 10] = [0.06, -1e-3, 4e-3, 2e-3, -1e-3, 3e-4, 2e-4, -5e-4, 1e-4, 7e-4];
 
-    /// The exact motion at a constant ratio, by the matrix exponential.
+    /// Returns the exact motion at a constant ratio, by the matrix exponential.
     fn exact(back_emf: (f64, bool), ratio: f64, moment: f64, h: f64) -> Vec<f64> {
         let (transition, push) = Coupled::new(&body(), back_emf.0, back_emf.1, &[ratio; 4]).discrete(h);
         (transition * nalgebra::DVector::from_row_slice(&STATE) + push * moment).as_slice().to_vec()

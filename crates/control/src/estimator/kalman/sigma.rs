@@ -1,4 +1,4 @@
-//! The unscented transform: mean and covariance carried by points around the mean instead of a derivative.
+//! The unscented transform: mean and covariance propagated by points around the mean instead of a derivative.
 //!
 //! The scaled form (\[JulierUhlmann04\]) with alpha = 1/2, beta = 2 and kappa = 0.
 
@@ -7,7 +7,7 @@ use nalgebra::{Cholesky, DMatrix, DVector};
 const ALPHA: f64 = 0.5;
 const BETA: f64 = 2.0;
 
-/// Carries a normal distribution through a flow; nothing if the covariance is not positive.
+/// Propagates a normal distribution through a flow; `None` if the covariance is not positive definite.
 pub fn transform(
     mean: &mut DVector<f64>,
     covariance: &mut DMatrix<f64>,
@@ -33,7 +33,8 @@ pub fn transform(
     // Relative to the central point, whose weight is large and negative, nothing cancels.
     points.column_iter_mut().for_each(|mut point| point -= &origin);
     let shift = points.column_sum() * weight;
-    // Weights of a covariance about the mean: sum w d d' = sum w p p' - (2 - sum w) s s', where sum w = 1 + 1 - alpha² + beta.
+    // Weights of a covariance about the mean: sum w d d' = sum w p p' - (2 - sum w) s s', where sum w = 2 - alpha² +
+    // beta.
     let total = 2.0 * n * weight + centre + 1.0 - ALPHA * ALPHA + BETA;
     points.mul_to(&points.transpose(), covariance);
     *covariance *= weight;

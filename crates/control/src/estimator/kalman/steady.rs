@@ -1,36 +1,36 @@
-//! A linear Kalman filter in the end: its covariance has settled, and its gains are constant.
+//! Steady state of a linear Kalman filter, with constant gains.
 
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;
 
 use super::filter::{KalmanFilter, Prediction};
 
-/// So many samples are taken until the gains settle.
+/// Largest number of samples until the gains settle.
 const MOST: usize = 2_000_000;
-/// Gains have settled where no sample changes them by more than this part of the largest.
+/// Gains have settled if no sample changes them by more than this fraction of the largest.
 const SETTLED: f64 = 1e-13;
 
-/// The filter as a linear system: x- = F x + g m over a period with the mean reduced moment m (rad/s²); then, for the angle
-/// and for the rate if it is measured, x += k (y - h x-), one after the other.
+/// Steady-state filter as a linear system: x- = F x + g m over a period with the mean reduced moment m (rad/s²); then,
+/// for the angle and for the rate if it is measured, x += k (y - h x-), one after the other.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Steady {
-    /// F, row by row.
+    /// Transition matrix F, row by row.
     pub transition: Vec<Vec<f64>>,
-    /// g.
+    /// Input vector g.
     pub push: Vec<f64>,
-    /// The gain k of each measurement.
+    /// Gain k of each measurement.
     pub gains: Vec<Vec<f64>>,
 }
 
 impl KalmanFilter {
-    /// The filter in the end, if it is linear and settles.
+    /// Returns the filter's steady state, if it is linear and its gains settle.
     pub fn steady(&self) -> Option<Steady> {
         let Prediction::Linear(transition, push) = &self.tuning().prediction else { return None };
         let (order, tuning) = (push.len(), self.tuning());
         let noises: Vec<f64> = [Some(tuning.angle_noise), tuning.rate_noise].into_iter().flatten().collect();
         let mut covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
         let mut before: Vec<DVector<f64>> = Vec::new();
-        // A gain may pass through a point at which it stands still: it has settled when it has been so for long.
+        // A gain may pass through a stationary point: it has settled only after being constant for long.
         let mut still = 0;
         for _ in 0..MOST {
             covariance = transition * covariance * transition.transpose() + self.noise();
@@ -57,7 +57,7 @@ impl KalmanFilter {
                 break;
             }
         }
-        // Without noise of the moment gains fall for ever.
+        // Without noise in the moment, the gains decay towards 0 for ever.
         let moves = before.iter().any(|gain| gain.amax() > 1e-9);
         (still > 100 && moves).then(|| Steady {
             transition: transition.row_iter().map(|row| row.iter().copied().collect()).collect(),

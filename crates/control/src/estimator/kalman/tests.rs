@@ -1,4 +1,4 @@
-//! The filters against each other, and fed with nonsense.
+//! Tests of the Kalman filters against each other, and with invalid measurements.
 
 use super::*;
 use crate::document::from_text;
@@ -7,12 +7,12 @@ use crate::random::Seed;
 const BODY: &str = "angle = 0.06\nmodes = [{ frequency = 0.3, gain = 1.44 }, { frequency = 0.8, gain = 0.21 }, \
                     { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
 
-/// A filter, with a back-EMF of 1e-4/s, with a gyro or without.
+/// Returns a filter with a back-EMF of 1e-4/s; with a gyro if `rate_noise` is given.
 fn filter(estimator: &str, rate_noise: Option<f64>) -> KalmanFilter {
     drawn(estimator, rate_noise, 3)
 }
 
-/// A filter that starts from a prior of its own.
+/// Returns a filter with a prior drawn with its own seed.
 fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> KalmanFilter {
     use crate::estimator::Estimator;
     let body = &from_text(BODY).unwrap_or_else(|error| panic!("{error}"));
@@ -27,10 +27,10 @@ fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> Kalman
     }
 }
 
-/// The reading of a sensor at a sample.
+/// Reading of a sensor at a sample.
 type Measured = fn(u32) -> f64;
 
-/// Moments and angles of some run.
+/// Returns moment (rad/s²) and angle (rad) of a synthetic run at a sample.
 fn course(sample: u32) -> (f64, f64) {
     let t = 0.3 * f64::from(sample);
     (3e-5 * libm::sin(0.1 * t), 0.06 * libm::exp(-0.02 * t) + 3e-3 * libm::sin(0.3 * t))
@@ -42,7 +42,7 @@ fn extended_filter_of_known_ratios_is_the_linear_one() {
         "ratio_sd = 0.0\nratio_rate_sd = 0.0\nratio_noise = 0.0\nratio_rate_noise = 0.0\nsubsteps = 50\n";
     let mut linear = filter("kalman]", None);
     for kind in ["extended_kalman]", "unscented_kalman]"] {
-        // A point that is spread by nothing has no root of its covariance: next to nothing will do.
+        // A zero covariance has no Cholesky factor: a very small one is used.
         let known = if kind.starts_with('u') {
             known.replace("noise = 0.0", "noise = 1e-24").replace("0.0", "1e-12")
         } else {
@@ -62,7 +62,7 @@ fn extended_filter_of_known_ratios_is_the_linear_one() {
         let covariance = other.covariance().view((0, 0), (10, 10)) - linear.covariance();
         assert!(covariance.amax() < 1e-6 * linear.covariance().amax(), "{kind}: {covariance}");
     }
-    // And it is not the one of other frequencies.
+    // The estimate is that of the nominal frequency.
     linear.predict(1e-5);
     assert!(linear.frequency(0) == (0.3, 0.0));
 }
@@ -77,7 +77,7 @@ fn unscented_and_extended_filter_agree_where_little_is_unknown() {
         let (moment, _) = course(sample);
         extended.predict(moment);
         unscented.predict(moment);
-        // What the filters expect, and a little of a surprise.
+        // Measurements are the filters' prediction plus a small innovation.
         let seen = |first: usize| extended.mean().iter().take(10).skip(first).step_by(2).sum::<f64>();
         let (angle, rate) = (seen(0) + 1e-6, seen(1) - 1e-7);
         let (a, b) = (extended.update(Some((angle, rate))), unscented.update(Some((angle, rate))));
@@ -136,8 +136,8 @@ fn nonsense_is_never_passed_on() {
     }
 }
 
-/// A filter that looks for frequencies finds some at which the moments would turn no body: its innovations become small, and
-/// tell of the next ones.
+/// Checks that a filter of a stuck sensor, which fits frequencies under which the moments would not move the body,
+/// loses lock: its innovations are small but correlated.
 #[test]
 fn a_sensor_that_sticks_is_no_body_of_other_frequencies() {
     let cases: [(&str, Measured); 2] =
@@ -159,15 +159,15 @@ fn a_sensor_that_sticks_is_no_body_of_other_frequencies() {
     }
 }
 
-/// What was lost by a silence is followed again once the sensor speaks, nearly always within two windows.
+/// Checks that lock lost by a silent sensor is regained afterwards, nearly always within two windows.
 #[test]
 fn a_body_is_followed_again_after_a_silence() {
     for kind in ["kalman]", "extended_kalman]", "unscented_kalman]"] {
-        // Lost at the end of the silence, two windows after it, and at the end.
+        // Runs without lock at the end of the silence, two windows after it, and at the end.
         let mut lost = [0; 3];
         for seed in 0..40 {
             let mut filter = drawn(kind, None, seed);
-            // The body is what the linear filter predicts from the truth.
+            // The true motion is the linear filter's prediction from the truth.
             let mut truth = drawn("kalman]\nprior = 'true'", None, seed);
             let mut noise = Seed { scenario: seed, run: 0 }.stream("sensor");
             for sample in 0..400 {
@@ -203,7 +203,7 @@ fn a_still_mode_teaches_no_frequency() {
         }
         filter
     };
-    // The truth is at rest: whatever narrows the frequency is noise.
+    // The truth is at rest: any reduction of the frequency's deviation is noise.
     let (gated, open) = (run("10.0"), run("0.0"));
     assert!(gated.is_gated() && !open.is_gated());
     assert!(gated.frequency(0).1 > 0.15, "{:?}", gated.frequency(0));
@@ -219,7 +219,7 @@ fn a_still_mode_teaches_no_frequency() {
 
 #[test]
 fn dominant_mode_is_the_most_excitable_or_the_largest() {
-    // The second mode swings alone.
+    // The second mode oscillates alone.
     for (ranking, mode) in [("excitability", 0), ("amplitude", 1)] {
         let mut filter = filter(
             &format!("kalman]\ninitial = {{ displacement = 0.1, mode_rate = 0.1 }}\ndominant = '{ranking}'"),

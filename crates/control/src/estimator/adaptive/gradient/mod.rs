@@ -1,5 +1,5 @@
-//! The recursive gradient: exact pulses, the sensitivities of the prediction to every parameter, and steps along them that are
-//! normalised by their mean square (recursive prediction error method, L. Ljung; the tuning is ours).
+//! The recursive gradient: exact pulses, the sensitivities of the prediction to every parameter, and steps along them
+//! that are normalised by their mean square (recursive prediction error method, L. Ljung; the tuning is ours).
 
 mod observer;
 mod parameter;
@@ -52,8 +52,8 @@ impl Default for Gradient {
 }
 
 impl Gradient {
-    /// The first key that does not fit the others, these trackers, so many inputs or the period of the samples (s), and what
-    /// is wrong with it.
+    /// Checks the settings against each other, the trackers, the number of inputs and the sampling period (s); returns
+    /// the first inconsistent key and the reason.
     pub fn inconsistency(&self, trackers: &[Tracker], inputs: usize, period: f64) -> Option<Fault> {
         super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, inputs, period)
     }

@@ -1,4 +1,4 @@
-//! The gradient observer at work.
+//! Run-time state of the gradient observer.
 
 use super::super::oscillator::{ModelOscillator, ModelPhase};
 use super::super::residual::MovingResidual;
@@ -8,16 +8,16 @@ use super::Gradient;
 use super::parameter::{ChannelState, Parameter};
 use crate::quantity::Fraction;
 
-/// The largest step of ln w, and of an influence by its value at the start.
+/// Largest step of ln w, and of an influence relative to its initial value.
 const STEP: f64 = 0.02;
-/// An innovation of more than this is no measurement of a spacecraft (rad/s).
+/// Innovation (rad/s) above which a measurement is rejected.
 const FARTHEST: f64 = 10.0;
-/// Gain of a mode that is alone, and of one among others.
+/// Default gain of a single mode, and of one of several.
 const ELASTIC_GAIN: [f64; 2] = [0.15, 0.1];
 
 impl Gradient {
-    /// An observer of a channel: `rigid` is what each input adds to its rigid rate for each unit that it adds to that about
-    /// its own axis (1 for the channel's own thrusters). The trackers are consistent.
+    /// Creates the observer of a channel. `rigid` is the change of its rigid rate by each input, per unit of the change
+    /// about the input's own axis (1 for the channel's own thrusters). The trackers must be consistent.
     pub fn observer(&self, trackers: &[Tracker], rigid: &[f64], period: f64) -> GradientObserver {
         let (modes, inputs) = (trackers.len(), rigid.len());
         let gain = ELASTIC_GAIN[usize::from(modes > 1)];
@@ -36,7 +36,7 @@ impl Gradient {
         }
         for influence in trackers.iter().flat_map(|tracker| tracker.influence.iter().map(|i| i.get())) {
             let [a, b] = self.influence_bounds.map(|bound| bound.get() * influence);
-            // What nothing is known of stays 0: it has no scale to be identified on.
+            // An influence of 0 stays 0: it has no scale for its identification.
             let size = influence.abs();
             let floor = if size > 0.0 { gate / size } else { f64::INFINITY };
             parameters.push(Parameter {
@@ -63,19 +63,19 @@ impl Gradient {
     }
 }
 
-/// A gradient observer at work.
+/// Run-time state of a gradient observer.
 #[derive(Clone, Debug)]
 pub struct GradientObserver {
     damping: f64,
-    /// Of the rigid rate and of each elastic rate.
+    /// Gain of the rigid rate, and that of each elastic rate.
     gains: [f64; 2],
     learning: f64,
     gate: f64,
-    /// What each input adds to the rigid rate.
+    /// Change of the rigid rate by each input, per unit of the change about the input's own axis.
     rigid: Vec<f64>,
     period: f64,
     motion: ChannelState,
-    /// w of each mode (rad/s).
+    /// Natural frequency w of each mode (rad/s).
     frequencies: Vec<f64>,
     /// ln w of each mode, then the influences of each input on the first mode, on the second, ...
     parameters: Vec<Parameter>,
@@ -83,8 +83,8 @@ pub struct GradientObserver {
 }
 
 impl GradientObserver {
-    /// Derivatives of the predicted measurement by the parameters (rad/s for each unit): ln w of each mode, then the
-    /// influences of the inputs on the first mode, and so on.
+    /// Returns the derivatives of the predicted measurement with respect to the parameters (rad/s per unit): ln w of
+    /// each mode, then the influences of the inputs on the first mode, and so on.
     pub fn sensitivities(&self) -> Vec<f64> {
         self.parameters.iter().map(|parameter| parameter.slope.measured()).collect()
     }
@@ -93,7 +93,7 @@ impl GradientObserver {
         ModelOscillator { frequency: self.frequencies[mode], damping: self.damping }
     }
 
-    /// The index of the first influence on a mode.
+    /// Returns the index of the first influence on a mode.
     fn influences(&self, mode: usize) -> usize {
         self.motion.phases.len() + mode * self.rigid.len()
     }
@@ -103,7 +103,7 @@ impl GradientObserver {
         pulses.iter().filter(move |pulse| pulse.input < inputs && pulse.is_sound())
     }
 
-    /// Carries one mode and its derivatives over a cycle.
+    /// Propagates one mode and its derivatives over a cycle.
     fn turn(&mut self, mode: usize, pulses: &[Pulse]) {
         let of = self.oscillator(mode);
         let (period, first) = (self.period, self.influences(mode));
@@ -130,7 +130,7 @@ impl GradientObserver {
         }
     }
 
-    /// What cannot be carried on begins again, with the parameters that it had.
+    /// Resets a state that is not finite, and keeps the parameters.
     fn stay_finite(&mut self) {
         if !(self.motion.is_sound() && self.parameters.iter().all(|parameter| parameter.slope.is_sound())) {
             self.motion.rest();
@@ -163,7 +163,7 @@ impl Observer for GradientObserver {
         for (frequency, parameter) in self.frequencies.iter_mut().zip(&self.parameters) {
             *frequency = libm::exp(parameter.value);
         }
-        // With an innovation within bounds nothing leaves them at once: whether it does is asked after the cycle.
+        // A bounded innovation cannot make the state invalid at once: validity is checked after the cycle.
         self.motion.correct(self.gains, innovation);
         self.residual.take(Some(innovation), self.motion.elastic());
     }

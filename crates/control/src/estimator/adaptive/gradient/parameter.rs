@@ -1,30 +1,30 @@
-//! A parameter that is identified, and the derivative of the state by it.
+//! Identified parameter, and the derivative of the state with respect to it.
 
 use super::super::oscillator::ModelPhase;
 
-/// What a sample weighs in the mean square of a sensitivity.
+/// Weight of a sample in the mean square of a sensitivity.
 const WEIGHT: f64 = 0.01;
-/// One sample alone makes the mean square at least this part of its own.
+/// Fraction of a single sample's square that is the minimum of the mean square.
 const PEAK: f64 = 0.05;
-/// Beyond this no number is a motion; its square is still finite.
+/// Limit of valid state values; its square is still finite.
 const HUGE: f64 = 1e100;
 
-/// A state of the channel, or its derivative by a parameter.
+/// State of the channel, or its derivative with respect to a parameter.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelState {
-    /// Rigid rate.
+    /// Rigid rate (rad/s).
     pub rate: f64,
-    /// Elastic rate and its quadrature, of each mode.
+    /// Elastic rate and quadrature of each mode (rad/s).
     pub phases: Vec<ModelPhase>,
 }
 
 impl ChannelState {
-    /// The measured rate.
+    /// Returns the measured rate: rigid and elastic.
     pub fn measured(&self) -> f64 {
         self.rate + self.elastic()
     }
 
-    /// The elastic rates, summed.
+    /// Returns the sum of the elastic rates.
     pub fn elastic(&self) -> f64 {
         self.phases.iter().map(|phase| phase[0]).sum()
     }
@@ -37,45 +37,45 @@ impl ChannelState {
         }
     }
 
-    /// Whether it can be carried on.
+    /// Returns true if all values are finite and of a valid size.
     pub fn is_sound(&self) -> bool {
-        // Without a branch for each number: this is asked of every derivative, twice a cycle.
+        // Branch-free, because every derivative is checked twice a cycle.
         let tame = |tame: bool, n: &f64| tame & (n.abs() < HUGE);
         self.phases.as_flattened().iter().fold(tame(true, &self.rate), tame)
     }
 
-    /// Begins again from nothing.
+    /// Resets the state to 0.
     pub fn rest(&mut self) {
         self.rate = 0.0;
         self.phases.fill([0.0; 2]);
     }
 }
 
-/// A parameter, and how the prediction depends on it.
+/// Parameter and the sensitivity of the prediction to it.
 #[derive(Clone, Debug)]
 pub struct Parameter {
     /// Value: ln w, or an influence.
     pub value: f64,
-    /// The least and the greatest value.
+    /// Smallest and largest value.
     pub bounds: [f64; 2],
-    /// The largest step.
+    /// Largest step per sample.
     pub step: f64,
-    /// What is added to the mean square ((rad/s)²).
+    /// Constant added to the mean square ((rad/s)²).
     pub floor: f64,
     /// Mean square of the prediction's derivative ((rad/s)²).
     pub power: f64,
-    /// Derivative of the state by the parameter.
+    /// Derivative of the state with respect to the parameter.
     pub slope: ChannelState,
 }
 
 impl Parameter {
-    /// Takes a derivative of the prediction into the mean square.
+    /// Updates the mean square with a derivative of the prediction.
     pub fn weigh(&mut self, sensitivity: f64) {
         let square = sensitivity * sensitivity;
         self.power = (self.power + WEIGHT * (square - self.power)).max(PEAK * square);
     }
 
-    /// A step along the gradient that makes an innovation smaller.
+    /// Performs a gradient step that reduces the innovation.
     pub fn learn(&mut self, sensitivity: f64, innovation: f64, rate: f64) {
         let step = rate * sensitivity * innovation / (self.power + self.floor);
         if step.is_finite() {

@@ -1,8 +1,8 @@
-//! The recurrence of the paper: one mode as a difference equation that is linear in its parameters (\[Timakov14\], page 41 and
-//! equation (8)), with the weights W1 to W8.
+//! The recurrence of the paper: one mode as a difference equation that is linear in its parameters (\[Timakov14\], page
+//! 41 and equation (8)), with the weights W1 to W8.
 //!
-//! A = 2 exp(-zeta w T) cos(w_d T) and B = exp(-2 zeta w T), of which A is identified and B is not. A pulse counts as an
-//! impulse at the end of its cycle, so that one as long as the cycle biases the influence by some 18 % at 0.2 Hz.
+//! A = 2 exp(-zeta w T) cos(w_d T) and B = exp(-2 zeta w T), of which A is identified and B is not. A pulse counts as
+//! an impulse at the end of its cycle, so that one as long as the cycle biases the influence by some 18 % at 0.2 Hz.
 
 mod observer;
 
@@ -74,7 +74,8 @@ impl Default for Recurrence {
 }
 
 impl Recurrence {
-    /// The first key that does not fit the others, this tracker or the period of the samples (s), and what is wrong with it.
+    /// Checks the settings against each other, a tracker and the sampling period (s); returns the first inconsistent
+    /// key and the reason.
     pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<Fault> {
         let trackers = std::slice::from_ref(tracker);
         super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, 1, period)

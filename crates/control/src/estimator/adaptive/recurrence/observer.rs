@@ -1,4 +1,4 @@
-//! The recurrence observer at work.
+//! Run-time state of the recurrence observer.
 
 use super::super::oscillator::{ModelOscillator, ModelPhase};
 use super::super::residual::MovingResidual;
@@ -6,17 +6,18 @@ use super::super::tracker::{self, Tracker};
 use super::super::{ModeEstimate, Observer, Pulse};
 use super::Recurrence;
 
-/// What a sample weighs in the mean square of the elastic rate.
+/// Weight of a sample in the mean square of the elastic rate.
 const WEIGHT: f64 = 0.01;
-/// A jump of the rate increments by this part of the largest so far is a switching.
+/// Fraction of the largest rate increment from which a jump of the increments counts as a switching.
 const SWITCHING: f64 = 0.5;
-/// An innovation of more than this is no measurement of a spacecraft (rad/s).
+/// Innovation (rad/s) above which a measurement is rejected.
 const FARTHEST: f64 = 10.0;
-/// Beyond this no number is a motion; its square is still finite.
+/// Limit of valid state values; its square is still finite.
 const HUGE: f64 = 1e100;
 
 impl Recurrence {
-    /// An observer of a channel with one mode and one input, its own thrusters. The tracker is consistent.
+    /// Creates the observer of a channel with one mode and one input, its own thrusters. The tracker must be
+    /// consistent.
     pub fn observer(&self, tracker: &Tracker, period: f64) -> RecurrenceObserver {
         let mode = ModelOscillator { frequency: tracker.frequency.get(), damping: self.damping.get() };
         let influence = tracker.influence.first().map_or(0.0, |influence| influence.get());
@@ -29,7 +30,7 @@ impl Recurrence {
             period,
             shrink,
             turn: 2.0 * shrink * libm::cos(mode.frequency * root * period),
-            // A falls with the frequency.
+            // A decreases with the frequency.
             turn_bounds: [high, low].map(|bound| 2.0 * shrink * libm::cos(bound * period)),
             influence,
             influence_bounds: [a.min(b), a.max(b)],
@@ -39,14 +40,14 @@ impl Recurrence {
     }
 }
 
-/// The recurrence observer at work.
+/// Run-time state of the recurrence observer.
 #[derive(Clone, Debug)]
 pub struct RecurrenceObserver {
     spec: Recurrence,
     period: f64,
-    /// The root of B.
+    /// Square root of B.
     shrink: f64,
-    /// A, and its bounds.
+    /// Coefficient A, and its bounds.
     turn: f64,
     turn_bounds: [f64; 2],
     influence: f64,
@@ -55,22 +56,22 @@ pub struct RecurrenceObserver {
     residual: MovingResidual,
 }
 
-/// What is not a parameter; n is the last sample.
+/// State variables apart from the parameters; n is the last sample.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 struct Motion {
     /// Rigid rate (rad/s), predicted before a sample and corrected after it.
     rate: f64,
-    /// Elastic rate g(n) likewise, and g(n - 1) (rad/s).
+    /// Elastic rate g(n), predicted and corrected likewise, and g(n - 1) (rad/s).
     elastic: f64,
     elastic_before: f64,
-    /// What the pulses added to the rigid rate in the cycle before the sample, and in the one before that (rad/s).
+    /// Change of the rigid rate by the pulses in the cycle before the sample, and in the one before that (rad/s).
     push: f64,
     push_before: f64,
-    /// The largest of them so far.
+    /// Largest absolute change of the rigid rate in a cycle (rad/s).
     push_largest: f64,
-    /// What the influence was multiplied by (rad/s).
+    /// Excitation that multiplies the influence (rad/s).
     driven: f64,
-    /// What the weight W3 or W7 takes off the next prediction (rad/s).
+    /// Correction that the weight W3 or W7 subtracts from the next prediction (rad/s).
     taken: f64,
     /// Mean square of the elastic rate ((rad/s)²).
     square: f64,
@@ -95,7 +96,7 @@ impl RecurrenceObserver {
         ModelOscillator { frequency, damping: self.spec.damping.get() }
     }
 
-    /// The state [g, s] by g(n), g(n - 1) and the impulse at the sample n.
+    /// Returns the state [g, s] from g(n), g(n - 1) and the impulse at sample n.
     fn phase(&self) -> ModelPhase {
         let Motion { elastic, elastic_before, push, .. } = self.motion;
         let back = self.oscillator().transition(-self.period)[0];
@@ -109,14 +110,14 @@ impl RecurrenceObserver {
             let step = self.spec.frequency_gain.get() / amplitude * elastic_before.signum() * innovation;
             self.turn = stepped(self.turn, step, self.turn_bounds);
         }
-        // A long burn looks like a rigid rate: only its beginning and its end show the influence.
+        // A long burn resembles a rigid rate: only its start and its end show the influence.
         if (push - push_before).abs() >= SWITCHING * push_largest && driven != 0.0 {
             let step = self.spec.influence_gain.get() / driven * innovation;
             self.influence = stepped(self.influence, step, self.influence_bounds);
         }
     }
 
-    /// What cannot be carried on begins again, with the parameters that it had.
+    /// Resets a state that is not finite, and keeps the parameters.
     fn stay_finite(&mut self) {
         if !self.motion.is_sound() {
             self.motion = Motion::default();

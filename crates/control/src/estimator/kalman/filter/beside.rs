@@ -1,11 +1,11 @@
-//! Extended Kalman filters of runs side by side: what is matrices of them, each operation in the order of one filter.
+//! Extended Kalman filters of several runs in SIMD lanes: the matrix operations, each in the order of a single filter.
 
 use super::{KalmanFilter, Prediction};
 use crate::estimator::kalman::Ranking;
 use crate::lanes::Real;
 use crate::numerics::exponential::multiply;
 
-/// The filters: mean and covariance of each in a lane, columns one after the other.
+/// The filters in the lanes: mean and covariance of each in its lane, in column-major order.
 #[derive(Clone, Debug)]
 pub struct Filters<R> {
     pub(super) order: usize,
@@ -16,23 +16,24 @@ pub struct Filters<R> {
     pub(super) mean: Vec<R>,
     pub(super) covariance: Vec<R>,
     noise: Vec<R>,
-    /// The derivative of the flow, transposed, and room for a product.
+    /// Derivative of the flow, transposed, and a buffer for a product.
     pub(super) tangent: Vec<R>,
     pub(super) room: Vec<R>,
     frequency: Vec<R>,
     gain: Vec<R>,
     drag: Vec<R>,
-    /// Where the ratio of each mode is.
+    /// Index of each mode's ratio in the state, if it has one.
     ratio: Vec<Option<usize>>,
-    /// What back-EMF takes in a substep, and of how many modes it feels the rate; nothing without back-EMF.
+    /// Rate factor subtracted by back-EMF in a substep, and the number of modes whose rate it opposes, if there is
+    /// back-EMF.
     brake: Option<(R, usize)>,
     pub(super) angle_noise: R,
-    /// The transitions of all modes.
+    /// Transitions of all modes.
     turns: Vec<[R; 4]>,
 }
 
 impl<R: Real> Filters<R> {
-    /// Filters before their first sample; none unless they are of one structure.
+    /// Creates the lanes from filters before their first sample; `None` unless all have the same structure.
     pub fn new(kind: R, filters: &mut [&mut KalmanFilter]) -> Option<Self> {
         let first = filters.first()?.tuning.clone();
         let model = &first.model;
@@ -90,7 +91,7 @@ impl<R: Real> Filters<R> {
         Some(all)
     }
 
-    /// Predicts all states over one period, in which the mean reduced moments were these (rad/s²).
+    /// Predicts all states over one period with the mean reduced moments `moment` (rad/s²).
     #[inline(always)]
     pub fn predict(&mut self, filters: &[&mut KalmanFilter], moment: R) {
         let order = self.order;
@@ -131,7 +132,7 @@ impl<R: Real> Filters<R> {
         }
     }
 
-    /// The covariance by the derivative of the flow, with the noise of a period: of both halves the upper one.
+    /// Propagates the covariance and adds the noise of a period; computes the upper triangle and mirrors it.
     #[inline(always)]
     fn carry(&mut self) {
         let order = self.order;
@@ -148,8 +149,8 @@ impl<R: Real> Filters<R> {
         }
     }
 
-    /// The free turns of all modes over `h` seconds, at the ratios that the states come to `middle` seconds after the start
-    /// of the period.
+    /// Computes the free transitions of all modes over `h` (s), at the ratios that the states have `middle` (s) after
+    /// the start of the period.
     #[inline(always)]
     fn turn(&mut self, filters: &[&mut KalmanFilter], h: f64, middle: f64) {
         for mode in 0..self.frequency.len() {
@@ -247,8 +248,8 @@ impl<R: Real> Filters<R> {
         }
     }
 
-    /// Updates all states by the measured angles (rad), of those that move too little not the ratios. The innovations, and
-    /// their normalised squares.
+    /// Updates all states by the measured angles (rad), without the ratios in `gated` lanes. Returns the innovations
+    /// and their normalised squares.
     #[inline(always)]
     pub fn learn(&mut self, measured: R, gated: R::Mask) -> [R; 2] {
         let order = self.order;
@@ -287,7 +288,7 @@ impl<R: Real> Filters<R> {
         [innovation, innovation * innovation / variance]
     }
 
-    /// Where every mean and covariance is a number, and no variance is negative.
+    /// Returns the mask of the lanes in which mean and covariance are finite and no variance is negative.
     #[inline(always)]
     pub fn are_sound(&self) -> R::Mask {
         let zero = self.angle_noise.of(0.0);
@@ -302,19 +303,19 @@ impl<R: Real> Filters<R> {
         zero.le(least) & sum.le(zero)
     }
 
-    /// Covariances as they are.
+    /// Returns a copy of the covariances.
     pub fn covariances(&self) -> Vec<R> {
         self.covariance.clone()
     }
 
-    /// Brings the covariances of the other lanes back.
+    /// Restores `covariances` in the lanes outside `others`.
     pub fn restore(&mut self, covariances: &[R], others: R::Mask) {
         for (covariance, before) in self.covariance.iter_mut().zip(covariances) {
             *covariance = R::select(others, *covariance, *before);
         }
     }
 
-    /// Takes the means over from the filters.
+    /// Loads the means from the filters.
     #[inline(always)]
     pub fn take_means(&mut self, filters: &[&mut KalmanFilter]) {
         let mut each = [0.0; 16];
@@ -326,7 +327,7 @@ impl<R: Real> Filters<R> {
         }
     }
 
-    /// Lets the filters of some lanes have their means.
+    /// Stores the means in the filters of the selected lanes.
     #[inline(always)]
     pub fn give_means(&self, filters: &mut [&mut KalmanFilter], lanes: &[bool]) {
         let mut each = [0.0; 16];
@@ -341,7 +342,7 @@ impl<R: Real> Filters<R> {
     }
 }
 
-/// A product of two columns, in the order of nalgebra: eight sums, and what is left.
+/// Returns the dot product of two columns in the order of nalgebra: eight sums, and the rest.
 #[inline(always)]
 pub(super) fn dot<R: Real>(zero: R, a: &[R], b: &[R]) -> R {
     let count = a.len();

@@ -1,27 +1,27 @@
-//! What a filter does on its own while its mean and covariance are carried on beside those of other runs.
+//! Steps of a filter whose mean and covariance are computed in a batch with those of other runs.
 
 use super::beside::dot;
 use super::{FARTHEST, Filters, Innovation, KalmanFilter};
 use crate::lanes::Real;
 
-/// What a filter has of a step that was made beside others.
+/// Results of a filter's step in a batch.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct LentStep {
-    /// What the sample told; none if it was not taken so.
+    /// Innovation of the sample; `None` if the batch did not process it.
     told: Option<Innovation>,
-    /// The normalised error of the estimate, if it is assessed.
+    /// Normalised squared error of the estimate, if it is assessed.
     nees: f64,
-    /// Whether this filter goes on side by side.
+    /// True if the filter runs in a batch.
     pub lent: bool,
 }
 
 impl<R: Real> Filters<R> {
-    /// How many components each has.
+    /// Returns the number of state components of each filter.
     pub fn count(&self) -> usize {
         self.order
     }
 
-    /// Lets a filter draw its conclusions from what its sample told.
+    /// Completes the update of the filter in `lane` with its innovation and its NIS.
     pub fn settle(&mut self, lane: usize, filter: &mut KalmanFilter, gated: bool, innovation: f64, nis: f64) {
         filter.before.0.copy_from(&filter.mean);
         let (told, rests) = filter.settle(gated, innovation, Some(nis));
@@ -35,8 +35,8 @@ impl<R: Real> Filters<R> {
         }
     }
 
-    /// The normalised squared errors of the estimates against true states, component by component; NaN where a covariance
-    /// has no root.
+    /// Returns the normalised squared errors against true states given by component; NaN where a covariance has no
+    /// Cholesky factor.
     #[inline(always)]
     pub fn nees(&mut self, truth: &[R]) -> R {
         let order = self.order;
@@ -77,30 +77,30 @@ impl<R: Real> Filters<R> {
 }
 
 impl KalmanFilter {
-    /// The largest normalised square of an innovation.
+    /// Largest normalised square of an innovation that is accepted.
     pub const FARTHEST: f64 = FARTHEST * FARTHEST;
 
-    /// Whether the dominant mode moves too little, by the means as they are.
+    /// Returns true if the dominant mode's amplitude, by the current mean, is below the gate.
     pub fn moves_too_little(&self) -> bool {
         self.is_still()
     }
 
-    /// Whether its samples are taken beside others.
+    /// Returns true if the filter runs in a batch.
     pub fn is_lent(&self) -> bool {
         self.beside.lent
     }
 
-    /// What the sample told that was taken beside others.
+    /// Moves out the innovation of the sample that the batch processed for this filter.
     pub fn told_beside(&mut self) -> Option<Innovation> {
         self.beside.told.take()
     }
 
-    /// The error of an estimate that is assessed beside others.
+    /// Sets the normalised squared error that the batch computed, limited to `FARTHEST`.
     pub fn assess_beside(&mut self, nees: f64) {
         self.beside.nees = if nees <= Self::FARTHEST { nees } else { Self::FARTHEST };
     }
 
-    /// See `assess_beside`.
+    /// Returns the normalised squared error set by `assess_beside`.
     pub fn nees_beside(&self) -> f64 {
         self.beside.nees
     }

@@ -1,11 +1,11 @@
-//! What a filter knows of each mode, and how far its estimates are from the truth.
+//! Estimates of each mode with standard deviations, and the error against the true state.
 
 use nalgebra::{Cholesky, DVector};
 
 use super::{FARTHEST, KalmanFilter};
 
 impl KalmanFilter {
-    /// Estimated amplitude of a mode, sqrt(x² + (x'/w)²), and its standard deviation (rad).
+    /// Returns the estimated amplitude of a mode, sqrt(x² + (x'/w)²), and its standard deviation (rad).
     pub fn amplitude(&self, mode: usize) -> (f64, f64) {
         let (x, v) = (2 + 2 * mode, 3 + 2 * mode);
         let w = self.tuning.model.frequency(mode, self.mean.as_slice());
@@ -20,7 +20,7 @@ impl KalmanFilter {
         (amplitude, f64::sqrt(self.variance(&gradient)))
     }
 
-    /// Estimated natural frequency of a mode, and its standard deviation (rad/s).
+    /// Returns the estimated natural frequency of a mode, and its standard deviation (rad/s).
     pub fn frequency(&self, mode: usize) -> (f64, f64) {
         let model = &self.tuning.model;
         let w = model.frequency(mode, self.mean.as_slice());
@@ -29,15 +29,15 @@ impl KalmanFilter {
         (w, sd)
     }
 
-    /// Variance of a sum of components.
+    /// Returns the variance of a weighted sum of components.
     fn variance(&self, weights: &[(usize, f64)]) -> f64 {
         let terms =
             weights.iter().flat_map(|a| weights.iter().map(|b| a.1 * b.1 * self.covariance[(a.0, b.0)]));
         terms.sum::<f64>().max(0.0)
     }
 
-    /// Normalised squared error of the estimate against a true state of the same components, whose mean is the state's
-    /// order if the filter is honest. It is at most 10^12, also where the covariance has no inverse.
+    /// Returns the normalised squared error against a true state. Its mean is the state's order if the filter is
+    /// consistent. It is at most 10^12, also if the covariance has no inverse.
     pub fn nees(&self, truth: &[f64]) -> f64 {
         let error = DVector::from_row_slice(truth) - &self.mean;
         let root = Cholesky::new(self.covariance.clone());
