@@ -19,7 +19,7 @@ use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive, Tolerance};
 use crate::structure::Structure;
 
-/// No panel has more sections.
+/// Largest number of sections of a panel.
 const MOST_SECTIONS: usize = 99;
 
 /// A hub with panels.
@@ -93,10 +93,10 @@ fn tight() -> Tolerance {
 }
 
 impl Panels {
-    /// The structure: coordinates theta (rad), v_1, v_2, ... (m).
+    /// Computes the structure in the coordinates theta (rad), v_1, v_2, ... (m).
     ///
     /// # Errors
-    /// No panels, no sections, or more than 99 of them.
+    /// A number of panels or of sections that is zero, or more than 99 sections.
     pub fn structure(&self) -> Result<Structure, Fault> {
         let s = self.sections.len();
         if !(1..=MOST_SECTIONS).contains(&s) {
@@ -146,15 +146,15 @@ impl Panels {
         Structure::new(mass, stiffness, 0, None).map_err(|fault| too_far_apart(&fault.why))
     }
 
-    /// The exact chain, if the sections turn by any angles.
+    /// Returns the exact chain, if the sections turn by any angles.
     pub fn chain(&self, model: &Planar) -> Option<Chain> {
         let structure = self.structure().ok().filter(|_| self.kinematics == Kinematics::Exact)?;
         let lengths: Vec<f64> = self.sections.iter().map(|section| section.length.get()).collect();
         Some(Chain::new(&lengths, &structure, model, self.tolerance.get()))
     }
 
-    /// The planar body with the modes of the structure. Its outputs are the angles phi_k of the sections relative to the
-    /// hub (rad): `section_1`, `section_2` and so on.
+    /// Computes the planar body with the modes of the structure. Its outputs are the angles phi_k of the sections
+    /// relative to the hub (rad): `section_1`, `section_2` and so on.
     pub fn solve(&self) -> Result<Planar, Fault> {
         let structure = self.structure()?;
         let observed = |(index, section): (usize, &Section)| {
@@ -183,7 +183,9 @@ impl Panels {
     }
 }
 
-/// Every panel has modes, unless its numbers are so far apart that rounding takes them.
+/// Returns the fault of panels without modes, which occurs only if rounding removes some because the numbers differ by
+/// many orders of magnitude.
+/// some.
 fn too_far_apart(why: &str) -> Fault {
     Fault::new("sections", format!("hold numbers that differ too much in size: the matrix {why}"))
 }
