@@ -1,4 +1,5 @@
-//! The magnetic field of a planet: a dipole through its centre, tilted to its axis, that turns with it (\[Wertz78\]).
+//! The magnetic field of a planet: a dipole through its centre, tilted against its axis, that turns with it
+//! (\[Wertz78\]).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,7 +23,7 @@ pub struct MagneticField {
 }
 
 impl Default for MagneticField {
-    /// The Earth's.
+    /// Returns the field of the Earth.
     fn default() -> Self {
         Self {
             coefficients: [-1450.9e-9, 4652.5e-9, -29_404.8e-9].map(|t| Finite::new(t).unwrap_or_default()),
@@ -34,7 +35,8 @@ impl Default for MagneticField {
 }
 
 impl MagneticField {
-    /// The field at a position from the planet's centre, both in inertial axes (T, m), at a time since the start (s).
+    /// Returns the field (T) at a position from the planet's centre (m), both in inertial axes, at a time since the
+    /// start (s).
     pub fn at(&self, position: &Vector, t: f64) -> Vector {
         let [x, y, z] = self.coefficients.map(Finite::get);
         let (sin, cos) = libm::sincos(self.meridian.get() + self.rotation.get() * t);
@@ -44,7 +46,7 @@ impl MagneticField {
         (up * (3.0 * south.dot(&up)) - south) * (ratio * ratio * ratio)
     }
 
-    /// No field at this distance from the centre (m) or beyond is larger (T).
+    /// Returns an upper bound of the field (T) at this distance from the centre (m) and beyond.
     pub fn bound(&self, distance: f64) -> f64 {
         let ratio = self.radius.get() / distance;
         2.0 * Vector::from(self.coefficients.map(Finite::get)).norm() * ratio * ratio * ratio
