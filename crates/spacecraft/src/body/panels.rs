@@ -185,7 +185,6 @@ impl Panels {
 
 /// Returns the fault of panels without modes, which occurs only if rounding removes some because the numbers differ by
 /// many orders of magnitude.
-/// some.
 fn too_far_apart(why: &str) -> Fault {
     Fault::new("sections", format!("hold numbers that differ too much in size: the matrix {why}"))
 }

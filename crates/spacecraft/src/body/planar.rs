@@ -60,7 +60,7 @@ fn unit() -> Positive {
 }
 
 impl Default for Planar {
-    /// A rigid body of unit inertia at rest.
+    /// Returns a rigid body of unit inertia at rest.
     fn default() -> Self {
         Self {
             inertia: unit(),

@@ -42,7 +42,7 @@ pub struct CommandCost {
 /// Plan of an alternative, with its effort and residuals.
 #[derive(Clone, Debug)]
 pub struct FieldOutcome {
-    /// The plan.
+    /// Plan of the alternative.
     pub plan: Plan,
     /// Effort of the torque on the hub (N m).
     pub torque: PlanEffort,

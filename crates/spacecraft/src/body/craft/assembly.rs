@@ -38,7 +38,7 @@ pub struct Part {
     pub is_hinge: bool,
 }
 
-/// An appendage, and the matrix that transforms vectors from its axes to the body's.
+/// Appendage with the matrix that transforms vectors from its axes to the body's.
 type Turned<'a> = (&'a Appendage, Matrix3<f64>);
 
 /// Point of the structure: its position in the body, and the shapes of the clamped modes there.
