@@ -77,7 +77,7 @@ impl Unit {
         Self { factor: self.factor * other.factor, twice, cycles: self.cycles || other.cycles }
     }
 
-    /// Returns the unit to the power `power`/2.
+    /// Returns the unit raised to the power `power`/2.
     fn to_half(self, power: i16) -> Option<Self> {
         let mut twice = self.twice;
         for exponent in &mut twice {
@@ -103,7 +103,7 @@ impl Unit {
         }
         PREFIXES.iter().find_map(|(prefix, factor)| {
             let word = word.strip_prefix(prefix)?;
-            // A prefix before `g` forms kilogram, milligram and so on.
+            // The base symbol is `g`, so that `kg` takes no further prefix.
             SYMBOLS.iter().find(|known| known.3 && known.0 == word).map(|known| of(known, *factor))
         })
     }

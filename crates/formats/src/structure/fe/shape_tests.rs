@@ -74,8 +74,7 @@ fn points_move_as_the_structure_at_their_place() {
         }
         assert!(worst[0] < moved && worst[1] < turned, "{structure}: {worst:?}");
     }
-    // The tip of a cantilever with a point mass moves by x/L of the displacement at its mid-mass node, here a node's
-    // own numbers.
+    // At the position of a node, a point has the displacement of that node.
     let results = file("panel.frd", &[tip([6.0, 0.0, 0.0])]);
     assert!((results.modes[0].shapes[0][0][2] - 0.326_269).abs() < 1e-12);
     let error = read(&text("boom.frd"), &text("boom.inp"), &[tip([1.0, 1.0, 0.0])]).expect_err("outside");
