@@ -24,7 +24,7 @@ pub struct Partial {
 }
 
 impl Partial {
-    /// Begins a file.
+    /// Creates the temporary file.
     ///
     /// # Errors
     /// [`io::ErrorKind::ResourceBusy`] if another process is writing the file; a path that is not a file, or is

@@ -1,4 +1,4 @@
-//! The axes of a body, and values about them: one for all, or one for each of three.
+//! Axes of a body, and values about them: one for all, or one for each of three.
 
 use std::borrow::Cow;
 

@@ -1,4 +1,4 @@
-//! Sines in time, as parts of a torque.
+//! Sine functions of time, as parts of a torque.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -15,7 +15,7 @@ pub struct Columns {
 pub enum Column {
     /// Floating-point numbers.
     Numbers(Vec<f64>),
-    /// Counts.
+    /// Unsigned counts, and flags as 0 or 1.
     Counts(Vec<u64>),
     /// Signed integers, which only logs of other programs have.
     Integers(Vec<i64>),

@@ -7,8 +7,8 @@ use super::topics::TOPICS;
 
 /// Returns the description of every topic, by name without its slash: `message`, `doc` and `fields`.
 ///
-/// A field has its `name`, which ends with its unit, `doc`, and `kind`: `number`, `count`, `text`, `flag`, `time`, `label`
-/// with its `labels`, or `row` and `rows` with the `fields` of each row.
+/// A field has its `name`, which ends with its unit, `doc`, and `kind`: `number`, `count`, `text`, `flag`, `time`,
+/// `label` with its `labels`, or `row` and `rows` with the `fields` of each row.
 pub fn topics() -> Value {
     let topics = TOPICS.iter().map(|topic| {
         let told = json!({"message": topic.message, "doc": text(topic.doc), "fields": fields(topic.fields)});

@@ -13,7 +13,7 @@ pub enum LogLevel {
     Unknown,
     /// Message for debugging.
     Debug,
-    /// Information.
+    /// Informational message.
     Info,
     /// Warning message.
     Warning,

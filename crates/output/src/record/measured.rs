@@ -7,7 +7,7 @@ use super::{Metric, Metrics as Row};
 /// Description of a metric.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Meaning {
-    /// Name.
+    /// Name of the metric.
     pub name: &'static str,
     /// Unit; empty for a count, a ratio or a word.
     pub unit: &'static str,

@@ -164,7 +164,7 @@ pub const fn plain(name: &'static str) -> &'static str {
     }
 }
 
-/// Declares row types of a package, and topics for those that have a name.
+/// Declares row types of a package, and topics for the types with a topic name.
 macro_rules! rows {
     (package $package:literal; $($(#[doc = $doc:literal])* $name:ident $(= $topic:literal)? {
         $($(#[doc = $field_doc:literal])* $field:ident: $of:ty),+ $(,)?

@@ -1,4 +1,4 @@
-//! The exact planar chain: the hub and the sections of its panels as rigid bodies at any angles.
+//! Exact planar chain: the hub and the sections of its panels as rigid bodies at any angles.
 //!
 //! In the absolute angles psi (hub first) the linear model's inertia A and stiffness K become
 //!

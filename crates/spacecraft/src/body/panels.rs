@@ -1,8 +1,9 @@
-//! A body of a hub and equal solar panels, each a chain of rigid sections in elastic hinges (\[Rotation\], the example).
+//! A body of a hub and equal solar panels, each a chain of rigid sections in elastic hinges (\[Rotation\], the
+//! example).
 //!
-//! The panels swing alike: antisymmetrically, where there are two. The coordinates are the hub's angle theta and the
-//! displacement v_k of each section's outer end from where the hub's rotation carries it, with x_k its distance from the
-//! axis. Each panel has the kinetic energy
+//! All panels move alike: two panels antisymmetrically. The coordinates are the hub's angle theta and the displacement
+//! v_k of each section's outer end from the position given by the hub's rotation, with x_k its distance from the axis.
+//! Each panel has the kinetic energy
 //!
 //! 1/2 sum mu_k u_k² + (m_k l_k/3) (u_(k-1)² + u_(k-1) u_k + u_k²), u_k = x_k theta' + v_k',
 //!
@@ -114,7 +115,7 @@ impl Panels {
             let (l, tip) = (section.length.get(), section.tip_mass.get());
             let third = section.mass_per_length.get() * l / 3.0;
             let outer = inner + l;
-            // u_k is a sum over these coordinates; the hinge at the root has no displacement.
+            // The velocity u_k is a sum over these coordinates; the hinge at the root has no displacement.
             let ends = [(inner, (k > 1).then(|| k - 1)), (outer, Some(k))];
             for (a, (xa, va)) in ends.into_iter().enumerate() {
                 for (b, (xb, vb)) in ends.into_iter().enumerate() {
@@ -129,7 +130,7 @@ impl Panels {
                     }
                 }
             }
-            // phi_k - phi_(k-1) is a sum over these displacements.
+            // The angle phi_k - phi_(k-1) is a sum over these displacements.
             let c = count * section.hinge_stiffness.get();
             let own = [(k, 1.0, l), (k.wrapping_sub(1), -1.0, l)];
             let before = self.sections.get(k.wrapping_sub(2)).map(|before| before.length.get());

@@ -1,8 +1,8 @@
 //! The planar body: one angle, any number of elastic modes, driven by one moment.
 //!
-//! x_r'' = m, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i m, x = x_r + sum x_i, with m = torque / inertia
-//! (\[Silaev\], equation (1); hybrid coordinates, \[Likins70\]). Under a constant torque the rigid part is a parabola and every
-//! mode turns about its shifted equilibrium, so that no step size exists.
+//! x_r'' = m, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i m, x = x_r + sum x_i, with m = torque / inertia (\[Silaev\],
+//! equation (1); hybrid coordinates, \[Likins70\]). Under a constant torque the rigid part is a parabola and every mode
+//! turns about its shifted equilibrium, so that no step size is needed.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

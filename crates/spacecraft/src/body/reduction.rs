@@ -1,8 +1,8 @@
 //! Reduction of a structure to the planar body with its lowest modes.
 //!
-//! Free modes move the hub: x_n = X_n\[theta\] f_n with the gain J X_n\[theta\]², so that the hub's angle is x_r + sum x_n.
-//! Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, and the torque that moves the hub as
-//! commanded is J (u - sum x_n'').
+//! Free modes move the hub: x_n = X_n\[theta\] f_n with the gain J X_n\[theta\]², so that the hub's angle is x_r + sum
+//! x_n. Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, and the torque that moves the
+//! hub as commanded is J (u - sum x_n'').
 
 use nalgebra::DMatrix;
 

@@ -1,8 +1,9 @@
 //! A Kepler orbit about a planet: the body's position, the local axes and their rate, and the planet's shadow.
 //!
-//! In the eccentric anomaly E with E - e sin E = n t + M (\[Wie08\]), r = a ((cos E - e) P + sqrt(1 - e²) sin E Q), with P to the
-//! perigee and Q across it in the plane of the orbit. Local axes are z to the planet's centre (nadir), y against the orbit's
-//! normal, and x ahead, along the velocity of a circular orbit. They turn about -y at the rate of the true anomaly.
+//! In the eccentric anomaly E with E - e sin E = n t + M (\[Wie08\]), r = a ((cos E - e) P + sqrt(1 - e²) sin E Q),
+//! with P to the perigee and Q across it in the plane of the orbit. Local axes are z to the planet's centre (nadir), y
+//! against the orbit's normal, and x ahead, along the velocity of a circular orbit. They turn about -y at the rate of
+//! the true anomaly.
 
 use std::f64::consts::TAU;
 
@@ -282,7 +283,7 @@ mod tests {
 
     #[test]
     fn the_shadow_of_a_circular_orbit_is_as_by_hand() {
-        // The Sun in the plane: the planet hides 2 asin(Rp/R) of the orbit, centred opposite to the Sun.
+        // With the Sun in the plane, the planet hides 2 asin(Rp/R) of the orbit, centred opposite to the Sun.
         let orbit = orbit("semi_major_axis = 7e6\nanomaly = 1.0");
         let shadows = orbit.shadows(&Vector::x(), 12_000.0);
         let half = libm::asin(6_378_137.0 / 7e6);
@@ -312,7 +313,7 @@ mod tests {
             (along < 0.0).then(|| (position - sun * along).norm() - 6_378_137.0)
         };
         let shadows = orbit.shadows(&sun, 40_000.0);
-        // By a scan second by second with other code: after 9104, 11 764, 22 187, 24 847, 35 269 and 37 929 s.
+        // Reference by a scan of every second with other code: after 9104, 11 764, 22 187, 24 847, 35 269 and 37 929 s.
         let scanned = [[9104.5, 11_764.5], [22_187.5, 24_847.5], [35_269.5, 37_929.5]];
         assert_eq!(shadows.len(), scanned.len());
         for (found, scanned) in shadows.iter().flatten().zip(scanned.iter().flatten()) {

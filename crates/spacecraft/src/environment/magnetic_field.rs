@@ -60,7 +60,7 @@ mod tests {
 
     #[test]
     fn without_a_tilt_it_is_that_of_the_local_axes() {
-        // b (cos u sin i, -cos i, 2 sin u sin i) in local axes, at the angle u past the ascending node.
+        // Expected field: b (cos u sin i, -cos i, 2 sin u sin i) in local axes, at the angle u past the ascending node.
         let field: MagneticField =
             crate::document::from_text("coefficients = [0, 0, -3e-5]\nradius = 6.4e6").unwrap();
         let (inclination, radius) = (0.9, 7e6);
@@ -92,7 +92,7 @@ mod tests {
             field.at(&across, 0.0).norm()
         );
         assert!((field.at(&(axis * 6_371_200.0), 0.0).norm() - 2.0 * 29_805.924e-9).abs() < 2e-12);
-        // 9.4 degrees from the axis.
+        // The dipole is tilted by 9.4 degrees against the axis.
         assert!((libm::acos(-axis.z) - 0.164).abs() < 1e-3);
         let position = Vector::new(7e6, -1e6, 2e6);
         let quarter = std::f64::consts::FRAC_PI_2 / 7.292_115e-5;

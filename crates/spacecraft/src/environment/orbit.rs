@@ -1,7 +1,7 @@
 //! A circular orbit: its local axes, and the transformation of vectors between local, inertial and body axes.
 //!
-//! Local axes are z to the planet's centre (nadir), y against the orbit's normal, x along the velocity. They turn at the orbit's
-//! rate about -y.
+//! Local axes are z to the planet's centre (nadir), y against the orbit's normal, x along the velocity. They turn at
+//! the orbit's rate about -y.
 
 use nalgebra::Quaternion;
 
@@ -11,7 +11,7 @@ use crate::quantity::Positive;
 /// Circular orbit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Orbit {
-    /// Rate (rad/s).
+    /// Rate of the orbit (rad/s).
     pub rate: f64,
     /// Quaternion that transforms vectors from the local axes at the start to inertial axes.
     start: Quaternion<f64>,

@@ -1,4 +1,5 @@
-//! Pressure of sunlight: a force that is constant in inertial axes at a point of the body, or forces on plates (\[Wertz78\]).
+//! Pressure of sunlight: a force that is constant in inertial axes at a point of the body, or forces on plates
+//! (\[Wertz78\]).
 //!
 //! On a plate of area A whose outward normal n faces the Sun s, n.s = c > 0, and which reflects the part r_s specularly
 //! and r_d diffusely, the force is -P A c ((1 - r_s) s + 2 (r_s c + r_d/3) n), else zero: a plate with two sides is two
@@ -158,7 +159,7 @@ mod tests {
 
     #[test]
     fn plates_absorb_and_reflect() {
-        // A plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
+        // Plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
         let sun = Vector::new(0.0, f64::sqrt(0.75), 0.5);
         let centre = Vector::new(0.1, 0.0, 0.0);
         let torque = |parts: &str, by: Vector| {
@@ -171,15 +172,16 @@ mod tests {
         };
         let arm = Vector::new(0.5, 0.0, 0.0);
         let none = Vector::zeros();
-        // All absorbed: along the light. A mirror: 2 c along the normal. White: the light, and 2/3 along the normal.
+        // Absorption: force along the light. Mirror: 2 c along the normal. Diffuse: along the light, and 2/3 along the
+        // normal.
         let along = |force: Vector| arm.cross(&force);
         assert!((torque("", none) - along(-sun)).norm() < 1e-12);
         assert!((torque(", specular = 1", none) - along(Vector::new(0.0, 0.0, -1.0))).norm() < 1e-12);
         let white = -sun - Vector::new(0.0, 0.0, 2.0 / 3.0);
         assert!((torque(", diffuse = 1", none) - along(white)).norm() < 1e-12);
-        // Turned away from the light by more than 90 degrees.
+        // No force on a plate turned away from the light by more than 90 degrees.
         assert_eq!(torque(", specular = 0.3", Vector::new(0.6, 0.0, 0.0)), none);
-        // Turned into it by 60 degrees, the light comes along z: all on both.
+        // Turned into the light by 60 degrees, both parts of the force are along z.
         let faced =
             torque(", specular = 0.3, diffuse = 0.2", Vector::new(-std::f64::consts::FRAC_PI_3, 0.0, 0.0));
         let straight = along(Vector::new(0.0, 0.0, -2.0 * (1.0 + 0.3 + 2.0 / 3.0 * 0.2)));

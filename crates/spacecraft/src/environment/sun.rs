@@ -102,8 +102,9 @@ mod tests {
 
     #[test]
     fn the_sun_is_where_almanacs_have_it() {
-        // Seconds since 1970, right ascension and declination (degrees): the apparent Sun of Meeus, Astronomical Algorithms,
-        // example 25.a (1992-10-13), the equinox of 2026-03-20 14:46 UTC, the solstice of 2024-06-20 20:51 UTC.
+        // Seconds since 1970, right ascension and declination (degrees): the apparent Sun of Meeus, Astronomical
+        // Algorithms, example 25.a (1992-10-13), the equinox of 2026-03-20 14:46 UTC, the solstice of 2024-06-20 20:51
+        // UTC.
         for (seconds, ascension, declination) in [
             (718_934_400.0, 198.380_83, -7.785_07),
             (1_774_017_960.0, 0.0, 0.0),

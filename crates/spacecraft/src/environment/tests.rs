@@ -100,7 +100,7 @@ fn the_pitch_swings_with_its_period() {
     let mut body = One::new(&inertia, around, start, Vector::new(0.0, -RATE, 0.0));
     let first = crossing(&mut body, 1259.0);
     let second = crossing(&mut body, first + 5037.0);
-    // (4/w) K(sin² of 1e-3 rad), w = n sqrt(3 (Jx - Jz)/Jy).
+    // The period is (4/w) K(sin² of 1e-3 rad), w = n sqrt(3 (Jx - Jz)/Jy).
     let exact = 5_037.499_975_779;
     assert!(((second - first) / exact - 1.0).abs() < 1e-10, "{}", second - first);
     assert!((first / (0.25 * exact) - 1.0).abs() < 1e-10, "{first}");

@@ -2,7 +2,8 @@
 //! back.
 //!
 //! - [`Segment`]: uncoupled modes in closed form, with the bounds that certify crossings;
-//! - [`Coupling`]: modes coupled by a wheel, a damping matrix or a drift ([`Drifting`]), in closed form or as Taylor series;
+//! - [`Coupling`]: modes coupled by a wheel, a damping matrix or a drift ([`Drifting`]), in closed form or as Taylor
+//!   series;
 //! - [`ChainMotion`]: the exact chain of rigid sections;
 //! - [`Rigid`] and [`Elastic`] (or [`DriftingModes`]): three axes, with rotation and modes computed separately.
 //!

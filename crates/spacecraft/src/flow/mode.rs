@@ -1,4 +1,4 @@
-//! The exact flow of one elastic mode, for any damping: three regimes, each in closed form.
+//! Exact flow of one elastic mode, for any damping: three regimes, each in closed form.
 
 use crate::body::Mode;
 use crate::motion::Sensed;

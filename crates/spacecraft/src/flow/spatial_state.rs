@@ -10,7 +10,7 @@ use crate::motion::Phase;
 pub struct SpatialState {
     /// Rigid rotation.
     pub turn: RigidTurn,
-    /// One phase for each elastic mode: displacement (m sqrt(kg)), and rate over natural frequency.
+    /// Phase of each elastic mode: displacement (m sqrt(kg)), and rate over natural frequency.
     pub modes: Vec<Phase>,
 }
 

@@ -19,7 +19,7 @@ enum At {
     TotalMass,
 }
 
-/// Reads a file.
+/// Reads the modes of a file.
 ///
 /// # Errors
 /// The error, with its line.

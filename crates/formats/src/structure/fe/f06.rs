@@ -60,7 +60,7 @@ struct Reader {
     mass: Option<f64>,
 }
 
-/// Reads a file.
+/// Reads the modes of a file.
 ///
 /// # Errors
 /// The error, with its line.

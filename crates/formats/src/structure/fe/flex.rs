@@ -52,7 +52,7 @@ struct Reader {
     complete: Vec<Holds>,
 }
 
-/// Reads a file.
+/// Reads the modes of a file.
 ///
 /// # Errors
 /// The error, with its line.

@@ -74,7 +74,7 @@ struct Head {
     cycles: Option<(usize, f64)>,
 }
 
-/// Reads a file.
+/// Reads the shapes of a file.
 ///
 /// # Errors
 /// The error, with its line.

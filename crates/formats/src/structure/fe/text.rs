@@ -47,7 +47,7 @@ impl<R: BufRead> Lines<R> {
         if !ended && self.bytes.len() >= LONGEST {
             return Err(format!("line {number}: must be shorter than {LONGEST} bytes: is this a text file?"));
         }
-        // Titles may be in any encoding, and nothing that is read is.
+        // Titles may be in any encoding; the data that is read is ASCII.
         let text = String::from_utf8_lossy(&self.bytes).trim_end().to_owned();
         Ok(Some(TextLine { number, text, ended }))
     }

@@ -1,4 +1,4 @@
-//! An appendage of a spacecraft, as a scenario writes it: a panel, an antenna, a mass on a spring.
+//! Appendage of a spacecraft, as a scenario describes it: a panel, an antenna, a mass on a spring.
 
 use std::borrow::Cow;
 

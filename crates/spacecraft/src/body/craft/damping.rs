@@ -12,7 +12,7 @@ const SMALL: f64 = 0.05;
 pub struct FreeDamping {
     /// Full matrix Dq (1/s).
     pub matrix: DMatrix<f64>,
-    /// Damping ratios of its diagonal, Dq_ii/(2 W_i).
+    /// Damping ratios of the diagonal of Dq, Dq_ii/(2 W_i).
     pub ratios: Vec<f64>,
     /// Largest |Dq_ij| W/|W_i² - W_j²|: the approximate relative error of a mode if only the diagonal is kept.
     pub coupling: f64,

@@ -1,4 +1,4 @@
-//! A hinge at the root of an appendage: the appendage is a rigid body that swings on it, at any angle, against a spring.
+//! Hinge at the root of an appendage, which swings on it as a rigid body, at any angle, against a spring.
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -45,7 +45,7 @@ pub(super) struct Swung<'a> {
     pub centre: Vector,
     /// Inertia tensor about the centre of mass (kg m²).
     pub inertia: Matrix3<f64>,
-    /// Named points.
+    /// Named points of the appendage.
     pub points: &'a [NamedPoint],
 }
 

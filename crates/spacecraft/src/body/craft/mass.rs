@@ -22,7 +22,7 @@ impl MassProperties {
         let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector>() / mass;
         let about = |part: &Self| part.inertia + of_point(part.mass, &(part.centre - centre));
         let inertia: Matrix3<f64> = parts.iter().map(about).sum();
-        // Rotated tensors are symmetric but for rounding.
+        // Rotated tensors are symmetric only within rounding.
         Self { mass, centre, inertia: 0.5 * (inertia + inertia.transpose()) }
     }
 }

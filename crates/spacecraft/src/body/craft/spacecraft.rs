@@ -1,4 +1,4 @@
-//! The hub of a spacecraft, as a scenario writes it.
+//! Hub of a spacecraft, as a scenario describes it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,9 +1,10 @@
 //! The spatial body: three axes, and elastic modes with their shapes at named points of the structure.
 //!
-//! J w' + w x J w = M, Q' = 1/2 Q o (0, w), and q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j f_i(r_j) . F_j + phi_i(r_j) . M_j
-//! (\[Timakov14\], equations (1) and (2); hybrid coordinates, \[Likins70\]): mass-normalised modes, which the forces of the jets
-//! (\[Timakov14\], equations (1) and (2); hybrid coordinates, \[Likins70\]): mass-normalised modes, which the forces of
-//! the jets excite and a gyro measures.
+//! J w' + w x J w = M, Q' = 1/2 Q o (0, w), and q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j f_i(r_j) . F_j +
+//! phi_i(r_j) . M_j (\[Timakov14\], equations (1) and (2); hybrid coordinates, \[Likins70\]): mass-normalised modes,
+//! which the forces of the jets excite and a gyro measures.
+//! The modes do not act back on the rigid motion. Q transforms vectors from the body's axes to inertial axes: v = Q o
+//! v_body o Q*.
 
 mod disturbance;
 mod modes;
