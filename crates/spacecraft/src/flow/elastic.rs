@@ -18,7 +18,7 @@ pub struct Elastic {
     transitions: Vec<[f64; 4]>,
 }
 
-/// Largest number of cycles over which transitions are cached.
+/// Number of multiples of the cycle, from 0, for which transitions are cached.
 const KNOWN: usize = 128;
 
 impl Elastic {
