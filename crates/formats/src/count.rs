@@ -1,8 +1,8 @@
-//! Counts with their nouns.
+//! Counts followed by their nouns.
 
 use std::fmt::Display;
 
-/// A count and what is counted, in the singular or the plural: `1 mode`, `2 modes`.
+/// Returns a count with its noun in the singular or the plural: `1 mode`, `2 modes`.
 pub fn counted(count: impl Display, thing: &str) -> String {
     let count = count.to_string();
     let plural = if count == "1" { "" } else { "s" };

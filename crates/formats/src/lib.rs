@@ -1,4 +1,5 @@
-//! What flexsc reads: TOML documents with errors that point at the very value, and structures from the files of other programs.
+//! Input files of flexsc: TOML documents with errors that point at the value, and structures from files of other
+//! programs.
 
 pub mod count;
 pub mod document;

@@ -1,18 +1,18 @@
-//! Enumerations that are logged: each value with a short label for people and a name for protobuf.
+//! Logged enumerations: each value with a short label for people and an identifier for protobuf.
 
-/// An enumeration as a log column.
+/// Labels of an enumeration, for a log column.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Labels {
     /// Name of the enumeration.
     pub name: &'static str,
-    /// What each value means.
+    /// Description of each value.
     pub docs: &'static [&'static str],
-    /// The label of each value.
+    /// Label of each value.
     pub values: &'static [&'static str],
 }
 
 impl Labels {
-    /// The name of a value as an identifier: `W+` becomes `W_PLUS`.
+    /// Returns the label as an identifier: `W+` becomes `W_PLUS`.
     pub fn identifier(label: &str) -> String {
         label.replace('+', "_PLUS").replace('-', "_MINUS").replace(' ', "_").to_uppercase()
     }
@@ -28,14 +28,14 @@ macro_rules! labels {
         }
 
         impl $name {
-            /// The enumeration as a log column.
+            /// Labels of the enumeration, for a log column.
             pub const LABELS: $crate::label::Labels = $crate::label::Labels {
                 name: stringify!($name),
                 docs: &[$($value_doc),+],
                 values: &[$($label),+],
             };
 
-            /// The label of the value.
+            /// Returns the label of the value.
             pub const fn label(self) -> &'static str {
                 Self::LABELS.values[self as usize]
             }

@@ -1,4 +1,4 @@
-//! What flexsc writes: rows and topics declared once, traces, MCAP logs, columns; files that are whole or not there.
+//! Output of flexsc: rows and topics declared once, traces, MCAP logs, columns, and files that are written atomically.
 
 pub mod label;
 pub mod record;

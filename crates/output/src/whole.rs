@@ -1,4 +1,4 @@
-//! Files that are whole or not there: each is written beside its place, under a name that one process holds.
+//! Atomically written files: each is written under a temporary name, locked by one process, and renamed when complete.
 
 use std::fs::{self, File, OpenOptions, TryLockError};
 use std::io::{self, Seek, SeekFrom, Write};
@@ -6,16 +6,15 @@ use std::path::{Path, PathBuf};
 use std::thread;
 use std::time::{Duration, Instant};
 
-/// Others may find a name in the short time in which it is made and not yet held: then it is made again.
+/// Largest number of attempts: another process may remove a new file in the short time before it is locked.
 const ATTEMPTS: u32 = 100;
-/// So long is waited for another process that writes a file in one go.
+/// Time for which another process that writes the same file in one go is awaited.
 const PATIENCE: Duration = Duration::from_secs(2);
 
-/// A file on its way, whose name is that of its place with `.partial` more.
-///
-/// The name is made anew, so that no existing link, pipe or file is written to, and it is locked as long as the
-/// process lives. What a killed process left is not locked: the next one removes it. Dropped before it is
-/// [`finish`](Self::finish)ed, the file is removed.
+/// File that is being written, under the name of its final path with the suffix `.partial`.
+/// || The temporary file is always created new, so that no existing link, pipe or file is written to, and it is locked
+/// while the process lives. The file of a killed process is not locked, and the next process removes it. If the file is
+/// dropped before it is [`finish`](Self::finish)ed, it is removed.
 #[derive(Debug)]
 pub struct Partial {
     file: File,
@@ -25,11 +24,11 @@ pub struct Partial {
 }
 
 impl Partial {
-    /// Begins a file.
+    /// Creates the temporary file.
     ///
     /// # Errors
-    /// [`io::ErrorKind::ResourceBusy`] if another process writes it now; a place that is no file, or a read-only one; what
-    /// the file system reports.
+    /// [`io::ErrorKind::ResourceBusy`] if another process is writing the file; a path that is not a file, or is
+    /// read-only; errors of the file system.
     pub fn create(path: &Path) -> io::Result<Self> {
         let place = place(path)?;
         let mut partial = place.as_os_str().to_owned();
@@ -43,7 +42,7 @@ impl Partial {
         Err(busy())
     }
 
-    /// The same, but if another process writes the file it has a moment to finish.
+    /// Begins a file as [`create`](Self::create) does, but waits a moment for another process that writes it.
     pub fn create_in_time(path: &Path) -> io::Result<Self> {
         let began = Instant::now();
         loop {
@@ -56,12 +55,12 @@ impl Partial {
         }
     }
 
-    /// Drops what is beyond so many bytes, which needs no room.
+    /// Truncates the file to `bytes`, which needs no disk space.
     pub fn truncate(&self, bytes: u64) -> io::Result<()> {
         self.file.set_len(bytes)
     }
 
-    /// Puts the file into its place, and returns its size in bytes.
+    /// Moves the file to its final path, and returns its size in bytes.
     pub fn finish(mut self) -> io::Result<u64> {
         let bytes = self.file.metadata()?.len();
         fs::rename(&self.beside, &self.place)?;
@@ -69,7 +68,7 @@ impl Partial {
         Ok(bytes)
     }
 
-    /// Puts the file into its place once all of it is on the disk: it is there, and whole, after a loss of power too.
+    /// Moves the file to its final path once it is stored on disk, so that it is complete even after a loss of power.
     pub fn finish_synced(self) -> io::Result<u64> {
         self.file.sync_all()?;
         let place = self.place.clone();
@@ -78,7 +77,7 @@ impl Partial {
         Ok(bytes)
     }
 
-    /// Puts the file into another place of the same directory.
+    /// Moves the file to another path in the same directory.
     pub fn finish_as(mut self, path: &Path) -> io::Result<u64> {
         self.place = place(path)?;
         self.finish()
@@ -104,13 +103,13 @@ impl Seek for Partial {
 impl Drop for Partial {
     fn drop(&mut self) {
         if !self.finished && is_at(&self.file, &self.beside) {
-            // That it cannot be removed is no news beside why it is of no use.
+            // An error of the removal is less important than the reason for it.
             let _ = fs::remove_file(&self.beside);
         }
     }
 }
 
-/// Brings the names of the directory of a file to the disk, where the system has a way to.
+/// Stores the entries of a file's directory on disk, if the system supports it.
 fn sync_directory(of: &Path) -> io::Result<()> {
     if cfg!(unix) {
         let directory = of.parent().filter(|parent| !parent.as_os_str().is_empty());
@@ -119,16 +118,16 @@ fn sync_directory(of: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a file that is on the disk before its name is: what was there stays until the new one is whole, even through a loss
-/// of power.
+/// Writes a file that is stored on disk before it is renamed: the previous file stays until the new one is complete,
+/// even through a loss of power.
 pub fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let mut partial = Partial::create_in_time(path)?;
     partial.write_all(bytes)?;
     partial.finish_synced().map(|_| ())
 }
 
-/// Writes a file: what was there stays until the new one is whole. A device is written as it is, and a file that is
-/// read-only is refused.
+/// Writes a file: the previous one stays until the new one is complete. A device is written directly, and a read-only
+/// file is refused.
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     match begin(path, bytes)? {
         Some(partial) => partial.finish().map(|_| ()),
@@ -136,8 +135,8 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     }
 }
 
-/// Writes files that belong together: none takes its place before all are whole, and no other process writes one of them
-/// in between. An error comes with its file.
+/// Writes files that belong together: none is moved to its final path before all are complete, and no other process
+/// writes one of them in between. An error is returned with its file.
 pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), (PathBuf, io::Error)> {
     let of = |path: &PathBuf| {
         let path = path.clone();
@@ -153,7 +152,7 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), (PathBuf, io::Error
     Ok(())
 }
 
-/// All of a file but its place; nothing of a device.
+/// Writes the temporary file with all bytes; `None` for a device, which is not written.
 fn begin(path: &Path, bytes: &[u8]) -> io::Result<Option<Partial>> {
     if fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
         return Ok(None);
@@ -163,12 +162,12 @@ fn begin(path: &Path, bytes: &[u8]) -> io::Result<Option<Partial>> {
     Ok(Some(partial))
 }
 
-/// Whether a file could not be written because another process writes it.
+/// Returns true if a file could not be written because another process is writing it.
 pub fn is_busy(error: &io::Error) -> bool {
     error.kind() == io::ErrorKind::ResourceBusy
 }
 
-/// Where a file goes: a link stays one.
+/// Returns the final path of a file: the target of a link, so that the link is kept.
 fn place(path: &Path) -> io::Result<PathBuf> {
     match fs::metadata(path) {
         Ok(there) if there.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
@@ -179,12 +178,12 @@ fn place(path: &Path) -> io::Result<PathBuf> {
     Ok(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()))
 }
 
-/// Creates a file and locks it, unless it is locked; what a dead process left there is removed for the next attempt.
+/// Creates and locks a file; `None` if it existed, after removal of the file of a dead process.
 fn claim(partial: &Path) -> io::Result<Option<File>> {
     match OpenOptions::new().write(true).create_new(true).open(partial) {
         Ok(file) => {
             lock(&file)?;
-            // Somebody who saw it before it was locked took it for a leftover.
+            // Another process may have removed the file as a leftover before it was locked.
             Ok(is_at(&file, partial).then_some(file))
         }
         Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
@@ -215,7 +214,7 @@ fn remove_leftover(partial: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Opens a file that is there, and never what a link leads to or what would have to be waited for.
+/// Opens an existing file itself, without following a link or blocking on a pipe.
 fn open_itself(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
     options.write(true);
@@ -235,7 +234,7 @@ fn lock(file: &File) -> io::Result<()> {
     })
 }
 
-/// Whether a path names this very file.
+/// Returns true if a path refers to this very file.
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;

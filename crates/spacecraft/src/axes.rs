@@ -1,4 +1,4 @@
-//! The axes of a body, and values about them: one for all, or one for each of three.
+//! Axes of a body, and values about them: one for all, or one for each of three.
 
 use std::borrow::Cow;
 
@@ -21,7 +21,7 @@ pub enum Axis {
 }
 
 impl Axis {
-    /// Its place among the three.
+    /// Returns the index of the axis: 0, 1 or 2.
     pub fn index(self) -> usize {
         match self {
             Self::Roll => 0,
@@ -34,14 +34,14 @@ impl Axis {
 /// One value for all axes, or one each for roll, pitch and yaw.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Each<T> {
-    /// For all.
+    /// One value for all axes.
     All(T),
-    /// For roll, pitch and yaw.
+    /// One value each for roll, pitch and yaw.
     Three([T; 3]),
 }
 
 impl<T: Copy> Each<T> {
-    /// The value about an axis.
+    /// Returns the value about the axis of index `axis`.
     pub fn about(&self, axis: usize) -> T {
         match self {
             Self::All(value) => *value,
@@ -49,7 +49,7 @@ impl<T: Copy> Each<T> {
         }
     }
 
-    /// Whether there is one for each of three axes.
+    /// Returns true if there is one value for each of three axes.
     pub fn is_three(&self) -> bool {
         matches!(self, Self::Three(_))
     }

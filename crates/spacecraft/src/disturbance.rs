@@ -60,12 +60,12 @@ pub struct Pulses {
 }
 
 impl Disturbance {
-    /// The instants at which it changes.
+    /// Returns the instants at which the disturbance begins and ends.
     pub fn edges(&self) -> impl Iterator<Item = Instant> {
         [Some(self.from), self.to].into_iter().flatten().map(at)
     }
 
-    /// What its force does to a body; none of a torque.
+    /// Returns the effect of the force on a body; `None` for a torque.
     pub fn push(&self, body: &Spatial) -> Option<Push> {
         let force = vector(self.force.as_ref()?);
         let first = body.points.first().map_or("", |point| &point.name);
@@ -74,7 +74,7 @@ impl Disturbance {
         Some(push)
     }
 
-    /// What does not go together on a body with three axes: a key, and why.
+    /// Returns a key that is inconsistent on a three-axis body, with the reason.
     pub fn three_axes_fault(&self) -> Option<Fault> {
         let refused = |key: &str, why: &str| Some(Fault::new(key, why));
         let noisy = self.noise.get() > 0.0;
@@ -100,27 +100,27 @@ impl Disturbance {
         }
     }
 
-    /// Whether it acts at an instant.
+    /// Returns true if `now` is between the start and the end of the disturbance.
     fn acts(&self, now: Instant) -> bool {
         at(self.from) <= now && self.to.is_none_or(|to| now < at(to))
     }
 }
 
-/// A disturbance at work.
+/// Run-time state of a disturbance.
 #[derive(Clone, Debug)]
 pub struct Disturbing {
     what: Disturbance,
     push: Option<Push>,
-    /// Of pulses, when the last began, whether it lasts, and when that changes.
+    /// Pulse train: start of the last pulse, true if the pulse is on, and instant of the next switching.
     beat: Option<(Instant, bool, Instant)>,
     draws: Stream,
-    /// The draw that is held (N m), and when the next is due.
+    /// Draw of the noise that is held now (N m); `next` is the instant of the next draw.
     drawn: f64,
     next: Option<Instant>,
 }
 
 impl Disturbing {
-    /// A disturbance before its start, with its own stream of draws, on a body if that has three axes.
+    /// Creates a disturbance before its start, with a random stream of its own; `body` is given if it has three axes.
     pub fn new(disturbance: &Disturbance, body: Option<&Spatial>, draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
         Self {
@@ -133,19 +133,19 @@ impl Disturbing {
         }
     }
 
-    /// When the next draw is due, or a pulse begins or ends.
+    /// Returns the instant of the next noise draw or pulse edge.
     pub fn due(&self) -> Option<Instant> {
         let ends = |next: &Instant| self.what.to.is_none_or(|to| *next < at(to));
         let beat = self.beat.map(|(_, _, next)| next).filter(ends);
         [self.next, beat].into_iter().flatten().min()
     }
 
-    /// Whether it acts at an instant.
+    /// Returns true if the disturbance acts at `now`, within a pulse if it is pulsed.
     fn acts(&self, now: Instant) -> bool {
         self.what.acts(now) && self.beat.is_none_or(|(_, on, _)| on)
     }
 
-    /// Draws the noise anew, begins and ends pulses, if that is due.
+    /// Draws the noise anew and starts or ends pulses, if that is due by `now`.
     pub fn serve(&mut self, now: Instant) {
         if let (Some(pulses), Some((began, on, next))) = (self.what.pulse, &mut self.beat) {
             while *next <= now {
@@ -159,28 +159,28 @@ impl Disturbing {
         }
         let Some(period) = self.what.period else { return };
         while let Some(next) = self.next.filter(|next| *next <= now) {
-            // Of the power of white noise, a draw that is held has what falls into its period.
+            // A draw held for a period has the part of the white noise's power that falls into this period.
             self.drawn = f64::sqrt(self.what.noise.get() / period.seconds()) * self.draws.normal();
             let next = next + period;
             self.next = self.what.to.is_none_or(|to| next < at(to)).then_some(next);
         }
     }
 
-    /// The torque on the hub about an axis at an instant (N m), right-continuous.
+    /// Returns the torque on the hub about an axis at an instant (N m), right-continuous.
     pub fn on_hub(&self, now: Instant, axis: usize) -> f64 {
         let about = self.what.about.map_or(0, Axis::index);
         let acts = self.push.is_none() && about == axis && self.acts(now);
         if acts { self.what.torque.get() + self.drawn } else { 0.0 }
     }
 
-    /// Its sines about an axis at an instant (N m).
+    /// Returns the torque of the sine terms about an axis at an instant (N m).
     fn swinging(&self, now: Instant, axis: usize) -> f64 {
         let own = self.what.about.map_or(0, Axis::index) == axis && self.acts(now);
         let sines = self.what.sines.iter().filter(|_| own);
         sines.map(|sine| sine.at(now.seconds())).sum()
     }
 
-    /// The torque about an axis at an instant (N m), of a force that about the centre of mass.
+    /// Returns the torque about an axis at an instant (N m); that of a force is about the centre of mass.
     pub fn torque(&self, now: Instant, axis: usize) -> f64 {
         match &self.push {
             Some(push) if self.acts(now) => push.torque[axis],
@@ -188,7 +188,7 @@ impl Disturbing {
         }
     }
 
-    /// Adds what a force does from now on, or sines in a torque.
+    /// Adds the effect of a force, or the sine terms of a torque, to `onto` from `now` on.
     pub fn push(&self, now: Instant, onto: &mut Wrench) {
         if !self.what.sines.is_empty() && self.acts(now) {
             let axis = self.what.about.map_or(0, Axis::index);

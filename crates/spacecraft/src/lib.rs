@@ -1,9 +1,9 @@
-//! Flexible spacecraft and what surrounds them, as a scenario describes them.
+//! Flexible spacecraft and their environment, as a scenario describes them.
 //!
-//! - [`body`]: bodies about one angle, in chains, on three axes; modes, appendages, drives;
-//! - [`flow`]: how they move between events, about one angle and with modes that do not act back;
-//! - [`wrench`]: all that acts on them;
-//! - [`environment`], [`disturbance`]: orbits, fields, pressure; torques and forces from outside;
+//! - [`body`]: one-axis and three-axis bodies, chains of panels; modes, appendages, drives;
+//! - [`flow`]: motion between events, about one axis and of modes that do not act back on the body;
+//! - [`wrench`]: torques, forces and rotors that act on a body;
+//! - [`environment`], [`disturbance`]: orbits, fields, pressure; external torques and forces;
 //! - [`manoeuvre`]: planned rotations, and the alternatives compared with them.
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.

@@ -1,4 +1,4 @@
-//! Sines in time, as parts of a torque.
+//! Sine functions of time, as parts of a torque.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -20,12 +20,12 @@ pub struct Sine {
 }
 
 impl Sine {
-    /// The value at a time since the start (s).
+    /// Returns the value at a time since the start of the run (s).
     pub fn at(&self, t: f64) -> f64 {
         self.amplitude.get() * libm::sin(self.frequency.get() * t + self.phase.get())
     }
 
-    /// The same as a term of a waveform, from one time to another (s).
+    /// Returns the sine as a term of a waveform between two times (s).
     pub fn term(&self, from: f64, to: f64) -> Term {
         let (amplitude, frequency) = (self.amplitude.get(), self.frequency.get());
         let (sin, cos) = libm::sincos(frequency * from + self.phase.get());

@@ -1,4 +1,4 @@
-//! All that acts on a body from an instant on: torques, forces at points, rotors, a waveform.
+//! Wrench: torques, forces at points, rotors and a waveform that act on a body from an instant on.
 
 use std::ops::AddAssign;
 
@@ -8,34 +8,35 @@ use crate::flow::Forced;
 use crate::motion::turning::{Gimbal, Rotor};
 use crate::sine::Sine;
 
-/// All that acts on a body from an instant on.
+/// Torques, forces, rotors and waveform that act on a body from an instant on.
 #[derive(Clone, Debug, Default)]
 pub struct Wrench {
-    /// Torques about the axes at the hub (N m): on a body with one angle the first alone, rad/s² where the hub's motion is
-    /// commanded; on one with three axes at the point that its actuators name.
+    /// Torques about the axes at the hub (N m). One-axis body: only the first, in rad/s² if the hub's motion is
+    /// commanded. Three-axis body: at the point named by its actuators.
     pub hub: [f64; 3],
     /// Torque of jets and of forces at points, about the centre of mass (N m).
     pub torque: Vector,
-    /// Modal forces of jets and of forces at points (N/sqrt(kg)); none at all if there are none.
+    /// Modal forces of jets and of forces at points (N/sqrt(kg)); empty if there are none.
     pub forces: Vec<f64>,
-    /// The sum of these forces, in the body's axes (N).
+    /// Sum of the forces of jets and at points, in the body's axes (N).
     pub force: Vector,
-    /// What a unit of each mode adds to their torque, for it moves the places where they act (N/sqrt(kg)); as `forces`.
+    /// Change of these forces' torque per unit of each mode, which moves the points of action (N/sqrt(kg)); as
+    /// `forces`.
     pub levers: Vec<Vector>,
-    /// Rotors that store momentum, each with the torque on it.
+    /// Rotors that store momentum, each with its motor torque.
     pub rotors: Vec<Rotor>,
-    /// Rotors in gimbals, each with its angle now and its rate.
+    /// Rotors in gimbals, each with its present gimbal angle and rate.
     pub gimbals: Vec<Gimbal>,
     /// Magnetic moment of torquers, in the body's axes (A m²).
     pub moment: Vector,
-    /// Sines of the time in the torque at the hub of a spacecraft, each with its axis.
+    /// Sine terms of time in the torque at the hub of a spacecraft, each with its axis.
     pub sines: Vec<(Vector, Sine)>,
-    /// A waveform about the first axis, and the time on it at that instant.
+    /// Waveform about the first axis, and the time reached within it.
     pub waveform: Option<Forced>,
 }
 
 impl Wrench {
-    /// Nothing acts any more; what was allocated stays so.
+    /// Removes all contributions and keeps the allocated memory.
     pub fn clear(&mut self) {
         let Self { hub, torque, forces, force, levers, rotors, gimbals, moment, sines, waveform } = self;
         *hub = [0.0; 3];
@@ -48,7 +49,7 @@ impl Wrench {
         *waveform = None;
     }
 
-    /// Adds a waveform, which is on its way since the same instant as any other.
+    /// Adds a waveform that began at the same instant as the present one, if there is one.
     pub fn force(&mut self, by: Option<Forced>) {
         self.waveform = match (self.waveform.take(), by) {
             (Some(own), Some(by)) => Some(own.changed(1.0, &by.waveform)),
@@ -56,7 +57,7 @@ impl Wrench {
         };
     }
 
-    /// Adds a push.
+    /// Adds the effect of forces at points.
     pub fn push(&mut self, push: &Push) {
         self.torque += push.torque;
         self.force += push.force;
@@ -67,16 +68,16 @@ impl Wrench {
     }
 }
 
-/// What forces at points do to a body, in its axes.
+/// Effect of forces at points on a body, in the body's axes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Push {
-    /// Torque about the centre of mass of the body as it is not bent (N m).
+    /// Torque about the centre of mass of the undeformed body (N m).
     pub torque: Vector,
     /// Modal forces (N/sqrt(kg)).
     pub forces: Vec<f64>,
-    /// The forces together (N).
+    /// Sum of the forces (N).
     pub force: Vector,
-    /// What a unit of each mode adds to the torque (N/sqrt(kg)).
+    /// Change of the torque per unit of each mode (N/sqrt(kg)).
     pub levers: Vec<Vector>,
 }
 
@@ -92,7 +93,7 @@ impl AddAssign<&Self> for Push {
 }
 
 impl Push {
-    /// Adds a force (N) at an offset (m) from a point.
+    /// Adds the effect of a force (N) that acts at an offset (m) from a named point.
     pub fn add(&mut self, body: &Spatial, point: &str, offset: &Vector, force: &Vector) {
         let moment = offset.cross(force);
         self.torque += body.point(point).unwrap_or_default().cross(force) + moment;

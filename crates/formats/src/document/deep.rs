@@ -1,4 +1,4 @@
-//! Tables and arrays that are nested too deep: which line, and which key.
+//! Errors about tables and arrays that are nested too deep: the line, and the key.
 
 use std::ops::Range;
 
@@ -6,18 +6,18 @@ use toml::Table;
 
 use super::mistake::shortened;
 
-/// Levels that a path of a key has at most; the parser has a limit of its own, of 80.
+/// Largest number of levels in the path of a key; the parser has a limit of its own, of 80.
 pub const DEEPEST: usize = 60;
 
-/// What is wrong.
+/// Message for a key that is nested too deep.
 pub const WHY: &str = "is nested too deep: a scenario has a few levels of tables and arrays";
 
-/// Whether the parser's error is that something is nested too deep.
+/// Returns true if the parser's message is about its nesting limit.
 pub fn is_limit(message: &str) -> bool {
     message.contains("recursion limit") || message.contains("max recursion depth")
 }
 
-/// The place of the line that is nested too deep, if this is the error.
+/// Returns the span of the line that is nested too deep, if the error is about nesting.
 pub fn place(text: &str, error: &toml::de::Error) -> Option<Range<usize>> {
     if !is_limit(error.message()) {
         return None;
@@ -30,7 +30,7 @@ pub fn place(text: &str, error: &toml::de::Error) -> Option<Range<usize>> {
     Some(start + blank..start + line[..key].trim_end().len().max(blank))
 }
 
-/// What is wrong, with the key of the line at a place.
+/// Returns the message about nesting, with the key of the line at `place`.
 pub fn why(text: &str, place: &Range<usize>) -> String {
     let line = &text[place.clone()];
     let header = |line: &str| line.trim().trim_matches(['[', ']']).trim().to_owned();
@@ -43,7 +43,7 @@ pub fn why(text: &str, place: &Range<usize>) -> String {
     format!("`{}` {WHY}", shortened(&key))
 }
 
-/// Where the first line begins with which the text is nested too deep: the parser does not report it.
+/// Returns the start of the first line with which the text is nested too deep, because the parser does not report it.
 fn first_deep(text: &str) -> usize {
     let ends: Vec<usize> =
         text.match_indices('\n').map(|(at, _)| at + 1).chain(std::iter::once(text.len())).collect();

@@ -1,23 +1,23 @@
-//! What is wrong with a part of a scenario: the key, and why.
+//! Error in a part of a scenario: the key, and the reason.
 
 use std::fmt;
 
-/// A key that cannot be used as it is given.
+/// Key with an invalid value, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Fault {
-    /// The key, below that of the part that found it; empty for the part itself.
+    /// Key relative to the part that reports the error; empty for the part itself.
     pub key: String,
-    /// Why, to be read after the key.
+    /// Reason, as a text that follows the key.
     pub why: String,
 }
 
 impl Fault {
-    /// A fault at a key.
+    /// Creates a fault at a key.
     pub fn new(key: impl Into<String>, why: impl Into<String>) -> Self {
         Self { key: key.into(), why: why.into() }
     }
 
-    /// The fault as the table with this key sees it.
+    /// Returns the fault relative to the enclosing table, in which `prefix` is the key of the part.
     #[must_use]
     pub fn within(self, prefix: &str) -> Self {
         let key = match self.key.as_str() {

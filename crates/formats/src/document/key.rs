@@ -1,4 +1,4 @@
-//! Keys by their paths: `law.relay.k_t`, `body.planar.modes[0].gain`; in a table, and in a text.
+//! Paths of keys, such as `law.relay.k_t` or `body.planar.modes[0].gain`, in tables and in texts.
 
 use std::ops::Range;
 
@@ -8,14 +8,14 @@ use toml::{Spanned, Table, Value};
 use super::deep::{DEEPEST, WHY};
 use super::nearest::{american, spelt};
 
-/// One step of a path: a key, or a place in an array.
+/// One step of a path: a key, or an index into an array.
 #[derive(Clone, Debug, PartialEq)]
 enum Step<'a> {
     Key(&'a str),
     Index(usize),
 }
 
-/// The steps of a path. A key that holds a dot stands in quotes: `uncertain."law.relay.k_t"`.
+/// Splits a path into its steps. A key that contains a dot stands in quotes: `uncertain."law.relay.k_t"`.
 fn steps(path: &str) -> Option<Vec<Step<'_>>> {
     let mut steps = Vec::new();
     let mut rest = path;
@@ -44,7 +44,7 @@ fn steps(path: &str) -> Option<Vec<Step<'_>>> {
     }
 }
 
-/// Spells the keys of a table as they are spelt here: `centre`, also where `center` was written.
+/// Renames the keys of a table to the spelling of scenarios: `center` becomes `centre`.
 pub fn respell(table: &mut Table) {
     fn within(value: &mut Value) {
         match value {
@@ -60,13 +60,13 @@ pub fn respell(table: &mut Table) {
     table.iter_mut().for_each(|(_, value)| within(value));
 }
 
-/// A key as it stands in a path.
+/// Returns a key as it is written in a path, in quotes if necessary.
 pub fn bare_or_quoted(key: &str) -> String {
     let bare = |c: char| c.is_alphanumeric() || c == '_' || c == '-';
     if !key.is_empty() && key.chars().all(bare) { key.to_owned() } else { format!("\"{key}\"") }
 }
 
-/// The value at a path.
+/// Returns the value at a path.
 pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
     let mut steps = steps(path)?.into_iter();
     let Some(Step::Key(first)) = steps.next() else { return None };
@@ -77,7 +77,7 @@ pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
     })
 }
 
-/// Puts a value at a path. Tables on the way are made, places in arrays must be there.
+/// Sets the value at a path. Missing tables are created; array elements must exist.
 pub fn set(table: &mut Table, path: &str, value: Value) -> Result<(), String> {
     let not_a_path = || "not the path of a key, such as `law.relay.k_t` or `body.planar.modes[0].gain`";
     let steps = steps(path).ok_or_else(not_a_path)?;
@@ -111,18 +111,18 @@ pub fn set(table: &mut Table, path: &str, value: Value) -> Result<(), String> {
     Ok(())
 }
 
-/// Where the value at a path stands in the text; the nearest table above it if it is not written.
+/// Returns the span in the text of the value at a path, or of the nearest table above it if it is not written.
 pub fn span_of(table: &DeTable<'_>, path: &str) -> Option<Range<usize>> {
     nearest(table, path).map(Spanned::span)
 }
 
-/// Where a key of the table at a path stands in the text, the path of the whole being empty.
+/// Returns the span in the text of a key of the table at a path; an empty path is the whole document.
 pub fn span_of_key(table: &DeTable<'_>, path: &str, key: &str) -> Option<Range<usize>> {
     let within = if path.is_empty() { table } else { nearest(table, path)?.get_ref().as_table()? };
     written(within, key).map(|(key, _)| key.span())
 }
 
-/// A key as it is written in the text, in either spelling, and its value.
+/// Returns a key as it is written in the text, in either spelling, with its value.
 fn written<'a>(
     table: &'a DeTable<'a>,
     key: &str,
@@ -130,7 +130,7 @@ fn written<'a>(
     table.get_key_value(key).or_else(|| table.get_key_value(american(key)?))
 }
 
-/// The value at a path, or the nearest table above it.
+/// Returns the value at a path, or the nearest table above it.
 fn nearest<'a>(table: &'a DeTable<'a>, path: &str) -> Option<&'a Spanned<DeValue<'a>>> {
     let mut steps = steps(path)?.into_iter();
     let Some(Step::Key(first)) = steps.next() else { return None };
@@ -149,7 +149,7 @@ fn nearest<'a>(table: &'a DeTable<'a>, path: &str) -> Option<&'a Spanned<DeValue
     Some(value)
 }
 
-/// The path of the innermost value around a place in the text.
+/// Returns the path of the innermost value that contains a place in the text.
 pub fn path_of(table: &DeTable<'_>, place: &Range<usize>) -> Option<String> {
     table.iter().find_map(|(key, value)| path_in(bare_or_quoted(key.get_ref()), value, place))
 }

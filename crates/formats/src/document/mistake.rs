@@ -1,51 +1,50 @@
-//! One thing in a document that is not accepted: where it stands, and why.
+//! One error in a document: its place and the message.
 
 use std::fmt;
 use std::ops::Range;
 
-/// Errors show no more of a line than this before and after the place that they are about (characters).
+/// Number of characters of a line that messages show before and after the erroneous place.
 pub const SHOWN: usize = 80;
 
-/// Something in a document that is not accepted. It is shown as `file:line:column: message`, with the line below and a caret
-/// under the place.
+/// Error in a document. It is printed as `file:line:column: message`, with the line below and carets under the place.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Mistake {
-    /// Where the document comes from.
+    /// Name of the document's source, such as its path.
     pub origin: String,
-    /// Its place in the text, if it has one.
+    /// Place in the text, if there is one.
     pub place: Option<TextPlace>,
-    /// The path of the key that it is about, such as `law.relay.k_t`; none for the document as a whole.
+    /// Path of the erroneous key, such as `law.relay.k_t`; `None` for the document as a whole.
     pub key: Option<String>,
-    /// What is wrong.
+    /// Error message.
     pub message: String,
-    /// The key or the word that was probably meant.
+    /// Key or word that was probably meant.
     pub suggestion: Option<&'static str>,
 }
 
-/// A place in a text.
+/// Place in a text.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct TextPlace {
-    /// The line, from 1.
+    /// Line number, from 1.
     pub line: usize,
-    /// The character in the line, from 1.
+    /// Character in the line, from 1.
     pub column: usize,
-    /// The line and carets under the place.
+    /// Quoted line, with carets under the place.
     quoted: String,
 }
 
 impl Mistake {
-    /// A mistake of a document that is not about one of its keys, or of which no more is known.
+    /// Creates an error without a key and a place.
     pub fn new(origin: &str, message: impl Into<String>) -> Self {
         Self { origin: origin.to_owned(), place: None, key: None, message: message.into(), suggestion: None }
     }
 
-    /// The mistake about this key.
+    /// Sets the key of the error.
     #[must_use]
     pub fn about(self, key: impl Into<String>) -> Self {
         Self { key: Some(key.into()), ..self }
     }
 
-    /// The mistake at this place of a text.
+    /// Sets the place of the error in a text.
     #[must_use]
     pub fn at(self, text: &str, span: &Range<usize>) -> Self {
         Self { place: Some(TextPlace::of(text, span)), ..self }
@@ -61,7 +60,7 @@ impl TextPlace {
         let column = text[line_start..start].chars().count();
         let line = text[line_start..].lines().next().unwrap_or_default();
         let marked = text[start..span.end.min(text.len()).max(start)].lines().next().unwrap_or_default();
-        // A line may be as long as the file, and hold what a terminal obeys.
+        // A line may be as long as the file, and contain control characters.
         let hidden = column.saturating_sub(SHOWN);
         let printable = |c: char| if c.is_control() { ' ' } else { c };
         let line: String = line.chars().skip(hidden).take(2 * SHOWN).map(printable).collect();
@@ -85,7 +84,7 @@ impl fmt::Display for Mistake {
     }
 }
 
-/// A text that fits a message.
+/// Shortens a text to the length that fits a message.
 pub fn shortened(text: &str) -> String {
     match text.char_indices().nth(SHOWN) {
         Some((end, _)) => format!("{}…", &text[..end]),

@@ -1,4 +1,4 @@
-//! All that does not fit in a document, not only the first: what is wrong is replaced by what would fit, and the rest is read.
+//! All errors in a document, not only the first: an invalid value is replaced by a valid one, and reading is repeated.
 
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
@@ -7,18 +7,18 @@ use super::key::{get, set};
 use super::reader::read;
 use super::wrong::Wrong;
 
-/// No more are told at once.
+/// Largest number of errors reported at once.
 const MOST: usize = 20;
-/// A number that most keys accept.
+/// Number that most keys accept.
 const FITS: f64 = 0.5;
 
-/// What is wrong with a table that is to be read as a part: the first mistake, which is known, and the others.
+/// Returns all errors of a table that is to be read as a part: the known first one, and the others.
 pub fn all<T: DeserializeOwned>(table: &Table, first: Wrong) -> Vec<Wrong> {
     let (mut table, mut found) = (table.clone(), Vec::new());
     let mut replaced: Vec<String> = Vec::new();
     let mut next = Some(first);
     while let Some(wrong) = next.take() {
-        // What was put in the place of another mistake does not fit either: nobody wrote that.
+        // The replacement of a previous error is invalid too: the document has no such value.
         let own = replaced.iter().any(|place| wrong.path().starts_with(place));
         if own || found.len() == MOST {
             break;
@@ -32,7 +32,7 @@ pub fn all<T: DeserializeOwned>(table: &Table, first: Wrong) -> Vec<Wrong> {
     found
 }
 
-/// Puts something that may fit in the place of what is wrong, and tells its path.
+/// Replaces an invalid value by one that may be valid, and returns its path.
 fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
     let path = wrong.path();
     let within = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
@@ -43,7 +43,7 @@ fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
             Some(meant) if !inner.contains_key(meant) => {
                 inner.insert(meant.to_owned(), value);
             }
-            // A kind without its name is none.
+            // An empty table names no kind.
             _ if inner.is_empty() => return None,
             _ => {}
         }
@@ -52,7 +52,7 @@ fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
         } else {
             set(table, &path, Value::Table(inner)).ok()?;
         }
-        // What was under the key is still to be judged.
+        // The value of the renamed key is still to be read.
         return Some(within("\n"));
     }
     let (place, value) = match (wrong.missing(), wrong.meant()) {
@@ -65,7 +65,7 @@ fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
     Some(place)
 }
 
-/// A value of the type that a message asks for.
+/// Returns a value of the type that a message asks for.
 fn fitting(why: &str) -> Option<Value> {
     let expected = why.rsplit_once("expected ").map_or(why, |(_, expected)| expected);
     let value = match expected {

@@ -1,4 +1,4 @@
-//! A scenario's TOML text: keys addressed by their paths, and errors that point at the very value.
+//! TOML text of a scenario: keys addressed by their paths, and errors that point at the value.
 
 mod deep;
 mod fault;
@@ -31,42 +31,42 @@ use key::{bare_or_quoted, span_of};
 use mistake::shortened;
 use words::{mistaken, told, unfit, unparsed};
 
-/// No scenario is longer (bytes).
+/// Largest length of a scenario (bytes).
 pub const LONGEST: u64 = 4 << 20;
 
-/// A scenario that cannot be used. Its text names file, line, key, what was found and what is accepted.
+/// Error of an invalid scenario. Its text names file, line, key, the found value and the accepted values.
 #[derive(Debug, Error)]
 pub enum ScenarioError {
-    /// The file cannot be read.
+    /// Unreadable file.
     #[error("{}: {why}", path.display())]
     Unreadable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Reason.
         why: String,
     },
-    /// The document has something that is not accepted.
+    /// Document with errors.
     #[error("{}", all_of(.0))]
     Invalid(Vec<Mistake>),
-    /// A key given beside the document is not accepted.
+    /// Key set in addition to the document that is not accepted.
     #[error("{origin}: {key}: {why}")]
     Key {
-        /// Where the document comes from.
+        /// Name of the document's source.
         origin: String,
-        /// The key.
+        /// Path of the key.
         key: String,
-        /// What is wrong.
+        /// Error message.
         why: String,
     },
 }
 
-/// Mistakes one after another.
+/// Joins the messages of several errors, one on each line.
 fn all_of(mistakes: &[Mistake]) -> String {
     mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
 impl ScenarioError {
-    /// All that is known to be wrong.
+    /// Returns all errors.
     pub fn mistakes(&self) -> Vec<Mistake> {
         match self {
             Self::Unreadable { path, why } => vec![Mistake::new(&path.display().to_string(), why)],
@@ -79,16 +79,16 @@ impl ScenarioError {
 }
 
 impl Mistake {
-    /// The error that consists of this mistake.
+    /// Returns the scenario error that consists of this error alone.
     fn alone(self) -> ScenarioError {
         ScenarioError::Invalid(vec![self])
     }
 }
 
-/// A scenario as written: its text, and the keys that were set since.
+/// Scenario as written: its text, and the keys that were set afterwards.
 #[derive(Clone, Debug)]
 pub struct Document {
-    /// Where it comes from, for errors.
+    /// Name of the document's source, for messages.
     origin: String,
     text: Option<String>,
     table: Table,
@@ -96,7 +96,7 @@ pub struct Document {
 }
 
 impl Document {
-    /// Reads a file.
+    /// Reads a document from a file.
     pub fn load(path: &Path) -> Result<Self, ScenarioError> {
         let unreadable = |why: String| ScenarioError::Unreadable { path: path.to_owned(), why };
         let metadata = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
@@ -110,7 +110,7 @@ impl Document {
         Self::read_bytes(path, bytes)
     }
 
-    /// Takes what was read from somewhere that errors call `path`.
+    /// Parses the contents of a file that messages call `path`.
     pub fn read_bytes(path: &Path, bytes: Vec<u8>) -> Result<Self, ScenarioError> {
         let unreadable = |why: String| ScenarioError::Unreadable { path: path.to_owned(), why };
         if bytes.len() as u64 > LONGEST {
@@ -124,30 +124,30 @@ impl Document {
         Self::parse(&path.display().to_string(), text)
     }
 
-    /// Takes a text. `origin` is what errors call it.
+    /// Parses a text that messages call `origin`.
     pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
         let mut table = text.parse::<Table>().map_err(|error| unparsed(origin, &text, &error).alone())?;
         key::respell(&mut table);
         Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
     }
 
-    /// Takes a table that has no text, such as a Python dictionary.
+    /// Creates a document from a table without a text, such as a Python dictionary.
     pub fn from_table(origin: &str, mut table: Table) -> Self {
         key::respell(&mut table);
         Self { origin: origin.to_owned(), text: None, table, changed: Vec::new() }
     }
 
-    /// Where the document comes from.
+    /// Returns the name of the document's source.
     pub fn origin(&self) -> &str {
         &self.origin
     }
 
-    /// All its keys.
+    /// Returns the table with all keys.
     pub fn table(&self) -> &Table {
         &self.table
     }
 
-    /// Whether it has a key, such as `log.period`.
+    /// Returns true if the document has a key, such as `log.period`.
     pub fn has(&self, key: &str) -> bool {
         let (tables, last) = key.rsplit_once('.').unwrap_or(("", key));
         let mut tables = tables.split('.').filter(|name| !name.is_empty());
@@ -155,12 +155,12 @@ impl Document {
         within.is_some_and(|table| table.contains_key(last))
     }
 
-    /// The text of a key at the top, if it is one.
+    /// Returns the text of a top-level key, if its value is a string.
     pub fn text_of(&self, key: &str) -> Option<&str> {
         self.table.get(key).and_then(Value::as_str)
     }
 
-    /// An error for a key at the top that is missing.
+    /// Returns the error of a missing top-level key.
     pub fn missing(&self, key: &str) -> ScenarioError {
         let message = format!("missing key `{key}`");
         let mistake = Mistake::new(&self.origin, message).about(key);
@@ -170,7 +170,7 @@ impl Document {
         }
     }
 
-    /// Sets a key, given by its path: `law.relay.k_t`, `body.planar.modes[0].frequency`.
+    /// Sets a key, given by its path, such as `law.relay.k_t` or `body.planar.modes[0].frequency`.
     pub fn set(&mut self, key: &str, value: Value) -> Result<(), ScenarioError> {
         key::set(&mut self.table, key, value).map_err(|why| self.key_error(key, why))?;
         self.changed.push(key.to_owned());
@@ -183,10 +183,11 @@ impl Document {
         self.set(key, value.unwrap_or_else(|| Value::String(text.to_owned())))
     }
 
-    /// The document with numbers in SI in the place of those with units, such as `"2 deg"`; `schema` says the units of keys.
+    /// Returns the document with numbers with units, such as `"2 deg"`, converted to SI; `schema` gives the units of
+    /// keys.
     ///
     /// # Errors
-    /// A unit that is not known, or not one of its key.
+    /// An unknown unit, or one that does not fit its key.
     pub fn in_si(
         &self,
         schema: impl FnOnce() -> &'static serde_json::Value,
@@ -204,7 +205,7 @@ impl Document {
         }
     }
 
-    /// The document as the type that it describes.
+    /// Reads the document as a value of type `T`.
     pub fn read<T: serde::de::DeserializeOwned>(&self) -> Result<T, ScenarioError> {
         let wrong = match reader::read(&self.table) {
             Ok(part) => return Ok(part),
@@ -214,7 +215,7 @@ impl Document {
         Err(ScenarioError::Invalid(all.iter().map(|wrong| self.unfit(wrong)).collect()))
     }
 
-    /// What does not fit, pointed at its place if the text has it.
+    /// Returns the error of a mismatch, with its place if the text has it.
     fn unfit(&self, wrong: &Wrong) -> Mistake {
         let message = match (&self.text, self.changed.as_slice()) {
             (Some(text), []) => return unfit(&self.origin, text, wrong),
@@ -224,14 +225,14 @@ impl Document {
         mistaken(&self.origin, wrong, message)
     }
 
-    /// An error at the first value of which a part was left unread: what was read of it is in `understood`.
+    /// Returns an error at the first value that was not read completely; `understood` is the part that was read.
     pub fn unread(&self, understood: &Table) -> Option<ScenarioError> {
         let mut pairs = self.table.iter().filter_map(|(key, value)| Some((key, value, understood.get(key)?)));
         let fault = pairs.find_map(|(key, given, read)| unread(&bare_or_quoted(key), given, read))?;
         Some(self.inconsistent(&fault))
     }
 
-    /// An error at a fault's key, pointed at its value if the text has it.
+    /// Returns the error of a fault, with the place of its value if the text has it.
     pub fn inconsistent(&self, fault: &Fault) -> ScenarioError {
         let key = &fault.key;
         let mistake = Mistake::new(&self.origin, fault.to_string()).about(key);
@@ -253,13 +254,13 @@ fn too_long(length: u64) -> String {
     format!("a scenario has at most {LONGEST} bytes, this file has {length}")
 }
 
-/// Reads a part of a scenario, such as one law, from a TOML text of its own: for the tests of parts.
+/// Reads a part of a scenario, such as one law, from a TOML text of its own, for unit tests.
 pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
     let table = text.parse().map_err(|error| unparsed("text", text, &error).alone())?;
     read_value(&Value::Table(table)).map_err(|wrong| unfit("text", text, &wrong).alone())
 }
 
-/// The first part of a value that is not in what was read of it.
+/// Returns a fault at the first part of a value that is not in `read`.
 fn unread(key: &str, given: &Value, read: &Value) -> Option<Fault> {
     match (given, read) {
         (Value::Table(given), Value::Table(read)) => given.iter().find_map(|(name, value)| {

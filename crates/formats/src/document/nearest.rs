@@ -1,8 +1,8 @@
-//! Which of the names that are known a wrong one was probably meant to be, and the other spelling of English.
+//! Suggestions for unknown names, and American spellings of keys.
 
 use strsim::damerau_levenshtein;
 
-/// What others call what is called by one of the names on the right here; without underscores.
+/// Names used elsewhere, without underscores, with the names of scenarios that they may mean.
 const ALIASES: &[(&str, &[&str])] = &[
     ("arw", &["angle_random_walk"]),
     ("antiwindup", &["limit"]),
@@ -60,7 +60,7 @@ const ALIASES: &[(&str, &[&str])] = &[
     ("zeta", &["damping"]),
 ];
 
-/// What there is not, and what there is instead.
+/// Features that do not exist, with the hint to give instead.
 const ABSENT: &[(&str, &str)] = &[
     ("cmg", "there are no control moment gyros; `wheels` is the nearest"),
     ("cmgs", "there are no control moment gyros; `wheels` is the nearest"),
@@ -73,10 +73,10 @@ const ABSENT: &[(&str, &str)] = &[
     ("slosh", "a pendulum or a sprung mass is an `[[appendage]]` with a mode of its own"),
 ];
 
-/// Keys that Americans spell otherwise.
+/// American spellings of keys, with the spellings of scenarios.
 const SPELLINGS: &[(&str, &str)] = &[("maneuver", "manoeuvre"), ("center", "centre")];
 
-/// A hint for a name that is not among those that are known, if there is one.
+/// Returns a hint for a name that is not among the known ones, if there is one.
 pub fn hint(name: &str, known: &[&str]) -> Option<String> {
     let given = plain(name);
     if let Some(nearest) = nearest(&given, known) {
@@ -85,7 +85,7 @@ pub fn hint(name: &str, known: &[&str]) -> Option<String> {
     ABSENT.iter().find(|(absent, _)| *absent == given).map(|(_, instead)| (*instead).to_owned())
 }
 
-/// The known name that a wrong one was probably meant to be.
+/// Returns the known name that an unknown one was probably meant to be.
 pub fn meant<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     nearest(&plain(name), known)
 }
@@ -98,7 +98,7 @@ fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     if let Some(name) = aliases.iter().find_map(|name| known.iter().find(|known| *known == name)) {
         return Some(name);
     }
-    // A third of the letters may be wrong; the first of the nearest counts.
+    // A third of the letters may be wrong; the first of the nearest names counts.
     let most = given.chars().count().div_ceil(3);
     let distance = |name: &&&str| damerau_levenshtein(given, &plain(name));
     let near = known.iter().min_by_key(distance).filter(|name| distance(name) <= most && given.len() > 1);
@@ -108,17 +108,17 @@ fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
     near.or_else(|| known.iter().find(begins)).copied()
 }
 
-/// A name without what is often written otherwise.
+/// Returns a name reduced to its letters and digits, in lower case.
 fn plain(name: &str) -> String {
     name.chars().filter(char::is_ascii_alphanumeric).map(|c| c.to_ascii_lowercase()).collect()
 }
 
-/// A key as it is spelt here.
+/// Returns a key in the spelling of scenarios.
 pub fn spelt(key: &str) -> &str {
     SPELLINGS.iter().find(|(american, _)| *american == key).map_or(key, |(_, british)| british)
 }
 
-/// A key as Americans spell it, if they spell it otherwise.
+/// Returns the American spelling of a key, if it differs.
 pub fn american(key: &str) -> Option<&'static str> {
     SPELLINGS.iter().find(|(_, british)| *british == key).map(|(american, _)| *american)
 }

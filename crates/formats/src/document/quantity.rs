@@ -1,6 +1,6 @@
-//! Numbers with units, such as `"2 deg"`, where a key takes a number: they are stored in SI, the unit of the key.
+//! Numbers with units, such as `"2 deg"`, as values of numeric keys: they are converted to SI, the unit of the key.
 //!
-//! The unit of a key is the one that its description in the JSON Schema of scenarios ends with, as in `(rad/s)`.
+//! The unit of a key stands in parentheses in its description in the JSON Schema of scenarios, as in `(rad/s)`.
 
 use serde_json::Value as Json;
 use toml::{Table, Value};
@@ -9,10 +9,10 @@ use super::Fault;
 use super::key::bare_or_quoted;
 use super::units::Unit;
 
-/// References of a schema are followed so far.
+/// Largest depth to which references of a schema are followed.
 const DEEPEST: usize = 32;
 
-/// Whether some text in a table may be a number with a unit.
+/// Returns true if some text in a table may be a number with a unit.
 pub fn any(table: &Table) -> bool {
     fn within(value: &Value) -> bool {
         match value {
@@ -25,7 +25,8 @@ pub fn any(table: &Table) -> bool {
     table.values().any(within)
 }
 
-/// Puts numbers in SI in the place of numbers with units, and tells what is no such number where one is expected.
+/// Converts numbers with units to SI in place, and returns a fault for each unit that is unknown or does not fit its
+/// key.
 pub fn to_si(table: &mut Table, schema: &Json) -> Vec<Fault> {
     let mut faults = Vec::new();
     let root = [Node { schema, unit: None }];
@@ -35,7 +36,7 @@ pub fn to_si(table: &mut Table, schema: &Json) -> Vec<Fault> {
     faults
 }
 
-/// The unit of a key by its path, such as `body.planar.modes[0].frequency`.
+/// Returns the unit of a key by its path, such as `body.planar.modes[0].frequency`.
 pub fn unit_at<'a>(schema: &'a Json, key: &str) -> Option<&'a str> {
     let mut nodes = vec![Node { schema, unit: None }];
     for part in key.split('.') {
@@ -50,7 +51,7 @@ pub fn unit_at<'a>(schema: &'a Json, key: &str) -> Option<&'a str> {
     ends.iter().filter(|node| of_type(node.schema, "number")).find_map(|node| node.unit)
 }
 
-/// A place in the schema, and the unit that the descriptions on the way to it say.
+/// Node of the schema, with the unit given by the descriptions on the way to it.
 #[derive(Copy, Clone)]
 struct Node<'a> {
     schema: &'a Json,
@@ -87,7 +88,7 @@ fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, fau
     }
 }
 
-/// A number in the unit of its key.
+/// Converts a number to the unit of its key.
 fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
     let wanted: Vec<&str> = ends.iter().filter_map(|node| node.unit).collect();
     let Some(first) = wanted.first() else {
@@ -102,7 +103,7 @@ fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
         .ok_or_else(|| format!("has the unit `{unit}`, expected a unit such as `{first}`"))
 }
 
-/// A text that begins with a number and goes on with something else.
+/// Splits a text into a number and a unit; `None` if it is not of this form.
 fn split(text: &str) -> Option<(f64, &str)> {
     let text = text.trim();
     if !text.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) {
@@ -117,7 +118,7 @@ fn split(text: &str) -> Option<(f64, &str)> {
     (longest.0.is_finite() && named).then_some((longest.0, unit))
 }
 
-/// Where a key, or an element, of what may stand at some places is described.
+/// Returns the schemas of a key, or of the elements if there is no key, within the given nodes.
 fn within<'a>(schema: &'a Json, nodes: &[Node<'a>], key: Option<&str>) -> Vec<Node<'a>> {
     let mut inner = Vec::new();
     for node in flat(schema, nodes) {
@@ -139,7 +140,7 @@ fn within<'a>(schema: &'a Json, nodes: &[Node<'a>], key: Option<&str>) -> Vec<No
     inner
 }
 
-/// All that some places may be, references and choices resolved.
+/// Returns all schemas that some nodes may stand for, with references and choices resolved.
 fn flat<'a>(schema: &'a Json, nodes: &[Node<'a>]) -> Vec<Node<'a>> {
     fn follow<'a>(schema: &'a Json, node: Node<'a>, depth: usize, all: &mut Vec<Node<'a>>) {
         if depth == DEEPEST {
@@ -162,7 +163,7 @@ fn flat<'a>(schema: &'a Json, nodes: &[Node<'a>]) -> Vec<Node<'a>> {
     all
 }
 
-/// The unit that a description says: `Angle (rad)`, `Torque (N m; rad/s² on a body without inertia)`.
+/// Returns the unit in a description: `Angle (rad)`, `Torque (N m; rad/s² on a body without inertia)`.
 fn unit_of(schema: &Json) -> Option<&str> {
     let text = schema.get("description")?.as_str()?;
     let places = text.match_indices('(').filter_map(|(open, _)| {

@@ -1,4 +1,4 @@
-//! Reads parts of a scenario from TOML values: an error knows the key that it is about.
+//! Deserialisation of parts of a scenario from TOML values, with errors that contain the key.
 
 use serde::de::value::StrDeserializer;
 use serde::de::{
@@ -9,7 +9,7 @@ use toml::{Table, Value};
 
 use super::wrong::Wrong;
 
-/// What a date asks for: as a newtype of this name, whose content is then the date's text.
+/// Newtype name by which a type requests a date, as its text.
 pub const DATE: &str = "date";
 
 /// Reads a part from a table.
@@ -35,8 +35,8 @@ pub fn read_value<T: DeserializeOwned>(value: &Value) -> Result<T, Wrong> {
     T::deserialize(Reader(value))
 }
 
-/// One value. Types that ask for a certain form are given that form or told what was found: so serde's code for the others
-/// is never made.
+/// Deserialiser of one value. Types that request a certain form get that form or an error, so that serde's code for
+/// other forms is not generated.
 #[derive(Clone, Copy)]
 struct Reader<'a>(&'a Value);
 
@@ -76,7 +76,7 @@ impl<'de> Reader<'de> {
             Value::Table(table) => {
                 let mut entries = Entries::new(table);
                 let made = visitor.visit_map(&mut entries)?;
-                // A part that takes a kind from a map takes its first key, and would leave others unread.
+                // A part that reads a kind from a map uses its first key, and would leave others unread.
                 if entries.entries.next().is_some() { Err(Wrong::several_kinds(table)) } else { Ok(made) }
             }
             _ => self.refused(&visitor),
@@ -178,7 +178,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     }
 }
 
-/// The values of an array.
+/// Access to the values of an array.
 struct Items<'a> {
     values: std::slice::Iter<'a, Value>,
     index: usize,
@@ -199,7 +199,7 @@ impl<'de> SeqAccess<'de> for Items<'de> {
     }
 }
 
-/// The entries of a table.
+/// Access to the entries of a table.
 struct Entries<'a> {
     entries: toml::map::Iter<'a, String, Value>,
     entry: Option<(&'a str, &'a Value)>,
@@ -230,7 +230,7 @@ impl<'de> MapAccess<'de> for Entries<'de> {
     }
 }
 
-/// A kind: its name, and its table if it has one.
+/// Access to an enum: the name of the kind, and its table if it has one.
 struct Kind<'a> {
     name: &'a str,
     value: Option<&'a Value>,

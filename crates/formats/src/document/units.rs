@@ -1,20 +1,21 @@
-//! Units of numbers that are written as texts, such as `deg/s`: what they are in SI.
+//! Units of numbers that are written as texts, such as `deg/s`, and their conversion to SI.
 
 use std::f64::consts::{PI, TAU};
 
-/// A unit: its factor to SI, and twice the exponents of metre, kilogram, second, ampere and radian.
+/// Unit: its factor to SI, and twice the exponents of metre, kilogram, second, ampere and radian.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Unit {
     factor: f64,
     twice: [i16; 5],
-    /// Whether cycles are counted, which are taken for 2π rad where an angle is expected.
+    /// True if the unit counts cycles, which are converted to 2π rad where an angle is expected.
     cycles: bool,
 }
 
 const ONE: Unit = Unit { factor: 1.0, twice: [0; 5], cycles: false };
 const DEGREE: f64 = PI / 180.0;
 
-/// Units by their symbols: factor, exponents of metre, kilogram, second, ampere and radian, and whether prefixes are taken.
+/// Units by their symbols: factor, exponents of metre, kilogram, second, ampere and radian, and true if prefixes are
+/// allowed.
 const SYMBOLS: &[(&str, f64, [i16; 5], bool)] = &[
     ("m", 1.0, [1, 0, 0, 0, 0], true),
     ("g", 1e-3, [0, 1, 0, 0, 0], true),
@@ -50,14 +51,15 @@ const PREFIXES: &[(&str, f64)] = &[
 ];
 
 impl Unit {
-    /// A unit from its text, such as `N m s/rad`, `deg/sqrt(h)`, `kg m²` or `m/s^2`; a slash is of the next factor alone.
+    /// Parses a unit, such as `N m s/rad`, `deg/sqrt(h)`, `kg m²` or `m/s^2`; a slash applies to the next factor only.
     pub fn parse(text: &str) -> Option<Self> {
         let mut rest = Rest(text.trim());
         let unit = rest.product()?;
         rest.0.is_empty().then_some(unit)
     }
 
-    /// How many of another unit this one is, if they measure the same. Cycles are taken for 2π rad where an angle is expected.
+    /// Returns the ratio of this unit to another one, if they measure the same quantity. Cycles are converted to 2π rad
+    /// where an angle is expected.
     pub fn per(self, other: Self) -> Option<f64> {
         if self.twice == other.twice {
             return Some(self.factor / other.factor);
@@ -75,7 +77,7 @@ impl Unit {
         Self { factor: self.factor * other.factor, twice, cycles: self.cycles || other.cycles }
     }
 
-    /// The unit to half of this power.
+    /// Returns the unit raised to the power `power`/2.
     fn to_half(self, power: i16) -> Option<Self> {
         let mut twice = self.twice;
         for exponent in &mut twice {
@@ -101,13 +103,13 @@ impl Unit {
         }
         PREFIXES.iter().find_map(|(prefix, factor)| {
             let word = word.strip_prefix(prefix)?;
-            // A milli-kilogram would be the word of a gram.
+            // The base symbol is `g`, so that `kg` takes no further prefix.
             SYMBOLS.iter().find(|known| known.3 && known.0 == word).map(|known| of(known, *factor))
         })
     }
 }
 
-/// What is left of a text.
+/// Remaining text of a unit.
 struct Rest<'a>(&'a str);
 
 impl Rest<'_> {
@@ -158,7 +160,7 @@ impl Rest<'_> {
         (twice == libm::trunc(twice) && twice.abs() <= 12.0).then(|| base.to_half(twice as i16))?
     }
 
-    /// A product up to a bracket.
+    /// Parses a product up to the closing parenthesis.
     fn closed(&mut self) -> Option<Unit> {
         let inner = self.product()?;
         self.0 = self.0.strip_prefix(')')?;

@@ -1,4 +1,4 @@
-//! Errors in an engineer's words, pointed at the very value.
+//! Error messages in an engineer's words, with their place in the text.
 
 use toml::de::DeTable;
 
@@ -6,7 +6,7 @@ use super::key::{bare_or_quoted, path_of, span_of, span_of_key};
 use super::mistake::{Mistake, shortened};
 use super::{Wrong, deep};
 
-/// The parser's error, pointed at the place that it is about.
+/// Returns the error of the parser, with its key and place.
 pub fn unparsed(origin: &str, text: &str, error: &toml::de::Error) -> Mistake {
     if let Some(span) = deep::place(text, error) {
         return Mistake::new(origin, deep::why(text, &span)).at(text, &span);
@@ -22,13 +22,13 @@ pub fn unparsed(origin: &str, text: &str, error: &toml::de::Error) -> Mistake {
     }
 }
 
-/// What does not fit, pointed at its key or value where the text has it.
+/// Returns the error of a mismatch, with the place of its key or value in the text.
 pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> Mistake {
     let path = wrong.path();
     let table = DeTable::parse(text).ok();
     let span = table.and_then(|table| match wrong.key() {
         Some(key) => span_of_key(table.get_ref(), &path, key),
-        // What is missing from the whole document has no place.
+        // A key missing from the whole document has no place.
         None if path.is_empty() => Some(0..0),
         None => span_of(table.get_ref(), &path),
     });
@@ -41,7 +41,7 @@ pub fn unfit(origin: &str, text: &str, wrong: &Wrong) -> Mistake {
     }
 }
 
-/// A mistake with the key and the suggestion of what does not fit.
+/// Returns the error of a mismatch, with its key and suggestion.
 pub fn mistaken(origin: &str, wrong: &Wrong, message: String) -> Mistake {
     let mistake = Mistake { suggestion: wrong.meant(), ..Mistake::new(origin, message) };
     match (wrong.path(), wrong.key().or(wrong.missing()).map(bare_or_quoted)) {
@@ -52,11 +52,11 @@ pub fn mistaken(origin: &str, wrong: &Wrong, message: String) -> Mistake {
     }
 }
 
-/// What does not fit, with the path of the part that it is about.
+/// Returns the message of a mismatch, with the path of its part.
 pub fn told(wrong: &Wrong) -> String {
     match wrong.path() {
         path if path.is_empty() => wrong.to_string(),
-        // A path without quotes is read as tables within tables.
+        // A path without quotes is parsed as nested tables.
         path if path.starts_with("uncertain.") && !path.contains('"') => {
             format!("`{path}`: {wrong}; the path of an uncertain key must be in quotes")
         }
@@ -64,7 +64,7 @@ pub fn told(wrong: &Wrong) -> String {
     }
 }
 
-/// The parser's words, where they would puzzle, in words of a scenario.
+/// Translates messages of the parser that would puzzle a user.
 fn explained(message: &str) -> String {
     let message = message.trim_end();
     if let Some(found) = message.strip_suffix(" as i128, expected any valid TOML value") {
@@ -87,7 +87,7 @@ fn explained(message: &str) -> String {
     known.to_owned()
 }
 
-/// Says which brackets a header needs, if it has the wrong ones.
+/// Returns a message about the brackets of a header, if it has the wrong ones.
 fn bracketed(key: &str, place: &str, why: &str) -> Option<String> {
     match why {
         "found an array, expected a table" if place.starts_with("[[") => {

@@ -1,4 +1,4 @@
-//! What does not fit the type of a part: at which key, and why, in an engineer's words.
+//! Mismatch between a value and the type that is read: the key, and the reason in an engineer's words.
 
 use std::fmt;
 
@@ -9,17 +9,17 @@ use super::key::bare_or_quoted;
 use super::mistake::shortened;
 use super::nearest::{hint, meant};
 
-/// Something that does not fit.
+/// Mismatch of a value with the type that is read.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Wrong {
-    /// The way to the value, innermost step first, each as it stands in a path.
+    /// Path to the value, innermost step first, each as written in a path.
     steps: Vec<String>,
-    /// The key within that value, if the key itself is wrong.
+    /// Key within that value, if the key itself is wrong.
     key: Option<String>,
     why: String,
-    /// What was probably meant.
+    /// Name that was probably meant.
     meant: Option<&'static str>,
-    /// The key that is missing.
+    /// Missing key.
     missing: Option<&'static str>,
 }
 
@@ -28,7 +28,7 @@ impl Wrong {
         Self { steps: Vec::new(), key: None, why: why.into(), meant: None, missing: None }
     }
 
-    /// Something else than a kind.
+    /// Returns the mismatch of a value that is not a kind.
     pub fn no_kind(value: &Value) -> Self {
         let found = match value {
             Value::Datetime(_) => "a date",
@@ -41,46 +41,46 @@ impl Wrong {
         Self::because(format!("found {found}, expected the name of a kind or a table"))
     }
 
-    /// Several kinds in the place of one.
+    /// Returns the mismatch of several kinds in place of one.
     pub fn several_kinds(kinds: &Table) -> Self {
         let given: Vec<_> = kinds.keys().map(|kind| format!("`{kind}`")).collect();
         let given = given.join(", ");
         Self::because(format!("exactly one kind is accepted here, and more than one is given: {given}"))
     }
 
-    /// A name where a kind needs a table.
+    /// Returns the mismatch of a name whose kind needs a table.
     pub fn only_a_name() -> Self {
         Self::because("found only the name of a kind that needs values of its own: a table")
     }
 
-    /// A name that is none of those known.
+    /// Returns the mismatch of a name that is not among the known ones.
     fn unknown(name: &str, given: &str, known: &'static [&'static str], none: &str) -> Self {
         let hint = hint(given, known).map_or_else(String::new, |hint| format!("; {hint}"));
         let why = format!("{name}, {}{hint}", one_of(known, none));
         Self { meant: meant(given, known), ..Self::because(why) }
     }
 
-    /// The same, at the key itself, not at its value.
+    /// Sets the key that is itself wrong.
     #[must_use]
     pub fn at_key(self, key: &str) -> Self {
         Self { key: Some(key.to_owned()), ..self }
     }
 
-    /// The same, within the value of a key.
+    /// Returns the mismatch as one within the value of `key`.
     #[must_use]
     pub fn in_key(mut self, key: &str) -> Self {
         self.steps.push(bare_or_quoted(key));
         self
     }
 
-    /// The same, within an element of an array.
+    /// Returns the mismatch as one within an element of an array.
     #[must_use]
     pub fn in_element(mut self, index: usize) -> Self {
         self.steps.push(format!("[{index}]"));
         self
     }
 
-    /// The path of the value.
+    /// Returns the path of the value.
     pub fn path(&self) -> String {
         let mut path = String::new();
         for step in self.steps.iter().rev() {
@@ -92,17 +92,17 @@ impl Wrong {
         path
     }
 
-    /// The key that is missing, if that is wrong.
+    /// Returns the missing key, if that is the mismatch.
     pub fn missing(&self) -> Option<&'static str> {
         self.missing
     }
 
-    /// The name that was probably meant.
+    /// Returns the name that was probably meant.
     pub fn meant(&self) -> Option<&'static str> {
         self.meant
     }
 
-    /// The key in it that is wrong, if it is not the value.
+    /// Returns the wrong key within the value, if the key and not the value is wrong.
     pub fn key(&self) -> Option<&str> {
         self.key.as_deref()
     }
@@ -163,7 +163,7 @@ impl Error for Wrong {
     }
 }
 
-/// What is accepted, of several names.
+/// Returns the part of a message that lists the accepted names.
 fn one_of(known: &[&str], none: &str) -> String {
     match known {
         [] => none.to_owned(),
@@ -176,7 +176,7 @@ fn one_of(known: &[&str], none: &str) -> String {
     }
 }
 
-/// What serde expected, in words of a scenario.
+/// Translates serde's description of an expected type.
 fn wanted(expected: &dyn Expected) -> String {
     let wanted = expected.to_string();
     let known = match wanted.as_str() {

@@ -1,4 +1,5 @@
-//! CSV files: matrices, a row a line, numbers parted by commas, no header; and the records that other tables begin with.
+//! CSV files: matrices with one row in each line, numbers separated by commas and no header; and the records of other
+//! tables.
 
 use std::path::Path;
 
@@ -31,7 +32,8 @@ pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
     Ok(DMatrix::from_row_slice(records.len(), columns, &numbers))
 }
 
-/// The records of a file, each with its line: at most so many, which errors call by this name. Comments begin with `#`.
+/// Reads the records of a file, each with its line number: at most `most`, called `called` in messages. Comments begin
+/// with `#`.
 pub fn records(path: &Path, most: usize, called: &str) -> Result<Vec<(u64, StringRecord)>, String> {
     let reader = ::csv::ReaderBuilder::new()
         .has_headers(false)

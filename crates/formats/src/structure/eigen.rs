@@ -1,8 +1,8 @@
-//! The eigenproblem K x = w² M x, exact in the low modes.
+//! Eigenproblem K x = w² M x, exact in the low modes.
 //!
-//! Both matrices are positive definite. With the Cholesky factors K = L L' and M = R R', and B = L⁻¹ R, it is
-//! (B B') y = w⁻² y with x = w L⁻' y: the low modes are the large eigenvalues, which keep all their digits. (Reduced by
-//! the factor of M instead, the errors would be relative to the highest mode.) x' M x = 1.
+//! Both matrices are positive definite. With the Cholesky factors K = L L' and M = R R', and B = L⁻¹ R, it is (B B') y
+//! = w⁻² y with x = w L⁻' y: the low modes are the large eigenvalues, which keep all their digits. (With a reduction by
+//! the factor of M, the errors would be relative to the highest mode.) x' M x = 1.
 
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 
@@ -12,19 +12,19 @@ use super::large::large;
 use super::left_out::large;
 use super::reduced::{Reduced, Unsolved, is_definite};
 
-/// Up to this order nalgebra solves it, whose result is the same on every machine. Above, faer is many times faster;
-/// its kernels, and so the last digits, depend on the processor.
+/// Largest order that nalgebra solves, with the same result on every machine. Above it faer is many times faster, but
+/// the last digits of its results depend on the processor.
 pub const SMALL: usize = 100;
 
-/// The modes: natural frequencies (rad/s), increasing, and for each the values of some linear functionals.
+/// Modes: natural frequencies and the values of some linear functionals.
 pub struct EigenModes {
     /// Natural frequencies (rad/s), increasing.
     pub frequencies: Vec<f64>,
-    /// One row for each mode: c' x for each functional c, with x' M x = 1.
+    /// Value c' x of each functional c, one row for each mode, with x' M x = 1.
     pub values: DMatrix<f64>,
 }
 
-/// The modes of a stiffness and a mass matrix, and the values of functionals, the columns of `functionals`.
+/// Computes the modes of a stiffness and a mass matrix, and the values of the functionals, which are columns.
 pub fn modes(
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
@@ -38,7 +38,7 @@ pub fn modes(
     };
     let mut falling: Vec<usize> = (0..order).collect();
     falling.sort_by(|a, b| reduced.squares[*b].total_cmp(&reduced.squares[*a]));
-    // What rounding has made of a square far below the largest is a frequency beyond every range.
+    // A square that is lost in rounding gives a frequency beyond every accepted range.
     let frequencies: Vec<f64> =
         falling.iter().map(|n| 1.0 / f64::sqrt(reduced.squares[*n].max(f64::MIN_POSITIVE))).collect();
     let values =
@@ -46,12 +46,13 @@ pub fn modes(
     Ok(EigenModes { frequencies, values })
 }
 
-/// The eigenvalues of a symmetric matrix, increasing; none if an element is not finite. Its lower half is read.
+/// Returns the eigenvalues of a symmetric matrix, increasing; `None` if an element is not finite. Only its lower half
+/// is used.
 pub fn values(matrix: &DMatrix<f64>) -> Option<Vec<f64>> {
     if matrix.iter().any(|element| !element.is_finite()) {
         return None;
     }
-    // A rigid body has no modes.
+    // The matrix of a rigid body is empty.
     let mut values =
         if matrix.is_empty() { Vec::new() } else { matrix.symmetric_eigenvalues().as_slice().to_vec() };
     values.sort_by(f64::total_cmp);
@@ -71,7 +72,7 @@ fn small(
     };
     let l = factor(stiffness, Unsolved::Stiffness)?;
     let r = factor(mass, Unsolved::Mass)?;
-    // The factors have no zero on their diagonals.
+    // The factors have no zeros on their diagonals.
     let b = l.solve_lower_triangular(&r).unwrap_or(r);
     let square = &b * b.transpose();
     if square.iter().any(|element| !element.is_finite()) {

@@ -1,10 +1,10 @@
-//! Opening the files of structures: regular ones, of a size that a structure can have.
+//! Opening of files of structures: regular files of limited size.
 
 use std::fs::{self, File};
 use std::io::{BufReader, Read, Take};
 use std::path::Path;
 
-/// No file of a structure is longer (bytes): a full matrix of the largest order has half as many.
+/// Largest size of a file (bytes): a full matrix of the largest order takes half of it.
 const LONGEST: u64 = 256 << 20;
 
 /// Opens a file.
@@ -14,7 +14,7 @@ pub fn open(path: &Path) -> Result<File, String> {
 
 fn open_up_to(path: &Path, longest: u64) -> Result<File, String> {
     let told = |error: std::io::Error| error.to_string();
-    // A pipe or a device may never end, and a pipe not even open.
+    // A pipe or a device may never end, and opening a pipe may block.
     let metadata = fs::metadata(path).map_err(told)?;
     if !metadata.is_file() {
         return Err("not a file".to_owned());
@@ -25,12 +25,12 @@ fn open_up_to(path: &Path, longest: u64) -> Result<File, String> {
     File::open(path).map_err(told)
 }
 
-/// Opens a file that is read from its begin to its end, and no further than it may be long.
+/// Opens a file for sequential reading, limited to the largest size.
 pub fn open_text(path: &Path) -> Result<BufReader<Take<File>>, String> {
     Ok(BufReader::new(open(path)?.take(LONGEST)))
 }
 
-/// Opens such a file, of so many bytes at most.
+/// Opens a file for sequential reading, limited to `longest` bytes.
 pub fn open_text_up_to(path: &Path, longest: u64) -> Result<BufReader<Take<File>>, String> {
     Ok(BufReader::new(open_up_to(path, longest)?.take(longest)))
 }

@@ -1,4 +1,4 @@
-//! The eigenproblem of large matrices, by faer.
+//! Eigenproblem of large matrices, solved by faer.
 
 use faer::linalg::matmul::triangular::{BlockStructure, matmul};
 use faer::{Mat, Side};
@@ -6,7 +6,7 @@ use nalgebra::DMatrix;
 
 use super::reduced::{Reduced, Unsolved, is_definite};
 
-/// The reduced problem of matrices of any order.
+/// Solves the reduced problem for matrices of any order.
 pub fn large(
     stiffness: &DMatrix<f64>,
     mass: &DMatrix<f64>,

@@ -1,19 +1,19 @@
-//! What a build without the feature `matrices` says of large matrices and of NumPy's archives.
+//! Replacements for large matrices and NumPy archives in a build without the feature `matrices`.
 
 use nalgebra::DMatrix;
 
 use super::reduced::{Reduced, Unsolved};
 
-/// Why, and what helps.
+/// Reason why the feature is missing, and the remedy.
 pub const LEFT_OUT: &str =
     "need the feature `matrices`, which this build leaves out: `cargo build --release --features full`";
 
-/// In place of the eigenproblem of large matrices.
+/// Replaces the solver for large matrices.
 pub fn large(_: &DMatrix<f64>, _: &DMatrix<f64>, _: &DMatrix<f64>) -> Result<Reduced, Unsolved> {
     Err(Unsolved::LeftOut)
 }
 
-/// In place of the reader of NumPy's archives.
+/// Replaces the reader of NumPy archives.
 pub mod npz {
     use std::path::Path;
 

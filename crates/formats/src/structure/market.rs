@@ -12,7 +12,7 @@ use super::file::open_text;
 const HEADER: &str = "must begin with `%%MatrixMarket matrix`, then `coordinate` or `array`, `real` or `integer`, \
                       `general` or `symmetric`";
 
-/// Reads a file.
+/// Reads a matrix from a file.
 pub fn read(path: &Path) -> Result<DMatrix<f64>, String> {
     parse(open_text(path)?)
 }
@@ -46,7 +46,7 @@ fn parse(text: impl BufRead) -> Result<DMatrix<f64>, String> {
     if symmetric && rows != columns {
         return Err(format!("line {number}: must be square to be symmetric, got {rows} x {columns}"));
     }
-    // An array runs down the columns; a symmetric one from the diagonal on.
+    // An array is stored by columns; a symmetric one from the diagonal on.
     let from = |column: usize| if symmetric { column } else { 0 };
     let mut places = (0..columns).flat_map(|j| (from(j)..rows).map(move |i| (i, j)));
     let count = if coordinate { sizes[2] } else { (0..columns).map(|j| rows.saturating_sub(from(j))).sum() };
@@ -70,7 +70,7 @@ fn parse(text: impl BufRead) -> Result<DMatrix<f64>, String> {
             let (i, j) = places.next().unwrap_or_default();
             (i, j, numbers::<f64>(number, &line, 1, "one number")?[0])
         };
-        // An element that is given twice is a sum, as in an assembly.
+        // Elements given twice add up, as in an assembly.
         matrix[(i, j)] += value;
         if symmetric && i != j {
             matrix[(j, i)] += value;

@@ -1,4 +1,4 @@
-//! A matrix as a scenario writes it: rows of numbers, or the path of a file.
+//! Matrix of a scenario: rows of numbers, or the path of a file.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -17,12 +17,12 @@ use super::{csv, market};
 use crate::document::Fault;
 use flexsc_motion::quantity::Finite;
 
-/// A dense matrix, or where one is.
+/// Dense matrix, or the path of its file.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Matrix {
-    /// The numbers, row by row.
+    /// Numbers, row by row.
     Rows(Vec<Vec<Finite>>),
-    /// The path of a file: `.csv` (rows of numbers parted by commas, no header), `.mtx` (MatrixMarket) or `.npz`, with
+    /// Path of a file: `.csv` (rows of numbers separated by commas, no header), `.mtx` (MatrixMarket) or `.npz`, with
     /// the name of the array after a colon. A relative path begins at the scenario's directory.
     File(String),
 }
@@ -30,7 +30,7 @@ pub enum Matrix {
 const EXPECTED: &str = "rows of numbers, or the path of a .csv, .mtx or .npz file";
 
 impl Matrix {
-    /// Makes the path of a file absolute: relative ones begin at a directory.
+    /// Makes the path of a file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
         if let Self::File(file) = self
             && let Ok(path) = std::path::absolute(directory.join(&*file))
@@ -39,7 +39,7 @@ impl Matrix {
         }
     }
 
-    /// The numbers, read from the file if that is where they are. A fault's key is within the matrix.
+    /// Returns the numbers, read from the file if there is one. The key of a fault is relative to the matrix.
     pub fn read(&self) -> Result<DMatrix<f64>, Fault> {
         match self {
             Self::Rows(rows) => {

@@ -1,8 +1,8 @@
-//! A structure given by its mass and stiffness matrices, that turns about one axis: its modes.
+//! Modes of a structure that turns about one axis, given by its mass and stiffness matrices.
 //!
-//! M q'' + K q = Q, where one coordinate is the angle theta of the hub (\[Rotation\], equation (7)). A unit rigid rotation
-//! displaces the coordinates by r, so that with q = r theta + e the elastic coordinates e leave the hub out and theta is
-//! the only coordinate without stiffness:
+//! M q'' + K q = Q, where one coordinate is the angle theta of the hub (\[Rotation\], equation (7)). A unit rigid
+//! rotation displaces the coordinates by r, so that with q = r theta + e the elastic coordinates e exclude the hub and
+//! theta is the only coordinate without stiffness:
 //!
 //! J theta'' + m' e'' = torque, m theta'' + Mc e'' + Kc e = 0, J = r' M r, m = the elastic part of M r.
 
@@ -30,13 +30,13 @@ pub use matrix::Matrix;
 use reduced::Unsolved;
 pub use shape::Shape;
 
-/// The largest order.
+/// Largest order of the matrices.
 pub const LARGEST: usize = 2000;
 
-/// Differences up to this part of a matrix's largest element are taken for rounding.
+/// Relative difference, of a matrix's largest element, that counts as rounding.
 const ROUNDING: f64 = 1e-9;
 
-/// A structure that can turn about one axis, and in no other way without strain.
+/// Structure that can turn about one axis, and has no other motion without strain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Structure {
     mass: DMatrix<f64>,
@@ -45,35 +45,35 @@ pub struct Structure {
     rotation: DVector<f64>,
 }
 
-/// Whether the hub turns with the modes.
+/// State of the hub in the modes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum HubState {
-    /// It turns freely, and a torque drives it.
+    /// Free hub, driven by a torque.
     Free,
-    /// It is held, or moved as commanded.
+    /// Hub that is held, or moved as commanded.
     Held,
 }
 
-/// The modes of a structure.
+/// Modes of a structure.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Modes {
     /// Moment of inertia J about the axis (kg m²).
     pub inertia: f64,
     /// Natural frequencies (rad/s), increasing.
     pub frequencies: Vec<f64>,
-    /// How the hub takes part in each mode of unit modal mass: of the free structure its angle X_n\[theta\]
-    /// (kg⁻¹ᐟ² m⁻¹), of the clamped one its coupling X_n' m (kg¹ᐟ² m; \[Rotation\], equations (17) and (18)).
+    /// Participation of the hub in each mode of unit modal mass: for a free hub its angle X_n\[theta\] (kg⁻¹ᐟ² m⁻¹),
+    /// for a held one its coupling X_n' m (kg¹ᐟ² m; \[Rotation\], equations (17) and (18)).
     pub participations: Vec<f64>,
-    /// For each observed coordinate, what a unit rigid rotation gives.
+    /// Value of each observed coordinate under a unit rigid rotation.
     pub rigid: Vec<f64>,
-    /// For each observed coordinate, what each mode of unit modal mass gives.
+    /// Value of each observed coordinate in each mode of unit modal mass.
     pub shapes: Vec<Vec<f64>>,
 }
 
 impl Structure {
-    /// The structure of a mass and a stiffness matrix (SI, of the order of the coordinates) with the hub's angle (rad) at
-    /// one place. `rotation` is the displacement of each coordinate under a unit rigid rotation; without one only the
-    /// hub's angle turns, and all other coordinates are relative to it.
+    /// Creates the structure of a mass and a stiffness matrix (SI, of the order of the coordinates) with the hub's
+    /// angle (rad) at index `hub`. `rotation` is the displacement of each coordinate under a unit rigid rotation;
+    /// without it only the hub's angle turns, and all other coordinates are relative to it.
     ///
     /// # Errors
     /// A matrix that is not square, symmetric and finite, of an order from 2 to 2000; a hub or a rotation that does not
@@ -131,17 +131,17 @@ impl Structure {
         Ok(Self { mass, stiffness, hub, rotation: turned })
     }
 
-    /// The mass matrix, of the order of the coordinates.
+    /// Returns the mass matrix, of the order of the coordinates.
     pub fn mass(&self) -> &DMatrix<f64> {
         &self.mass
     }
 
-    /// The stiffness matrix, of the order of the coordinates.
+    /// Returns the stiffness matrix, of the order of the coordinates.
     pub fn stiffness(&self) -> &DMatrix<f64> {
         &self.stiffness
     }
 
-    /// A damping matrix of this structure, made symmetric to the last digit.
+    /// Returns a damping matrix of this structure, made symmetric to the last digit.
     ///
     /// # Errors
     /// A matrix that is not symmetric and finite, that does not fit, or that resists the rotation.
@@ -166,8 +166,8 @@ impl Structure {
         Ok(damping)
     }
 
-    /// The elastic modes: those of the free structure where a torque is commanded, of the clamped one where the hub's
-    /// motion is. An observed coordinate is a sum of coordinates with these weights.
+    /// Computes the elastic modes: those of the free structure if a torque is commanded, of the clamped one if the
+    /// motion of the hub is. Each observed coordinate is a sum of coordinates with the given weights.
     ///
     /// # Errors
     /// A matrix that is not positive definite.
@@ -212,7 +212,7 @@ impl Structure {
             HubState::Free => couplings.iter().map(|coupling| -coupling / inertia).collect(),
             HubState::Held => couplings.iter().copied().collect(),
         };
-        // A free mode moves the hub too, and with it all that turns with the hub.
+        // A free mode also moves the hub, and all coordinates that turn with it.
         let turns = |n: usize, rigid: f64| match hub {
             HubState::Free => rigid * participations[n],
             HubState::Held => 0.0,
@@ -225,7 +225,7 @@ impl Structure {
     }
 }
 
-/// What is wrong with matrices whose modes leave the range of numbers.
+/// Second half of the message about matrices whose modes leave the range of numbers.
 pub const TOO_FAR_APART: &str = "holds numbers that differ too much in size for modes in double precision";
 
 const DEFINITE: &str = "must be positive definite";
@@ -238,7 +238,7 @@ fn fault<T>(key: &str, why: String) -> Result<T, Fault> {
     Err(Fault::new(key, why))
 }
 
-/// A matrix that is square, finite and symmetric to rounding, made symmetric to the last digit.
+/// Checks that a matrix is square, finite and symmetric within rounding, and makes it symmetric to the last digit.
 fn symmetric(key: &str, mut matrix: DMatrix<f64>) -> Result<DMatrix<f64>, Fault> {
     let (order, columns) = matrix.shape();
     if order != columns {

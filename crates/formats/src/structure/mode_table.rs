@@ -1,4 +1,4 @@
-//! A list of modes: a table in the scenario, or the path of a CSV file that holds one.
+//! List of modes: a table in the scenario, or the path of a CSV file that contains one.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -16,59 +16,60 @@ use super::Shape;
 use super::{LARGEST, csv};
 use flexsc_motion::quantity::{Finite, Frequency, NonNegative};
 
-/// What a column of a point's shape ends with, after the point's name and a dot: three translations, three rotations.
+/// Endings of the column names of a point's shape, after the point's name and a dot: three translations, three
+/// rotations.
 const COMPONENTS: [&str; 6] = ["tx", "ty", "tz", "rx", "ry", "rz"];
 
-/// More clamped modes than these are not made into free ones.
+/// Largest number of clamped modes that are converted to free ones.
 pub const MOST_MODES: usize = 200;
 
-/// A mode as a line of a table gives it.
+/// Mode as a row of a table.
 pub trait ModeRow: Clone + Serialize + DeserializeOwned + JsonSchema {
-    /// What a schema calls a list of such modes.
+    /// Name of a list of such modes in the JSON Schema.
     const LIST: &'static str;
-    /// The files that hold such modes, by the ends of their names.
+    /// Extensions of the files that contain such modes, for messages.
     const FILES: &'static str;
-    /// Columns that only this kind of mode has.
+    /// Columns specific to this kind of mode.
     const OWN: &'static [&'static str];
 
-    /// The mode of which nothing but the natural frequency is known.
+    /// Creates a mode of which only the natural frequency is known.
     fn of(frequency: Frequency) -> Self;
 
-    /// What every kind of mode has.
+    /// Returns the values that every kind of mode has.
     fn common(&mut self) -> ModeCommon<'_>;
 
-    /// Sets the number of a column, given by its place in [`Self::OWN`].
+    /// Sets the value of a column, given by its index in [`Self::OWN`].
     fn set_own(&mut self, column: usize, value: Finite);
 }
 
-/// What every kind of mode has beside its frequency.
+/// Values that every kind of mode has besides its frequency.
 pub struct ModeCommon<'a> {
     /// Damping ratio.
     pub damping: &'a mut NonNegative,
-    /// Modal displacement at the start.
+    /// Modal displacement at the start of a run.
     pub displacement: &'a mut Finite,
-    /// Its rate at the start.
+    /// Modal rate at the start of a run.
     pub rate: &'a mut Finite,
-    /// Shapes at points, by their names.
+    /// Shapes at points, by the names of the points.
     pub shapes: &'a mut BTreeMap<String, Shape>,
 }
 
-/// The modes, which are a slice; those of a file once it is read.
+/// List of modes, which dereferences to a slice; that of a file once it is read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ModeTable<M> {
     file: Option<String>,
     table: Vec<M>,
 }
 
-/// What a column of the file holds.
+/// Contents of a column of the file.
 enum Column {
     Frequency,
     Damping,
     Displacement,
     Rate,
-    /// A column of this kind of mode alone, by its place in [`ModeRow::OWN`].
+    /// Column specific to this kind of mode, by its index in [`ModeRow::OWN`].
     Own(usize),
-    /// A component of the shape at a point, by its place in [`COMPONENTS`].
+    /// Component of the shape at a point, by its index in [`COMPONENTS`].
     Shape(String, usize),
 }
 
@@ -85,7 +86,7 @@ impl<M> From<Vec<M>> for ModeTable<M> {
 }
 
 impl<M: ModeRow> ModeTable<M> {
-    /// Makes the path of the file absolute: a relative one begins at a directory.
+    /// Makes the path of the file absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
         if let Some(file) = &mut self.file
             && let Ok(path) = std::path::absolute(directory.join(&*file))
@@ -94,10 +95,10 @@ impl<M: ModeRow> ModeTable<M> {
         }
     }
 
-    /// Reads the file, if that is where the modes are, or takes over what others read from the same file.
+    /// Reads the file, if the modes are in one, or copies the modes from `others` if that has read the same file.
     ///
     /// # Errors
-    /// What is wrong with the file.
+    /// The error in the file.
     pub fn read(&mut self, others: Option<&Self>) -> Result<(), String> {
         let Some(file) = &self.file else { return Ok(()) };
         let path = Path::new(file);
@@ -115,17 +116,17 @@ impl<M: ModeRow> ModeTable<M> {
         Ok(())
     }
 
-    /// Where the modes are, if they are in a file.
+    /// Returns the path of the file, if the modes are in one.
     pub fn file(&self) -> Option<&Path> {
         self.file.as_deref().map(Path::new)
     }
 
-    /// Takes the modes that the file holds.
+    /// Sets the modes that the file contains.
     pub fn fill(&mut self, table: Vec<M>) {
         self.table = table;
     }
 
-    /// Keeps the modes, and forgets where they were read.
+    /// Keeps the modes inline, and removes the reference to their file.
     pub fn forget_file(&mut self) {
         self.file = None;
     }
@@ -139,7 +140,7 @@ impl<M> Deref for ModeTable<M> {
     }
 }
 
-/// Reads a table of modes: a header that names the columns, then a mode a line.
+/// Reads a table of modes: a header that names the columns, then one mode in each line.
 fn read_file<M: ModeRow>(path: &Path) -> Result<Vec<M>, String> {
     let records = csv::records(path, 1 + LARGEST, "lines")?;
     let Some(((line, header), rows)) = records.split_first() else {
@@ -218,7 +219,7 @@ impl Column {
     }
 }
 
-/// A field as a quantity, or what is accepted.
+/// Parses a field as a quantity, or returns a message with the accepted values.
 fn number<T: for<'de> Deserialize<'de>>(field: &str) -> Result<T, String> {
     let number: f64 = field.parse().map_err(|_| format!("must be a number, got `{field}`"))?;
     T::deserialize(number.into_deserializer()).map_err(|error: serde::de::value::Error| error.to_string())

@@ -1,4 +1,4 @@
-//! Matrices from NumPy's archives: dense arrays by name, and what `scipy.sparse.save_npz` writes.
+//! Matrices from NumPy archives: dense arrays by name, and archives of `scipy.sparse.save_npz`.
 
 use std::fs::File;
 use std::io::{BufReader, Cursor, Read};
@@ -11,11 +11,11 @@ use zip::ZipArchive;
 use super::LARGEST;
 use super::file::open;
 
-/// No header of an array is longer (bytes): those of numbers have at most 128.
+/// Largest length of an array's header (bytes): those of numeric arrays have at most 128.
 const LONGEST_HEADER: usize = 1024;
-/// No header of an array of numbers has more brackets that open: a shape within the dictionary makes 2.
+/// Largest number of opening brackets in the header of a numeric array: a shape within the dictionary has 2.
 const MOST_BRACKETS: usize = 8;
-/// The longest name of a sparse format, in bytes: `csr` in UTF-32 has 12.
+/// Largest length of the name of a sparse format (bytes): `csr` in UTF-32 has 12.
 const LONGEST_FORMAT: usize = 64;
 
 /// Reads an array of a file: the named one, or else the sparse matrix or the only array in it.
@@ -36,7 +36,7 @@ pub fn read(path: &Path, array: Option<&str>) -> Result<DMatrix<f64>, String> {
 
 struct Archive(ZipArchive<BufReader<File>>);
 
-/// An array: its shape, and its numbers in the order in which they are stored.
+/// Array: its shape, and its numbers in the order in which they are stored.
 struct Array {
     shape: Vec<usize>,
     numbers: Vec<f64>,
@@ -69,7 +69,7 @@ impl Archive {
         let file = self.open(name)?;
         let dimension = |size: &u64| usize::try_from(*size).unwrap_or(usize::MAX);
         let shape: Vec<usize> = file.shape().iter().map(dimension).collect();
-        // Few elements, however the sizes are spread: nothing larger is unpacked.
+        // The number of elements is limited for any shape, so that nothing larger is unpacked.
         let size = shape.iter().try_fold(1_usize, |product, n| product.checked_mul(*n));
         if size.is_none_or(|size| size > LARGEST * LARGEST) {
             return Err(format!("array `{name}` must have at most {LARGEST} rows, got shape {shape:?}"));
@@ -131,7 +131,7 @@ impl Archive {
                 elements.extend(row.iter().zip(&column).zip(&data).map(|((i, j), value)| (*i, *j, *value)));
             }
             "dia" => {
-                // Element j of a diagonal stands in column j.
+                // Element j of a diagonal is in column j.
                 let offsets = self.array("offsets")?.numbers;
                 let length = data.len() / offsets.len().max(1);
                 for (offset, diagonal) in offsets.iter().zip(data.chunks_exact(length.max(1))) {
@@ -157,8 +157,8 @@ impl Archive {
     }
 }
 
-/// The first bytes of an array, up to the end of its header, and the rest. A header is an expression of Python, for whose
-/// brackets within brackets its reader takes twice as long with each.
+/// Returns the first bytes of an array, up to the end of its header, and the rest. A header is a Python expression,
+/// whose parser takes twice as long with each level of brackets.
 fn header<R: Read>(mut entry: R) -> Result<(Vec<u8>, R), String> {
     let told = |error: std::io::Error| error.to_string();
     let mut first = vec![0; 8];
@@ -178,7 +178,7 @@ fn header<R: Read>(mut entry: R) -> Result<(Vec<u8>, R), String> {
     Ok(([first, length, text].concat(), entry))
 }
 
-/// The numbers of an array of any real type; none of another.
+/// Returns the numbers of an array of any real type; `None` for another type.
 fn numbers<R: Read>(file: NpyFile<R>) -> Option<std::io::Result<Vec<f64>>> {
     macro_rules! first_of {
         ($file:expr, $type:ty $(, $more:ty)*) => {

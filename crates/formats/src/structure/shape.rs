@@ -1,4 +1,4 @@
-//! The shape of a mode at a point of the structure.
+//! Shape of a mode at a point of the structure.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};

@@ -1,4 +1,4 @@
-//! Reading untrusted MCAP records: every length is checked against what is there before it is used.
+//! Reading of untrusted MCAP records: every length is checked against the available bytes before it is used.
 
 use std::ops::ControlFlow;
 
@@ -6,18 +6,18 @@ use mcap::McapError;
 use mcap::records::{Record, op};
 use mcap::sans_io::{LinearReadEvent, LinearReader, LinearReaderOptions};
 
-/// A record begins with its kind (1 byte) and its length (8 bytes).
+/// Length of a record's head: its kind (1 byte) and its length (8 bytes).
 const HEAD: usize = 9;
-/// No chunk or record is larger (bytes), however large the file; ours are of 1 MiB.
+/// Largest chunk or record (bytes) of any file; those of flexsc have 1 MiB.
 pub(super) const LARGEST: usize = 256 << 20;
-/// Chunks of a small file may be as large as this (bytes).
+/// Largest chunk that is accepted in a small file (bytes).
 const SMALLEST_LIMIT: usize = 16 << 20;
-/// What a file unpacks to is at most so many times as large, beside [`LARGEST`]: no log of a run comes near.
+/// Largest ratio of unpacked to packed size, in addition to [`LARGEST`], which no log of a run approaches.
 const UNPACKED: usize = 256;
-/// What a record counts for beside its body (bytes): empty ones take time too.
+/// Cost of a record besides its body (bytes), because empty records take time too.
 const RECORD: usize = 64;
 
-/// The records outside of chunks, each with its kind, up to the footer.
+/// Returns the records outside of chunks, each with its kind, up to the footer.
 pub fn outer(bytes: &[u8]) -> Result<Vec<(u8, &[u8])>, McapError> {
     let mut rest = Rest(bytes.get(mcap::MAGIC.len()..).unwrap_or_default());
     let mut records = Vec::new();
@@ -34,9 +34,9 @@ pub fn outer(bytes: &[u8]) -> Result<Vec<(u8, &[u8])>, McapError> {
     }
 }
 
-/// Tells of every record that a reader needs, those in chunks too, up to the end or a break; the end of a torn log is an
-/// error. A checksum comes before what it is of, and lengths have a bound, so that damage is an error, and neither a
-/// wrong number nor a demand for more memory than there is.
+/// Passes every record that a reader needs to the callback, including those in chunks, up to the end or a break; the
+/// end of a torn log is an error. Checksums are verified before their data is used, and lengths are bounded, so that
+/// damage causes an error and neither a wrong number nor an excessive use of memory.
 pub fn walk(
     bytes: &[u8],
     options: LinearReaderOptions,
@@ -50,7 +50,7 @@ pub fn walk(
     while let Some(event) = reader.next_event() {
         match event? {
             LinearReadEvent::ReadRequest(wanted) => {
-                // Never more than there is, whatever a length claims.
+                // Never read more than is available, whatever a length claims.
                 let (now, later) = rest.split_at(wanted.min(rest.len()));
                 reader.insert(now.len()).copy_from_slice(now);
                 reader.notify_read(now.len());
@@ -72,7 +72,7 @@ pub fn walk(
     Ok(())
 }
 
-/// A record that a reader needs; none of another kind.
+/// Parses a record that a reader needs; `None` for another kind.
 pub fn parsed(opcode: u8, body: &[u8]) -> Result<Option<Record<'_>>, McapError> {
     let mut rest = Rest(body);
     let sound = match opcode {
@@ -93,7 +93,7 @@ pub fn parsed(opcode: u8, body: &[u8]) -> Result<Option<Record<'_>>, McapError> 
     }
 }
 
-/// What of some bytes is still to be read.
+/// Remaining bytes to read.
 struct Rest<'a>(&'a [u8]);
 
 impl<'a> Rest<'a> {
@@ -103,14 +103,14 @@ impl<'a> Rest<'a> {
         Some(now)
     }
 
-    /// A length of so many bytes.
+    /// Reads a length of `N` bytes.
     fn number<const N: usize>(&mut self) -> Option<usize> {
         let mut number = [0; 8];
         number[..N].copy_from_slice(self.take(N)?);
         usize::try_from(u64::from_le_bytes(number)).ok()
     }
 
-    /// Bytes after their length.
+    /// Reads bytes preceded by their length.
     fn block(&mut self) -> Option<&'a [u8]> {
         let length = self.number::<4>()?;
         self.take(length)
@@ -120,7 +120,7 @@ impl<'a> Rest<'a> {
         (0..count).try_for_each(|_| self.block().map(|_| ()))
     }
 
-    /// Pairs of texts after the length of them all.
+    /// Checks pairs of texts preceded by the total length.
     fn map(&mut self) -> Option<()> {
         let mut pairs = Rest(self.block()?);
         while !pairs.0.is_empty() {

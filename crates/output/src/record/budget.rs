@@ -1,20 +1,20 @@
-//! The memory that tables of a log may take.
+//! Limit on the memory for tables of a log.
 
-/// The memory that tables of a log may take.
+/// Remaining memory for tables of a log (bytes).
 pub struct Budget(usize);
 
-/// Tables may take this much (bytes), however small the log is ...
+/// Memory allowed for the tables of any log (bytes).
 const LEAST: usize = 256 << 20;
-/// ... and so many times its size. Those of a run take up to about ten times.
+/// Memory allowed in addition, as a multiple of the log's size. Tables of a run take up to about ten times.
 const TIMES: usize = 64;
 
 impl Budget {
-    /// The budget of a log of so many bytes.
+    /// Creates the budget of a log of `bytes` bytes.
     pub fn of_file(bytes: usize) -> Self {
         Self(bytes.saturating_mul(TIMES).saturating_add(LEAST))
     }
 
-    /// Takes some of it.
+    /// Subtracts `bytes` from the budget, or fails if it is exceeded.
     pub fn spend(&mut self, bytes: usize) -> Result<(), String> {
         self.0 = self.0.checked_sub(bytes).ok_or_else(|| {
             format!("its rows take more than {TIMES} times the size of the file and {} MiB", LEAST >> 20)

@@ -1,41 +1,41 @@
-//! Columns: a topic's rows as one array for each field.
+//! Columns: the rows of a topic as one array for each field.
 
 use super::row::{Field, Kind, Row, Sink};
 use crate::label::Labels;
 
-/// The rows of one topic, column by column.
+/// Rows of one topic, column by column.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Columns {
-    /// Name of each column, and the column.
+    /// Columns with their names.
     pub columns: Vec<(String, Column)>,
 }
 
-/// One column.
+/// Values of one column.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Column {
-    /// Doubles.
+    /// Floating-point numbers.
     Numbers(Vec<f64>),
-    /// Counts.
+    /// Unsigned counts, and flags as 0 or 1.
     Counts(Vec<u64>),
-    /// Whole numbers with a sign, which only logs of other programs have.
+    /// Signed integers, which only logs of other programs have.
     Integers(Vec<i64>),
-    /// Indices into the labels of an enumeration.
+    /// Indices into the labels of an enumeration, and those labels.
     Labels(Vec<u8>, Vec<String>),
-    /// Texts.
+    /// Texts of each row.
     Texts(Vec<String>),
-    /// A column for each field of the rows within a row, and the number of them in each row.
+    /// Number of nested rows in each row, and the columns of all nested rows.
     Rows(Vec<u32>, Columns),
 }
 
 impl Columns {
-    /// Empty columns for these fields.
+    /// Creates empty columns for the fields.
     pub fn new(fields: &[Field]) -> Self {
         let mut columns = Self::default();
         columns.add("", fields);
         columns
     }
 
-    /// Adds empty columns; those of a row within the row have its name before theirs: `rotation.x`.
+    /// Adds empty columns; the name of a nested row precedes those of its fields: `rotation.x`.
     fn add(&mut self, before: &str, fields: &[Field]) {
         for field in fields {
             let name = format!("{before}{}", field.name);
@@ -57,12 +57,12 @@ impl Columns {
         }
     }
 
-    /// The column of this name.
+    /// Returns the column of a name.
     pub fn get(&self, name: &str) -> Option<&Column> {
         self.columns.iter().find(|(n, _)| n == name).map(|(_, column)| column)
     }
 
-    /// The doubles of the column of this name.
+    /// Returns the values of the column of a name, if it holds doubles.
     pub fn numbers(&self, name: &str) -> Option<&[f64]> {
         match self.get(name) {
             Some(Column::Numbers(values)) => Some(values),
@@ -70,24 +70,24 @@ impl Columns {
         }
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, |(_, column)| column.len())
     }
 
-    /// Whether there is no row.
+    /// Returns true if there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// Appends a row of the type that the columns were made for.
+    /// Appends a row of the type for which the columns were created.
     pub fn push<R: Row>(&mut self, row: &R) {
         row.put(&mut Filler { columns: self.columns.iter_mut() });
     }
 }
 
 impl Column {
-    /// How many values there are.
+    /// Returns the number of values.
     pub fn len(&self) -> usize {
         match self {
             Self::Numbers(values) => values.len(),
@@ -99,13 +99,13 @@ impl Column {
         }
     }
 
-    /// Whether there is no value.
+    /// Returns true if there is no value.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 }
 
-/// Puts the fields of a row into columns, in their common order.
+/// Sink that writes the fields of a row into columns, which are in the same order.
 struct Filler<'a> {
     columns: std::slice::IterMut<'a, (String, Column)>,
 }
@@ -160,7 +160,7 @@ impl Sink for Filler<'_> {
     }
 }
 
-/// Nanoseconds in seconds.
+/// Converts nanoseconds to seconds.
 pub fn seconds(nanoseconds: u64) -> f64 {
     nanoseconds as f64 / 1e9
 }

@@ -1,10 +1,10 @@
-//! Records made of others: none, one by reference, one that may be absent, and two.
+//! Composite records: none, one by reference, an optional one, and two.
 
 use super::{Course, Record, RecordError, Sample};
 use crate::motion::Stretch;
 use crate::time::Instant;
 
-/// Records nothing, at no cost.
+/// Record that stores nothing, at no cost.
 impl Record for () {
     fn switchings(&self) -> bool {
         false
@@ -49,7 +49,7 @@ impl<R: Record + ?Sized> Record for &mut R {
     }
 }
 
-/// Records if there is something to record to.
+/// Optional record: `None` stores nothing.
 impl<R: Record> Record for Option<R> {
     fn dense(&self) -> bool {
         self.as_ref().is_some_and(Record::dense)
@@ -84,7 +84,7 @@ impl<R: Record> Record for Option<R> {
     }
 }
 
-/// Records to both.
+/// Pair of records that both get all samples.
 impl<A: Record, B: Record> Record for (A, B) {
     fn dense(&self) -> bool {
         self.0.dense() || self.1.dense()

@@ -1,14 +1,14 @@
-//! What the topics of a log hold, as JSON: for reference pages, and for programs that read logs.
+//! Description of the topics of a log as JSON, for reference pages and for programs that read logs.
 
 use serde_json::{Map, Value, json};
 
 use super::row::{Field, Kind};
 use super::topics::TOPICS;
 
-/// Every topic of every log, by name without its slash: `message`, `doc` and `fields`.
+/// Returns the description of every topic, by name without its slash: `message`, `doc` and `fields`.
 ///
-/// A field has its `name`, which ends with its unit, `doc`, and `kind`: `number`, `count`, `text`, `flag`, `time`, `label`
-/// with its `labels`, or `row` and `rows` with the `fields` of each row.
+/// A field has its `name`, which ends with its unit, `doc`, and `kind`: `number`, `count`, `text`, `flag`, `time`,
+/// `label` with its `labels`, or `row` and `rows` with the `fields` of each row.
 pub fn topics() -> Value {
     let topics = TOPICS.iter().map(|topic| {
         let told = json!({"message": topic.message, "doc": text(topic.doc), "fields": fields(topic.fields)});

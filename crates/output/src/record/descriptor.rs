@@ -1,4 +1,4 @@
-//! The messages and enumerations of a protobuf schema, by their full names.
+//! Messages and enumerations of a protobuf schema, by their full names.
 
 use std::collections::BTreeMap;
 
@@ -6,20 +6,20 @@ use prost::Message;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{DescriptorProto, EnumDescriptorProto, FieldDescriptorProto, FileDescriptorSet};
 
-/// What a schema describes.
+/// Types of a schema, by their full names.
 #[derive(Default)]
 pub struct Pool {
     messages: BTreeMap<String, DescriptorProto>,
     enums: BTreeMap<String, EnumDescriptorProto>,
 }
 
-/// What a field holds.
+/// Type of the contents of a field.
 pub enum Content<'a> {
-    /// A number, a text or bytes.
+    /// Number, text or bytes.
     Scalar(Type),
-    /// A message of this full name.
+    /// Message with its full name.
     Message(&'a str, &'a DescriptorProto),
-    /// One of several labels.
+    /// Enumeration.
     Enum(&'a EnumDescriptorProto),
 }
 
@@ -49,12 +49,12 @@ impl Pool {
         self.enums.extend(enums.into_iter().map(|of| (within(scope, of.name()), of)));
     }
 
-    /// The message of a full name.
+    /// Returns the message of a full name.
     pub fn message(&self, name: &str) -> Option<(&str, &DescriptorProto)> {
         self.messages.get_key_value(name).map(|(name, message)| (name.as_str(), message))
     }
 
-    /// What a field of a message holds; nothing if its type is not in the schema.
+    /// Returns the type of a message's field; `None` if it is not in the schema.
     pub fn kind(&self, message: &str, field: &FieldDescriptorProto) -> Option<Content<'_>> {
         match field.r#type.and_then(|kind| Type::try_from(kind).ok()) {
             None | Some(Type::Message | Type::Group | Type::Enum) => self.named(message, field.type_name()),
@@ -62,7 +62,7 @@ impl Pool {
         }
     }
 
-    /// The type of a name: a full one begins with a dot, others are looked for from within to without.
+    /// Finds the type of a name: a full name begins with a dot, others are searched from the inner to the outer scopes.
     fn named(&self, scope: &str, name: &str) -> Option<Content<'_>> {
         let full = |name: &str| {
             let message = self.message(name).map(|(name, message)| Content::Message(name, message));
@@ -82,12 +82,12 @@ impl Pool {
     }
 }
 
-/// Whether a field has several values; the entries of a map are such too.
+/// Returns true if a field is repeated, as are the entries of a map.
 pub fn is_list(field: &FieldDescriptorProto) -> bool {
     field.label() == Label::Repeated
 }
 
-/// Whether a field is a group.
+/// Returns true if a field is a group.
 pub fn is_group(field: &FieldDescriptorProto) -> bool {
     field.r#type == Some(Type::Group as i32)
 }

@@ -1,30 +1,30 @@
-//! The messages that viewers know: log lines, frames and scenes of the package `foxglove`.
+//! Messages of the package `foxglove` for viewers: log lines, frames and scenes.
 //!
-//! Names and numbers of the fields are those of the published schemas. Fields that come last in a message and are never
-//! used here are left out.
+//! Names and numbers of the fields are those of the published schemas. Unused fields at the end of a message are left
+//! out.
 
 use super::row::{Lifetime, Row, Sink, Stamp, Topic, TopicRow, label_cells, rows};
 use crate::label::Labels;
 
-/// How much a line of the log matters.
+/// Severity of a log line.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum LogLevel {
     /// Unknown severity.
     Unknown,
-    /// For debugging.
+    /// Message for debugging.
     Debug,
-    /// Information.
+    /// Informational message.
     Info,
-    /// A warning.
+    /// Warning message.
     Warning,
-    /// An error.
+    /// Error message.
     Error,
-    /// A fatal error.
+    /// Fatal error.
     Fatal,
 }
 
 impl LogLevel {
-    /// The enumeration as a log column.
+    /// Labels of the enumeration, for a log column.
     pub const LABELS: Labels = Labels {
         name: "Log.Level",
         docs: &[
@@ -39,10 +39,10 @@ impl LogLevel {
     };
 }
 
-/// What is deleted.
+/// Extent of a deletion of scene entities.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Deleted {
-    /// The entity of this id.
+    /// Entity of the given id.
     MatchingId,
     /// All entities of the topic.
     All,
@@ -56,14 +56,14 @@ impl Deleted {
     };
 }
 
-/// How the points are joined into lines.
+/// Connection of the points of a line.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum LineType {
-    /// Each point with the next.
+    /// Each point is joined to the next.
     Strip,
-    /// Also the last point with the first.
+    /// Each point is joined to the next, and the last to the first.
     Loop,
-    /// In pairs.
+    /// Points are joined in pairs.
     List,
 }
 
@@ -295,7 +295,7 @@ rows! {
     }
 }
 
-/// The plumes of the thrusters that fire: a scene of its own, whole at each change.
+/// Plumes of the firing thrusters: a separate scene, complete at each change.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plumes(pub SceneUpdate);
 

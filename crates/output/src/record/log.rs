@@ -1,4 +1,4 @@
-//! Reading logs back: any topic as columns, by the schema that the file itself carries.
+//! Reading of logs: any topic as columns, by the schema that the file contains.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs::{self, File};
@@ -19,7 +19,7 @@ use super::table::TopicTable;
 use super::topics::TOPICS;
 use super::{COMMANDS, Columns};
 
-/// What helps where a topic is not in a log, but in others.
+/// Returns a hint for a topic that other logs contain.
 fn elsewhere(topic: &str) -> &'static str {
     if TOPICS.iter().any(|known| known.name == topic) {
         "\nhint: its scenario has no such part, or the run was not made with `--log full`, which also keeps the motion"
@@ -28,70 +28,70 @@ fn elsewhere(topic: &str) -> &'static str {
     }
 }
 
-/// A log that cannot be used.
+/// Error of a log that cannot be used.
 #[derive(Debug, Error)]
 pub enum LogError {
-    /// The file cannot be read.
+    /// Unreadable file.
     #[error("{}: {source}", path.display())]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the file system.
         source: std::io::Error,
     },
-    /// The file ends early: its run was killed.
+    /// File that ends early because its run was killed.
     #[error(
         "{}: the log is torn (its run was killed, or still runs)\n\nhint: `flexsc log recover {}` saves \
          what was written",
         path.display(), path.display()
     )]
     Torn {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// The file is no MCAP file, or a damaged one.
+    /// Damaged file, or a file that is not MCAP.
     #[error("{}: not a readable MCAP log: {source}", path.display())]
     Damaged {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why.
+        /// Error of the reader.
         source: McapError,
     },
-    /// The file is a scenario.
+    /// Scenario in place of a log.
     #[error("{}: a scenario, not a log\n\nhint: `flexsc simulate {}` writes its log", path.display(), path.display())]
     Scenario {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// The log has no such topic.
+    /// Topic that is not in the log.
     #[error("{}: no topic `{topic}` in this log\n\nhint: it has {topics}{}", path.display(), elsewhere(topic))]
     NoTopic {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The topic asked for.
+        /// Requested topic.
         topic: String,
-        /// Those that there are.
+        /// Topics of the log.
         topics: String,
     },
-    /// The log was not made by this program.
+    /// Log of another program.
     #[error("{}: contains no scenario, so it is not a log of flexsc\n\nhint: `flexsc export` reads any MCAP log of protobuf messages", path.display())]
     NoScenario {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
     },
-    /// A message cannot be decoded.
+    /// Message that cannot be decoded.
     #[error("{}: topic `{topic}` cannot be decoded: {why}", path.display())]
     Undecodable {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// The topic.
+        /// Topic of the message.
         topic: String,
-        /// Why.
+        /// Reason.
         why: String,
     },
 }
 
-/// A log in memory.
+/// Log in memory.
 pub struct Log {
     path: PathBuf,
     bytes: Vec<u8>,
@@ -102,7 +102,7 @@ pub struct Log {
     commands: Option<String>,
 }
 
-/// The bytes of a file that begins as a log.
+/// Reads the bytes of a file that begins like a log.
 pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, LogError> {
     let io = |source| LogError::Io { path: path.to_owned(), source };
     // A pipe or a device may never end.
@@ -122,7 +122,7 @@ pub(super) fn read_file(path: &Path) -> Result<Vec<u8>, LogError> {
     }
     let mut bytes = Vec::new();
     let length = file.seek(SeekFrom::End(0)).map_err(io)?;
-    // More than there is memory for is an error, and no abort.
+    // A file larger than the memory causes an error, and no abort.
     let room = usize::try_from(length).ok().and_then(|length| bytes.try_reserve_exact(length).ok());
     room.ok_or_else(|| io(std::io::ErrorKind::OutOfMemory.into()))?;
     file.seek(SeekFrom::Start(0)).map_err(io)?;
@@ -136,9 +136,8 @@ impl Log {
         Self::read(path, read_file(path)?)
     }
 
-    /// Reads a log that is in memory. `path` is what errors call it.
-    ///
-    /// The summary at the end of a file has an index; it is not used, as its offsets may be wrong.
+    /// Reads a log that is in memory, and that messages call `path`.
+    /// || The index in the summary at the end of a file is not used, because its offsets may be wrong.
     pub fn read(path: &Path, bytes: Vec<u8>) -> Result<Self, LogError> {
         let damaged = |source| LogError::Damaged { path: path.to_owned(), source };
         if !bytes.starts_with(mcap::MAGIC) {
@@ -166,7 +165,7 @@ impl Log {
             }
         }
         if topics.is_empty() {
-            // A log whose summary does not repeat its channels: they are within chunks.
+            // The summary of some logs does not repeat the channels, which are then within chunks.
             let told = walk(&bytes, checked(), |record| {
                 if let Record::Channel(channel) = record {
                     topics.insert(channel.topic);
@@ -180,35 +179,35 @@ impl Log {
         Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, scenario, commands })
     }
 
-    /// The topics that the log has.
+    /// Returns the topics of the log.
     pub fn topics(&self) -> &[String] {
         &self.topics
     }
 
-    /// The metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ...
+    /// Returns the metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ...
     pub fn metadata(&self) -> &BTreeMap<String, String> {
         &self.metadata
     }
 
-    /// The commands from outside under which it was run, as text, if there were any.
+    /// Returns the external commands of the run as text, if there were any.
     pub fn commands(&self) -> Option<&str> {
         self.commands.as_deref()
     }
 
-    /// The scenario that was run, as TOML.
+    /// Returns the scenario of the run, as TOML.
     pub fn scenario(&self) -> Option<&str> {
         self.scenario.as_deref()
     }
 
-    /// The same, for what cannot do without.
+    /// Returns the scenario of the run, or an error if there is none.
     ///
     /// # Errors
-    /// The log holds none: it is not of this program.
+    /// A log without a scenario, which is not one of flexsc.
     pub fn own_scenario(&self) -> Result<&str, LogError> {
         self.scenario().ok_or_else(|| LogError::NoScenario { path: self.path.clone() })
     }
 
-    /// The rows of a topic. The first column is `time_s`: the messages' own, or else their log time.
+    /// Returns the rows of a topic. The first column is `time_s`: a field of the messages, or else their log time.
     pub fn columns(&self, topic: &str) -> Result<Columns, LogError> {
         let columns = self.tables(&[topic])?.pop().flatten();
         if columns.is_none() && self.topics.iter().any(|own| own == topic) {
@@ -222,7 +221,7 @@ impl Log {
         })
     }
 
-    /// The rows of several topics in one pass through the log; nothing for a topic that it does not have.
+    /// Returns the rows of several topics in one pass through the log; `None` for a topic that it does not have.
     pub fn tables(&self, topics: &[&str]) -> Result<Vec<Option<Columns>>, LogError> {
         let mut tables: Vec<Option<TopicTable>> = topics.iter().map(|_| None).collect();
         let mut budget = Budget::of_file(self.bytes.len());
@@ -265,7 +264,7 @@ impl Log {
     }
 }
 
-/// Takes a message of a topic into its table.
+/// Appends a message of a topic to its table.
 fn take(
     table: &mut Option<TopicTable>,
     channel: &Channel,
@@ -291,7 +290,7 @@ fn take(
     table.push(time, data, budget)
 }
 
-/// Checksums come first.
+/// Returns options by which checksums are verified before data is used.
 fn checked() -> LinearReaderOptions {
     LinearReaderOptions::default().with_prevalidate_chunk_crcs(true)
 }

@@ -1,4 +1,4 @@
-//! The log file: a run as MCAP, whose bytes depend on the scenario, the seed and the version alone.
+//! Log file: a run as MCAP, whose bytes depend only on the scenario, the seed and the version.
 
 use std::collections::BTreeMap;
 use std::io::{self, BufWriter, Cursor, Seek, Write};
@@ -13,16 +13,16 @@ use super::{Attachment, Detail, Provenance, Record, RecordError, RunEnd, Sample,
 use crate::time::Instant;
 use crate::whole::Partial;
 
-/// A chunk is closed after so many messages: what a killed run loses at most.
+/// Number of messages after which a chunk is closed: the largest number lost with a killed run.
 const MESSAGES_PER_FLUSH: u64 = 2000;
 
-/// A run's log, written while it runs.
+/// Log of a run, written while it runs.
 struct McapLog<W: Write + Seek> {
     log: Encode<Channels<W>>,
 }
 
 impl<W: Write + Seek> McapLog<W> {
-    /// A log with its provenance written.
+    /// Creates a log with its provenance written.
     fn new(writer: W, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
         let options =
             WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
@@ -47,7 +47,7 @@ impl<W: Write + Seek> McapLog<W> {
         Ok(Self { log: Encode::new(channels, from, detail)? })
     }
 
-    /// Writes the metrics, how the run ended, and the file's summary.
+    /// Writes the metrics, the end of the run, and the file's summary.
     fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
         let (Channels { mut writer, .. }, last) = self.log.finish(metrics, end)?;
         let end = match end {
@@ -63,7 +63,7 @@ impl<W: Write + Seek> McapLog<W> {
     }
 }
 
-/// The channels of a file, made with their first message.
+/// Channels of a file, created with their first message.
 struct Channels<W: Write + Seek> {
     writer: Writer<W>,
     /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`].
@@ -92,7 +92,7 @@ impl<W: Write + Seek> Messages for Channels<W> {
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
         self.writer.write_to_known_channel(&header, message.data).map_err(failure)?;
         self.since_flush += 1;
-        // Only after a message: a chunk without one would start at time 0 for a viewer.
+        // Flush only after a message: a chunk without one would start at time 0 in a viewer.
         if self.since_flush == MESSAGES_PER_FLUSH {
             self.since_flush = 0;
             self.writer.flush().map_err(failure)?;
@@ -101,13 +101,13 @@ impl<W: Write + Seek> Messages for Channels<W> {
     }
 }
 
-/// A log on disk, under a `.partial` name until it is finished. Dropped before, it is removed.
+/// Log on disk, under a `.partial` name until it is finished. If it is dropped before, it is removed.
 pub struct LogFile {
     log: McapLog<BufWriter<Partial>>,
 }
 
 impl LogFile {
-    /// Creates the file beside its final place.
+    /// Creates the file under its `.partial` name.
     pub fn create(path: &Path, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
         let file = BufWriter::new(Partial::create(path)?);
         Ok(Self { log: McapLog::new(file, from, detail)? })
@@ -122,13 +122,14 @@ impl LogFile {
     }
 }
 
-/// A log in memory, with the bytes of the file. Here and in [`LogFile`], so that all of it is compiled once, where it is.
+/// Log in memory, with the bytes of the file. `LogBytes` and [`LogFile`] are concrete types, so that their code is
+/// compiled once, in this crate.
 pub struct LogBytes {
     log: McapLog<Cursor<Vec<u8>>>,
 }
 
 impl LogBytes {
-    /// A log with its provenance written.
+    /// Creates a log with its provenance written.
     pub fn new(from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
         Ok(Self { log: McapLog::new(Cursor::new(Vec::new()), from, detail)? })
     }
@@ -139,7 +140,7 @@ impl LogBytes {
     }
 }
 
-/// A record is what the record within it is.
+/// Implements `Record` by the record in the field `log`.
 macro_rules! records_within {
     ($($log:ty),+) => {
         $(impl Record for $log {

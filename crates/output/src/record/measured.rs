@@ -1,63 +1,63 @@
-//! What the metrics of a run are: named values with units, as JSON and as rows of a log.
+//! Metrics of a run: named values with units, as JSON and as rows of a log.
 
 use serde_json::{Map, Value as Json, json};
 
 use super::{Metric, Metrics as Row};
 
-/// What a metric means.
+/// Description of a metric.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Meaning {
-    /// Name.
+    /// Name of the metric.
     pub name: &'static str,
     /// Unit; empty for a count, a ratio or a word.
     pub unit: &'static str,
-    /// What it tells.
+    /// Explanation of the metric.
     pub doc: &'static str,
 }
 
-/// The value of a metric.
+/// Value of a metric.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
-    /// A count.
+    /// Integer count.
     Count(u64),
-    /// A number; NaN where there is none.
+    /// Number; NaN if there is none.
     Number(f64),
-    /// Numbers.
+    /// List of numbers.
     Numbers(Vec<f64>),
-    /// Numbers, each with its own unit.
+    /// List of numbers, each with its own unit.
     Quantities(Vec<Quantity>),
-    /// A word.
+    /// Word.
     Word(&'static str),
 }
 
-/// A number with its unit.
+/// Number with its unit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quantity {
-    /// The number; NaN where there is none.
+    /// Number; NaN if there is none.
     pub value: f64,
-    /// Its unit.
+    /// Unit of the number.
     pub unit: String,
 }
 
-/// A metric and its value.
+/// Metric with its value.
 pub type MetricValue = (&'static Meaning, Value);
 
-/// The metrics of one run.
+/// Metrics of one run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Metrics(pub Vec<MetricValue>);
 
 impl Metrics {
-    /// The value of a metric.
+    /// Returns the value of a metric.
     pub fn get(&self, name: &str) -> Option<&Value> {
         self.0.iter().find(|(meaning, _)| meaning.name == name).map(|(_, value)| value)
     }
 
-    /// The same metrics, to be asked for in about their order.
+    /// Returns a view of the metrics for queries in about their order.
     pub fn in_order(&self) -> InOrder<'_> {
         InOrder { metrics: self, next: 0 }
     }
 
-    /// The value of a metric that is a number or a count.
+    /// Returns the value of a metric that is a number or a count.
     pub fn number(&self, name: &str) -> Option<f64> {
         match self.get(name)? {
             Value::Number(number) => Some(*number),
@@ -66,13 +66,13 @@ impl Metrics {
         }
     }
 
-    /// The metrics as a JSON object. What is not a number is null.
+    /// Returns the metrics as a JSON object, with null for NaN.
     pub fn to_json(&self) -> Json {
         let object = self.0.iter().map(|(meaning, value)| (meaning.name.to_owned(), value.to_json()));
         Json::Object(object.collect::<Map<_, _>>())
     }
 
-    /// The metrics as a log holds them.
+    /// Returns the metrics as a row of a log.
     pub fn to_row(&self) -> Row {
         let mut metrics = Vec::new();
         for (meaning, value) in &self.0 {
@@ -103,7 +103,7 @@ impl Metrics {
     }
 }
 
-/// Metrics that are asked for in about their order: each is looked for behind the last one first.
+/// View of metrics for queries in about their order: each search begins after the last result.
 #[derive(Copy, Clone, Debug)]
 pub struct InOrder<'a> {
     metrics: &'a Metrics,
@@ -111,7 +111,7 @@ pub struct InOrder<'a> {
 }
 
 impl<'a> InOrder<'a> {
-    /// The value of a metric.
+    /// Returns the value of a metric.
     pub fn get(&mut self, name: &str) -> Option<&'a Value> {
         let all = &self.metrics.0;
         let is_it = |place: &usize| all[*place].0.name == name;
@@ -122,7 +122,7 @@ impl<'a> InOrder<'a> {
 }
 
 impl Value {
-    /// The numbers of a metric that has several; none of another.
+    /// Returns the numbers of a metric that has several; empty for others.
     pub fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Numbers(numbers) => numbers.clone(),
@@ -131,7 +131,7 @@ impl Value {
         }
     }
 
-    /// The value as JSON; NaN is null.
+    /// Returns the value as JSON, with null for NaN.
     pub fn to_json(&self) -> Json {
         match self {
             Self::Count(count) => json!(count),

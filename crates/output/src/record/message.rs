@@ -1,4 +1,4 @@
-//! Messages: the rows of a run as the bytes that every log of it holds, wherever they go.
+//! Messages: the rows of a run as bytes, identical for files and viewers.
 
 use super::foxglove::{Log, LogLevel};
 use super::measured::Metrics;
@@ -8,12 +8,12 @@ use super::topics::index_of;
 use super::{Detail, OutputName, Params, Record, RecordError, Sample, Summary, TakeRow};
 use crate::time::{Instant, Span};
 
-/// The provenance of a log.
+/// Provenance of a log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Provenance {
     /// Name of the scenario.
     pub scenario: String,
-    /// The scenario with all defaults and drawn values, as TOML.
+    /// Scenario with all defaults and drawn values, as TOML.
     pub toml: String,
     /// Seed of the scenario.
     pub seed: u64,
@@ -21,46 +21,47 @@ pub struct Provenance {
     pub run: u64,
     /// Date of the run's start in nanoseconds since 1970 UTC; 0 if the scenario has none.
     pub epoch_ns: u64,
-    /// The observed coordinates, in the order in which they are logged.
+    /// Observed coordinates, in the order in which they are logged.
     pub outputs: Vec<OutputName>,
-    /// The roles of parts that a program brought with it: with some the run does not repeat from its scenario alone.
+    /// Roles of custom parts supplied by a calling program; with any, the run cannot be repeated from its scenario
+    /// alone.
     pub own_parts: Vec<&'static str>,
-    /// What lies in the log beside its messages and its scenario.
+    /// Attached files, besides the scenario.
     pub attachments: Vec<Attachment>,
 }
 
 impl Provenance {
-    /// The commands from outside under which it was run, if there were any.
+    /// Returns the external commands of the run, if there were any.
     pub fn commands(&self) -> Option<&[u8]> {
         let commands = self.attachments.iter().find(|attachment| attachment.name == COMMANDS)?;
         Some(&commands.data)
     }
 }
 
-/// A file within a log.
+/// File within a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Attachment {
-    /// Its name, such as `layout.json`.
+    /// Name, such as `layout.json`.
     pub name: &'static str,
-    /// Its media type, such as `application/json`.
+    /// Media type, such as `application/json`.
     pub media_type: &'static str,
-    /// What it holds.
+    /// Contents of the file.
     pub data: Vec<u8>,
 }
 
-/// How a run ended.
+/// End of a run.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum RunEnd {
-    /// It reached its duration.
+    /// Run that reached its duration.
     Complete,
-    /// The user stopped it.
+    /// Run stopped by the user.
     Interrupted,
-    /// It failed.
+    /// Run that failed.
     Failed,
 }
 
 impl RunEnd {
-    /// How a run of this duration ended that was left at an instant.
+    /// Returns the end of a run of the given duration that was left at the instant `left`.
     pub fn at(left: Instant, duration: Span) -> Self {
         if left < Instant::START + duration { Self::Interrupted } else { Self::Complete }
     }
@@ -74,27 +75,27 @@ impl RunEnd {
     }
 }
 
-/// The attachment of a log that holds the commands from outside under which it was run.
+/// Name of the attachment with the external commands of a run.
 pub const COMMANDS: &str = "commands.csv";
 
-/// A message of a log.
+/// Message of a log.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Message<'a> {
-    /// Its topic, as an index into [`TOPICS`](super::TOPICS).
+    /// Topic, as an index into [`TOPICS`](super::TOPICS).
     pub topic: usize,
-    /// Its time in simulated nanoseconds past the epoch.
+    /// Time in simulated nanoseconds past the epoch.
     pub time_ns: u64,
-    /// The row as protobuf, of the topic's schema.
+    /// Row as protobuf, with the topic's schema.
     pub data: &'a [u8],
 }
 
-/// Where messages go: a file, a viewer.
+/// Destination of messages: a file or a viewer.
 pub trait Messages {
-    /// Takes the next message. Times never go back.
+    /// Writes the next message. Times never decrease.
     fn take(&mut self, message: Message<'_>) -> Result<(), RecordError>;
 }
 
-/// A record that turns a run into messages.
+/// Record that turns a run into messages.
 pub struct Encode<M> {
     to: M,
     detail: Detail,
@@ -104,7 +105,7 @@ pub struct Encode<M> {
 }
 
 impl<M: Messages> Encode<M> {
-    /// The messages of a run, beginning with its parameters.
+    /// Creates the messages of a run, beginning with its parameters.
     pub fn new(to: M, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
         let mut encode =
             Self { to, detail, epoch_ns: from.epoch_ns, last: Instant::START, buffer: Vec::new() };
@@ -119,8 +120,8 @@ impl<M: Messages> Encode<M> {
         Ok(encode)
     }
 
-    /// Ends the messages with the metrics, if there are any, and how the run ended, if before its time; tells where the
-    /// messages went, and the time of the last.
+    /// Ends the messages with the metrics, if any, and a log line unless the run is complete; returns the destination,
+    /// and the time of the last message.
     pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<(M, Instant), RecordError> {
         if !metrics.0.is_empty() {
             let last = self.last;
@@ -144,7 +145,7 @@ impl<M: Messages> Encode<M> {
     }
 }
 
-/// Takes rows, wherever the messages go.
+/// Encoder of rows for any destination of messages.
 struct Rows<'a> {
     to: &'a mut dyn Messages,
     epoch_ns: u64,
@@ -175,7 +176,7 @@ impl<M: Messages> Record for Encode<M> {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        // Another record may want more.
+        // The sample may be meant for a record of more detail.
         if sample.detail() > self.detail { Ok(()) } else { self.rows().take_sample(now, sample) }
     }
 }

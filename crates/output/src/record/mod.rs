@@ -1,4 +1,4 @@
-//! The record: the only way out of a simulation.
+//! Record: the only output of a simulation.
 
 mod bounds;
 mod budget;
@@ -51,57 +51,57 @@ pub use topics::{
 };
 pub use trace::Trace;
 
-/// What a simulation reports while it runs.
+/// Samples that a simulation reports while it runs.
 #[derive(Copy, Clone, Debug)]
 pub enum Sample<'a> {
-    /// The run begins with the law in this state.
+    /// Start of the run, with the law in this state.
     Begin(&'a Law),
-    /// The law switched, with the body in this state.
+    /// Switching of the law, with the body in this state.
     Switching(&'a Command, &'a State),
-    /// The motion at one instant: at each period of a dense record, and at every switching.
+    /// Motion at one instant: at each period of a dense record, and at every switching.
     Motion(&'a Motion),
-    /// What the law does, once a second of a dense record.
+    /// State of the law, once a second in a dense record.
     Law(&'a Law),
-    /// A window of the envelope's mean ended.
+    /// End of a window of the envelope's mean.
     Window(&'a WindowMean),
-    /// A window of the adaptation's objective ended.
+    /// End of a window of the adaptation's objective.
     Objective(&'a Objective),
-    /// The adaptation took a step.
+    /// Step of the adaptation.
     Adaptation(&'a Adaptation),
-    /// The manoeuvre ended.
+    /// End of the manoeuvre.
     Arrival(&'a Arrival),
-    /// A filter took a sample.
+    /// Estimate of a filter after a sample.
     Estimate(&'a Estimate),
-    /// Filters of three axes took a sample.
+    /// Estimates of the filters of three axes after a sample.
     Estimates(&'a Estimates),
-    /// An attitude filter took a sample.
+    /// Estimate of an attitude filter after a sample.
     AttitudeEstimate(&'a AttitudeEstimate),
-    /// What that filter then knew of elastic modes.
+    /// Estimates of elastic modes by an attitude filter after a sample.
     ElasticEstimates(&'a ElasticEstimates),
-    /// A wheel passed through zero speed, stuck, or slipped again.
+    /// Wheel that passed through zero speed, stuck, or slipped again.
     WheelEvent(&'a WheelEvent),
-    /// An accelerometer told a sample.
+    /// Sample of an accelerometer.
     Accelerations(&'a Accelerations),
-    /// A failure of a sensor or an actuator began or ended.
+    /// Start or end of a failure of a sensor or an actuator.
     Fault(&'a FaultEvent),
-    /// A cycle of a body with three axes began.
+    /// Start of a cycle of a three-axis body.
     Cycle(&'a SpatialCycle),
-    /// What adaptive observers know after a cycle's sample.
+    /// Estimates of adaptive observers after a cycle's sample.
     Tracking(&'a Tracking),
-    /// The motion of a spatial body at one instant, at each period of a dense record.
+    /// Motion of a spatial body at one instant, at each period of a dense record.
     SpatialMotion(&'a SpatialMotion),
-    /// A line for people: what happened.
+    /// Log line for people.
     Log(&'a foxglove::Log),
-    /// What a scene consists of, once.
+    /// Contents of the scene, once.
     Scene(&'a foxglove::SceneUpdate),
-    /// Where the parts of the scene are.
+    /// Poses of the parts of the scene.
     Frames(&'a foxglove::FrameTransforms),
-    /// The plumes of the scene, at each change.
+    /// Plumes of the scene, at each change.
     Plumes(&'a foxglove::Plumes),
 }
 
 impl Sample<'_> {
-    /// The least detail of a record that wants it.
+    /// Returns the least detail of a record that needs the sample.
     pub fn detail(self) -> Detail {
         match self {
             Self::Motion(_)
@@ -119,38 +119,38 @@ impl Sample<'_> {
     }
 }
 
-/// The motion at one instant.
+/// Motion at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
-    /// Angles.
+    /// Angle of the body.
     pub attitude: Attitude,
-    /// Rates.
+    /// Rate of the body.
     pub rate: Rate,
-    /// Modes.
+    /// Motion of the elastic modes.
     pub modes: Modes,
     /// Observed coordinates, if the body has any.
     pub outputs: Option<Outputs>,
-    /// Goal and torques, of a scenario with more than a law.
+    /// Goal and torques, if the scenario has more than a law.
     pub drive: Option<(GoalMotion, Torque)>,
-    /// The wheel, if there is one that stores momentum.
+    /// Motion of the wheel, if there is one that stores momentum.
     pub wheel: Option<WheelMotion>,
-    /// Envelope, if the scenario has an observer.
+    /// Envelope of the modes, if the scenario has an observer.
     pub envelope: Option<Envelope>,
 }
 
-/// Which motions a record wants whole, stretch by stretch.
+/// Selection of the pieces of motion that a record needs as a whole.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Course {
-    /// None.
+    /// No piece.
     None,
-    /// Those on which the angle may be farther from 0 than this (rad).
+    /// Pieces on which the angle may be farther from 0 than this (rad).
     Beyond(f64),
-    /// All.
+    /// All pieces.
     All,
 }
 
 impl Course {
-    /// What satisfies both.
+    /// Returns the smallest selection that contains both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         match (self, other) {
@@ -161,43 +161,43 @@ impl Course {
     }
 }
 
-/// An observer of a simulation.
+/// Observer of a simulation.
 pub trait Record {
-    /// Whether the record wants the motion at each period of the scenario's log.
+    /// Returns true if the record needs the motion at each period of the scenario's log.
     fn dense(&self) -> bool {
         false
     }
 
-    /// Whether the record takes a filter's estimate at each sample.
+    /// Returns true if the record needs a filter's estimate at each sample.
     fn estimates(&self) -> bool {
         self.dense()
     }
 
-    /// Whether the record takes switchings.
+    /// Returns true if the record needs switchings.
     fn switchings(&self) -> bool {
         true
     }
 
-    /// Which motions of a body with one angle the record wants whole: each from one change of its input to the next, when
-    /// it has ended, whatever instants other records look at.
+    /// Returns the selection of pieces of a one-axis motion that the record needs as a whole. A piece lasts from one
+    /// change of the input to the next, whatever instants other records observe.
     fn course(&self) -> Course {
         Course::None
     }
 
-    /// Takes a stretch of a motion that ends now.
+    /// Observes a piece of motion that ends now.
     fn stretch(&mut self, _now: Instant, _stretch: &Stretch) -> Result<(), RecordError> {
         Ok(())
     }
 
-    /// Whether the record wants the scene, which a simulation has once it was asked to draw it.
+    /// Returns true if the record needs the scene, which a simulation has only if it was requested.
     fn scene(&self) -> bool {
         false
     }
 
-    /// Takes a sample.
+    /// Records a sample.
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError>;
 
-    /// Whether the run may go on: asked at every event, and now and then in long searches and integrations between two.
+    /// Checks that the run may continue; called at every event, and at intervals in long searches and integrations.
     ///
     /// # Errors
     /// [`RecordError::Interrupted`] to end the run.
@@ -206,34 +206,34 @@ pub trait Record {
     }
 }
 
-/// A record could not be kept.
+/// Error of a record.
 #[derive(Debug, Error)]
 pub enum RecordError {
-    /// The log could not be written.
+    /// Log that could not be written.
     #[error(transparent)]
     Io(#[from] io::Error),
-    /// The user asked to stop.
+    /// Request of the user to stop.
     #[error("interrupted")]
     Interrupted,
 }
 
-/// How much of a run is recorded.
+/// Detail in which a run is recorded.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Detail {
-    /// Switchings, window means, adaptation: all that changes.
+    /// Switchings, window means, adaptation: all changes.
     #[default]
     Events,
-    /// Also the motion at each period of the scenario's log, and at every switching.
+    /// In addition the motion at each period of the scenario's log, and at every switching.
     Full,
-    /// Also the scene: frames and shapes for viewers in three dimensions.
+    /// In addition the scene: frames and shapes for three-dimensional viewers.
     Scene,
 }
 
-/// A thing that takes rows of any topic: messages, or columns in memory.
+/// Destination of rows of any topic: messages, or columns in memory.
 trait TakeRow {
     fn take<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
 
-    /// Takes the rows that a sample consists of.
+    /// Records the rows of which a sample consists.
     fn take_sample(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
             Sample::Begin(law) | Sample::Law(law) => self.take(now, law),

@@ -1,4 +1,4 @@
-//! Of which run a log is, read off its beginning: whether another log may take its place.
+//! Provenance of an existing log, read from its beginning, to decide if another log may replace it.
 
 use std::fs::File;
 use std::io::{BufReader, Read};
@@ -11,18 +11,18 @@ use toml::{Table, Value};
 use super::bounds::LARGEST;
 use super::{COMMANDS, Provenance};
 
-/// What there is in the place of a log.
+/// Existing file in the place of a log.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum There {
-    /// Nothing.
+    /// No file.
     Nothing,
-    /// A log of the same run: of the same scenario, seed, number, commands and version.
+    /// Log of the same run: of the same scenario, seed, number, commands and version.
     Same,
-    /// Something else: what it is.
+    /// Another file, with its description.
     Other(String),
 }
 
-/// What there is in the place of a run's log.
+/// Returns the kind of file in the place of a run's log.
 pub fn there(path: &Path, run: &Provenance) -> There {
     let Ok(file) = File::open(path) else {
         return if path.exists() { There::Other("cannot be read".to_owned()) } else { There::Nothing };
@@ -52,7 +52,7 @@ pub fn there(path: &Path, run: &Provenance) -> There {
     }
 }
 
-/// The first key in which two scenarios differ, with both values where they are short.
+/// Returns the first key in which two scenarios differ, with both values if they are short.
 pub fn difference(there: &str, here: &str) -> String {
     let (Ok(there), Ok(here)) = (there.parse::<Table>(), here.parse::<Table>()) else { return String::new() };
     let Some((key, there, here)) = first_difference("", &there, &here) else { return String::new() };
@@ -79,18 +79,18 @@ fn first_difference<'a>(within: &str, there: &'a Table, here: &'a Table) -> Opti
     })
 }
 
-/// Where a log comes from, by its own metadata.
+/// Provenance of a log by its own metadata.
 struct Origin {
     toml: String,
     version: String,
     seed: String,
     run: String,
-    /// Commands from outside, if it was stepped under any.
+    /// External commands, if the run had any.
     commands: Option<Vec<u8>>,
 }
 
 impl Origin {
-    /// Reads a log up to the metadata of its run, which stands before all messages.
+    /// Reads a log up to the metadata of its run, which precedes all messages.
     fn read(mut file: impl Read) -> Option<Self> {
         let options = LinearReaderOptions::default().with_record_length_limit(LARGEST);
         let mut reader = LinearReader::new_with_options(options);

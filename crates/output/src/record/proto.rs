@@ -1,4 +1,4 @@
-//! Rows as protobuf: the schema that a log carries, and the bytes of a row.
+//! Rows as protobuf: the schema contained in a log, and the bytes of a row.
 
 use prost::Message as _;
 use prost::encoding::{WireType, encode_key, encode_varint};
@@ -15,7 +15,7 @@ use crate::label::Labels;
 const GOOGLE: &str = "google.protobuf";
 
 impl Topic {
-    /// Its schema: a serialised `FileDescriptorSet` with its imports and comments.
+    /// Returns the topic's schema: a serialised `FileDescriptorSet` with its imports and comments.
     pub fn schema(&self) -> Vec<u8> {
         let mut files = Vec::new();
         let message = Message { name: self.message, doc: self.doc, fields: self.fields };
@@ -24,12 +24,12 @@ impl Topic {
     }
 }
 
-/// Package and name of a message.
+/// Splits a full name into package and name.
 fn parts(full: &str) -> (&str, &str) {
     full.rsplit_once('.').unwrap_or(("", full))
 }
 
-/// A file that defines this message or enumeration, and nothing else.
+/// Returns a file without contents for one message or enumeration.
 fn file(package: &str, name: &str) -> FileDescriptorProto {
     // The published files of `foxglove` have the messages' own names.
     let stem = if package == "foxglove" { name.to_owned() } else { name.to_lowercase() };
@@ -41,7 +41,7 @@ fn file(package: &str, name: &str) -> FileDescriptorProto {
     }
 }
 
-/// Adds a message's file after those that it imports; returns the file's name.
+/// Adds a message's file after its imports; returns the file's name.
 fn add_message(message: &Message, files: &mut Vec<FileDescriptorProto>) -> String {
     let (package, name) = parts(message.name);
     let mut imports = Vec::new();
@@ -81,7 +81,7 @@ fn add_message(message: &Message, files: &mut Vec<FileDescriptorProto>) -> Strin
     )
 }
 
-/// Adds a file that is not there yet; returns its name.
+/// Adds a file unless it is present; returns its name.
 fn add(files: &mut Vec<FileDescriptorProto>, file: FileDescriptorProto) -> String {
     let name = file.name().to_owned();
     if files.iter().all(|other| other.name() != name) {
@@ -116,7 +116,7 @@ fn add_enumeration(package: &str, labels: &Labels, files: &mut Vec<FileDescripto
     )
 }
 
-/// Adds one of the messages of time that every reader knows.
+/// Adds the file of a time message of `google.protobuf`.
 fn add_time(name: &str, files: &mut Vec<FileDescriptorProto>) -> String {
     let field = |(name, number, of): (&str, i32, Type)| FieldDescriptorProto {
         name: Some(name.to_owned()),
@@ -160,14 +160,14 @@ fn descriptor(package: &str, field: &Field, number: i32) -> FieldDescriptorProto
 fn comment(path: &[i32], doc: &[&str]) -> Location {
     Location {
         path: path.to_vec(),
-        // The grammar asks for a span; nothing points into a text here.
+        // The format requires a span, but there is no source text.
         span: vec![0, 0, 0],
         leading_comments: Some(doc.join("\n")),
         ..Location::default()
     }
 }
 
-/// Appends the fields of a row to a buffer, every one of them, zeros included.
+/// Encoder that appends all fields of a row to a buffer, including zeros.
 pub struct Encoder<'a> {
     field: u32,
     buffer: &'a mut Vec<u8>,
@@ -233,7 +233,7 @@ impl Sink for Encoder<'_> {
     }
 
     fn rows<R: Row>(&mut self, rows: &[R]) {
-        // All rows share the field's number, which `key` counts up.
+        // All rows share the field's number, which `key` increments.
         let field = self.field;
         let mut inner = Vec::new();
         for row in rows {

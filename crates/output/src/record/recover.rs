@@ -1,4 +1,4 @@
-//! Saving torn logs: what is whole in one, as a new log.
+//! Recovery of torn logs: the complete part, as a new log.
 
 use std::collections::BTreeMap;
 use std::io::Cursor;
@@ -13,11 +13,11 @@ use super::LogError;
 use super::bounds::walk;
 use super::log::read_file;
 
-/// A log of what is whole in a torn one, and how many messages were saved.
+/// Returns a log of the complete part of a torn one, and the number of messages saved.
 pub fn recover(torn: &Path) -> Result<(Vec<u8>, u64), LogError> {
     let bytes = read_file(torn)?;
     let damaged = |source| LogError::Damaged { path: torn.to_owned(), source };
-    // In memory, where the torn log is too: what cannot be recovered leaves no file.
+    // In memory, as the torn log is: if recovery fails, no file remains.
     let options =
         WriteOptions::new().compression_threads(0).library(concat!("flexsc/", env!("CARGO_PKG_VERSION")));
     let mut writer = Writer::with_options(Cursor::new(Vec::new()), options).map_err(damaged)?;
@@ -26,7 +26,7 @@ pub fn recover(torn: &Path) -> Result<(Vec<u8>, u64), LogError> {
     Ok((writer.into_inner().into_inner(), saved))
 }
 
-/// Copies records up to the first one that cannot be read, which is where the log was torn.
+/// Copies records up to the first one that cannot be read, where the log was torn.
 fn copy_records(bytes: &[u8], writer: &mut Writer<Cursor<Vec<u8>>>) -> Result<u64, McapError> {
     let options = LinearReaderOptions::default().with_skip_end_magic(true).with_validate_chunk_crcs(true);
     let mut schemas = BTreeMap::from([(0, 0)]);
@@ -39,7 +39,7 @@ fn copy_records(bytes: &[u8], writer: &mut Writer<Cursor<Vec<u8>>>) -> Result<u6
                 let id = writer.add_schema(&header.name, &header.encoding, &data)?;
                 schemas.insert(header.id, id);
             }
-            // Held back until its first message, so that no chunk is without one.
+            // Delayed until its first message, so that no chunk is without one.
             Record::Channel(channel) => {
                 pending.insert(channel.id, channel);
             }
@@ -68,7 +68,7 @@ fn copy_records(bytes: &[u8], writer: &mut Writer<Cursor<Vec<u8>>>) -> Result<u6
         }
         Ok(ControlFlow::Continue(()))
     };
-    // Why a log cannot be read on is no news, and that the new one cannot be written is.
+    // A reading error is expected in a torn log, but a writing error must be returned.
     let mut unwritten = None;
     let _torn = walk(bytes, options, |record| {
         let outcome = copied(record);

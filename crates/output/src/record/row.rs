@@ -2,105 +2,105 @@
 
 use crate::label::Labels;
 
-/// A topic of the log.
+/// Topic of the log.
 #[derive(Copy, Clone, Debug)]
 pub struct Topic {
     /// Name with its leading slash.
     pub name: &'static str,
     /// Full name of the message: `flexsc.v1.Command`.
     pub message: &'static str,
-    /// What it tells.
+    /// Description of the topic.
     pub doc: &'static [&'static str],
-    /// Its fields, in the order of their protobuf numbers.
+    /// Fields, in the order of their protobuf numbers.
     pub fields: &'static [Field],
 }
 
-/// A field of a row.
+/// Field of a row.
 #[derive(Copy, Clone, Debug)]
 pub struct Field {
     /// Name with its unit: `angle_rad`.
     pub name: &'static str,
-    /// What it tells.
+    /// Description of the field.
     pub doc: &'static [&'static str],
-    /// What it holds.
+    /// Kind of the contents.
     pub kind: Kind,
 }
 
-/// What a field holds.
+/// Kind of a field's contents.
 #[derive(Copy, Clone, Debug)]
 pub enum Kind {
-    /// A double; NaN where there is no value.
+    /// Floating-point number; NaN if there is no value.
     Number,
-    /// A count.
+    /// Integer count.
     Count,
-    /// A value of an enumeration.
+    /// Value of an enumeration.
     Label(&'static Labels),
-    /// A text.
+    /// Text value.
     Text,
-    /// Yes or no.
+    /// Boolean value.
     Flag,
-    /// A date or a span of time, as this message of the package `google.protobuf`.
+    /// Date or time span, as this message of the package `google.protobuf`.
     Time(&'static str),
-    /// A row within the row.
+    /// Nested row.
     Row(&'static Message),
-    /// Any number of rows within the row.
+    /// Any number of nested rows.
     Rows(&'static Message),
 }
 
-/// What a row is as a message.
+/// Protobuf message of a row.
 #[derive(Debug)]
 pub struct Message {
     /// Full name: `flexsc.v1.ModeMotion`.
     pub name: &'static str,
-    /// What it tells, line by line.
+    /// Description, line by line.
     pub doc: &'static [&'static str],
-    /// Its fields.
+    /// Fields of the message.
     pub fields: &'static [Field],
 }
 
-/// Something with fields.
+/// Row with a fixed list of fields.
 pub trait Row {
-    /// What it tells, line by line.
+    /// Description, line by line.
     const DOC: &'static [&'static str];
-    /// The fields.
+    /// Fields of the row.
     const FIELDS: &'static [Field];
 
-    /// Puts the fields into a sink, in their order.
+    /// Writes the fields into a sink, in their order.
     fn put<S: Sink>(&self, sink: &mut S);
 }
 
-/// A row that is a message of its own.
+/// Row that is a message of a topic.
 pub trait TopicRow: Row {
-    /// Its topic.
+    /// Topic of the row.
     const TOPIC: Topic;
 }
 
-/// Takes the fields of a row, one after the other.
+/// Destination of the fields of a row, one after the other.
 pub trait Sink {
-    /// Takes a double.
+    /// Writes a double.
     fn number(&mut self, value: f64);
-    /// Takes a count.
+    /// Writes a count.
     fn count(&mut self, value: u64);
-    /// Takes the index of an enumeration's value.
+    /// Writes the index of an enumeration's value.
     fn label(&mut self, index: usize, labels: &'static Labels);
-    /// Takes a text.
+    /// Writes a text.
     fn text(&mut self, text: &str);
-    /// Takes a yes or a no.
+    /// Writes a boolean.
     fn flag(&mut self, value: bool);
-    /// Takes a date (ns since 1970, or since the start of a run without a date) or a span of time (ns).
+    /// Writes a date (ns since 1970, or since the start of a run without a date) or a time span (ns).
     fn time(&mut self, nanoseconds: u64);
-    /// Takes a row within the row.
+    /// Writes a nested row.
     fn row<R: Row>(&mut self, row: &R);
-    /// Takes rows within the row.
+    /// Writes nested rows.
     fn rows<R: Row>(&mut self, rows: &[R]);
 }
 
-/// A type that can be a field.
+/// Type that can be a field.
 pub trait Cell {
-    /// What the field holds.
+    /// Kind of the field's contents.
     const KIND: Kind;
 
-    /// Puts the field into a sink.
+    /// Writes the field into a sink.
     fn put<S: Sink>(&self, sink: &mut S);
 }
 
@@ -134,7 +134,7 @@ impl Cell for bool {
     }
 }
 
-/// A date on the time base of a log: nanoseconds since 1970 UTC, or since the start of a run whose scenario has no date.
+/// Date on the time base of a log: nanoseconds since 1970 UTC, or since the start of a run whose scenario has no date.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Stamp(pub u64);
 
@@ -145,7 +145,7 @@ impl Cell for Stamp {
     }
 }
 
-/// A span of time in nanoseconds; 0 for no end.
+/// Time span in nanoseconds; 0 if unlimited.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub struct Lifetime(pub u64);
 
@@ -156,7 +156,7 @@ impl Cell for Lifetime {
     }
 }
 
-/// A field's name: one that is a word of the language has a prefix in it.
+/// Returns a field's name without the prefix `r#` of Rust keywords.
 pub const fn plain(name: &'static str) -> &'static str {
     match name.as_bytes() {
         [b'r', b'#', ..] => name.split_at(2).1,
@@ -164,7 +164,7 @@ pub const fn plain(name: &'static str) -> &'static str {
     }
 }
 
-/// Declares row types of a package, and topics for those that have a name.
+/// Declares row types of a package, and topics for the types with a topic name.
 macro_rules! rows {
     (package $package:literal; $($(#[doc = $doc:literal])* $name:ident $(= $topic:literal)? {
         $($(#[doc = $field_doc:literal])* $field:ident: $of:ty),+ $(,)?
@@ -224,7 +224,7 @@ macro_rules! rows {
             })?
         )+
 
-        /// The topics declared here, in their order.
+        /// Topics declared in this macro call, in their order.
         pub const DECLARED: &[$crate::record::row::Topic] = &[
             $($({
                 const _: &str = $topic;
@@ -234,7 +234,7 @@ macro_rules! rows {
     };
 }
 
-/// Lets a labelled enumeration be a field.
+/// Implements `Cell` for labelled enumerations.
 macro_rules! label_cells {
     ($($of:ty),+ $(,)?) => {
         $(impl $crate::record::row::Cell for $of {

@@ -1,7 +1,7 @@
-//! Where the fields of a protobuf message go: the columns of a schema, and messages put into them.
+//! Decoding of protobuf messages into columns by the schema of a log.
 //!
-//! A schema comes from an untrusted file. Its fields are counted before there are columns, and messages are read
-//! straight into columns, so that nothing takes more memory than what is kept of it.
+//! A schema comes from an untrusted file. Its fields are counted before columns are created, and messages are decoded
+//! straight into columns, so that memory is used only for the result.
 
 use prost_types::field_descriptor_proto::Type;
 use prost_types::{DescriptorProto, EnumDescriptorProto, EnumValueDescriptorProto, FieldDescriptorProto};
@@ -12,51 +12,51 @@ use super::topics::label_of;
 use super::wire::{Raw, WireMessage};
 use super::{Column, Columns};
 
-/// How the messages of a log are encoded.
+/// Encoding of the messages of a log.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Schema {
     /// Full name of the message.
     pub name: String,
-    /// What the schema is written in.
+    /// Encoding of the schema.
     pub encoding: String,
-    /// A `FileDescriptorSet`, where that is `protobuf`.
+    /// Schema as a `FileDescriptorSet`, if the encoding is `protobuf`.
     pub data: Vec<u8>,
 }
 
-/// No schema is longer (bytes); that of a scene has 10 kB.
+/// Largest size of a schema (bytes); that of a scene has 10 kB.
 const LONGEST_SCHEMA: usize = 1 << 20;
-/// No topic has more fields, those of messages within messages included.
+/// Largest number of fields of a topic, including those of nested messages.
 const MOST_FIELDS: usize = 4096;
-/// No messages within messages are deeper.
+/// Largest depth of nested messages.
 const DEEPEST: usize = 32;
-/// An enumeration has at most so many labels; a value without one is beyond them all.
+/// Largest number of labels of an enumeration in a column of indices; a value without a label gets this index.
 const MOST_LABELS: usize = 255;
 
-/// Where the fields of a message go.
+/// Decoder of a message: the columns of its fields.
 pub struct MessageShape {
-    /// By their numbers.
+    /// Targets of the fields, by their numbers.
     fields: Vec<(u32, Place)>,
 }
 
-/// Where a field goes.
+/// Target of a field.
 enum Place {
-    /// Into the column of this index.
+    /// Column of this index.
     Value(usize, Scalar),
-    /// Each of its values into a row within the row.
+    /// Nested rows in the column of this index, one for each value.
     List(usize, Scalar),
-    /// Its own fields into the same row.
+    /// Columns of the same row, for the fields of a nested message.
     Inner(MessageShape),
-    /// Each of its messages into a row within the row. The entries of a map are messages too.
+    /// Nested rows in the column of this index, one for each message. The entries of a map are messages too.
     Rows(usize, MessageShape),
 }
 
-/// What a field holds.
+/// Type of a field's values.
 enum Scalar {
     Double,
     Float,
     Int32,
     Int64,
-    /// Signed, with the sign in the last bit.
+    /// Signed integer with the sign in the last bit.
     Zigzag,
     SignedFixed32,
     SignedFixed64,
@@ -64,19 +64,19 @@ enum Scalar {
     Fixed32,
     Fixed64,
     Bool,
-    /// The numbers of the labels.
+    /// Enumeration, with the numbers of its labels.
     Label(Vec<i32>),
-    /// An enumeration with too many labels for a column of them.
+    /// Enumeration with too many labels for a column of indices.
     Word(EnumDescriptorProto),
     Text,
-    /// Bytes, of which the number is kept.
+    /// Bytes, of which only the length is stored.
     Bytes,
-    /// A date or a span of time, in seconds.
+    /// Date or time span, in seconds.
     Time,
 }
 
 impl MessageShape {
-    /// Where the messages of a schema go, and the empty columns.
+    /// Creates the decoder of a schema, with empty columns.
     pub fn of(schema: &Schema) -> Result<(Self, Columns), String> {
         if schema.encoding != "protobuf" {
             return Err(format!(
@@ -97,7 +97,7 @@ impl MessageShape {
         Ok((shape, columns))
     }
 
-    /// Puts a message into a row that was begun.
+    /// Decodes a message into the row that was begun.
     pub fn fill(&self, columns: &mut Columns, message: &[u8], budget: &mut Budget) -> Result<(), String> {
         let mut wire = WireMessage::of(message);
         while let Some((number, raw)) = wire.field()? {
@@ -137,7 +137,7 @@ impl MessageShape {
     }
 }
 
-/// Counts one row more within the row of a column, and gives the columns of those rows.
+/// Adds one to the number of nested rows of a column, and returns the columns of those rows.
 fn another(columns: &mut Columns, place: usize) -> &mut Columns {
     let Column::Rows(counts, inner) = &mut columns.columns[place].1 else {
         unreachable!("a place of rows is made with a column of rows")
@@ -148,7 +148,7 @@ fn another(columns: &mut Columns, place: usize) -> &mut Columns {
     inner
 }
 
-/// Begins a row: every field has its default value.
+/// Begins a row, in which every field has its default value.
 pub fn begin(columns: &mut Columns, budget: &mut Budget) -> Result<(), String> {
     budget.spend(size_of::<String>() * columns.columns.len())?;
     for (_, column) in &mut columns.columns {
@@ -164,17 +164,17 @@ pub fn begin(columns: &mut Columns, budget: &mut Budget) -> Result<(), String> {
     Ok(())
 }
 
-/// Makes the shape of a schema, within bounds.
+/// Builder of the decoder of a schema, within bounds.
 struct Maker<'a> {
     pool: &'a Pool,
-    /// The messages that the one at work is within.
+    /// Messages that contain the current one.
     above: Vec<&'a str>,
     fields: usize,
 }
 
 impl<'a> Maker<'a> {
-    /// Adds a column for each field; those of a message within the message have its name before theirs: `rotation.x`.
-    /// `path` is what errors call the message.
+    /// Adds a column for each field; the name of a nested message precedes those of its fields: `rotation.x`. `path` is
+    /// the message's name in errors.
     fn add(
         &mut self,
         columns: &mut Columns,
@@ -247,12 +247,12 @@ impl<'a> Maker<'a> {
     }
 }
 
-/// Whether a field is a date or a span of time.
+/// Returns true if a message type is a date or a time span.
 fn is_time(name: &str) -> bool {
     matches!(name, "google.protobuf.Timestamp" | "google.protobuf.Duration")
 }
 
-/// What a field holds, and its empty column.
+/// Returns the type of a field's values, and its empty column.
 fn scalar(kind: &Content<'_>) -> (Scalar, Column) {
     let (numbers, counts) = (Column::Numbers(Vec::new()), Column::Counts(Vec::new()));
     let integers = Column::Integers(Vec::new());
@@ -279,19 +279,19 @@ fn scalar(kind: &Content<'_>) -> (Scalar, Column) {
             Type::Fixed64 => (Scalar::Fixed64, counts),
             Type::Bool => (Scalar::Bool, counts),
             Type::String => (Scalar::Text, Column::Texts(Vec::new())),
-            // Of the others, which are named types, none comes here.
+            // The other types are named and do not occur here.
             Type::Bytes | Type::Message | Type::Group | Type::Enum => (Scalar::Bytes, counts),
         },
     }
 }
 
 impl Scalar {
-    /// Whether lists of it may be one block.
+    /// Returns true if lists of such values may be packed into one block.
     fn packs(&self) -> bool {
         !matches!(self, Self::Text | Self::Bytes | Self::Time)
     }
 
-    /// The next value of a list in one block.
+    /// Reads the next value of a packed list.
     fn next<'a>(&self, wire: &mut WireMessage<'a>) -> Option<Raw<'a>> {
         match self {
             Self::Double | Self::SignedFixed64 | Self::Fixed64 => wire.fixed64().map(Raw::Fixed64),
@@ -300,7 +300,7 @@ impl Scalar {
         }
     }
 
-    /// Sets the last value of a column; nothing if the wire has another type than the schema.
+    /// Sets the last value of a column; `None` if the wire type differs from the schema.
     fn set(&self, column: &mut Column, raw: Raw<'_>, budget: &mut Budget) -> Result<Option<()>, String> {
         Ok(match (column, self, raw) {
             (Column::Numbers(values), Self::Double, Raw::Fixed64(bits)) => put(values, f64::from_bits(bits)),
@@ -346,7 +346,7 @@ fn put<T>(values: &mut [T], value: T) -> Option<()> {
     values.last_mut().map(|last| *last = value)
 }
 
-/// A date or a span of time in seconds.
+/// Decodes a date or a time span to seconds.
 fn seconds(time: &[u8]) -> Result<f64, String> {
     let (mut whole, mut past) = (0, 0);
     let mut wire = WireMessage::of(time);
@@ -357,6 +357,6 @@ fn seconds(time: &[u8]) -> Result<f64, String> {
             _ => {}
         }
     }
-    // One rounding, as of the nanoseconds themselves.
+    // A single rounding, as for the nanoseconds themselves.
     Ok((i128::from(whole) * 1_000_000_000 + i128::from(past)) as f64 / 1e9)
 }

@@ -1,84 +1,84 @@
-//! What is reported of a body with three axes.
+//! Samples of a three-axis body.
 
 use super::{
     Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Hinges, Jets, Magnetorquers, Orbit,
     Pointing, Position, Rates, Torques, Vibrations, Wheels,
 };
 
-/// A cycle of a spatial loop, after its law has decided.
+/// Cycle of a three-axis loop, after its law has decided.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpatialCycle {
-    /// What the jets do in it.
+    /// Pulses of the jets in the cycle.
     pub jets: Jets,
-    /// Of thrusters that act by themselves, the on-time of each (s).
+    /// On-time of each thruster (s), if thrusters are commanded individually.
     pub thrusters: Vec<f64>,
-    /// How many pulses begin.
+    /// Number of pulses that begin.
     pub pulses: u64,
     /// Energy of the elastic modes (J).
     pub elastic_energy_j: f64,
-    /// The same of the modes that the gyro sees (J).
+    /// Energy of the elastic modes visible to the gyro (J).
     pub visible_energy_j: f64,
     /// Rigid rates (rad/s).
     pub rigid_rate_rad_s: [f64; 3],
     /// Elastic part of the rates at the gyro (rad/s).
     pub elastic_rate_rad_s: [f64; 3],
-    /// Angles beyond the target (rad).
+    /// Angles relative to the target (rad).
     pub error_rad: [f64; 3],
-    /// Heat of the friction of wheels since the start (J); not a number without bearings.
+    /// Heat of the wheels' friction since the start (J); NaN without bearings.
     pub friction_heat_j: f64,
     /// Momentum of the wheels and control moment gyros, in the body's axes (N m s).
     pub stored_nm_s: [f64; 3],
-    /// What control moment gyros did since the start.
+    /// Extreme values of control moment gyros since the start.
     pub steered: Option<Steered>,
 }
 
-/// What control moment gyros did since the start, at the instants at which their gimbal rates change.
+/// Extreme values of control moment gyros since the start, at the instants at which their gimbal rates change.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Steered {
-    /// The largest gimbal rate (rad/s).
+    /// Largest gimbal rate (rad/s).
     pub largest_rate_rad_s: f64,
-    /// The smallest singularity measure.
+    /// Smallest singularity measure.
     pub least_measure: f64,
-    /// The largest difference between the torque on the body and the demanded one (N m).
+    /// Largest difference between the torque on the body and the demanded torque (N m).
     pub largest_error_nm: f64,
 }
 
 impl Steered {
-    /// Before the first command.
+    /// Creates the values before the first command, all NaN.
     pub fn unknown() -> Self {
         Self { largest_rate_rad_s: f64::NAN, least_measure: f64::NAN, largest_error_nm: f64::NAN }
     }
 }
 
-/// The motion of a spatial body at one instant.
+/// Motion of a spatial body at one instant.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SpatialMotion {
-    /// Attitude.
+    /// Attitude of the body.
     pub pointing: Pointing,
-    /// Rates.
+    /// Rates of the body.
     pub rates: Rates,
-    /// Modes.
+    /// Motion of the elastic modes.
     pub vibrations: Vibrations,
-    /// Energies.
+    /// Energies of rotation and modes.
     pub energy: Energy,
-    /// Where it is, if jets or forces push it and its mass is known.
+    /// Position, if jets or forces act on the body and its mass is known.
     pub position: Option<Position>,
-    /// Torques of actuators that are no jets.
+    /// Torques of actuators other than jets.
     pub torques: Option<Torques>,
     /// Wheels about axes of their own.
     pub wheels: Option<Wheels>,
-    /// Control moment gyros.
+    /// Control moment gyros of the spacecraft.
     pub gimbals: Option<ControlMomentGyros>,
-    /// The bearings of wheels.
+    /// Bearings of the wheels.
     pub bearings: Option<Bearings>,
-    /// The drives of its appendages.
+    /// Drives of the appendages.
     pub drives: Option<DrivesMotion>,
-    /// The hinges of its appendages.
+    /// Hinges of the appendages.
     pub hinges: Option<Hinges>,
-    /// Where the body is on its orbit.
+    /// Position of the body on its orbit.
     pub orbit: Option<Orbit>,
-    /// Magnetic moments of torquers.
+    /// Magnetic moments of the torquers.
     pub magnetorquers: Option<Magnetorquers>,
-    /// Envelope, if the scenario has an observer.
+    /// Envelope of the modes, if the scenario has an observer.
     pub envelope: Option<Envelope>,
 }

@@ -1,9 +1,9 @@
-//! The states of laws, filters, observers and dampers, with the names that a log has for them.
+//! States of laws, filters, observers and dampers, with their names in a log.
 
 use super::row::label_cells;
 use crate::label::labels;
 
-/// Declares enumerations of two values, the second of which is what a `true` stands for.
+/// Declares enumerations of two values, the second of which corresponds to `true`.
 macro_rules! states {
     ($($(#[doc = $doc:literal])* $name:ident {
         #[doc = $no_doc:literal] $no:ident = $no_label:literal,
@@ -118,7 +118,7 @@ labels! {
 }
 
 impl Phase {
-    /// Whether the strong torque is on.
+    /// Returns true if the strong torque is on.
     pub const fn is_strong(self) -> bool {
         matches!(self, Self::RightPush | Self::RightBrake | Self::LeftPush | Self::LeftBrake)
     }

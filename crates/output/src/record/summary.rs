@@ -1,16 +1,16 @@
-//! The metrics of a run in words, for the tables of viewers.
+//! Metrics of a run as texts, for the tables of viewers.
 
 use super::measured::{MetricValue, Metrics, Value};
 use super::{MetricLine, MetricPage, Summary};
 
-/// Of a longer list no more values are written.
+/// Largest number of values that are written of a list.
 const MOST_VALUES: usize = 6;
 
 impl Summary {
-    /// Lichtblick's tables show so many rows.
+    /// Number of rows in Lichtblick's tables.
     pub const PAGE: usize = 10;
 
-    /// What metrics come to.
+    /// Creates the summary of metrics.
     pub fn of(metrics: &Metrics) -> Self {
         let page = |page: &[MetricValue]| MetricPage { metrics: page.iter().map(line).collect() };
         Self { pages: metrics.0.chunks(Self::PAGE).map(page).collect() }
@@ -30,7 +30,7 @@ fn line((meaning, value): &MetricValue) -> MetricLine {
     MetricLine { name: meaning.name.to_owned(), value, unit: meaning.unit.to_owned() }
 }
 
-/// The first values of a list.
+/// Returns the first values of a list as a text.
 fn list<T>(values: &[T], text: impl Fn(&T) -> String) -> String {
     if values.is_empty() {
         return "none".to_owned();
@@ -42,7 +42,7 @@ fn list<T>(values: &[T], text: impl Fn(&T) -> String) -> String {
     texts.join(", ")
 }
 
-/// A number to five digits.
+/// Formats a number with five digits.
 fn number(value: f64) -> String {
     let size = value.abs();
     if value.is_nan() {

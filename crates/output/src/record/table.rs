@@ -1,4 +1,4 @@
-//! The rows of one topic of a log, by the schema that the log carries.
+//! Rows of one topic of a log, by the schema that the log contains.
 
 use std::sync::Arc;
 
@@ -6,7 +6,7 @@ use super::budget::Budget;
 use super::shape::{MessageShape, Schema, begin};
 use super::{Column, Columns};
 
-/// The rows of one topic as they are read.
+/// Rows of one topic while they are read.
 pub struct TopicTable {
     schema: Arc<Schema>,
     shape: MessageShape,
@@ -15,18 +15,18 @@ pub struct TopicTable {
 }
 
 impl TopicTable {
-    /// An empty table for the messages of a schema.
+    /// Creates an empty table for the messages of a schema.
     pub fn of(schema: Arc<Schema>) -> Result<Self, String> {
         let (shape, columns) = MessageShape::of(&schema)?;
         Ok(Self { schema, shape, columns, times: Vec::new() })
     }
 
-    /// Whether its messages are of this schema.
+    /// Returns true if the messages of the table have this schema.
     pub fn is_of(&self, schema: &Arc<Schema>) -> bool {
         Arc::ptr_eq(&self.schema, schema) || self.schema == *schema
     }
 
-    /// Takes a message of this log time (s).
+    /// Appends a message of this log time (s).
     pub fn push(&mut self, time: f64, message: &[u8], budget: &mut Budget) -> Result<(), String> {
         budget.spend(size_of::<f64>())?;
         self.times.push(time);
@@ -34,7 +34,7 @@ impl TopicTable {
         self.shape.fill(&mut self.columns, message, budget)
     }
 
-    /// The columns, the first of them with times.
+    /// Returns the columns, with times as the first.
     pub fn into_columns(self) -> Columns {
         let Self { mut columns, times, .. } = self;
         if columns.get("time_s").is_none() {

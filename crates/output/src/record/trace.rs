@@ -1,26 +1,26 @@
-//! The trace: a run's rows in memory, as columns.
+//! Trace: the rows of a run in memory, as columns.
 
 use super::row::TopicRow;
 use super::topics::index_of;
 use super::{Column, Columns, Detail, Record, RecordError, Sample, TOPICS, TakeRow};
 use crate::time::Instant;
 
-/// Columns of every topic, each with the time of its rows.
+/// Columns of every topic, each with the times of its rows.
 #[derive(Clone, Debug)]
 pub struct Trace {
     detail: Detail,
-    /// In the order of [`TOPICS`].
+    /// Times (s) and columns, in the order of [`TOPICS`].
     topics: Vec<(Vec<f64>, Columns)>,
 }
 
 impl Trace {
-    /// A trace of this detail.
+    /// Creates a trace of this detail.
     pub fn new(detail: Detail) -> Self {
         let topics = TOPICS.iter().map(|t| (Vec::new(), Columns::new(t.fields))).collect();
         Self { detail, topics }
     }
 
-    /// The columns of each topic that has rows, by its name without the slash. The first column is `time_s`.
+    /// Returns the columns of each topic that has rows, by its name without the slash. The first column is `time_s`.
     pub fn into_columns(self) -> impl Iterator<Item = (&'static str, Columns)> {
         TOPICS.iter().zip(self.topics).filter(|(_, (times, _))| !times.is_empty()).map(
             |(topic, (times, mut columns))| {
@@ -32,7 +32,7 @@ impl Trace {
         )
     }
 
-    /// The columns of a topic by its name with the slash.
+    /// Returns the columns of a topic by its name with the slash.
     pub fn topic(&self, name: &str) -> Option<&Columns> {
         let index = TOPICS.iter().position(|t| t.name == name)?;
         Some(&self.topics[index].1)
@@ -55,7 +55,7 @@ impl Record for Trace {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        // Another record may want more; and what only viewers draw is no column.
+        // The sample may be meant for a record of more detail, and data for viewers has no columns.
         let wanted = self.detail.min(Detail::Full);
         if sample.detail() > wanted { Ok(()) } else { self.take_sample(now, sample) }
     }

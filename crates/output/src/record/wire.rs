@@ -1,31 +1,31 @@
-//! Protobuf on the wire: keys, numbers, and blocks of bytes, none of which is longer than what is there.
+//! Protobuf wire format: keys, numbers, and blocks of bytes, none of which is longer than the available bytes.
 
-/// What is still to be read of a message.
+/// Remaining bytes of a message.
 #[derive(Copy, Clone)]
 pub struct WireMessage<'a>(&'a [u8]);
 
-/// A field's value as the wire has it.
+/// Value of a field in the wire format.
 #[derive(Copy, Clone)]
 pub enum Raw<'a> {
-    /// A number of up to 64 bits.
+    /// Number of up to 64 bits.
     Varint(u64),
-    /// Eight bytes.
+    /// Number of eight bytes.
     Fixed64(u64),
-    /// Four bytes.
+    /// Number of four bytes.
     Fixed32(u32),
-    /// Bytes after their length.
+    /// Bytes preceded by their length.
     Block(&'a [u8]),
-    /// The fields of a group, which nothing reads.
+    /// Group, whose fields are skipped.
     Group,
 }
 
 impl<'a> WireMessage<'a> {
-    /// The wire of a message.
+    /// Creates the reader of a message.
     pub fn of(bytes: &'a [u8]) -> Self {
         Self(bytes)
     }
 
-    /// The next field's number and value; none at the end.
+    /// Reads the next field's number and value; `None` at the end.
     pub fn field(&mut self) -> Result<Option<(u32, Raw<'a>)>, String> {
         if self.0.is_empty() {
             return Ok(None);
@@ -36,7 +36,7 @@ impl<'a> WireMessage<'a> {
     fn next(&mut self) -> Option<(u32, Raw<'a>)> {
         let (number, mut raw) = self.one()?;
         if matches!(raw, Some(Raw::Group)) {
-            // Groups within it end before it does.
+            // Nested groups end before their group does.
             let mut open = 1_u64;
             while open > 0 {
                 match self.one()?.1 {
@@ -50,7 +50,7 @@ impl<'a> WireMessage<'a> {
         Some((number, raw?))
     }
 
-    /// A field, a group's beginning or, without a value, its end.
+    /// Reads a field, the beginning of a group or, without a value, its end.
     fn one(&mut self) -> Option<(u32, Option<Raw<'a>>)> {
         let key = self.varint()?;
         let number = u32::try_from(key >> 3).ok()?;
@@ -69,12 +69,12 @@ impl<'a> WireMessage<'a> {
         Some((number, Some(raw)))
     }
 
-    /// Whether nothing is left.
+    /// Returns true if no bytes are left.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// A number in groups of seven bits.
+    /// Reads a number in groups of seven bits.
     pub fn varint(&mut self) -> Option<u64> {
         let mut value = 0;
         for place in 0..10 {
@@ -88,14 +88,14 @@ impl<'a> WireMessage<'a> {
         None
     }
 
-    /// Eight bytes.
+    /// Reads eight bytes.
     pub fn fixed64(&mut self) -> Option<u64> {
         let (now, rest) = self.0.split_first_chunk()?;
         self.0 = rest;
         Some(u64::from_le_bytes(*now))
     }
 
-    /// Four bytes.
+    /// Reads four bytes.
     pub fn fixed32(&mut self) -> Option<u32> {
         let (now, rest) = self.0.split_first_chunk()?;
         self.0 = rest;

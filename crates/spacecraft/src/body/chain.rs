@@ -1,4 +1,4 @@
-//! The exact planar chain: the hub and the sections of its panels as rigid bodies at any angles.
+//! Exact planar chain: the hub and the sections of its panels as rigid bodies at any angles.
 //!
 //! In the absolute angles psi (hub first) the linear model's inertia A and stiffness K become
 //!
@@ -7,17 +7,17 @@
 //! ```
 //!
 //! with the hub torque Q_0. There is no closed form: the motion is integrated to a tolerance. The steps depend on the
-//! events of the run alone, not on who looks in between.
+//! events of the run alone, not on the instants at which the state is read.
 
 use nalgebra::{DMatrix, DVector};
 
 use super::{Mode, Planar};
 use crate::structure::Structure;
 
-/// The equations of a chain.
+/// Equations of motion of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Chain {
-    /// A, K and C above.
+    /// Inertia matrix A of the module's equation; `stiffness` is K and `damping` is C.
     pub(crate) inertia: DMatrix<f64>,
     pub(crate) stiffness: DMatrix<f64>,
     pub(crate) damping: DMatrix<f64>,
@@ -28,8 +28,8 @@ pub struct Chain {
 }
 
 impl Chain {
-    /// A chain with sections of these lengths (m) whose linear model is this structure, in the coordinates
-    /// \[hub angle, displacement of each node in the hub's frame\], and these modes.
+    /// Creates a chain of sections of the given lengths (m) whose linear model is `structure`, in the coordinates \[hub
+    /// angle, displacement of each node in the hub's frame\], with the modes of `model`.
     pub fn new(lengths: &[f64], structure: &Structure, model: &Planar, tolerance: f64) -> Self {
         let (mass, stiffness) = (structure.mass(), structure.stiffness());
         let n = lengths.len() + 1;
@@ -44,7 +44,7 @@ impl Chain {
         let modal = modal(lengths, mass, model) * &to_nodes;
         let mut damping = DMatrix::zeros(n, n);
         for (mode, row) in model.modes.iter().zip(modal.row_iter().skip(1)) {
-            // Of a mode's force, J/k 2 zeta w x', each coordinate has its share.
+            // A mode's damping force J/k 2 zeta w x' acts on each coordinate in proportion to its row.
             let strength = 2.0 * mode.damping.get() * mode.frequency.get() * model.inertia.get();
             if mode.gain.get() > 0.0 {
                 damping += row.transpose() * row * (strength / mode.gain.get());
@@ -60,14 +60,14 @@ impl Chain {
         }
     }
 
-    /// Angles, then rates, of a chain that is not bent.
+    /// Returns the angles, then the rates, of a straight chain.
     pub(crate) fn start(&self, angle: f64, rate: f64) -> Vec<f64> {
         let n = self.inertia.nrows();
         [vec![angle; n], vec![rate; n]].concat()
     }
 }
 
-/// Rows that give the rigid angle and the displacement of each mode from hub angle and node displacements:
+/// Computes the rows that give the rigid angle and the displacement of each mode from hub angle and node displacements:
 /// x_n = k_n/J r_n^T M q, where r_n is the shape of a mode whose hub angle is 1.
 fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &Planar) -> DMatrix<f64> {
     let (n, inertia) = (lengths.len() + 1, model.inertia.get());

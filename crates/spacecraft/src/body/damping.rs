@@ -14,9 +14,9 @@ use crate::quantity::NonNegative;
 /// Damping ratios of modes.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Damping {
-    /// The same for all.
+    /// One ratio for all modes.
     All(NonNegative),
-    /// One for each, from the lowest on.
+    /// One ratio for each mode, from the lowest on.
     Each(Vec<NonNegative>),
 }
 
@@ -27,7 +27,7 @@ impl Default for Damping {
 }
 
 impl Damping {
-    /// The ratios of so many modes, or what is wrong.
+    /// Returns the damping ratios of `modes` modes, or the reason why the number of ratios does not fit.
     pub fn of(&self, modes: usize) -> Result<Vec<NonNegative>, String> {
         match self {
             Self::All(ratio) => Ok(vec![*ratio; modes]),

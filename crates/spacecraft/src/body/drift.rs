@@ -1,11 +1,11 @@
-//! Natural frequencies that drift: each is its own at the start, times a ratio that follows a profile.
+//! Drift of natural frequencies: each is its initial value times a ratio that follows a profile.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::quantity::{Finite, NonNegative, Positive, Time};
 
-/// Terms of a Taylor series.
+/// Number of terms of a Taylor series.
 pub const SERIES: usize = 21;
 
 /// A profile of the ratio over time.
@@ -57,7 +57,7 @@ pub struct Point {
 }
 
 impl Profile {
-    /// The ratio at a time (s).
+    /// Returns the ratio at a time (s).
     pub fn ratio(&self, t: f64) -> f64 {
         match self {
             Self::Ramp(ramp) => {
@@ -84,7 +84,7 @@ impl Profile {
         }
     }
 
-    /// The derivative of the ratio with time (1/s), that of what comes after at a kink.
+    /// Returns the derivative of the ratio with time (1/s); at a kink, the right-hand derivative.
     pub fn slope(&self, t: f64) -> f64 {
         match self {
             Self::Ramp(ramp) => {
@@ -104,15 +104,16 @@ impl Profile {
         }
     }
 
-    /// The Taylor series of the ratio at a time (s), of what comes after at a kink, and how many of its terms are not 0.
+    /// Writes the Taylor series of the ratio at a time (s), at a kink from the right, and returns the number of leading
+    /// terms that can differ from 0.
     pub fn series(&self, t: f64, terms: &mut [f64; SERIES]) -> usize {
-        // A kink may be a last bit after its rounded time.
+        // By rounding, a kink may be a last bit later than `t`.
         let after = t * (1.0 + 4.0 * f64::EPSILON) + 1e-14;
         (terms[0], terms[1]) = (self.ratio(t), self.slope(after));
         let Self::Sinusoid(s) = self else { return if terms[1] == 0.0 { 1 } else { 2 } };
         let rate = std::f64::consts::TAU / s.period.get();
         let (sin, cos) = libm::sincos(rate * (t + s.phase.get()));
-        // The derivatives of the cosine go round.
+        // The derivatives of the cosine repeat after four.
         let round = [cos, -sin, -cos, sin];
         let mut scale = s.amplitude.get();
         for (n, term) in terms.iter_mut().enumerate().skip(1) {
@@ -122,7 +123,7 @@ impl Profile {
         SERIES
     }
 
-    /// The times (s) at which the slope jumps.
+    /// Returns the times (s) at which the slope jumps.
     pub fn kinks(&self) -> Vec<f64> {
         match self {
             Self::Ramp(ramp) => vec![ramp.from.get(), ramp.from.get() + ramp.time.get()],
@@ -143,7 +144,7 @@ pub enum Drift {
 }
 
 impl Drift {
-    /// The ratio of a mode at a time (s).
+    /// Returns the ratio of a mode at a time (s).
     pub fn ratio(&self, mode: usize, t: f64) -> f64 {
         match self {
             Self::Common(profile) => profile.ratio(t),
@@ -151,7 +152,7 @@ impl Drift {
         }
     }
 
-    /// The derivative of a mode's ratio with time (1/s), that of what comes after at a kink.
+    /// Returns the derivative of a mode's ratio with time (1/s); at a kink, the right-hand derivative.
     pub fn slope(&self, mode: usize, t: f64) -> f64 {
         match self {
             Self::Common(profile) => profile.slope(t),
@@ -159,7 +160,8 @@ impl Drift {
         }
     }
 
-    /// The Taylor series of a mode's ratio at a time (s), and how many of its terms are not 0.
+    /// Writes the Taylor series of a mode's ratio at a time (s), and returns the number of leading terms that can
+    /// differ from 0.
     pub fn series(&self, mode: usize, t: f64, terms: &mut [f64; SERIES]) -> usize {
         match self {
             Self::Common(profile) => profile.series(t, terms),
@@ -167,7 +169,7 @@ impl Drift {
         }
     }
 
-    /// How many ratios differ: one of all modes, or one of each.
+    /// Returns the number of profiles: one common to all modes, or one for each mode.
     pub fn count(&self) -> usize {
         match self {
             Self::Common(_) => 1,
@@ -175,7 +177,7 @@ impl Drift {
         }
     }
 
-    /// The times (s) at which a slope jumps.
+    /// Returns the times (s) at which a slope jumps.
     pub fn kinks(&self) -> Vec<f64> {
         match self {
             Self::Common(profile) => profile.kinks(),

@@ -1,4 +1,4 @@
-//! A body's natural frequencies with the hub free and with the hub held, whichever of the two its modes belong to.
+//! Natural frequencies of a body with the hub free and with the hub held, for modes of either kind.
 
 use nalgebra::DMatrix;
 
@@ -6,8 +6,9 @@ use super::{Drive, Planar};
 use crate::structure::eigenvalues;
 
 impl Planar {
-    /// Natural frequencies (rad/s) of the body that turns freely. With a commanded torque they are those of the modes;
-    /// with a commanded motion, increasing, and none if the gains add up to 1 or more, for which there is no such body.
+    /// Returns the natural frequencies (rad/s) of the body that turns freely. With a commanded torque they are those of
+    /// the modes; with a commanded motion, increasing, and `None` if the gains add up to 1 or more, because no such
+    /// body exists.
     pub fn free_frequencies(&self) -> Option<Vec<f64>> {
         match self.drive {
             Drive::Torque => Some(self.frequencies()),
@@ -15,8 +16,8 @@ impl Planar {
         }
     }
 
-    /// Natural frequencies (rad/s) of the body whose hub is held. With a commanded motion they are those of the modes;
-    /// with a commanded torque, increasing, and none if a gain is negative, for which there is no such body.
+    /// Returns the natural frequencies (rad/s) of the body whose hub is held. With a commanded motion they are those of
+    /// the modes; with a commanded torque, increasing, and `None` if a gain is negative, because no such body exists.
     pub fn clamped_frequencies(&self) -> Option<Vec<f64>> {
         match self.drive {
             Drive::Torque => self.other_frequencies(1.0),
@@ -28,9 +29,10 @@ impl Planar {
         self.modes.iter().map(|mode| mode.frequency.get()).collect()
     }
 
-    /// Holding the hub, m = -sum x_i''; leaving it, the torque J (m - sum x_i'') vanishes. In z_i = x_i/sqrt(k_i) the modes
-    /// are then those of (1 + sign s s') z'' + W² z = 0 with s_i = sqrt(k_i), whose inverse squares are the eigenvalues of
-    /// W⁻¹ (1 + sign s s') W⁻¹.
+    /// Returns the natural frequencies for the other state of the hub: held for `sign` 1, free for `sign` -1.
+    /// || With a held hub, m = -sum x_i''; with a free one, the torque J (m - sum x_i'') vanishes. In z_i =
+    /// x_i/sqrt(k_i) the modes are then those of (1 + sign s s') z'' + W² z = 0 with s_i = sqrt(k_i), whose inverse
+    /// squares are the eigenvalues of W⁻¹ (1 + sign s s') W⁻¹.
     fn other_frequencies(&self, sign: f64) -> Option<Vec<f64>> {
         let gains = self.modes.iter().map(|mode| mode.gain.get());
         if gains.clone().any(|gain| gain < 0.0) || (sign < 0.0 && gains.clone().sum::<f64>() >= 1.0) {

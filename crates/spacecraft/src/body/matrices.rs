@@ -67,7 +67,7 @@ pub struct Sum {
 }
 
 impl Matrices {
-    /// The structure, its matrices read.
+    /// Returns the structure, with its matrices read from their files.
     pub fn structure(&self) -> Result<Structure, Fault> {
         let rotation: Option<Vec<f64>> =
             self.rotation.as_ref().map(|rotation| rotation.iter().map(|r| r.get()).collect());
@@ -75,7 +75,7 @@ impl Matrices {
         Structure::new(mass, stiffness, self.hub as usize, rotation.as_deref())
     }
 
-    /// The planar body with the modes of the structure.
+    /// Returns the planar body with the modes of the structure.
     pub fn solve(&self) -> Result<Planar, Fault> {
         let structure = self.structure()?;
         let names = self.names(structure.mass().nrows())?;

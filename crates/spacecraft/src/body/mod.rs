@@ -1,4 +1,4 @@
-//! What is controlled: the ways to describe a body.
+//! The controlled body, and the ways to describe it.
 
 mod chain;
 pub mod craft;
@@ -51,7 +51,7 @@ pub enum Body {
 }
 
 impl Body {
-    /// The kind, as a scenario names it.
+    /// Returns the kind, as a scenario names it.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Planar(_) => "planar",
@@ -61,7 +61,7 @@ impl Body {
         }
     }
 
-    /// Makes the paths of files absolute: relative ones begin at a directory.
+    /// Makes the paths of files absolute, relative to `directory`.
     pub fn locate(&mut self, directory: &Path) {
         match self {
             Self::Matrices(matrices) => {
@@ -76,10 +76,10 @@ impl Body {
         }
     }
 
-    /// Reads the modes of a spatial body that are in a file; those of another body from the same file are taken over.
+    /// Reads the modes of a spatial body from their file; copies them from `other` if that has read the same file.
     ///
     /// # Errors
-    /// What is wrong with the file: a key within the body, and why.
+    /// A key within the body, and the error in its file.
     pub fn read(&mut self, other: Option<&Self>) -> Result<(), Fault> {
         let Self::Spatial(spatial) = self else { return Ok(()) };
         let other =
@@ -87,7 +87,7 @@ impl Body {
         spatial.modes.read(other).map_err(|why| Fault::new("modes", why))
     }
 
-    /// How many axes it has.
+    /// Returns the number of axes.
     pub fn axis_count(&self) -> usize {
         match self {
             Self::Planar(_) | Self::Matrices(_) | Self::Panels(_) => 1,
@@ -95,10 +95,10 @@ impl Body {
         }
     }
 
-    /// The body as it moves.
+    /// Assembles the model of the body that a run uses.
     ///
     /// # Errors
-    /// What is wrong with the body: a key within it, and why.
+    /// An inconsistent key within the body, and the reason.
     pub fn assemble(&self) -> Result<Model, Fault> {
         let body = match self {
             Self::Planar(planar) => planar.clone(),

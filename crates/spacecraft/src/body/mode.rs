@@ -26,17 +26,17 @@ pub struct Mode {
 }
 
 impl Mode {
-    /// A mode that starts at rest.
+    /// Creates a mode that starts at rest.
     pub fn at_rest(frequency: Frequency, gain: Finite, damping: NonNegative) -> Self {
         Self { frequency, gain, damping, displacement: Finite::default(), rate: Finite::default() }
     }
 
-    /// Excitability k/w²: the static displacement for each unit of reduced moment (s²).
+    /// Returns the excitability k/w²: the static displacement for each unit of reduced moment (s²).
     pub fn excitability(&self) -> f64 {
         self.gain.get() / (self.frequency.get() * self.frequency.get())
     }
 
-    /// The amplitude (rad) of the vibration that a phase begins: without damping the largest displacement to come, else
+    /// Returns the amplitude (rad) of the free vibration from a phase: without damping the largest displacement, else
     /// the absolute value of the phasor x + i (x' + zeta w x)/w_d. NaN at critical damping and above.
     pub fn amplitude(&self, phase: Phase) -> f64 {
         let zeta = self.damping.get();
@@ -45,15 +45,15 @@ impl Mode {
         f64::sqrt(x * x + imaginary * imaginary)
     }
 
-    /// Energy of motion and deformation (J) on a body of this inertia (kg m²). A mode without gain, which no torque
-    /// of the hub moves, has none that is known.
+    /// Returns the kinetic and strain energy (J) of the mode on a body of this inertia (kg m²). 0 for a mode without
+    /// gain, which no torque on the hub moves and whose energy is therefore unknown.
     pub fn energy(&self, phase: Phase, inertia: f64) -> f64 {
         let (w, gain) = (self.frequency.get(), self.gain.get().abs());
         let Phase { displacement: x, quadrature: y } = phase;
         if gain > 0.0 { 0.5 * inertia / gain * w * w * (x * x + y * y) } else { 0.0 }
     }
 
-    /// The phase at the start of a run.
+    /// Returns the phase at the start of a run.
     pub fn start(&self) -> Phase {
         Phase { displacement: self.displacement.get(), quadrature: self.rate.get() / self.frequency.get() }
     }

@@ -1,4 +1,4 @@
-//! The body as it moves, from whichever way it is written: assembled once, before anything moves.
+//! Model of a body, whichever way it is described: assembled once, before a run.
 
 use std::sync::Arc;
 
@@ -6,30 +6,30 @@ use super::{Chain, Craft, Mode, Output, Planar, Spatial};
 use crate::motion::turning::Flexible;
 use crate::quantity::Finite;
 
-/// A body as it moves.
+/// Assembled model of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Model {
-    /// One angle, and modes in closed form.
+    /// One-axis body with modes in closed form.
     Planar(Arc<Planar>),
-    /// One angle, and panels that bend by any angles, beside the modes that they have for small angles.
+    /// One-axis body with panels that bend by any angles, and the modes that it has for small angles.
     Chain(Arc<Planar>, Arc<Chain>),
-    /// Three axes, and modes that do not act back on them.
+    /// Three-axis body whose modes do not act back on its rotation.
     Spatial(Arc<Spatial>),
-    /// Three axes and modes, coupled in both directions.
+    /// Three-axis spacecraft whose rotation and modes are coupled in both directions.
     Craft(Arc<Craft>),
 }
 
-/// The free modes of a body, by the number of its axes.
+/// Body in free modes, by the number of its axes.
 #[derive(Copy, Clone, Debug)]
 pub enum Axes<'a> {
-    /// One angle.
+    /// One-axis body.
     One(&'a Planar),
-    /// Three axes.
+    /// Three-axis body.
     Three(&'a Spatial),
 }
 
 impl Model {
-    /// The body in free modes.
+    /// Returns the body in free modes.
     pub fn axes(&self) -> Axes<'_> {
         match self {
             Self::Planar(body) | Self::Chain(body, _) => Axes::One(body),
@@ -38,32 +38,32 @@ impl Model {
         }
     }
 
-    /// The body in free modes, if it has one angle.
+    /// Returns the body in free modes, if it has one axis.
     pub fn planar(&self) -> Option<&Planar> {
         if let Axes::One(body) = self.axes() { Some(body) } else { None }
     }
 
-    /// The body in free modes, if it has three axes.
+    /// Returns the body in free modes, if it has three axes.
     pub fn spatial(&self) -> Option<&Spatial> {
         if let Axes::Three(body) = self.axes() { Some(body) } else { None }
     }
 
-    /// The exact chain, if its panels bend by any angles.
+    /// Returns the exact chain, if the panels bend by any angles.
     pub fn chain(&self) -> Option<&Chain> {
         if let Self::Chain(_, chain) = self { Some(chain) } else { None }
     }
 
-    /// The spacecraft, if it is put together from parts.
+    /// Returns the spacecraft, if the body is assembled from a hub and appendages.
     pub fn craft(&self) -> Option<&Craft> {
         if let Self::Craft(craft) = self { Some(craft) } else { None }
     }
 
-    /// The coupling of rotation and modes in both directions, where the body has it: of a spacecraft.
+    /// Returns the two-way coupling of rotation and modes, which only a spacecraft has.
     pub fn flexible(&self) -> Option<&Flexible> {
         self.craft().map(|craft| &craft.flexible)
     }
 
-    /// How many elastic modes it has.
+    /// Returns the number of elastic modes.
     pub fn mode_count(&self) -> usize {
         match self.axes() {
             Axes::One(body) => body.modes.len(),
@@ -71,7 +71,7 @@ impl Model {
         }
     }
 
-    /// Its modes as a command is planned for them: frequencies and damping ratios.
+    /// Returns the modes for which commands are planned: frequencies and damping ratios, without gains.
     pub fn free_modes(&self) -> Vec<Mode> {
         let free = |(frequency, damping)| Mode::at_rest(frequency, Finite::default(), damping);
         match self.axes() {
@@ -80,32 +80,32 @@ impl Model {
         }
     }
 
-    /// Natural frequencies (rad/s).
+    /// Returns the natural frequencies (rad/s) of the modes.
     pub fn frequencies(&self) -> impl Iterator<Item = f64> {
         self.free_modes().into_iter().map(|mode| mode.frequency.get())
     }
 
-    /// Coordinates that are observed in addition to the hub's angle.
+    /// Returns the coordinates that are observed in addition to the hub's angle.
     pub fn outputs(&self) -> &[Output] {
         self.planar().map_or(&[], |body| &body.outputs)
     }
 
-    /// What is commanded, and its unit.
+    /// Returns the name of the commanded quantity and its unit.
     pub fn commanded(&self) -> (&'static str, &'static str) {
         self.planar().map_or(("torque", "N m"), Planar::commanded)
     }
 
-    /// The unit of a torque on it.
+    /// Returns the unit of a torque on the body.
     pub fn torque_unit(&self) -> &'static str {
         self.planar().map_or("N m", Planar::torque_unit)
     }
 
-    /// Whether what is commanded is an acceleration (rad/s²) and no torque (N m).
+    /// Returns true if the commanded quantity is an acceleration (rad/s²) and not a torque (N m).
     pub fn commands_acceleration(&self) -> bool {
         self.planar().is_some_and(Planar::commands_acceleration)
     }
 
-    /// Whether its inertia is 1, as of a body with one angle that is described without one.
+    /// Returns true if the inertia is 1, as of a one-axis body that is described without one.
     pub fn has_unit_inertia(&self) -> bool {
         self.planar().is_some_and(Planar::has_unit_inertia)
     }

@@ -1,4 +1,4 @@
-//! Observed coordinates: what the modes do at a place of the structure.
+//! Observed coordinates: the effect of the modes at a place of the structure.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,13 +27,13 @@ pub(super) fn radians() -> String {
 }
 
 impl Output {
-    /// The coordinate in a state.
+    /// Returns the coordinate in a state.
     pub fn of(&self, state: &State) -> f64 {
         let modes = self.modes.iter().zip(&state.modes);
         modes.fold(self.rigid.get() * state.rigid_angle, |sum, (w, mode)| sum + w.get() * mode.displacement)
     }
 
-    /// Its rate, where the modes have these frequencies (rad/s).
+    /// Returns the rate of the coordinate in a state, for modes of the given frequencies (rad/s).
     pub fn rate_of(&self, state: &State, frequencies: &[f64]) -> f64 {
         let modes = self.modes.iter().zip(&state.modes).zip(frequencies);
         modes.fold(self.rigid.get() * state.rigid_rate, |sum, ((weight, mode), w)| {

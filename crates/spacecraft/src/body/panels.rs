@@ -1,8 +1,9 @@
-//! A body of a hub and equal solar panels, each a chain of rigid sections in elastic hinges (\[Rotation\], the example).
+//! A body of a hub and equal solar panels, each a chain of rigid sections in elastic hinges (\[Rotation\], the
+//! example).
 //!
-//! The panels swing alike: antisymmetrically, where there are two. The coordinates are the hub's angle theta and the
-//! displacement v_k of each section's outer end from where the hub's rotation carries it, with x_k its distance from the
-//! axis. Each panel has the kinetic energy
+//! All panels move alike: two panels antisymmetrically. The coordinates are the hub's angle theta and the displacement
+//! v_k of each section's outer end from the position given by the hub's rotation, with x_k its distance from the axis.
+//! Each panel has the kinetic energy
 //!
 //! 1/2 sum mu_k u_k² + (m_k l_k/3) (u_(k-1)² + u_(k-1) u_k + u_k²), u_k = x_k theta' + v_k',
 //!
@@ -19,7 +20,7 @@ use crate::document::Fault;
 use crate::quantity::{Finite, NonNegative, Positive, Tolerance};
 use crate::structure::Structure;
 
-/// No panel has more sections.
+/// Largest number of sections of a panel.
 const MOST_SECTIONS: usize = 99;
 
 /// A hub with panels.
@@ -93,10 +94,10 @@ fn tight() -> Tolerance {
 }
 
 impl Panels {
-    /// The structure: coordinates theta (rad), v_1, v_2, ... (m).
+    /// Computes the structure in the coordinates theta (rad), v_1, v_2, ... (m).
     ///
     /// # Errors
-    /// No panels, no sections, or more than 99 of them.
+    /// A number of panels or of sections that is zero, or more than 99 sections.
     pub fn structure(&self) -> Result<Structure, Fault> {
         let s = self.sections.len();
         if !(1..=MOST_SECTIONS).contains(&s) {
@@ -114,7 +115,7 @@ impl Panels {
             let (l, tip) = (section.length.get(), section.tip_mass.get());
             let third = section.mass_per_length.get() * l / 3.0;
             let outer = inner + l;
-            // u_k is a sum over these coordinates; the hinge at the root has no displacement.
+            // The velocity u_k is a sum over these coordinates; the hinge at the root has no displacement.
             let ends = [(inner, (k > 1).then(|| k - 1)), (outer, Some(k))];
             for (a, (xa, va)) in ends.into_iter().enumerate() {
                 for (b, (xb, vb)) in ends.into_iter().enumerate() {
@@ -129,7 +130,7 @@ impl Panels {
                     }
                 }
             }
-            // phi_k - phi_(k-1) is a sum over these displacements.
+            // The angle phi_k - phi_(k-1) is a sum over these displacements.
             let c = count * section.hinge_stiffness.get();
             let own = [(k, 1.0, l), (k.wrapping_sub(1), -1.0, l)];
             let before = self.sections.get(k.wrapping_sub(2)).map(|before| before.length.get());
@@ -146,15 +147,15 @@ impl Panels {
         Structure::new(mass, stiffness, 0, None).map_err(|fault| too_far_apart(&fault.why))
     }
 
-    /// The exact chain, if the sections turn by any angles.
+    /// Returns the exact chain, if the sections turn by any angles.
     pub fn chain(&self, model: &Planar) -> Option<Chain> {
         let structure = self.structure().ok().filter(|_| self.kinematics == Kinematics::Exact)?;
         let lengths: Vec<f64> = self.sections.iter().map(|section| section.length.get()).collect();
         Some(Chain::new(&lengths, &structure, model, self.tolerance.get()))
     }
 
-    /// The planar body with the modes of the structure. Its outputs are the angles phi_k of the sections relative to the
-    /// hub (rad): `section_1`, `section_2` and so on.
+    /// Computes the planar body with the modes of the structure. Its outputs are the angles phi_k of the sections
+    /// relative to the hub (rad): `section_1`, `section_2` and so on.
     pub fn solve(&self) -> Result<Planar, Fault> {
         let structure = self.structure()?;
         let observed = |(index, section): (usize, &Section)| {
@@ -183,7 +184,8 @@ impl Panels {
     }
 }
 
-/// Every panel has modes, unless its numbers are so far apart that rounding takes them.
+/// Returns the fault of panels without modes, which occurs only if rounding removes some because the numbers differ by
+/// many orders of magnitude.
 fn too_far_apart(why: &str) -> Fault {
     Fault::new("sections", format!("hold numbers that differ too much in size: the matrix {why}"))
 }

@@ -1,8 +1,8 @@
 //! The planar body: one angle, any number of elastic modes, driven by one moment.
 //!
-//! x_r'' = m, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i m, x = x_r + sum x_i, with m = torque / inertia
-//! (\[Silaev\], equation (1); hybrid coordinates, \[Likins70\]). Under a constant torque the rigid part is a parabola and every
-//! mode turns about its shifted equilibrium, so that no step size exists.
+//! x_r'' = m, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i m, x = x_r + sum x_i, with m = torque / inertia (\[Silaev\],
+//! equation (1); hybrid coordinates, \[Likins70\]). Under a constant torque the rigid part is a parabola and every mode
+//! turns about its shifted equilibrium, so that no step size is needed.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -52,7 +52,7 @@ pub enum Drive {
     Motion,
 }
 
-/// What a damping matrix needs.
+/// Second half of the message about a damping matrix on a body that does not turn freely.
 pub const HUB_FREE: &str = "couples the modes of a body whose hub turns freely, not one whose hub's motion is given (`drive = \"motion\"`)";
 
 fn unit() -> Positive {
@@ -60,7 +60,7 @@ fn unit() -> Positive {
 }
 
 impl Default for Planar {
-    /// A rigid body of unit inertia at rest.
+    /// Returns a rigid body of unit inertia at rest.
     fn default() -> Self {
         Self {
             inertia: unit(),
@@ -75,7 +75,7 @@ impl Default for Planar {
 }
 
 impl Planar {
-    /// What single values cannot show to be wrong: the key, and what is wrong with it.
+    /// Returns an inconsistency between values: the key, and the reason.
     pub fn inconsistency(&self) -> Option<Fault> {
         let modes = self.modes.len();
         self.damping_inconsistency().or_else(|| {
@@ -119,12 +119,12 @@ impl Planar {
         Some(Fault::new(format!("damping_matrix[{index}]"), why))
     }
 
-    /// Whether damping couples its modes.
+    /// Returns true if the damping matrix couples the modes.
     pub fn is_coupled(&self) -> bool {
         !self.damping_matrix.is_empty()
     }
 
-    /// What a unit of the command accelerates (kg m²): 1 where the motion itself is commanded.
+    /// Returns the ratio of the command to the rigid acceleration (kg m²): 1 if the motion itself is commanded.
     pub fn commanded_inertia(&self) -> f64 {
         match self.drive {
             Drive::Torque => self.inertia.get(),
@@ -132,28 +132,28 @@ impl Planar {
         }
     }
 
-    /// Whether the inertia is 1, as of a body that is described without one.
+    /// Returns true if the inertia is 1, as of a body that is described without one.
     pub fn has_unit_inertia(&self) -> bool {
         self.inertia == Positive::ONE
     }
 
-    /// Whether what is commanded is an acceleration (rad/s²) and no torque (N m): the hub's motion, or the reduced moment
-    /// of a body without inertia.
+    /// Returns true if the command is an acceleration (rad/s²) and not a torque (N m): the motion of the hub, or the
+    /// reduced moment of a body without inertia.
     pub fn commands_acceleration(&self) -> bool {
         self.drive == Drive::Motion || self.has_unit_inertia()
     }
 
-    /// The unit of a torque on the body.
+    /// Returns the unit of a torque on the body.
     pub fn torque_unit(&self) -> &'static str {
         if self.has_unit_inertia() { "rad/s²" } else { "N m" }
     }
 
-    /// What is commanded, and its unit.
+    /// Returns the name of the commanded quantity and its unit.
     pub fn commanded(&self) -> (&'static str, &'static str) {
         if self.commands_acceleration() { ("acceleration", "rad/s²") } else { ("torque", "N m") }
     }
 
-    /// The state at the start of a run.
+    /// Returns the state at the start of a run.
     pub fn start(&self) -> State {
         State {
             rigid_angle: self.angle.get(),

@@ -1,8 +1,8 @@
-//! From a structure to the planar body with its lowest modes.
+//! Reduction of a structure to the planar body with its lowest modes.
 //!
-//! Free modes move the hub: x_n = X_n\[theta\] f_n with the gain J X_n\[theta\]², so that the hub's angle is x_r + sum x_n.
-//! Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, so that the torque that moves the hub
-//! as commanded is J (u - sum x_n'').
+//! Free modes move the hub: x_n = X_n\[theta\] f_n with the gain J X_n\[theta\]², so that the hub's angle is x_r + sum
+//! x_n. Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, and the torque that moves the
+//! hub as commanded is J (u - sum x_n'').
 
 use nalgebra::DMatrix;
 
@@ -12,7 +12,7 @@ use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, Positive};
 use crate::structure::{HubState, Structure, TOO_FAR_APART, eigenvalues};
 
-/// What is kept of a structure, and how it starts.
+/// Settings of a modal reduction: damping, number of modes to keep, initial state and outputs.
 pub struct Reduction<'a> {
     pub drive: Drive,
     pub damping: &'a Damping,
@@ -23,7 +23,7 @@ pub struct Reduction<'a> {
     pub outputs: Vec<Observed>,
 }
 
-/// A coordinate that is observed: its name, its unit, and a weight for each coordinate of the structure.
+/// Observed coordinate: its name, its unit, and a weight for each coordinate of the structure.
 pub struct Observed {
     pub name: String,
     pub unit: String,
@@ -31,14 +31,14 @@ pub struct Observed {
 }
 
 impl Reduction<'_> {
-    /// The planar body.
+    /// Computes the planar body with the modes to keep.
     pub fn planar(&self, structure: &Structure) -> Result<Planar, Fault> {
         let mut weights: Vec<_> = self.outputs.iter().map(|output| output.weights.clone()).collect();
         if let Some(damping) = &self.damping_matrix {
             if self.drive == Drive::Motion {
                 return Err(Fault::new("damping_matrix", HUB_FREE));
             }
-            // Every coordinate is observed, and so the whole of each mode.
+            // Observe every coordinate, to get the complete shape of each mode.
             let order = damping.nrows();
             let unit = |i: usize| (0..order).map(|j| f64::from(u8::from(i == j))).collect();
             weights.extend((0..order).map(unit));
@@ -60,7 +60,7 @@ impl Reduction<'_> {
         }
         let damping = self.damping.of(kept).map_err(|why| Fault::new("damping", why))?;
         let inertia = solved.inertia;
-        // What one unit of modal displacement f_n is of the body's x_n.
+        // Ratio of the body's modal displacement x_n to the structure's f_n.
         let scale = |n: usize| match self.drive {
             Drive::Torque => solved.participations[n],
             Drive::Motion => -solved.participations[n] / inertia,
@@ -77,7 +77,7 @@ impl Reduction<'_> {
         }
         let output = |(observed, (rigid, shape)): (&Observed, (&f64, &Vec<f64>))| {
             let weight = |n: usize| {
-                // What the hub cannot excite stays at rest.
+                // A mode that the hub cannot excite stays at rest.
                 if modes[n].gain.get() == 0.0 { Ok(Finite::default()) } else { finite(shape[n] / scale(n)) }
             };
             Ok(Output {
@@ -106,8 +106,8 @@ impl Reduction<'_> {
     }
 }
 
-/// The damping matrix of the modes that are kept, from that of the coordinates and what each coordinate is in each mode
-/// of unit modal mass: f_n'' has -sum_m X_n' C X_m f_m', and x_n is so many times f_n.
+/// Returns the damping matrix of the kept modes, from the damping matrix of the coordinates and the shapes for unit
+/// modal mass: f_n'' has -sum_m X_n' C X_m f_m', and x_n is f_n times `scale(n)`.
 fn coupled(
     matrix: &DMatrix<f64>,
     shapes: &[Vec<f64>],

@@ -1,4 +1,4 @@
-//! The weights of a structure's coordinates in an observed one: all in order, or a few by their names.
+//! Weights of a structure's coordinates in an observed one: all in order, or some by name.
 
 use std::borrow::Cow;
 use std::collections::BTreeMap;
@@ -14,14 +14,14 @@ use crate::quantity::Finite;
 /// Weights of coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Weights {
-    /// One for each coordinate.
+    /// One weight for each coordinate.
     Each(Vec<Finite>),
-    /// By name; that of the others is 0.
+    /// Weights by the coordinate's name; 0 for the other coordinates.
     Named(BTreeMap<String, Finite>),
 }
 
 impl Weights {
-    /// One weight for each coordinate, or what is wrong.
+    /// Returns one weight for each coordinate, or an error message.
     pub fn of(&self, coordinates: &[String]) -> Result<Vec<f64>, String> {
         match self {
             Self::Each(weights) if weights.len() == coordinates.len() => {

@@ -1,4 +1,4 @@
-//! The surroundings at work on one body.
+//! Run-time state of the environment of one body.
 
 use nalgebra::{Matrix3, Quaternion};
 
@@ -10,30 +10,31 @@ use crate::body::craft::Bending;
 use crate::motion::turning::{Heated, Surroundings};
 use crate::time::Instant;
 
-/// The surroundings of a body.
+/// Environment of a body during a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Around {
     environment: Environment,
     sky: Sky,
-    /// The field of a body's dipole that has its own.
+    /// Field of the body's dipole, if that has one of its own.
     axial: Option<Axial>,
-    /// What rotors have about their axes (kg m²), which the inertia of the body is without and gravity pulls at too.
+    /// Inertia of the rotors about their axes (kg m²), which the body's inertia leaves out and gravity acts on too.
     spinning: Matrix3<f64>,
-    /// The centre of mass (m).
+    /// Centre of mass from the origin of positions (m).
     centre: Vector,
-    /// See `environment`.
+    /// Torque that is constant in inertial axes (N m).
     torque: Vector,
-    /// Thermal bending of appendages.
+    /// Thermal bending of the appendages.
     heated: Vec<Heated>,
-    /// The magnetic moment that torquers hold, in the body's axes (A m²).
+    /// Magnetic moment of the torquers, in the body's axes (A m²).
     held: Vector,
     bound: f64,
     frequency: f64,
 }
 
 impl Around {
-    /// What surrounds a body of this inertia and rotors that have this about their axes (kg m²), whose centre of mass is here
-    /// from the point that positions are from (m), under this sky.
+    /// Creates the environment of a body under `sky`. The inertia tensors (kg m²) are those of the body without the
+    /// rotors' axial inertia, and of the rotors about their axes; `centre` is the centre of mass from the origin of
+    /// positions (m).
     pub fn new(
         environment: &Environment,
         sky: Sky,
@@ -58,7 +59,7 @@ impl Around {
             spinning,
             centre: *centre,
             bound: torque.norm() + pressed + pull + push + braked,
-            // Both are of second order in the local axes' sine and cosine.
+            // Gradient and dipole torques are of second order in the sine and cosine of the local axes' angle.
             frequency: 2.0 * fastest,
             torque,
             held: Vector::zeros(),
@@ -67,7 +68,7 @@ impl Around {
         }
     }
 
-    /// Lets sunlight bend the body: the level counts from that at the start.
+    /// Adds thermal bending of the body by sunlight, relative to the state of light at the start.
     #[must_use]
     pub fn warming(self, bendings: &[Bending]) -> Self {
         let start = if self.sky.is_lit(0.0) { 1.0 } else { 0.0 };
@@ -82,12 +83,12 @@ impl Around {
         Self { heated, frequency: self.frequency + fastest, ..self }
     }
 
-    /// Takes over the magnetic moment that torquers hold from now on, in the body's axes (A m²).
+    /// Sets the magnetic moment of the torquers from now on, in the body's axes (A m²).
     pub fn hold(&mut self, moment: Vector) {
         self.held = moment;
     }
 
-    /// The torque of the moment that torquers hold, in the axes of a body that faces this way (N m).
+    /// Returns the torque of the torquers' moment on a body of the given attitude, in its axes (N m).
     pub fn held_torque(&self, t: f64, attitude: &Quaternion<f64>) -> Vector {
         if self.held == Vector::zeros() {
             return Vector::zeros();
@@ -95,17 +96,17 @@ impl Around {
         self.sky.seen(t).field.map_or_else(Vector::zeros, |field| self.held.cross(&into(attitude, &field)))
     }
 
-    /// The sky.
+    /// Returns the orbit, field and Sun.
     pub fn sky(&self) -> &Sky {
         &self.sky
     }
 
-    /// What there is to measure of the sky at a time since the start (s).
+    /// Returns the observable field and Sun direction at a time since the start (s).
     pub fn seen(&self, t: f64) -> SkySight {
         self.sky.seen(t)
     }
 
-    /// The instants at which a torque begins or ends.
+    /// Returns the instants at which a torque or bending by sunlight begins or ends.
     pub fn edges(&self) -> impl Iterator<Item = Instant> {
         let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::edges);
         let matters = self.environment.solar_pressure.is_some() || !self.heated.is_empty();

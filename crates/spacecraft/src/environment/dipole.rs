@@ -1,8 +1,8 @@
-//! A magnetic moment of the body in the field of its planet: the environment's, or on a circular orbit that of a dipole along
-//! the planet's axis (\[Hughes86\]).
+//! A magnetic moment of the body in the field of its planet: the environment's field, or on a circular orbit that of a
+//! dipole along the planet's axis (\[Hughes86\]).
 //!
-//! Of the latter, at the angle u past the ascending node of an orbit of inclination i, and with b = mu/R³, the field in local axes is
-//! b (cos u sin i, -cos i, 2 sin u sin i).
+//! On such an orbit, at the angle u past the ascending node, with inclination i and b = mu/R³, the field in local axes
+//! is b (cos u sin i, -cos i, 2 sin u sin i).
 
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -42,7 +42,7 @@ fn is_zero(angle: &Finite) -> bool {
     *angle == Finite::ZERO
 }
 
-/// The field of a dipole along the planet's axis on a circular orbit.
+/// Field of a dipole along the planet's axis, on a circular orbit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub(super) struct Axial {
     strength: f64,
@@ -54,7 +54,7 @@ pub(super) struct Axial {
 }
 
 impl Axial {
-    /// The field in inertial axes (T) at a time since the start (s).
+    /// Returns the field in inertial axes (T) at a time since the start (s).
     pub fn at(&self, t: f64) -> Vector {
         let (across, along) = libm::sincos(self.inclination);
         let (sin, cos) = libm::sincos(self.from_node + self.rate * t);
@@ -64,7 +64,7 @@ impl Axial {
 }
 
 impl Dipole {
-    /// Its own field, if it has one.
+    /// Returns the dipole's own field, if its keys are given.
     pub(super) fn own(&self) -> Option<Axial> {
         let (strength, inclination, rate) = (self.strength?, self.inclination?, self.orbit_rate?);
         Some(Axial {
@@ -76,7 +76,7 @@ impl Dipole {
         })
     }
 
-    /// A field that is there twice, or missing: the key, and why.
+    /// Returns the key and the reason, if the field is given twice or is missing.
     pub(super) fn fault(&self, on_orbit: bool, in_field: bool) -> Option<Fault> {
         let given = [
             ("strength", self.strength.is_some()),
@@ -96,12 +96,12 @@ impl Dipole {
         Some(Fault::new(key, "must be given where the environment has no `orbit`"))
     }
 
-    /// The torque in the body's axes (N m) of a field in inertial ones (T).
+    /// Returns the torque in the body's axes (N m) of a field in inertial axes (T).
     pub(super) fn torque(&self, field: &Vector, attitude: &Quaternion<f64>) -> Vector {
         vector(&self.moment).cross(&into(attitude, field))
     }
 
-    /// No torque is larger (N m), in its own field or one that is at most so strong (T).
+    /// Returns an upper bound of the torque (N m), in the dipole's own field or in one of strength `field` (T) at most.
     pub(super) fn bound(&self, field: f64) -> f64 {
         self.strength.map_or(field, |strength| 2.0 * strength.get()) * vector(&self.moment).norm()
     }

@@ -1,7 +1,7 @@
-//! Drag of the atmosphere on plates, as a torque: the orbit stays what it is (\[Wertz78\]).
+//! Drag of the atmosphere on plates, as a torque: the orbit does not change (\[Wertz78\]).
 //!
-//! On a plate of area A and outward normal n, in a flow that it meets at v, the force is -rho/2 C A (n.v) v where n.v > 0, and else
-//! none: a plate with two sides is two. The atmosphere turns with the planet.
+//! On a plate of area A and outward normal n that moves at v relative to the air, the force is -rho/2 C A (n.v) v where
+//! n.v > 0, and zero otherwise: a plate with two sides is two plates. The atmosphere turns with the planet.
 
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -53,7 +53,7 @@ fn rotation() -> Finite {
 }
 
 impl Drag {
-    /// What single values cannot show to be wrong: a key within the drag, and why.
+    /// Returns an inconsistency between values: a key within the drag, and the reason.
     pub(super) fn fault(&self, on_orbit: bool) -> Option<Fault> {
         if !on_orbit {
             return Some(Fault::new("", "needs an `orbit`, and there is none"));
@@ -63,14 +63,14 @@ impl Drag {
         Some(Fault::new(format!("plates[{index}].normal"), "must not be zero, got [0, 0, 0]"))
     }
 
-    /// The density at a distance from the planet's centre (kg/m³), on an orbit with this semi-major axis (m).
+    /// Returns the density at a distance from the planet's centre (m), in kg/m³.
     fn density_at(&self, distance: f64, orbit: &Kepler) -> f64 {
         let above = distance - orbit.semi_major_axis.get();
         let fallen = self.scale_height.map_or(1.0, |height| libm::exp(-above / height.get()));
         self.density.get() * fallen
     }
 
-    /// The torque about the centre of mass, which is here (m), in the axes of a body that faces this way (N m).
+    /// Returns the torque about the centre of mass `centre` (m) on a body of the given attitude, in its axes (N m).
     pub(super) fn torque(
         &self,
         orbit: &Kepler,
@@ -87,7 +87,7 @@ impl Drag {
         })
     }
 
-    /// No torque is larger (N m).
+    /// Returns an upper bound of the torque (N m).
     pub(super) fn bound(&self, orbit: &Kepler, centre: &Vector) -> f64 {
         let nearest = orbit.nearest();
         let speed = nearest * (orbit.fastest() + self.rotation.get().abs());
@@ -104,14 +104,14 @@ mod tests {
 
     #[test]
     fn a_plate_is_pushed_back_where_it_meets_the_flow() {
-        // Without the planet's rotation: rho/2 C A v² at its arm.
+        // Without rotation of the atmosphere: rho/2 C A v² at the plate's arm.
         let orbit: Kepler = crate::document::from_text("semi_major_axis = 6.8e6").unwrap();
         let drag: Drag = crate::document::from_text(
             "density = 4e-12\nscale_height = 6e4\nrotation = 0\nplates = [{ area = 2.0, normal = [0, 3, 0], at = [0.1, 0, 0.5] }]",
         )
         .unwrap();
         assert_eq!(drag.fault(true), None);
-        // At the start the body is on the inertial x and goes along y.
+        // At the start the body is on the inertial x axis and moves along y.
         let place = orbit.at(0.0);
         let centre = Vector::new(0.1, 0.0, 0.0);
         let speed = f64::sqrt(3.986_004_418e14 / 6.8e6);
@@ -119,11 +119,11 @@ mod tests {
         let torque = |by: Vector| drag.torque(&orbit, &place, &turned(&by), &centre);
         assert!((torque(Vector::zeros()) - Vector::new(0.5 * force, 0.0, 0.0)).norm() < 1e-12 * force);
         assert!(torque(Vector::zeros()).norm() <= drag.bound(&orbit, &centre) * (1.0 + 1e-12));
-        // Turned by 60 degrees about z it meets half of the flow; by more than 90 none.
+        // Turned by 60 degrees about z the plate meets half of the flow; by more than 90 degrees, none.
         let third = torque(Vector::new(0.0, 0.0, std::f64::consts::FRAC_PI_3));
         assert!((third.norm() - 0.25 * force).abs() < 1e-12 * force, "{third}");
         assert_eq!(torque(Vector::new(0.0, 0.0, 2.0)), Vector::zeros());
-        // An atmosphere that turns with the planet carries the flow along.
+        // An atmosphere that turns with the planet changes the relative flow.
         let carried = Drag { rotation: Finite::new(1e-4).unwrap(), ..drag.clone() };
         let slower = carried.torque(&orbit, &place, &turned(&Vector::zeros()), &centre).x / (0.5 * force);
         assert!((slower - libm::pow(1.0 - 680.0 / speed, 2.0)).abs() < 1e-12, "{slower}");

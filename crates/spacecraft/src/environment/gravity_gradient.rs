@@ -1,8 +1,8 @@
 //! Gravity gradient on an orbit (\[Hughes86\]).
 //!
-//! At the rate n of the orbit and with the direction o of the nadir, the field of gravity less what makes the centre of mass fall is
-//! n² (3 o o' - 1) r. Its torque on a body is 3 n² o x J o. A mode that changes the inertia by J1 for a unit is pushed by
-//! n² (tr J1/2 - 3/2 o' J1 o), which is the integral of its shape times that field. On a Kepler orbit n² is mu/R³.
+//! With the rate n of the orbit and the direction o of the nadir, the gravity relative to the centre of mass is n² (3 o
+//! o' - 1) r. The torque on a body is 3 n² o x J o. The force on a mode that changes the inertia by J1 per unit is n²
+//! (tr J1/2 - 3/2 o' J1 o), which is the integral of its shape times that field. On a Kepler orbit n² is mu/R³.
 
 use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
@@ -28,7 +28,7 @@ pub struct GravityGradient {
 }
 
 impl GravityGradient {
-    /// An orbit that is there twice, or missing: the key, and why.
+    /// Returns the key and the reason, if the orbit is given twice or is missing.
     pub(super) fn fault(&self, on_orbit: bool) -> Option<Fault> {
         if !on_orbit {
             let why = "must be given where the environment has no `orbit`";
@@ -39,7 +39,7 @@ impl GravityGradient {
         Some(Fault::new(key, "follows from the environment's `orbit`: leave it out"))
     }
 
-    /// The direction to the planet in the axes of a body that faces this way, and n² or mu/R³ (1/s²).
+    /// Returns the direction to the planet in the axes of a body of the given attitude, and n² or mu/R³ (1/s²).
     pub(super) fn pull(
         &self,
         t: f64,
@@ -53,17 +53,17 @@ impl GravityGradient {
         }
     }
 
-    /// The torque in the body's axes (N m) of such a pull.
+    /// Returns the torque in the body's axes (N m), from the nadir direction and n² (1/s²).
     pub(super) fn torque((nadir, tide): (Vector, f64), inertia: &Matrix3<f64>) -> Vector {
         nadir.cross(&(inertia * nadir)) * (3.0 * tide)
     }
 
-    /// The tensor (1/s²) whose product with J1, element by element, is the force on a mode.
+    /// Returns the tensor (1/s²) whose element-wise product with J1, summed, is the force on a mode.
     pub(super) fn tide((nadir, tide): (Vector, f64)) -> Matrix3<f64> {
         (Matrix3::identity() - nadir * nadir.transpose() * 3.0) * (0.5 * tide)
     }
 
-    /// No torque on a body of this inertia is larger (N m).
+    /// Returns an upper bound of the torque on a body of this inertia (N m).
     pub(super) fn bound(&self, inertia: &Matrix3<f64>, sky: &Sky) -> f64 {
         let on_orbit = sky.orbit().map_or(0.0, |orbit| {
             let nearest = orbit.nearest();

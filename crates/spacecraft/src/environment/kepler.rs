@@ -1,8 +1,9 @@
-//! A Kepler orbit about a planet: where the body is, how its local axes lie and turn, and when the planet hides the Sun.
+//! A Kepler orbit about a planet: the body's position, the local axes and their rate, and the planet's shadow.
 //!
-//! In the eccentric anomaly E with E - e sin E = n t + M (\[Wie08\]), r = a ((cos E - e) P + sqrt(1 - e²) sin E Q), with P to the
-//! perigee and Q across it in the plane of the orbit. Local axes are z to the planet's centre (nadir), y against the orbit's
-//! normal, and x ahead, along the velocity of a circular orbit. They turn about -y at the rate of the true anomaly.
+//! In the eccentric anomaly E with E - e sin E = n t + M (\[Wie08\]), r = a ((cos E - e) P + sqrt(1 - e²) sin E Q),
+//! with P to the perigee and Q across it in the plane of the orbit. Local axes are z to the planet's centre (nadir), y
+//! against the orbit's normal, and x ahead, along the velocity of a circular orbit. They turn about -y at the rate of
+//! the true anomaly.
 
 use std::f64::consts::TAU;
 
@@ -42,33 +43,33 @@ pub struct Kepler {
     pub planet_radius: Positive,
 }
 
-/// GM of the Earth (m³/s²), WGS 84.
+/// Returns GM of the Earth (m³/s²), WGS 84.
 fn earth_gravity() -> Positive {
     Positive::new(3.986_004_418e14).unwrap_or(Positive::ONE)
 }
 
-/// Radius of the Earth at its equator (m), WGS 84.
+/// Returns the radius of the Earth at its equator (m), WGS 84.
 fn earth_radius() -> Positive {
     Positive::new(6_378_137.0).unwrap_or(Positive::ONE)
 }
 
-/// Where a body is on its orbit.
+/// State of a body on its orbit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct OrbitPosition {
     /// Position from the planet's centre in inertial axes (m).
     pub position: Vector,
     /// Velocity in inertial axes (m/s).
     pub velocity: Vector,
-    /// The local axes in inertial ones.
+    /// Unit vectors of the local axes in inertial axes.
     pub local: [Vector; 3],
-    /// The rate of the local axes about -y (rad/s), and its rate (rad/s²).
+    /// Rate of the local axes about -y (rad/s), and its derivative (rad/s²).
     pub turning: [f64; 2],
-    /// What gravity has for each unit of distance from the centre of mass, mu/R³ (1/s²).
+    /// Gravity-gradient strength mu/R³ (1/s²): gravity per unit of distance from the centre of mass.
     pub tide: f64,
 }
 
 impl Kepler {
-    /// What single values cannot show to be wrong: a key within the orbit, and why.
+    /// Returns an inconsistency between values: a key within the orbit, and the reason.
     pub(super) fn fault(&self) -> Option<Fault> {
         let (e, planet) = (self.eccentricity.get(), self.planet_radius.get());
         if e >= 1.0 {
@@ -84,24 +85,24 @@ impl Kepler {
         })
     }
 
-    /// The least distance from the planet's centre (m).
+    /// Returns the least distance from the planet's centre (m).
     pub(super) fn nearest(&self) -> f64 {
         self.semi_major_axis.get() * (1.0 - self.eccentricity.get())
     }
 
-    /// Mean motion (rad/s).
+    /// Returns the mean motion (rad/s).
     pub fn mean_motion(&self) -> f64 {
         let a = self.semi_major_axis.get();
         f64::sqrt(self.gravity.get() / a) / a
     }
 
-    /// The largest rate of the local axes (rad/s), at the perigee.
+    /// Returns the largest rate of the local axes (rad/s), at the perigee.
     pub fn fastest(&self) -> f64 {
         let e = self.eccentricity.get();
         f64::sqrt(self.gravity.get() * (1.0 + e) / self.nearest()) / self.nearest()
     }
 
-    /// The unit vectors P, Q and along the orbit's normal.
+    /// Returns the unit vectors P, Q and along the orbit's normal.
     fn plane(&self) -> [Vector; 3] {
         let [(si, ci), (sn, cn), (sp, cp)] =
             [self.inclination, self.node, self.perigee].map(|angle| libm::sincos(angle.get()));
@@ -110,7 +111,7 @@ impl Kepler {
         [ahead(sp, cp), ahead(cp, -sp), Vector::new(sn * si, -cn * si, ci)]
     }
 
-    /// Where the body is so many seconds after the start.
+    /// Returns the position on the orbit at `t` seconds after the start.
     pub fn at(&self, t: f64) -> OrbitPosition {
         let (a, e, gravity) = (self.semi_major_axis.get(), self.eccentricity.get(), self.gravity.get());
         let anomaly = eccentric(libm::fmod(self.anomaly.get() + self.mean_motion() * t, TAU), e);
@@ -134,8 +135,8 @@ impl Kepler {
         }
     }
 
-    /// The times (s) at which the planet's shadow, a cylinder away from the Sun in this direction, begins and ends, until so many
-    /// seconds after the start.
+    /// Returns the times (s) at which the planet's shadow, a cylinder opposite to the direction `sun`, begins and ends,
+    /// for those shadows that begin before `duration` (s).
     pub(super) fn shadows(&self, sun: &Vector, duration: f64) -> Vec<[f64; 2]> {
         let edges = self.shadow_edges(sun);
         let e = self.eccentricity.get();
@@ -152,7 +153,7 @@ impl Kepler {
             let (ends, _) = edges[(index + 1) % edges.len()];
             let (from, to) = (since_start(*begins), since_start(ends));
             let length = if to > from { to - from } else { to - from + period };
-            // The run may begin within one.
+            // The run may begin within a shadow.
             let mut orbit = -1.0;
             while from + orbit * period < duration {
                 let from = from + orbit * period;
@@ -166,13 +167,13 @@ impl Kepler {
         shadows
     }
 
-    /// The eccentric anomalies at which the orbit crosses the shadow's edge, and whether it enters there.
+    /// Returns the eccentric anomalies at which the orbit crosses the shadow's edge, each with true for an entry.
     fn shadow_edges(&self, sun: &Vector) -> Vec<(f64, bool)> {
         let (a, e, planet) = (self.semi_major_axis.get(), self.eccentricity.get(), self.planet_radius.get());
         let [p, q, _] = self.plane().map(|axis| axis.dot(sun) * a);
         let minor = f64::sqrt(1.0 - e * e);
-        // How far the body is towards the Sun, and its distance from the axis of the shadow squared less the planet's radius
-        // squared, with their derivatives.
+        // Distance of the body towards the Sun, and its squared distance from the axis of the shadow minus the squared
+        // radius of the planet, with their derivatives.
         let towards = |sin: f64, cos: f64| p * (cos - e) + q * minor * sin;
         let beyond = |anomaly: f64| {
             let (sin, cos) = libm::sincos(anomaly);
@@ -181,7 +182,7 @@ impl Kepler {
             [radius * radius - x * x - planet * planet, 2.0 * (radius * a * e * sin - x * dx)]
         };
         let mut crossings = Vec::new();
-        // The second derivative is below this.
+        // Upper bound of the second derivative.
         crossings_within(&beyond, [0.0, TAU], 16.0 * a * a, &mut crossings);
         let behind = |(anomaly, _): &(f64, bool)| {
             let (sin, cos) = libm::sincos(*anomaly);
@@ -191,8 +192,8 @@ impl Kepler {
     }
 }
 
-/// The zeros of a function, given with its derivative, within an interval, in order, and whether it falls there. No second
-/// derivative is larger than `bend`: where neither the function nor its derivative can have a zero, nothing is missed.
+/// Finds the zeros of a function, given with its derivative, within an interval, in order, each with true if the
+/// function decreases there. `bend` bounds the second derivative: no zero is missed.
 fn crossings_within(
     of: &dyn Fn(f64) -> [f64; 2],
     [from, to]: [f64; 2],
@@ -223,7 +224,7 @@ fn crossings_within(
     }
 }
 
-/// The eccentric anomaly of a mean one, by Newton's method.
+/// Returns the eccentric anomaly of a mean anomaly, by Newton's method.
 fn eccentric(mean: f64, e: f64) -> f64 {
     let mut anomaly = mean + libm::copysign(0.85 * e, libm::sin(mean));
     for _ in 0..50 {
@@ -282,7 +283,7 @@ mod tests {
 
     #[test]
     fn the_shadow_of_a_circular_orbit_is_as_by_hand() {
-        // The Sun in the plane: the planet hides 2 asin(Rp/R) of the orbit, centred opposite to the Sun.
+        // With the Sun in the plane, the planet hides 2 asin(Rp/R) of the orbit, centred opposite to the Sun.
         let orbit = orbit("semi_major_axis = 7e6\nanomaly = 1.0");
         let shadows = orbit.shadows(&Vector::x(), 12_000.0);
         let half = libm::asin(6_378_137.0 / 7e6);
@@ -294,11 +295,11 @@ mod tests {
                 (from - (middle - half / rate)).abs() < 1e-8 && (to - (middle + half / rate)).abs() < 1e-8
             );
         }
-        // Of a run that begins within one only its rest.
+        // For a run that begins within a shadow, only the rest of it.
         let within = Kepler { anomaly: Finite::new(3.2).unwrap(), ..orbit };
         let first = within.shadows(&Vector::x(), 10.0);
         assert!(first.len() == 1 && first[0][0] == 0.0 && first[0][1] < half / rate);
-        // The Sun along the normal: none.
+        // With the Sun along the normal there is no shadow.
         assert!(orbit.shadows(&Vector::z(), 12_000.0).is_empty());
     }
 
@@ -312,7 +313,7 @@ mod tests {
             (along < 0.0).then(|| (position - sun * along).norm() - 6_378_137.0)
         };
         let shadows = orbit.shadows(&sun, 40_000.0);
-        // By a scan second by second with other code: after 9104, 11 764, 22 187, 24 847, 35 269 and 37 929 s.
+        // Reference by a scan of every second with other code: after 9104, 11 764, 22 187, 24 847, 35 269 and 37 929 s.
         let scanned = [[9104.5, 11_764.5], [22_187.5, 24_847.5], [35_269.5, 37_929.5]];
         assert_eq!(shadows.len(), scanned.len());
         for (found, scanned) in shadows.iter().flatten().zip(scanned.iter().flatten()) {
@@ -324,7 +325,7 @@ mod tests {
             }
             assert!(depth(*to).unwrap().abs() < 1e-4 && depth(0.5 * (from + to)).unwrap() < 0.0);
         }
-        // Nothing else is in shadow.
+        // No other time is in shadow.
         for k in 0..4000 {
             let t = 10.0 * f64::from(k);
             let dark = shadows.iter().any(|[from, to]| *from <= t && t < *to);

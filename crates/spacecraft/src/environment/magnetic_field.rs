@@ -1,4 +1,5 @@
-//! The magnetic field of a planet: a dipole through its centre, tilted to its axis, that turns with it (\[Wertz78\]).
+//! The magnetic field of a planet: a dipole through its centre, tilted against its axis, that turns with it
+//! (\[Wertz78\]).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -22,7 +23,7 @@ pub struct MagneticField {
 }
 
 impl Default for MagneticField {
-    /// The Earth's.
+    /// Returns the field of the Earth.
     fn default() -> Self {
         Self {
             coefficients: [-1450.9e-9, 4652.5e-9, -29_404.8e-9].map(|t| Finite::new(t).unwrap_or_default()),
@@ -34,7 +35,8 @@ impl Default for MagneticField {
 }
 
 impl MagneticField {
-    /// The field at a position from the planet's centre, both in inertial axes (T, m), at a time since the start (s).
+    /// Returns the field (T) at a position from the planet's centre (m), both in inertial axes, at a time since the
+    /// start (s).
     pub fn at(&self, position: &Vector, t: f64) -> Vector {
         let [x, y, z] = self.coefficients.map(Finite::get);
         let (sin, cos) = libm::sincos(self.meridian.get() + self.rotation.get() * t);
@@ -44,7 +46,7 @@ impl MagneticField {
         (up * (3.0 * south.dot(&up)) - south) * (ratio * ratio * ratio)
     }
 
-    /// No field at this distance from the centre (m) or beyond is larger (T).
+    /// Returns an upper bound of the field (T) at this distance from the centre (m) and beyond.
     pub fn bound(&self, distance: f64) -> f64 {
         let ratio = self.radius.get() / distance;
         2.0 * Vector::from(self.coefficients.map(Finite::get)).norm() * ratio * ratio * ratio
@@ -58,7 +60,7 @@ mod tests {
 
     #[test]
     fn without_a_tilt_it_is_that_of_the_local_axes() {
-        // b (cos u sin i, -cos i, 2 sin u sin i) in local axes, at the angle u past the ascending node.
+        // Expected field: b (cos u sin i, -cos i, 2 sin u sin i) in local axes, at the angle u past the ascending node.
         let field: MagneticField =
             crate::document::from_text("coefficients = [0, 0, -3e-5]\nradius = 6.4e6").unwrap();
         let (inclination, radius) = (0.9, 7e6);
@@ -90,7 +92,7 @@ mod tests {
             field.at(&across, 0.0).norm()
         );
         assert!((field.at(&(axis * 6_371_200.0), 0.0).norm() - 2.0 * 29_805.924e-9).abs() < 2e-12);
-        // 9.4 degrees from the axis.
+        // The dipole is tilted by 9.4 degrees against the axis.
         assert!((libm::acos(-axis.z) - 0.164).abs() < 1e-3);
         let position = Vector::new(7e6, -1e6, 2e6);
         let quarter = std::f64::consts::FRAC_PI_2 / 7.292_115e-5;

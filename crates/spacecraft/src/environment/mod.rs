@@ -1,4 +1,4 @@
-//! The surroundings of a body with three axes: torques that depend on where it faces, and when.
+//! Environment of a three-axis body: torques that depend on attitude and time.
 
 mod around;
 mod dipole;
@@ -61,7 +61,7 @@ pub struct Environment {
 }
 
 impl Environment {
-    /// What single values cannot show to be wrong: a key within the environment, and why.
+    /// Returns an inconsistency between values: a key within the environment, and the reason.
     pub fn fault(&self) -> Option<Fault> {
         if let Some(fault) = self.orbit.as_ref().and_then(Kepler::fault) {
             return Some(fault.within("orbit"));
@@ -79,7 +79,7 @@ impl Environment {
         pressed.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
     }
 
-    /// An orbit that is there twice, or missing.
+    /// Returns the key and the reason, if an orbit is given twice or is missing.
     fn orbit_fault(&self) -> Option<Fault> {
         let (gradient, dipole) = (self.gravity_gradient.as_ref(), self.dipole.as_ref());
         if let Some(fault) = gradient.and_then(|gradient| gradient.fault(self.orbit.is_some())) {

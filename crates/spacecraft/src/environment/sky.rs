@@ -1,31 +1,32 @@
-//! What is around a body wherever it faces: its place on the orbit, the magnetic field there, the Sun, and the planet's shadow.
+//! Environment that does not depend on the attitude: position on the orbit, magnetic field, Sun, and the planet's
+//! shadow.
 
 use super::{Environment, Kepler, MagneticField, OrbitPosition};
 use crate::attitude::Vector;
 use crate::time::{Instant, Span};
 
-/// The sky of a run.
+/// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Sky {
     orbit: Option<Kepler>,
     field: Option<MagneticField>,
-    /// The direction to the Sun in inertial axes.
+    /// Direction to the Sun in inertial axes.
     sun: Option<Vector>,
-    /// When the planet hides it.
+    /// Intervals in which the planet hides the Sun.
     shadows: Vec<[Instant; 2]>,
 }
 
-/// What there is to measure of the sky at an instant, in inertial axes.
+/// Observable environment at an instant, in inertial axes.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct SkySight {
-    /// The magnetic field (T), if there is one.
+    /// Magnetic field (T), if there is one.
     pub field: Option<Vector>,
-    /// The direction to the Sun, in the light.
+    /// Direction to the Sun; `None` in shadow.
     pub sun: Option<Vector>,
 }
 
 impl Sky {
-    /// The sky of an environment, for a run that lasts so long and begins so many nanoseconds after 1970.
+    /// Creates the orbit environment of a run of length `duration` that begins `epoch_ns` nanoseconds after 1970, UTC.
     pub fn new(environment: &Environment, duration: Span, epoch_ns: u64) -> Self {
         let sun = environment.sun.map(|sun| sun.direction(epoch_ns));
         let shadows = match (&environment.orbit, &sun) {
@@ -41,49 +42,49 @@ impl Sky {
         }
     }
 
-    /// Where the body is so many seconds after the start, if it is on an orbit.
+    /// Returns the position at `t` seconds after the start, if the body is on an orbit.
     pub fn place(&self, t: f64) -> Option<OrbitPosition> {
         self.orbit.as_ref().map(|orbit| orbit.at(t))
     }
 
-    /// The orbit.
+    /// Returns the orbit.
     pub fn orbit(&self) -> Option<&Kepler> {
         self.orbit.as_ref()
     }
 
-    /// The direction to the Sun in inertial axes, in the light or not.
+    /// Returns the direction to the Sun in inertial axes, in the light or not.
     pub fn sun(&self) -> Option<&Vector> {
         self.sun.as_ref()
     }
 
-    /// The instants at which the shadow begins and ends.
+    /// Returns the instants at which the shadow begins and ends.
     pub fn edges(&self) -> impl Iterator<Item = Instant> {
         self.shadows.iter().flatten().copied()
     }
 
-    /// Whether the planet does not hide the Sun at a time since the start (s).
+    /// Returns true if the planet does not hide the Sun at a time since the start (s).
     pub fn is_lit(&self, t: f64) -> bool {
         let past = self.shadows.partition_point(|[from, _]| from.seconds() <= t);
         past.checked_sub(1).is_none_or(|last| t >= self.shadows[last][1].seconds())
     }
 
-    /// The magnetic field at a place, in inertial axes (T), at a time since the start (s).
+    /// Returns the magnetic field at a position, in inertial axes (T), at a time since the start (s).
     pub(super) fn field(&self, place: &OrbitPosition, t: f64) -> Option<Vector> {
         self.field.as_ref().map(|field| field.at(&place.position, t))
     }
 
-    /// No field on the orbit is larger (T).
+    /// Returns an upper bound of the field on the orbit (T).
     pub fn field_bound(&self) -> f64 {
         let on = self.orbit.as_ref().zip(self.field.as_ref());
         on.map_or(0.0, |(orbit, field)| field.bound(orbit.nearest()))
     }
 
-    /// Whether there is a magnetic field.
+    /// Returns true if there is a magnetic field.
     pub fn is_magnetic(&self) -> bool {
         self.field.is_some()
     }
 
-    /// What there is to measure at a time since the start (s).
+    /// Returns the observable environment at a time since the start (s).
     pub fn seen(&self, t: f64) -> SkySight {
         let field = self.field.as_ref().and_then(|_| self.field(&self.place(t)?, t));
         SkySight { field, sun: self.sun.filter(|_| self.is_lit(t)) }

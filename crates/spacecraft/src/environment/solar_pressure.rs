@@ -1,8 +1,9 @@
-//! Pressure of sunlight: a force that is constant in inertial axes at a point of the body, or forces on plates (\[Wertz78\]).
+//! Pressure of sunlight: a force that is constant in inertial axes at a point of the body, or forces on plates
+//! (\[Wertz78\]).
 //!
-//! On a plate of area A whose outward normal n faces the Sun s, n.s = c > 0, of which it reflects the part r_s like a mirror and
-//! r_d diffusely, the force is -P A c ((1 - r_s) s + 2 (r_s c + r_d/3) n), else none: a plate with two sides is two. Plates do not
-//! shade each other.
+//! On a plate of area A whose outward normal n faces the Sun s, n.s = c > 0, and which reflects the part r_s specularly
+//! and r_d diffusely, the force is -P A c ((1 - r_s) s + 2 (r_s c + r_d/3) n), else zero: a plate with two sides is two
+//! plates. Plates do not shade each other.
 
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -53,21 +54,21 @@ pub struct LitPlate {
     pub diffuse: NonNegative,
 }
 
-/// The pressure at 1 au (N/m²): 1361 W/m² over the speed of light.
+/// Pressure at 1 au (N/m²): 1361 W/m² divided by the speed of light.
 const AT_EARTH: f64 = 1361.0 / 299_792_458.0;
 
 impl SolarPressure {
-    /// The instants at which the shadow begins and ends.
+    /// Returns the instants at which the intervals without sunlight begin and end.
     pub(super) fn edges(&self) -> impl Iterator<Item = Instant> {
         self.shadow.iter().flatten().map(|time| at(*time))
     }
 
-    /// Whether the body is in the light at a time since the start (s).
+    /// Returns true if the body is in sunlight at a time since the start (s).
     pub(super) fn is_lit(&self, t: f64) -> bool {
         !self.shadow.iter().any(|[from, to]| at(*from).seconds() <= t && t < at(*to).seconds())
     }
 
-    /// What single values cannot show to be wrong under a Sun that is there or not: a key within it, and why.
+    /// Returns an inconsistency between values, with or without a Sun: a key within the pressure, and the reason.
     pub(super) fn fault(&self, has_sun: bool) -> Option<Fault> {
         let alone = self.plates.is_empty();
         for (key, given) in [("force", self.force.is_some()), ("at", self.at.is_some())] {
@@ -93,8 +94,8 @@ impl SolarPressure {
         Some(Fault::new(format!("shadow[{index}]"), why))
     }
 
-    /// The torque in the light about the centre of mass, which is here (m), in the axes of a body that faces this way (N m), where
-    /// this is the direction to the Sun.
+    /// Returns the torque in sunlight about the centre of mass `centre` (m) on a body of the given attitude, in its
+    /// axes (N m); `sun` is the direction to the Sun in inertial axes.
     pub(super) fn torque(&self, attitude: &Quaternion<f64>, sun: Option<&Vector>, centre: &Vector) -> Vector {
         if let (Some(force), Some(at)) = (&self.force, &self.at) {
             return (vector(at) - centre).cross(&into(attitude, &vector(force)));
@@ -106,7 +107,7 @@ impl SolarPressure {
         })
     }
 
-    /// No torque is larger (N m).
+    /// Returns an upper bound of the torque (N m).
     pub(super) fn bound(&self, centre: &Vector) -> f64 {
         if let (Some(force), Some(at)) = (&self.force, &self.at) {
             return vector(force).norm() * (vector(at) - centre).norm();
@@ -133,7 +134,7 @@ impl LitPlate {
         (reflected > 1.0).then(|| Fault::new(format!("plates[{index}].specular"), why()))
     }
 
-    /// The force for a unit of pressure (m²), where this is the direction to the Sun in the body's axes.
+    /// Returns the force per unit of pressure (m²); `sun` is the direction to the Sun in the body's axes.
     fn force(&self, sun: &Vector) -> Vector {
         let normal = vector(&self.normal).normalize();
         let faced = normal.dot(sun).max(0.0);
@@ -158,7 +159,7 @@ mod tests {
 
     #[test]
     fn plates_absorb_and_reflect() {
-        // A plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
+        // Plate of 2 m² about z, 0.5 m along x, in light from 60 degrees off its normal.
         let sun = Vector::new(0.0, f64::sqrt(0.75), 0.5);
         let centre = Vector::new(0.1, 0.0, 0.0);
         let torque = |parts: &str, by: Vector| {
@@ -171,15 +172,16 @@ mod tests {
         };
         let arm = Vector::new(0.5, 0.0, 0.0);
         let none = Vector::zeros();
-        // All absorbed: along the light. A mirror: 2 c along the normal. White: the light, and 2/3 along the normal.
+        // Absorption: force along the light. Mirror: 2 c along the normal. Diffuse: along the light, and 2/3 along the
+        // normal.
         let along = |force: Vector| arm.cross(&force);
         assert!((torque("", none) - along(-sun)).norm() < 1e-12);
         assert!((torque(", specular = 1", none) - along(Vector::new(0.0, 0.0, -1.0))).norm() < 1e-12);
         let white = -sun - Vector::new(0.0, 0.0, 2.0 / 3.0);
         assert!((torque(", diffuse = 1", none) - along(white)).norm() < 1e-12);
-        // Turned away from the light by more than 90 degrees.
+        // No force on a plate turned away from the light by more than 90 degrees.
         assert_eq!(torque(", specular = 0.3", Vector::new(0.6, 0.0, 0.0)), none);
-        // Turned into it by 60 degrees, the light comes along z: all on both.
+        // Turned into the light by 60 degrees, both parts of the force are along z.
         let faced =
             torque(", specular = 0.3, diffuse = 0.2", Vector::new(-std::f64::consts::FRAC_PI_3, 0.0, 0.0));
         let straight = along(Vector::new(0.0, 0.0, -2.0 * (1.0 + 0.3 + 2.0 / 3.0 * 0.2)));

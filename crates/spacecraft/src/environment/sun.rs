@@ -1,4 +1,4 @@
-//! The direction to the Sun: as it is given, or where the date of the start has it.
+//! Direction to the Sun: given in the scenario, or computed from the date of the start.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -11,23 +11,23 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 use crate::attitude::{Vector, vector};
 use crate::quantity::Finite;
 
-/// The word for the Sun of the date.
+/// Word of the scenario for the Sun at the date of the start.
 const EPOCH: &str = "epoch";
 
-/// Seconds from 1970 to noon of the first day of 2000.
+/// Seconds from 1970 to J2000, noon of 1 January 2000.
 const J2000: f64 = 946_728_000.0;
 
-/// Where the Sun is, from the body; it stays there for the run.
+/// Direction from the body to the Sun, constant during a run.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Sun {
-    /// In this direction of inertial axes, of any length.
+    /// Fixed direction in inertial axes, of any length.
     Towards([Finite; 3]),
-    /// Where it is seen from the Earth at the date of the start, in axes of the Earth's equator, x to the equinox.
+    /// Direction as seen from the Earth at the date of the start, in axes of the Earth's equator, x to the equinox.
     Epoch,
 }
 
 impl Sun {
-    /// The direction, a unit vector; of a scenario that begins so many nanoseconds after 1970, UTC.
+    /// Returns the direction as a unit vector, for a scenario that begins `epoch_ns` nanoseconds after 1970, UTC.
     pub fn direction(&self, epoch_ns: u64) -> Vector {
         match self {
             Self::Towards(direction) => vector(direction).normalize(),
@@ -35,14 +35,14 @@ impl Sun {
         }
     }
 
-    /// Whether it has no direction.
+    /// Returns true if the direction is the zero vector.
     pub fn is_nowhere(&self) -> bool {
         matches!(self, Self::Towards(direction) if direction.iter().all(|part| part.get() == 0.0))
     }
 }
 
-/// The direction to the Sun so many seconds after 1970, within 0.01 degrees from 1950 to 2050: the low-precision formulas of
-/// \[AstronomicalAlmanac\].
+/// Returns the direction to the Sun at `seconds` after 1970, within 0.01 degrees from 1950 to 2050: the low-precision
+/// formulas of \[AstronomicalAlmanac\].
 fn seen(seconds: f64) -> Vector {
     let days = (seconds - J2000) / 86_400.0;
     let anomaly = (357.528 + 0.985_600_3 * days).to_radians();
@@ -102,8 +102,9 @@ mod tests {
 
     #[test]
     fn the_sun_is_where_almanacs_have_it() {
-        // Seconds since 1970, right ascension and declination (degrees): the apparent Sun of Meeus, Astronomical Algorithms,
-        // example 25.a (1992-10-13), the equinox of 2026-03-20 14:46 UTC, the solstice of 2024-06-20 20:51 UTC.
+        // Seconds since 1970, right ascension and declination (degrees): the apparent Sun of Meeus, Astronomical
+        // Algorithms, example 25.a (1992-10-13), the equinox of 2026-03-20 14:46 UTC, the solstice of 2024-06-20 20:51
+        // UTC.
         for (seconds, ascension, declination) in [
             (718_934_400.0, 198.380_83, -7.785_07),
             (1_774_017_960.0, 0.0, 0.0),

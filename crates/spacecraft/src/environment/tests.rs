@@ -1,4 +1,5 @@
-//! Surroundings against theory: the spec's libration periods, integrals of the motion, fields by another way.
+//! Environment torques against theory: libration periods of the specification, integrals of the motion, fields computed
+//! in another way.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -16,7 +17,7 @@ type Never = std::convert::Infallible;
 /// Rate of the orbit (rad/s).
 const RATE: f64 = 1.1e-3;
 
-/// A long body that flies upright: least inertia along the nadir, most across the orbit.
+/// Returns the inertia of a long body that flies upright: least inertia along the nadir, most across the orbit.
 fn upright() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector::new(1100.0, 1400.0, 500.0))
 }
@@ -27,7 +28,7 @@ fn around(text: &str, inertia: &Matrix3<f64>) -> Around {
     Around::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
 }
 
-/// A rigid body that moves one way, begun anew every 20 s as a plant does.
+/// Rigid body in an environment, whose motion is restarted every 20 s as in a plant.
 struct One {
     rigid: Rigid,
     turn: RigidTurn,
@@ -58,19 +59,19 @@ impl One {
     }
 }
 
-/// The local axes of an orbit that begins in the inertial ones.
+/// Returns the attitude of the local axes of an orbit on which they begin as the inertial ones.
 fn local(t: f64) -> Quaternion<f64> {
     rotation(&Vector::new(0.0, -RATE * t, 0.0))
 }
 
-/// Roll, pitch and yaw of a body beyond the local axes, and its rate beyond theirs.
+/// Returns roll, pitch and yaw of a body relative to the local axes, and its rate relative to theirs.
 fn libration(body: &One) -> (Vector, Vector) {
     let attitude = body.turn.attitude;
     let normal = super::orbit::into(&attitude, &Vector::new(0.0, -RATE, 0.0));
     (beyond(&local(body.t), &attitude), body.rigid.rate(&body.turn) - normal)
 }
 
-/// The instant near `guess` at which the pitch crosses 0.
+/// Returns the instant near `guess` at which the pitch crosses 0.
 fn crossing(body: &mut One, guess: f64) -> f64 {
     body.go(guess);
     for _ in 0..6 {
@@ -99,13 +100,14 @@ fn the_pitch_swings_with_its_period() {
     let mut body = One::new(&inertia, around, start, Vector::new(0.0, -RATE, 0.0));
     let first = crossing(&mut body, 1259.0);
     let second = crossing(&mut body, first + 5037.0);
-    // (4/w) K(sin² of 1e-3 rad), w = n sqrt(3 (Jx - Jz)/Jy).
+    // The period is (4/w) K(sin² of 1e-3 rad), w = n sqrt(3 (Jx - Jz)/Jy).
     let exact = 5_037.499_975_779;
     assert!(((second - first) / exact - 1.0).abs() < 1e-10, "{}", second - first);
     assert!((first / (0.25 * exact) - 1.0).abs() < 1e-10, "{first}");
 }
 
-/// A plate behind the centre of mass, black and across the light, makes a pendulum of the body: theta'' = -P A a/J sin cos theta.
+/// A black plate behind the centre of mass, across the light, makes the body a pendulum: theta'' = -P A a/J sin cos
+/// theta.
 #[test]
 fn a_sail_behind_the_body_swings_as_a_pendulum() {
     let inertia = Matrix3::from_diagonal_element(100.0);
@@ -159,7 +161,7 @@ fn roll_and_yaw_swing_with_the_roots_of_the_quartic() {
     }
 }
 
-/// Energy in the axes of the orbit: that of the motion and of gravity, less the orbit's rate times momentum.
+/// Returns the energy in the axes of the orbit: kinetic and gravitational energy minus the orbit's rate times momentum.
 fn integral(
     energy: f64,
     attitude: &Quaternion<f64>,
@@ -190,12 +192,12 @@ fn a_rigid_body_keeps_its_energy_in_the_axes_of_the_orbit() {
         let scale = body.rigid.energy(&body.turn);
         assert!((of(&body) - before).abs() < 1e-14 * scale, "{k} {:e}", (of(&body) - before) / scale);
     }
-    // Gravity did turn it.
+    // Check that gravity did turn the body.
     let turned = Rigid::momentum(&body.turn).norm() / momentum.norm() - 1.0;
     assert!(turned.abs() > 1e-2, "{turned}");
 }
 
-/// Two modes whose first moments and rotations are those of panels, and one that is hardly felt but makes steps short.
+/// Returns two modes with first moments and rotations as of panels, and a weakly coupled one that makes steps short.
 fn flexible() -> Flexible {
     let mode = |frequency: f64, rotation: [f64; 3], moments: [f64; 6]| {
         let [xx, yy, zz, yz, zx, xy] = moments;
@@ -278,7 +280,7 @@ fn the_field_is_that_of_a_dipole_along_the_axis() {
     );
     let environment: Environment = crate::document::from_text(&text).expect("an environment");
     let dipole = environment.dipole.expect("a dipole");
-    // In axes of the equator, x to the ascending node, z north; of the local axes at the start, in those.
+    // Axes of the equator: x to the ascending node, z north; the local axes at the start, expressed in them.
     let (sin_i, cos_i) = libm::sincos(inclination);
     let up = |u: f64| {
         let (sin, cos) = libm::sincos(u);
@@ -312,7 +314,7 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let pushed = Vector::new(0.0, 0.0, -0.2e-4);
     assert!((at(0.0) - pushed).norm() < 1e-19 && (at(20.0) - pushed).norm() < 1e-19);
     assert!(at(10.0) == Vector::zeros() && at(19.9) == Vector::zeros());
-    // A body turned by a quarter about z sees the force along its -y, where there is no arm.
+    // On a body turned by a quarter about z the force acts along its -y axis, where it has no arm.
     let quarter = rotation(&Vector::new(0.0, 0.0, FRAC_PI_2));
     assert!(around.torque(0.0, &quarter, &upright()).norm() < 1e-19);
     assert!(around.edges().map(Instant::seconds).eq([10.0, 20.0]));

@@ -1,4 +1,4 @@
-//! Undamped modes of one body side by side in the processor's lanes, to the bit as one after the other.
+//! Undamped modes of one body in the lanes of the processor, bit-identical to the modes one after another.
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
@@ -9,19 +9,19 @@ use crate::motion::Phase;
 use crate::motion::damping::{Damping, Undamped};
 use crate::numerics::trig::FARTHEST;
 
-/// Modes that stand side by side.
+/// Number of modes in a group.
 const SIDE: usize = Four::LANES;
 
-/// Modes that turn about their equilibria.
+/// Undamped modes in groups of lanes, each rotating about its equilibrium.
 #[derive(Clone, Debug)]
 pub struct Abreast {
     four: Four,
     groups: Vec<Group>,
-    /// Their highest frequency (rad/s).
+    /// Highest frequency of the modes (rad/s).
     fastest: f64,
 }
 
-/// Some modes: frequencies (rad/s), and displacements from equilibrium and quadratures (rad) at departure.
+/// One group of modes: frequencies (rad/s), and displacements from equilibrium and quadratures (rad) at departure.
 #[derive(Clone, Debug, Default)]
 struct Group {
     frequency: [f64; SIDE],
@@ -29,7 +29,8 @@ struct Group {
 }
 
 impl Abreast {
-    /// The modes of a body; none of fewer than two, of damped ones, and on processors without such lanes.
+    /// Creates the groups of a body's modes; `None` for fewer than two modes, for damped ones, and without vector
+    /// instructions.
     pub fn new(modes: &[Mode]) -> Option<Self> {
         if modes.len() < 2 || modes.iter().any(|mode| mode.damping.get() > 0.0) {
             return None;
@@ -43,20 +44,20 @@ impl Abreast {
         Some(Self { four: Four::wide()?, groups, fastest })
     }
 
-    /// A mode departs from here.
+    /// Sets the phase of a mode about its equilibrium at departure.
     pub fn depart(&mut self, index: usize, from: Phase) {
         let group = &mut self.groups[index / SIDE];
         group.from[0][index % SIDE] = from.displacement;
         group.from[1][index % SIDE] = from.quadrature;
     }
 
-    /// Whether the modes turn so little within a time (s) that lanes and single numbers agree.
+    /// Returns true if the modes rotate little enough within `h` (s) that lanes and scalar code agree to the bit.
     #[inline]
     pub fn reaches(&self, h: f64) -> bool {
         (self.fastest * h).abs() < FARTHEST
     }
 
-    /// Where the modes are about their equilibria, `h` seconds after departure.
+    /// Writes the phases of the modes about their equilibria at `h` seconds after departure.
     pub fn turn(&self, h: f64, to: &mut [Phase]) {
         self.four.run(Turn { groups: &self.groups, h, to });
     }

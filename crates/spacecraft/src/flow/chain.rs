@@ -1,4 +1,4 @@
-//! The motion of the exact planar chain under one input, integrated to a tolerance, and its Taylor series.
+//! Motion of the exact planar chain under one input, integrated to a tolerance, and its Taylor series.
 
 use nalgebra::DVector;
 
@@ -9,14 +9,14 @@ use crate::motion::{Sensed, State};
 use crate::numerics::extrapolation::{RightHandSide, Trajectory};
 use crate::numerics::polynomial::{Series, TERMS};
 
-/// The equations under one input.
+/// Equations of motion of a chain under one input.
 struct Driven<'a> {
     chain: &'a Chain,
     input: &'a ForcedInput,
 }
 
 impl Driven<'_> {
-    /// The accelerations of all angles, `t` seconds after the input began.
+    /// Returns the accelerations of all angles (rad/s²) at `t` seconds after the input began.
     fn acceleration(&self, t: f64, y: &[f64]) -> DVector<f64> {
         let Chain { inertia, stiffness, damping, .. } = self.chain;
         let n = inertia.nrows();
@@ -35,7 +35,7 @@ impl Driven<'_> {
                 coupling[(j, i)] *= cos;
             }
         }
-        // The kinetic energy is positive at all angles; what is not a number stays so.
+        // The kinetic energy is positive at all angles; a NaN is passed on.
         coupling.cholesky().map_or_else(|| DVector::repeat(n, f64::NAN), |factor| factor.solve(&force))
     }
 }
@@ -48,19 +48,19 @@ impl RightHandSide for Driven<'_> {
     }
 }
 
-/// The motion of a chain under one input.
+/// Motion of a chain under one input.
 #[derive(Clone, Debug)]
 pub struct ChainMotion {
     chain: Chain,
     input: ForcedInput,
-    /// Angles and rates.
+    /// Trajectory of angles and rates.
     trajectory: Trajectory,
-    /// The same at departure.
+    /// Angles and rates at departure.
     start: Vec<f64>,
 }
 
 impl ChainMotion {
-    /// A chain at rest at an angle, or turning at a rate, under no input.
+    /// Creates the motion of a straight chain from an angle (rad) and a rate (rad/s), under no input.
     pub fn new(chain: &Chain, angle: f64, rate: f64) -> Self {
         let step = 0.05 / chain.frequencies.iter().copied().fold(1e-3, f64::max);
         let trajectory = Trajectory::new(chain.tolerance, chain.start(angle, rate), step);
@@ -68,19 +68,20 @@ impl ChainMotion {
         Self { chain: chain.clone(), input: ForcedInput::default(), trajectory, start }
     }
 
-    /// Begins a motion under another input, from where the chain was seen last.
+    /// Begins a motion under another input, from the current state.
     pub fn depart(&mut self, input: &ForcedInput) {
         self.input = input.clone();
         self.trajectory.depart();
         self.start.copy_from_slice(self.trajectory.here());
     }
 
-    /// Takes one step towards `h` seconds after departure; whether no more are needed.
+    /// Advances by one integration step towards `h` seconds after departure; returns true if that time is reached.
     pub fn approach(&mut self, h: f64) -> bool {
         self.trajectory.approach(&Driven { chain: &self.chain, input: &self.input }, h)
     }
 
-    /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor at the hub sees.
+    /// Writes the state at `h` seconds after departure, which must not precede an earlier request; returns the hub's
+    /// motion as a sensor measures it.
     pub fn at(&mut self, h: f64, state: &mut State) -> Sensed {
         self.trajectory.at(&Driven { chain: &self.chain, input: &self.input }, h);
         self.see(h, state)
@@ -103,19 +104,19 @@ impl ChainMotion {
         }
     }
 
-    /// Value and rate of each output: the angle of each section relative to the hub.
+    /// Returns value and rate of each output: the angle of each section relative to the hub.
     pub fn outputs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let n = self.chain.inertia.nrows();
         let y = self.trajectory.here();
         (1..n).map(move |k| (y[k] - y[0], y[n + k] - y[n]))
     }
 
-    /// How many angles it has, which may be more than the modes that are kept.
+    /// Returns the number of angles, which may exceed the number of modes kept.
     pub fn coordinates(&self) -> usize {
         self.chain.inertia.nrows()
     }
 
-    /// The motion from its departure on.
+    /// Returns the Taylor expansion of the motion from its departure on.
     pub fn unfold(&self) -> Flown<'_> {
         let (angles, rates) = self.start.split_at(self.chain.inertia.nrows());
         let begin = |(angle, rate): (&f64, &f64)| {
@@ -126,7 +127,7 @@ impl ChainMotion {
         Flown { flight: self, begins: 0.0, angles: angles.iter().zip(rates).map(begin).collect() }
     }
 
-    /// Energy of motion and deformation (J).
+    /// Returns the kinetic and strain energy (J).
     pub fn energy(&self) -> f64 {
         let Chain { inertia, stiffness, .. } = &self.chain;
         let n = inertia.nrows();
@@ -142,18 +143,19 @@ impl ChainMotion {
     }
 }
 
-/// A chain's motion as Taylor series of its angles, each coefficient from those before it.
+/// Chain motion as Taylor series of its angles, each coefficient computed from the previous ones.
 #[derive(Debug)]
 pub struct Flown<'a> {
     flight: &'a ChainMotion,
-    /// When the series begin, after departure (s).
+    /// Origin of the series, after departure (s).
     begins: f64,
     angles: Vec<Series>,
 }
 
 impl Flown<'_> {
-    /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, with a waveform that has
-    /// no break until twice `middle` seconds after it, and returns how far they reach (s).
+    /// Expands all coordinates at `h` seconds after departure, which must not precede an earlier request, and returns
+    /// the time for which the series are valid (s). The waveform must have no break until 2 `middle` after departure
+    /// (s).
     pub fn expand(&mut self, h: f64, middle: f64, into: &mut Expansion) -> f64 {
         let after = h - self.begins;
         for angle in &mut self.angles {
@@ -173,12 +175,12 @@ impl Flown<'_> {
         reach(&self.angles, fastest)
     }
 
-    /// Finds the series from their first two terms, under a torque at the hub.
+    /// Computes the series from their first two terms, under a torque at the hub.
     fn fill(&mut self, torque: &Series) {
         let Chain { inertia, stiffness, damping, .. } = &self.flight.chain;
         let (n, angles) = (inertia.nrows(), &mut self.angles);
         let zero = vec![[0.0; TERMS]; n];
-        // Of each pair the sine and the cosine of the angle between them; squares of the rates; accelerations.
+        // Sine and cosine of the angle between each pair of sections; squares of the rates; accelerations.
         let (mut sines, mut cosines) = (vec![zero.clone(); n], vec![zero.clone(); n]);
         let (mut squares, mut accelerations) = (zero.clone(), zero);
         let mut mass = inertia.clone();
@@ -227,12 +229,13 @@ impl Flown<'_> {
     }
 }
 
-/// How far series reach (s) before what they leave out shows: so many radians of the fastest mode or command, and where
-/// large angles make them faster, a part of the radius by their last terms, as of bodies whose frequencies drift.
+/// Returns the time (s) for which series are exact to rounding: [`REACH`] radians of the fastest mode or command, and
+/// if large angles make the motion faster, a part of the radius of convergence by the last terms, as for drifting
+/// frequencies.
 fn reach(angles: &[Series], fastest: f64) -> f64 {
     const SAFETY: f64 = 7.389_056_098_930_65;
     let largest = |n: usize| angles.iter().map(|c| c[n].abs()).fold(0.0, f64::max);
-    // Of all terms: a chain may begin at rest, under a torque that begins at 0.
+    // The size is of all terms: a chain may begin at rest, under a torque that begins at 0.
     let (size, _) =
         (0..TERMS).fold((0.0_f64, 1.0), |(size, unit), n| (size.max(largest(n) * unit), unit / fastest));
     let radius = |n: usize| match largest(n) {

@@ -1,7 +1,7 @@
-//! The planar body as one linear system, z' = A z + g m: what its motion is where a wheel's back-EMF or damping couples modes.
+//! The planar body as one linear system, z' = A z + g m, if a wheel's back-EMF or damping couples its modes.
 //!
-//! z = (x_r, x_r', x_1, x_1', x_2, x_2', ...); x_r'' = m - a r z, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i (m - a r z), where
-//! r picks the rate that the wheel feels (\[Wheel11, Sukhanov\], equations (4) and (6), corrected).
+//! z = (x_r, x_r', x_1, x_1', x_2, x_2', ...); x_r'' = m - a r z, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i (m - a r
+//! z), where r picks the rate that acts on the wheel (\[Wheel11, Sukhanov\], equations (4) and (6), corrected).
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
@@ -9,22 +9,22 @@ use crate::body::Planar;
 use crate::motion::linear::{LinearFlow, System};
 use crate::numerics::exponential::{exponential, exponentials};
 
-/// The matrices of a body at constant frequencies.
+/// System matrices of a body at constant frequencies.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Coupled {
-    /// A.
+    /// System matrix A.
     pub system: DMatrix<f64>,
-    /// g: what a unit of the reduced moment (rad/s²) accelerates.
+    /// Input vector g: acceleration per unit of the reduced moment (rad/s²).
     pub input: DVector<f64>,
-    /// The measured angle is this times z.
+    /// Row vector whose product with z is the measured angle.
     pub angle: RowDVector<f64>,
-    /// The measured rate is this times z.
+    /// Row vector whose product with z is the measured rate.
     pub rate: RowDVector<f64>,
 }
 
 impl Coupled {
-    /// The system of a body whose wheel takes back-EMF a (1/s) from the total rate, or from the rigid rate alone, with
-    /// each natural frequency times a ratio.
+    /// Creates the system of a body whose wheel has the back-EMF a (1/s), proportional to the total rate if `total` is
+    /// true, else to the rigid rate. Each natural frequency is multiplied by a ratio.
     pub fn new(body: &Planar, back_emf: f64, total: bool, ratios: &[f64]) -> Self {
         let order = 2 + 2 * body.modes.len();
         let every = |first: usize| RowDVector::from_fn(order, |_, j| if j % 2 == first { 1.0 } else { 0.0 });
@@ -51,8 +51,8 @@ impl Coupled {
         Self { system, input, angle, rate }
     }
 
-    /// The exact flow of the system, with the measured angle as its output; none where its numbers leave the range of
-    /// doubles.
+    /// Returns the exact flow of the system, with the measured angle as its output; `None` if its numbers leave the
+    /// range of doubles.
     pub fn flow(&self) -> Option<LinearFlow> {
         let order = self.system.nrows();
         let system = System {
@@ -63,18 +63,18 @@ impl Coupled {
         LinearFlow::new(system.form())
     }
 
-    /// The transition over `h` seconds and what a constant unit of the reduced moment adds to it.
+    /// Returns the transition matrix over `h` seconds, and the response to a constant unit of the reduced moment.
     pub fn discrete(&self, h: f64) -> (DMatrix<f64>, DVector<f64>) {
         apart(&exponential(&self.whole(h)))
     }
 
-    /// The same of several systems of one order, each over a span of its own (s).
+    /// Computes [`Coupled::discrete`] for several systems of one order, each over its own time span (s).
     pub fn several(all: &[(&Self, f64)]) -> Vec<(DMatrix<f64>, DVector<f64>)> {
         let wholes: Vec<_> = all.iter().map(|(system, h)| system.whole(*h)).collect();
         exponentials(&wholes).iter().map(apart).collect()
     }
 
-    /// The generator over `h` seconds, beside what the input adds.
+    /// Returns the generator over `h` seconds, augmented by the input.
     fn whole(&self, h: f64) -> DMatrix<f64> {
         let order = self.system.nrows();
         let mut whole = DMatrix::zeros(order + 1, order + 1);
@@ -84,7 +84,7 @@ impl Coupled {
     }
 }
 
-/// A transition, and what a unit of the input adds.
+/// Splits an augmented transition into the transition matrix and the response to a unit of the input.
 fn apart(whole: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
     let order = whole.nrows() - 1;
     (
@@ -103,7 +103,7 @@ mod tests {
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
         let body = crate::document::from_text(text).expect("valid");
         let (ad, bd) = Coupled::new(&body, 1e-4, true, &[1.0; 4]).discrete(0.3);
-        // SciPy's expm of the same system.
+        // Reference: SciPy's expm of the same system.
         let close = |value: f64, exact: f64| assert!((value / exact - 1.0).abs() < 1e-12, "{value} {exact}");
         close(5e-4 * bd[0], 2.249_920_797_089e-05);
         close(5e-4 * bd[1], 1.499_921_017_754e-04);

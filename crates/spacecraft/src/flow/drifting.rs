@@ -1,40 +1,41 @@
-//! The motion of a body whose frequencies drift, from step to step of its Taylor series.
+//! Motion of a body whose frequencies drift, by successive steps of its Taylor series.
 
 use super::series::{Ratio, SAFETY, Springs};
 use crate::body::{Drift, Planar, SERIES};
 use crate::numerics::polynomial::Series;
 
-/// Steps that are taken at a time.
+/// Largest number of steps of one call.
 const STEPS: u32 = 16;
 
-/// A motion under a constant input.
+/// Motion of a body with drifting frequencies under a constant input.
 #[derive(Clone, Debug)]
 pub struct Drifting {
     drift: Drift,
     springs: Springs<f64>,
-    /// The n-th terms of all coordinates side by side: the rigid angle first, then the modes.
+    /// Taylor coefficients by order, for all coordinates: the rigid angle first, then the modes.
     series: Vec<f64>,
-    /// Whether only the first two terms are found yet.
+    /// True if only the first two terms of the series are valid.
     raw: bool,
     ratios: Vec<Ratio<f64>>,
     moment: f64,
     departed: f64,
-    /// Angles and rates at departure.
+    /// Angles, then rates, at departure.
     start: Vec<f64>,
-    /// When the series begin, after departure (s).
+    /// Origin of the series, after departure (s).
     begins: f64,
-    /// Where the body was seen last, after departure (s).
+    /// Time of the current state, after departure (s).
     seen: f64,
 }
 
 impl Drifting {
-    /// A body at its start, under no input. A wheel takes back-EMF a (1/s) from the total rate, or from the rigid one.
+    /// Creates the motion of a body from its initial state, under no input. A wheel's back-EMF a (1/s) acts on the
+    /// total rate if `total` is true, else on the rigid rate.
     pub fn new(body: &Planar, drift: &Drift, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let start = body.start().to_vector(&frequencies);
         let springs = Springs::new(body, back_emf, total);
         let mut series = vec![0.0; SERIES * springs.count()];
-        // Angles and rates take turns in the vector of the state.
+        // Angles and rates alternate in the state vector.
         for (n, index) in (0..2).flat_map(|n| (0..springs.count()).map(move |index| (n, index))) {
             series[n * springs.count() + index] = start[2 * index + n];
         }
@@ -52,7 +53,7 @@ impl Drifting {
         }
     }
 
-    /// Begins a motion under a constant reduced moment (rad/s²), from where the body was seen last, at a time (s).
+    /// Begins a motion under a constant reduced moment (rad/s²), from the current state, at the time `now` (s).
     pub fn depart(&mut self, now: f64, moment: f64) {
         self.rebase(self.seen - self.begins);
         (self.moment, self.departed) = (moment, now);
@@ -60,7 +61,8 @@ impl Drifting {
         self.start.copy_from_slice(&self.series[..2 * self.springs.count()]);
     }
 
-    /// Puts the rigid coordinate to rest at 0, where the body was seen last: steps are as exact as the largest coordinate needs.
+    /// Sets the rigid angle and rate to 0 in the current state: the accuracy of steps is relative to the largest
+    /// coordinate.
     pub fn rest_hub(&mut self) {
         self.rebase(self.seen - self.begins);
         self.begins = self.seen;
@@ -68,12 +70,12 @@ impl Drifting {
         (self.series[0], self.series[count]) = (0.0, 0.0);
     }
 
-    /// What moves it.
+    /// Returns the equations of motion.
     pub fn springs(&self) -> &Springs<f64> {
         &self.springs
     }
 
-    /// Angles and rates at departure: those of all coordinates, first the angles.
+    /// Returns the angles of all coordinates at departure, then their rates.
     pub fn start(&self) -> &[f64] {
         &self.start
     }
@@ -85,17 +87,17 @@ impl Drifting {
         }
     }
 
-    /// How many ratios there are.
+    /// Returns the number of frequency ratios.
     pub fn ratios(&self) -> usize {
         self.ratios.len()
     }
 
-    /// Whether the series are those from departure on.
+    /// Returns true if the series begin at departure and are valid.
     pub fn is_fresh(&self) -> bool {
         self.begins == 0.0 && !self.raw
     }
 
-    /// The same motion, back at its departure.
+    /// Returns a copy of the motion, restarted from its departure.
     #[must_use]
     pub fn from_departure(&self) -> Self {
         let mut again = self.clone();
@@ -106,7 +108,7 @@ impl Drifting {
         again
     }
 
-    /// The series go on `h` seconds after departure, not before they begin.
+    /// Moves the origin of the series to `h` seconds after departure, not before the present origin.
     pub fn unfold(&mut self, h: f64) {
         if h > self.begins {
             self.rebase(h - self.begins);
@@ -115,7 +117,8 @@ impl Drifting {
         self.expand();
     }
 
-    /// Puts the series of all coordinates, and returns how far they reach (s): infinitely, if that is as far as is asked for.
+    /// Writes the series of all coordinates; returns the time for which they are valid (s), infinite if that is at
+    /// least `far`.
     pub fn tell(&self, far: f64, coordinates: &mut [Series]) -> f64 {
         let count = self.springs.count();
         for (index, into) in coordinates.iter_mut().enumerate().take(count) {
@@ -126,7 +129,8 @@ impl Drifting {
         if self.springs.surely_reach(&self.series, far) { f64::INFINITY } else { self.reach() }
     }
 
-    /// Takes some steps towards `h` seconds after departure, not before a time gone to earlier; whether no more are needed.
+    /// Advances by some steps towards `h` seconds after departure, which must not precede an earlier request; returns
+    /// true if that time is reached.
     pub fn approach(&mut self, h: f64) -> bool {
         self.expand();
         for _ in 0..STEPS {
@@ -145,24 +149,24 @@ impl Drifting {
         false
     }
 
-    /// Goes to `h` seconds after departure, not before a time gone to earlier.
+    /// Advances to `h` seconds after departure, which must not precede an earlier request.
     pub fn go(&mut self, h: f64) {
         while !self.approach(h) {}
         self.seen = h;
     }
 
-    /// Angle and rate of each coordinate where the body is (rad, rad/s), and its acceleration (rad/s²).
+    /// Returns angle (rad), rate (rad/s) and acceleration (rad/s²) of each coordinate in the current state.
     pub fn motion(&self) -> impl Iterator<Item = [f64; 3]> + '_ {
         let h = self.seen - self.begins;
         (0..self.springs.count()).map(move |index| self.springs.at(&self.series, index, h))
     }
 
-    /// How far the series reach (s).
+    /// Returns the time for which the series are valid (s).
     fn reach(&self) -> f64 {
         self.springs.radius(&self.series) / SAFETY
     }
 
-    /// The series begin again `h` seconds later.
+    /// Moves the origin of the series by `h` seconds; only their first two terms are then valid.
     fn rebase(&mut self, h: f64) {
         if h != 0.0 {
             let count = self.springs.count();
@@ -174,7 +178,7 @@ impl Drifting {
         self.raw = true;
     }
 
-    /// Finds all series from their first two terms, unless they are there.
+    /// Computes all series from their first two terms, unless they are valid.
     fn expand(&mut self) {
         if !std::mem::take(&mut self.raw) {
             return;

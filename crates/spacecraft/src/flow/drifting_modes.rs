@@ -1,4 +1,5 @@
-//! The elastic modes of a spatial body whose frequencies drift: each by the Taylor series of its own equation, exact to rounding.
+//! Elastic modes of a spatial body whose frequencies drift: each by the Taylor series of its equation, exact to
+//! rounding.
 
 use super::Drifting;
 use crate::body::spatial::{Spatial, SpatialMode};
@@ -6,18 +7,18 @@ use crate::body::{Drift, Mode, Planar};
 use crate::motion::Phase;
 use crate::quantity::Finite;
 
-/// The modes on their way, under modal forces that are constant for a while.
+/// Motion of the drifting modes under modal forces that are constant for a while.
 #[derive(Clone, Debug)]
 pub struct DriftingModes {
-    /// Each is the only mode of a body with one angle, whose moment is the modal force.
+    /// One motion for each mode, as the only mode of a one-axis body whose moment is the modal force.
     modes: Vec<Drifting>,
     drift: Drift,
-    /// Frequencies at the start (rad/s).
+    /// Frequencies at the start of the run (rad/s).
     frequencies: Vec<f64>,
 }
 
 impl DriftingModes {
-    /// The modes at the start, under no force.
+    /// Creates the modes in their initial state, under no force.
     pub fn new(body: &Spatial, drift: &Drift) -> Self {
         let gain = Finite::new(1.0).unwrap_or_default();
         let alone = |(index, mode): (usize, &SpatialMode)| {
@@ -39,7 +40,7 @@ impl DriftingModes {
         }
     }
 
-    /// Begins a motion under constant modal forces (N/sqrt(kg)), from where the modes were seen last, at a time (s).
+    /// Begins a motion under constant modal forces (N/sqrt(kg)), from the current state, at the time `now` (s).
     pub fn depart(&mut self, now: f64, forces: &[f64]) {
         let forces = forces.iter().copied().chain(std::iter::repeat(0.0));
         for (mode, force) in self.modes.iter_mut().zip(forces) {
@@ -48,7 +49,8 @@ impl DriftingModes {
         }
     }
 
-    /// Brings the modes to `h` seconds after departure, not before a time gone to earlier. A phase holds q'/w, w at the start.
+    /// Advances the modes to `h` seconds after departure, which must not precede an earlier request. A phase holds q
+    /// and q'/w, with w at the start of the run.
     pub fn go(&mut self, h: f64, phases: &mut [Phase]) {
         for ((mode, w), phase) in self.modes.iter_mut().zip(&self.frequencies).zip(phases) {
             mode.go(h);
@@ -58,12 +60,12 @@ impl DriftingModes {
         }
     }
 
-    /// The largest ratio of a mode's frequency at a time (s) to that at the start.
+    /// Returns the largest ratio of a mode's frequency at a time (s) to that at the start.
     pub fn ratio(&self, t: f64) -> f64 {
         (0..self.frequencies.len()).map(|index| self.drift.ratio(index, t)).fold(0.0, f64::max)
     }
 
-    /// Energy of motion and deformation of each mode at a time (s) (J): (q'² + w² q²)/2.
+    /// Returns the kinetic and strain energy of each mode at a time `t` (s) (J): (q'² + w² q²)/2.
     pub fn energies(&self, t: f64, phases: &[Phase]) -> Vec<f64> {
         let energy = |(index, (phase, w)): (usize, (&Phase, &f64))| {
             let (rate, stretch) = (w * phase.quadrature, self.drift.ratio(index, t) * w * phase.displacement);

@@ -1,4 +1,4 @@
-//! The elastic modes of a spatial body: their exact flow under constant modal forces, their energy, what a gyro sees.
+//! Elastic modes of a spatial body: exact flow under constant modal forces, energy, and rates at a point.
 
 use super::ModeFlow;
 use crate::attitude::Vector;
@@ -7,22 +7,22 @@ use crate::body::spatial::{Spatial, SpatialMode};
 use crate::motion::Phase;
 use crate::quantity::Finite;
 
-/// The flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
+/// Flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
 #[derive(Clone, Debug)]
 pub struct Elastic {
     flows: Vec<ModeFlow>,
-    /// A span that comes again and again, and its multiples too (s).
+    /// Frequent time step (s); transitions over its multiples are cached.
     cycle: f64,
-    /// Of the spans near each multiple the one that came last (s), and the transitions of all modes over each.
+    /// Last time step near each multiple of the cycle (s); `transitions` holds those of all modes over each.
     spans: Vec<f64>,
     transitions: Vec<[f64; 4]>,
 }
 
-/// Transitions are known over so many cycles.
+/// Number of multiples of the cycle, from 0, for which transitions are cached.
 const KNOWN: usize = 128;
 
 impl Elastic {
-    /// The modes of a body that is often moved on by `cycle` seconds.
+    /// Creates the flows of a body's modes, which are often advanced by `cycle` seconds.
     pub fn new(body: &Spatial, cycle: f64) -> Self {
         let flow = |mode: &SpatialMode| {
             ModeFlow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping))
@@ -35,7 +35,7 @@ impl Elastic {
         }
     }
 
-    /// The phases at the start.
+    /// Returns the phases at the start of a run.
     pub fn start(body: &Spatial) -> Vec<Phase> {
         let of = |mode: &SpatialMode| Phase {
             displacement: mode.displacement.get(),
@@ -44,8 +44,8 @@ impl Elastic {
         body.modes.iter().map(of).collect()
     }
 
-    /// Moves on by `h` seconds under constant modal forces (N/sqrt(kg), one for each mode; none at all if there are
-    /// none): a mode turns about the equilibrium f/w².
+    /// Advances the phases by `h` seconds under constant modal forces (N/sqrt(kg), one for each mode, or empty if there
+    /// are none): a mode rotates about the equilibrium f/w².
     pub fn advance(&mut self, phases: &mut [Phase], forces: &[f64], h: f64) {
         let known = self.learn(h);
         let force = |index: usize| forces.get(index).copied().unwrap_or(0.0);
@@ -61,7 +61,8 @@ impl Elastic {
         }
     }
 
-    /// The place of the first mode's transition over `h` seconds, which is known from now on; none of a span that is too long.
+    /// Returns the index of the first mode's cached transition over `h` seconds, computing it if necessary; `None` if
+    /// `h` is too long for the cache.
     fn learn(&mut self, h: f64) -> Option<usize> {
         let cycles = libm::round(h / self.cycle);
         if cycles.is_nan() || cycles >= KNOWN as f64 {
@@ -82,22 +83,22 @@ impl Elastic {
         Some(first)
     }
 
-    /// No mode changes faster (rad/s).
+    /// Returns an upper bound of the rate of change of the modes (rad/s).
     pub fn fastest(&self) -> f64 {
         self.flows.iter().map(ModeFlow::fastest).fold(0.0, f64::max)
     }
 
-    /// Rates q' of the modes (m sqrt(kg)/s).
+    /// Returns the rates q' of the modes (m sqrt(kg)/s).
     pub fn rates<'a>(&'a self, phases: &'a [Phase]) -> impl Iterator<Item = f64> + 'a {
         phases.iter().zip(&self.flows).map(|(phase, flow)| flow.frequency * phase.quadrature)
     }
 
-    /// The elastic part of the rates at a point (rad/s), at which the modes turn by these rotations.
+    /// Returns the elastic part of the rates at a point (rad/s), where the modes have the shapes `rotations`.
     pub fn rate_at(&self, rotations: &[Vector], phases: &[Phase]) -> Vector {
         self.rates(phases).zip(rotations).fold(Vector::zeros(), |sum, (rate, shape)| sum + shape * rate)
     }
 
-    /// Energy of motion and deformation of each mode (J): (q'² + w² q²)/2.
+    /// Returns the kinetic and strain energy of each mode (J): (q'² + w² q²)/2.
     pub fn energies<'a>(&'a self, phases: &'a [Phase]) -> impl Iterator<Item = f64> + 'a {
         phases.iter().zip(&self.flows).map(|(Phase { displacement: x, quadrature: y }, flow)| {
             0.5 * flow.frequency * flow.frequency * (x * x + y * y)
@@ -105,7 +106,7 @@ impl Elastic {
     }
 }
 
-/// Turns a mode about its equilibrium under a modal force (N/sqrt(kg)), by its transition over a span.
+/// Advances a mode about its equilibrium under a modal force (N/sqrt(kg)), by its transition over a time step.
 #[inline]
 fn turn(phase: &mut Phase, flow: &ModeFlow, &[a, b, c, d]: &[f64; 4], force: f64) {
     let centre = force / (flow.frequency * flow.frequency);

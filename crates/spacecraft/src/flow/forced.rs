@@ -1,4 +1,4 @@
-//! What a waveform adds to the motion of the planar body, in closed form.
+//! Response of the planar body to a waveform, in closed form.
 
 use std::sync::Arc as Shared;
 
@@ -7,30 +7,30 @@ use crate::numerics::phasor::Phasor;
 use crate::numerics::polynomial::Series;
 use crate::waveform::Waveform;
 
-/// What drives a body from an instant on.
+/// Input of a segment of motion from its start on.
 #[derive(Clone, Debug, Default)]
 pub struct ForcedInput {
-    /// A constant (N m; rad/s² where the hub's motion is commanded).
+    /// Constant part (N m; rad/s² if the hub's motion is commanded).
     pub constant: f64,
-    /// A waveform, and the time on it at that instant (s).
+    /// Waveform, with the time reached within it at the start of the segment.
     pub waveform: Option<Forced>,
 }
 
 impl ForcedInput {
-    /// A constant alone (N m).
+    /// Creates an input that is constant (N m).
     pub fn constant(constant: f64) -> Self {
         Self { constant, waveform: None }
     }
 }
 
-/// A waveform under way.
+/// Waveform with the time reached within it.
 #[derive(Clone, Debug)]
 pub struct Forced {
     pub(crate) waveform: Shared<Waveform>,
     since: f64,
 }
 
-/// The forced part of a motion: angle (rad), rate (rad/s), acceleration (rad/s²).
+/// Forced part of a motion: angle (rad), rate (rad/s), acceleration (rad/s²).
 #[derive(Copy, Clone, Debug)]
 pub struct ForcedResponse {
     pub angle: f64,
@@ -39,7 +39,7 @@ pub struct ForcedResponse {
 }
 
 impl ForcedResponse {
-    /// The same for so many times the command.
+    /// Returns the response to the command multiplied by `factor`.
     pub fn times(self, factor: f64) -> Self {
         let Self { angle, rate, acceleration } = self;
         Self { angle: angle * factor, rate: rate * factor, acceleration: acceleration * factor }
@@ -47,12 +47,12 @@ impl ForcedResponse {
 }
 
 impl Forced {
-    /// A waveform from this time on it (s).
+    /// Creates the waveform, of which the time `since` (s) is reached.
     pub fn new(waveform: Shared<Waveform>, since: f64) -> Self {
         Self { waveform, since }
     }
 
-    /// So many times the command, and another waveform beside it.
+    /// Returns the waveform multiplied by `factor`, plus another waveform.
     #[must_use]
     pub fn changed(&self, factor: f64, beside: &Waveform) -> Self {
         let mut waveform = self.waveform.shifted(0.0, factor);
@@ -60,22 +60,23 @@ impl Forced {
         Self { waveform: Shared::new(waveform), since: self.since }
     }
 
-    /// The command `h` seconds later.
+    /// Returns the command at `h` seconds after the start of the segment.
     pub fn at(&self, h: f64) -> f64 {
         self.waveform.at(self.since + h)
     }
 
-    /// The Taylor series of the command `h` seconds later, on the piece that holds a time `middle` seconds later.
+    /// Returns the Taylor series of the command at `h` seconds after the start of the segment, on the piece that
+    /// contains the time `middle` (s).
     pub fn series(&self, middle: f64, h: f64) -> Series {
         self.waveform.series(self.since + middle, self.since + h)
     }
 
-    /// The largest frequency in the command (rad/s).
+    /// Returns the largest frequency in the command (rad/s).
     pub fn fastest(&self) -> f64 {
         self.waveform.fastest()
     }
 
-    /// What it adds to the rigid motion of a body of unit inertia within `h` seconds.
+    /// Returns the response of a rigid body of unit inertia after `h` seconds.
     pub fn rigid(&self, h: f64) -> ForcedResponse {
         let to = self.since + h;
         ForcedResponse {
@@ -85,9 +86,9 @@ impl Forced {
         }
     }
 
-    /// What it adds to a mode of a body of unit inertia within `h` seconds.
+    /// Returns the response of a mode of a body of unit inertia after `h` seconds.
     pub fn mode(&self, flow: &ModeFlow, h: f64) -> ForcedResponse {
-        // A scenario with a manoeuvre has no mode without a pole.
+        // Scenarios with a manoeuvre accept only modes with a complex pole.
         let Some(pole) = flow.pole() else {
             return ForcedResponse { angle: 0.0, rate: 0.0, acceleration: 0.0 };
         };

@@ -1,4 +1,4 @@
-//! Every trip that is guessed and certified is the one that the certified search finds.
+//! Every predicted and certified trip must equal the trip of the certified search.
 
 use super::{ForcedInput, Segment};
 use crate::body::{Mode, Planar};
@@ -11,7 +11,7 @@ use crate::time::Span;
 /// Eps, gamma and the strong and weak torque of the relay study.
 const LAW: [f64; 4] = [5e-4, 1e-4, 4e-5, 1e-6];
 
-/// Each mode with its frequency, gain and damping ratio.
+/// Creates a body with modes of given frequency, gain and damping ratio.
 fn body(modes: &[(f64, f64, f64)]) -> Planar {
     let mode = |&(frequency, gain, ratio): &(f64, f64, f64)| {
         let gain = Finite::new(gain).expect("finite");
@@ -21,18 +21,18 @@ fn body(modes: &[(f64, f64, f64)]) -> Planar {
     Planar { modes: modes.iter().map(mode).collect(), ..Planar::default() }
 }
 
-/// What both ways to find a trip were found to do.
+/// Statistics of the trips that both methods found.
 #[derive(Default)]
 struct Seen {
     arcs: usize,
     certain: usize,
     trips: usize,
-    /// How far they are apart (rad).
+    /// Largest difference of the two methods (rad).
     worst: f64,
 }
 
 impl Seen {
-    /// The trip of the search, with the state there; the guess must agree where it is certain.
+    /// Returns the trip of the search, with the state there, and checks that a certain prediction agrees with it.
     fn compare(
         &mut self,
         arc: &mut Segment,
@@ -67,7 +67,7 @@ impl Seen {
     }
 }
 
-/// So many cycles of the relay law.
+/// Runs `cycles` cycles of the relay law.
 fn study(seen: &mut Seen, modes: &[(f64, f64, f64)], k_t: f64, cycles: usize) {
     let [eps, gamma, strong, weak] = LAW;
     let body = body(modes);
@@ -110,7 +110,7 @@ fn certain_trips_are_those_of_the_certified_search() {
         seen.certain,
         seen.arcs
     );
-    // One, three and no modes; modes that move much and fast.
+    // One, three and no modes; modes of large influence and high frequency.
     for modes in [
         &[(0.44, 0.0213, 0.0)][..],
         &[(0.3, 0.02, 0.0), (0.755, 0.03, 0.0), (2.2, 0.1, 0.0)],
@@ -163,9 +163,9 @@ fn nor_have_damped_ones() {
     random_motions(16, |draw| 0.97 * draw * draw * draw.abs());
 }
 
-/// Many motions with modes of random damping ratios.
+/// Compares many motions with modes of random damping ratios.
 fn random_motions(seed: u64, ratio: impl Fn(f64) -> f64) {
-    // A linear congruential generator: uniform numbers of [-1, 1).
+    // Linear congruential generator of uniform numbers in [-1, 1).
     let mut bits = seed;
     let mut draw = || {
         bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);

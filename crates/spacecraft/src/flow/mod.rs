@@ -1,11 +1,13 @@
-//! How a body moves between events: exact flows about one angle, in chains, and of three axes whose modes do not act back.
+//! Motion of a body between events: exact flows about one axis, of chains, and about three axes if modes do not act
+//! back.
 //!
 //! - [`Segment`]: uncoupled modes in closed form, with the bounds that certify crossings;
-//! - [`Coupling`]: modes coupled by a wheel, a damping matrix or a drift ([`Drifting`]), in closed form or as Taylor series;
+//! - [`Coupling`]: modes coupled by a wheel, a damping matrix or a drift ([`Drifting`]), in closed form or as Taylor
+//!   series;
 //! - [`ChainMotion`]: the exact chain of rigid sections;
-//! - [`Rigid`] and [`Elastic`] (or [`DriftingModes`]): three axes, the modes beside the rotation.
+//! - [`Rigid`] and [`Elastic`] (or [`DriftingModes`]): three axes, with rotation and modes computed separately.
 //!
-//! The coupled motion about three axes is `motion::turning`.
+//! The coupled motion about three axes is in `motion::turning`.
 
 mod abreast;
 mod chain;

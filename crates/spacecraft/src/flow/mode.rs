@@ -1,4 +1,4 @@
-//! The exact flow of one elastic mode, for any damping: three regimes, each in closed form.
+//! Exact flow of one elastic mode, for any damping: three regimes, each in closed form.
 
 use crate::body::Mode;
 use crate::motion::Sensed;
@@ -7,7 +7,7 @@ use crate::numerics::decay::exp;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::trig::sincos_any;
 
-/// The constants of a mode's flow.
+/// Constants of a mode's flow.
 #[derive(Copy, Clone, Debug)]
 pub struct ModeFlow {
     /// Natural frequency (rad/s).
@@ -16,9 +16,9 @@ pub struct ModeFlow {
     pub gain: f64,
     /// Static displacement for each unit of reduced moment (s²).
     pub excitability: f64,
-    /// Bound of |x''| for a unit distance from equilibrium (1/s²).
+    /// Upper bound of |x''| for a unit distance from equilibrium (1/s²).
     pub stiffness: f64,
-    /// Bound of |x'''| for a unit distance from equilibrium (1/s³).
+    /// Upper bound of |x'''| for a unit distance from equilibrium (1/s³).
     pub jerk: f64,
     /// Twice the decay rate, 2 zeta w (1/s).
     drag: f64,
@@ -29,12 +29,12 @@ pub struct ModeFlow {
 enum Regime {
     Undamped,
     Under(Damped<f64>),
-    /// Decay rate, the slower of the two real rates, and half their difference.
+    /// Critical or overdamped: decay rate, the slower of the two real rates, and half their difference (1/s).
     Over(f64, f64, f64),
 }
 
 impl ModeFlow {
-    /// The flow of a mode.
+    /// Creates the flow of a mode.
     pub fn new(mode: &Mode) -> Self {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
         let regime = if zeta == 0.0 {
@@ -50,7 +50,7 @@ impl ModeFlow {
             frequency: w,
             gain: mode.gain.get(),
             excitability: mode.excitability(),
-            // x'' = -w² (x + 2 zeta y) and x''' = -w³ (y - 2 zeta x - 4 zeta² y) in (x, y) of length 1.
+            // For a state (x, y) of length 1, x'' = -w² (x + 2 zeta y) and x''' = -w³ (y - 2 zeta x - 4 zeta² y).
             stiffness: w * w * f64::sqrt(1.0 + square),
             jerk: w * w * w * f64::sqrt(square + (1.0 - square) * (1.0 - square)),
             drag: 2.0 * zeta * w,
@@ -58,7 +58,7 @@ impl ModeFlow {
         }
     }
 
-    /// The pole with a positive imaginary part, -zeta w + i w_d (1/s); none at critical damping and above.
+    /// Returns the pole with a positive imaginary part, -zeta w + i w_d (1/s); `None` at critical damping and above.
     pub fn pole(&self) -> Option<Phasor> {
         match self.regime {
             Regime::Undamped => Some(Phasor { re: 0.0, im: self.frequency }),
@@ -67,12 +67,12 @@ impl ModeFlow {
         }
     }
 
-    /// No part of the motion changes faster (rad/s).
+    /// Returns an upper bound of the rate of change of the motion (rad/s).
     pub fn fastest(&self) -> f64 {
         self.frequency + self.drag
     }
 
-    /// Adds the mode's part to what a sensor sees, for a deviation from equilibrium.
+    /// Adds the mode's part to the motion at a sensor, for a deviation from equilibrium.
     #[inline]
     pub fn add_to(&self, equilibrium: f64, displacement: f64, quadrature: f64, sensed: &mut Sensed) {
         let [rate, quadrature_rate] = self.velocity(displacement, quadrature);
@@ -81,13 +81,13 @@ impl ModeFlow {
         sensed.acceleration += self.frequency * quadrature_rate;
     }
 
-    /// The derivative with time of the deviation from equilibrium (displacement, rate / w).
+    /// Returns the time derivative of the deviation from equilibrium (displacement, rate / w).
     #[inline]
     pub fn velocity(&self, displacement: f64, quadrature: f64) -> [f64; 2] {
         [self.frequency * quadrature, -self.frequency * displacement - self.drag * quadrature]
     }
 
-    /// The 2 x 2 transition matrix over `h` seconds, row by row, of the deviation from equilibrium
+    /// Returns the 2 x 2 transition matrix over `h` seconds, row by row, of the deviation from equilibrium
     /// (displacement, rate / w).
     #[inline]
     pub fn transition(&self, h: f64) -> [f64; 4] {
@@ -103,7 +103,7 @@ impl ModeFlow {
         [c + decay * s, cross, -cross, c - decay * s]
     }
 
-    /// The same, to the bit as it is in lanes.
+    /// Returns the transition matrix over `h` seconds, bit-identical to the computation in lanes.
     #[inline]
     pub fn turn(&self, h: f64) -> [f64; 4] {
         match &self.regime {
@@ -113,16 +113,16 @@ impl ModeFlow {
     }
 }
 
-/// The transition below critical damping as it is in lanes.
+/// Returns the transition below critical damping, computed as in lanes.
 #[inline(never)]
 fn turn(damped: &Damped<f64>, h: f64) -> [f64; 4] {
     damped.transition(sincos_any(damped.frequency * h), exp(-(damped.decay * h)))
 }
 
-// With the decay rate d and damped frequency v, the two functions exp(-d h) cos(v h) and exp(-d h) sin(v h) / v make the
-// transition. They are functions of their own so that the undamped one, which needs neither, is small enough to be inlined.
+// With the decay rate d and damped frequency v, the functions exp(-d h) cos(v h) and exp(-d h) sin(v h) / v make the
+// transition. They are separate so that the undamped one, which needs neither, is small enough to be inlined.
 
-/// Both below critical damping.
+/// Returns both functions below critical damping.
 #[inline(never)]
 fn spiral(decay: f64, damped: f64, h: f64) -> (f64, f64) {
     let (sin, cos) = libm::sincos(damped * h);
@@ -130,11 +130,11 @@ fn spiral(decay: f64, damped: f64, h: f64) -> (f64, f64) {
     (shrink * cos, shrink * sin / damped)
 }
 
-/// Both at critical damping and above, with the hyperbolic functions, by the slower rate and half the rates' difference.
+/// Returns both functions at critical damping and above, from the slower rate and half the rates' difference.
 #[inline(never)]
 fn creep(slow: f64, split: f64, h: f64) -> (f64, f64) {
     let shrink = libm::exp(-slow * h);
-    // (1 - exp(-2 split h)) / (2 split), and its limit h at critical damping.
+    // The factor (1 - exp(-2 split h)) / (2 split), and its limit h at critical damping.
     let spread = -libm::expm1(-2.0 * split * h);
     let s = if split > 0.0 { spread / (2.0 * split) } else { h };
     (shrink * (1.0 - 0.5 * spread), shrink * s)
@@ -155,7 +155,7 @@ mod tests {
         }
     }
 
-    /// exp(A h) by scaling and squaring of its Taylor series: nothing in common with the closed form.
+    /// Returns exp(A h) by scaling and squaring of its Taylor series, independent of the closed form.
     fn exponential(frequency: f64, damping: f64, h: f64) -> [f64; 4] {
         let squarings = 24;
         let step = h / f64::from(1 << squarings);

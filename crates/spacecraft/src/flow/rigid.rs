@@ -1,10 +1,10 @@
-//! The rigid motion about three axes: Euler's equations and the attitude, by Gauss-Legendre steps of order 6.
+//! Rigid motion about three axes: Euler's equations and the attitude, by Gauss-Legendre steps of order 6.
 //!
-//! With the angular momentum L = J w in the body's axes, L' = L x w + M and Q' = 1/2 Q o (0, w). Gauss-Legendre methods keep
-//! every quadratic invariant but for rounding (\[HairerLubichWanner06\]), and without a torque |L|², the energy L . w / 2 and
-//! |Q|² are quadratic. Both are summed with compensation, so that rounding does not add up over millions of steps: without a torque |L|, the energy
-//! and L in space stay within 1e-14 of themselves over 1e6 s of a station, and within 1e-13 over 1e4 s of a body that
-//! tumbles at 0.6 rad/s (tests/spatial.rs).
+//! With the angular momentum L = J w in the body's axes, L' = L x w + M and Q' = 1/2 Q o (0, w). Gauss-Legendre methods
+//! keep every quadratic invariant except for rounding (\[HairerLubichWanner06\]), and without a torque |L|², the energy
+//! L . w / 2 and |Q|² are quadratic. Momentum and attitude are summed with compensation, so that rounding does not
+//! accumulate over millions of steps: without a torque |L|, the energy and L in space stay constant within 1e-14 over
+//! 1e6 s for a station, and within 1e-13 over 1e4 s for a body that tumbles at 0.6 rad/s (tests/spatial.rs).
 
 use nalgebra::{Matrix3, Quaternion};
 
@@ -13,86 +13,87 @@ use crate::body::spatial::{Periodic, Spatial};
 use crate::motion::turning::Surroundings;
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
 
-/// A step turns the body by at most about this (rad): the error of its direction is then below 1e-15 rad.
+/// Approximate largest rotation in a step (rad): the error of its direction is then below 1e-15 rad.
 pub const LONGEST_TURN: f64 = 1.0 / 16.0;
-/// Passes after which the stages are taken as they are: they converge by a factor of 16 or more each.
+/// Largest number of passes over the stages, which converge by a factor of 16 or more each.
 const PASSES: u32 = 40;
 
-/// Steps after which the motion asks whether it may go on.
+/// Number of steps after which the integrator asks whether to continue.
 const STEPS: u64 = 256;
 
-/// The constants of a rigid body and of what its surroundings exert.
+/// Inertia and periodic disturbance of a rigid body.
 #[derive(Clone, Debug)]
 pub struct Rigid {
     inertia: Matrix3<f64>,
     inverse: Matrix3<f64>,
-    /// No rate is larger for a unit of angular momentum (1/(kg m²)).
+    /// Upper bound of the rate per unit of angular momentum (1/(kg m²)).
     mobility: f64,
     disturbance: Option<Periodic>,
 }
 
-/// Where a rigid body is and how it turns.
+/// Attitude and angular momentum of a rigid body.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct RigidTurn {
-    /// Unit quaternion that turns vectors of the body into inertial ones.
+    /// Unit quaternion that transforms vectors from the body's axes to inertial axes.
     pub attitude: Quaternion<f64>,
     /// Angular momentum J w in the body's axes (N m s).
     momentum: Vector,
-    /// The integral of the rates since the start (rad).
+    /// Integral of the rates since the start (rad).
     turned: Vector,
-    /// What rounding has left out of the three.
+    /// Compensation terms of the three sums for rounding errors.
     lost: (Quaternion<f64>, Vector, Vector),
 }
 
 impl Rigid {
-    /// The rigid body of a scenario's.
+    /// Creates the rigid body of a spatial body.
     pub fn new(body: &Spatial) -> Self {
         let inertia = body.tensor();
-        // A body that was checked has an inverse.
+        // A validated body has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         // Symmetric to the last bit, so that the energy is a quadratic form.
         let inverse = (inverse + inverse.transpose()) * 0.5;
         Self { inertia, inverse, mobility: inverse.norm(), disturbance: body.disturbance.clone() }
     }
 
-    /// The inertia tensor (kg m²).
+    /// Returns the inertia tensor (kg m²).
     pub fn inertia(&self) -> &Matrix3<f64> {
         &self.inertia
     }
 
-    /// The motion with an attitude and rates in the body's axes (rad/s).
+    /// Returns the state of an attitude and rates in the body's axes (rad/s).
     pub fn start(&self, attitude: Quaternion<f64>, rate: Vector) -> RigidTurn {
         let (momentum, zero) = (self.inertia * rate, Vector::zeros());
         RigidTurn { attitude, momentum, turned: zero, lost: (Quaternion::default(), zero, zero) }
     }
 
-    /// Rates in the body's axes (rad/s).
+    /// Returns the rates in the body's axes (rad/s).
     pub fn rate(&self, turn: &RigidTurn) -> Vector {
         self.inverse * turn.momentum
     }
 
-    /// Angular momentum in the body's axes (N m s).
+    /// Returns the angular momentum in the body's axes (N m s).
     pub fn momentum(turn: &RigidTurn) -> Vector {
         turn.momentum
     }
 
-    /// The rates of a turn are no larger with rotors of such a momentum (N m s), and it precesses no faster (rad/s).
+    /// Returns an upper bound of the rates and of the precession (rad/s), with rotors of momentum `stored` (N m s).
     pub fn fastest(&self, turn: &RigidTurn, stored: f64) -> f64 {
         self.mobility * (turn.momentum.norm() + stored)
     }
 
-    /// The integral of the rates since the start (rad).
+    /// Returns the integral of the rates since the start (rad).
     pub fn turned(turn: &RigidTurn) -> Vector {
         turn.turned
     }
 
-    /// Kinetic energy of the rotation (J).
+    /// Returns the kinetic energy of the rotation (J).
     pub fn energy(&self, turn: &RigidTurn) -> f64 {
         0.5 * turn.momentum.dot(&self.rate(turn))
     }
 
-    /// Moves on by `h` seconds from `t` seconds after the start, under this torque (N m), the disturbance of the body and what
-    /// is `around` it, as long as it may `go_on`. Rotors have a momentum (N m s) that changes at a rate (N m); the torque has what that gives the body.
+    /// Advances the motion by `h` seconds from `t` seconds after the start, under the torque (N m), the body's
+    /// disturbance and the environment `around`, and aborts with the error of `go_on`. `rotors` are the rotors'
+    /// momentum (N m s) and its rate of change (N m), whose reaction on the body is part of the torque.
     pub fn advance<E>(
         &self,
         turn: &mut RigidTurn,
@@ -131,8 +132,8 @@ impl Rigid {
         Ok(())
     }
 
-    /// One step of `h` seconds under the torques at the nodes, where rotors have a momentum, and what is around since a time
-    /// after the start (s). Each pass over the stages errs less by `contraction`.
+    /// Advances by one step of `h` seconds under the torques and rotor momenta at the nodes, and the environment from a
+    /// time after the start (s). Each pass over the stages reduces the error by the factor `contraction`.
     fn step(
         &self,
         turn: &mut RigidTurn,
@@ -160,7 +161,7 @@ impl Rigid {
                     push += around.torque(from + NODES[stage] * h, &facing, &self.inertia);
                 }
                 let turned = spin(&facing, &rate);
-                // Of the momentum relative to its size.
+                // Change of the momentum's derivative relative to the momentum.
                 if size > 0.0 {
                     change = change.max((push - pushes[stage]).norm() / size);
                 }
@@ -177,7 +178,7 @@ impl Rigid {
         (*momentum, lost.1) = exact_sum(*momentum, increment * h + lost.1);
         (attitude.coords, lost.0.coords) = exact_sum(attitude.coords, (turned * h + lost.0).coords);
         (*angle, lost.2) = exact_sum(*angle, mean * h + lost.2);
-        // The method keeps the length but for rounding, of which this removes what is left.
+        // The method keeps the length except for rounding; this removes that error.
         let excess = attitude.norm_squared() - 1.0;
         if excess.abs() > 4.0 * f64::EPSILON {
             *attitude *= 1.0 - 0.5 * excess;
@@ -185,7 +186,7 @@ impl Rigid {
     }
 }
 
-/// Q' = 1/2 Q o (0, w).
+/// Returns Q' = 1/2 Q o (0, w).
 fn spin(attitude: &Quaternion<f64>, rate: &Vector) -> Quaternion<f64> {
     *attitude * Quaternion::from_imag(rate * 0.5)
 }

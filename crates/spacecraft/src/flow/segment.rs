@@ -1,4 +1,4 @@
-//! The motion of the planar body under one input, in closed form, with the bounds that certify crossings.
+//! Motion of the planar body under one input, in closed form, with the bounds that certify crossings.
 
 mod guess;
 
@@ -16,31 +16,31 @@ use crate::numerics::polynomial::TERMS;
 use crate::time::Span;
 use guess::Guess;
 
-/// The motion under one input, from the state in which it began.
+/// Motion under one input, from the state in which it began.
 #[derive(Clone, Debug)]
 pub struct Segment {
     mobility: f64,
-    /// Whether the modes show in the hub's angle.
+    /// True if the modes contribute to the hub's angle.
     visible: bool,
     forced: Option<Forced>,
     moment: f64,
     angle: f64,
     rate: f64,
     modes: Vec<ModeSegment>,
-    /// The modes side by side, where that is faster.
+    /// Modes in groups of lanes, if that is faster.
     abreast: Option<Abreast>,
-    /// Sum of the modes' equilibria, and of their largest distances from them (rad).
+    /// Sum of the modes' equilibria; `reach` is the sum of their largest distances from them (rad).
     centre: f64,
     reach: f64,
-    /// No |x''| on the segment is larger (rad/s²).
+    /// Upper bound of |x''| on the segment (rad/s²).
     curvature: f64,
-    /// No |x'''| on the segment is larger (rad/s³).
+    /// Upper bound of |x'''| on the segment (rad/s³).
     jerk: f64,
-    /// Room for a guess of the next trip, where it can be guessed.
+    /// Predictor of the next trip, if the body allows one.
     guess: Option<Guess>,
 }
 
-/// One mode on a segment: its equilibrium, and the deviation in which the segment began.
+/// One mode on a segment: its equilibrium, and its deviation from it at departure.
 #[derive(Clone, Debug)]
 struct ModeSegment {
     flow: ModeFlow,
@@ -49,7 +49,7 @@ struct ModeSegment {
 }
 
 impl Segment {
-    /// The segment of a body, not yet departed.
+    /// Creates the segment of a body, before its departure.
     pub fn new(body: &Planar) -> Self {
         let swing =
             |mode| ModeSegment { flow: ModeFlow::new(mode), equilibrium: 0.0, from: Phase::default() };
@@ -71,7 +71,8 @@ impl Segment {
         }
     }
 
-    /// Begins the segment anew: from this state, under this input. Its bounds, and so guards, are for the constant only.
+    /// Begins the segment anew from a state, under an input. The bounds, and so guards, hold for the constant part
+    /// only.
     pub fn depart(&mut self, from: &State, input: &ForcedInput) {
         self.moment = input.constant * self.mobility;
         self.forced.clone_from(&input.waveform);
@@ -100,7 +101,7 @@ impl Segment {
         }
     }
 
-    /// The state `h` seconds after departure, and what a sensor sees of it.
+    /// Writes the state at `h` seconds after departure, and returns the motion at the sensor.
     #[allow(clippy::inline_always, reason = "the search for crossings calls it")]
     #[inline(always)]
     pub fn at(&self, h: f64, state: &mut State) -> Sensed {
@@ -125,7 +126,7 @@ impl Segment {
         sensed
     }
 
-    /// Where the modes are about their equilibria, one after the other.
+    /// Writes the deviations of the modes from their equilibria, one mode after another.
     #[inline]
     fn turn_each(&self, h: f64, to: &mut [Phase]) {
         for (swing, phase) in self.modes.iter().zip(to) {
@@ -135,8 +136,8 @@ impl Segment {
         }
     }
 
-    /// Adds what the waveform does within `h` seconds of departure; apart, so that the search for crossings, which has
-    /// no waveform, stays small.
+    /// Adds the response to the waveform at `h` seconds after departure. Not inlined, so that the search for crossings,
+    /// which has no waveform, stays small.
     #[inline(never)]
     fn add_forced(&self, forced: &Forced, h: f64, state: &mut State, sensed: &mut Sensed) {
         let mut show = |push: ForcedResponse| {
@@ -158,8 +159,8 @@ impl Segment {
         }
     }
 
-    /// Finds the series of all coordinates `h` seconds after departure, with a waveform that has no break until twice
-    /// `middle` seconds after it, and returns how far they reach (s).
+    /// Expands all coordinates at `h` seconds after departure, and returns the time for which the series are valid (s).
+    /// The waveform must have no break until 2 `middle` after departure (s).
     pub fn expand(&self, h: f64, middle: f64, state: &mut State, into: &mut Expansion) -> f64 {
         self.at(h, state);
         let mut fastest = 0.0_f64;
@@ -186,18 +187,18 @@ impl Segment {
         REACH / fastest
     }
 
-    /// Whether the modes show in the hub's angle.
+    /// Returns true if the modes contribute to the hub's angle.
     pub fn shows_modes(&self) -> bool {
         self.visible
     }
 
-    /// Whether the bounds hold: they are without a waveform.
+    /// Returns true if the bounds hold, which is the case without a waveform.
     pub fn knows_bounds(&self) -> bool {
         self.forced.is_none()
     }
 
-    /// Whether the angle is certain to stay within so much of 0 for `span` seconds: the rigid parabola with all modes at
-    /// full swing does.
+    /// Returns true if the angle is certain to stay within `band` (rad) of 0 for `span` seconds, because the rigid
+    /// parabola plus the full amplitude of all modes does.
     pub fn stays_within(&self, band: f64, span: f64) -> bool {
         if !self.knows_bounds() {
             return false;
@@ -212,7 +213,7 @@ impl Segment {
         high + self.centre + self.reach <= band && low + self.centre - self.reach >= -band
     }
 
-    /// What a sensor sees at departure.
+    /// Returns the motion at the sensor at departure.
     #[inline]
     pub fn origin(&self) -> Sensed {
         let mut sensed = Sensed { angle: self.angle, rate: self.rate, acceleration: self.moment };
@@ -226,8 +227,8 @@ impl Segment {
         sensed
     }
 
-    /// A time after departure (s) before which the guard cannot trip: until then the rigid parabola with
-    /// all modes at full swing towards the guard stays short of its level.
+    /// Returns a time after departure (s) before which the guard cannot trip: until then the rigid parabola plus the
+    /// full amplitude of all modes towards the guard stays short of its level.
     pub fn earliest(&self, guard: Guard) -> f64 {
         let towards = guard.side.sign();
         let gap = towards * (guard.level - self.angle - self.centre) - self.reach;
@@ -237,7 +238,7 @@ impl Segment {
         first_root(gap, towards * self.rate, towards * self.moment)
     }
 
-    /// A time (s) for which the guard cannot trip, given what a sensor sees now.
+    /// Returns a time (s) for which the guard cannot trip, given the present motion at the sensor.
     ///
     /// With the bounds M of |x''| and J of |x'''| the gap left after t is at least gap - speed t - M t²/2, and at least
     /// gap - speed t - a t²/2 - J t³/6 with the acceleration a now. Let q be the first root of gap - speed t - a t²/2.
@@ -249,18 +250,18 @@ impl Segment {
         let (gap, speed, acceleration) =
             (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
         let q = first_root(gap, speed, acceleration);
-        // Without modes an endless q makes J q no number, and the minimum takes M.
+        // Without modes an infinite q makes J q a NaN, and the minimum selects M.
         first_root(gap, speed, self.curvature.min(acceleration + self.jerk * q / 3.0))
     }
 
-    /// Whether the guard cannot trip within a time (s), given what a sensor sees now.
+    /// Returns true if the guard cannot trip within `time` (s), given the present motion at the sensor.
     #[inline]
     pub fn is_clear(&self, guard: Guard, now: Sensed, time: f64) -> bool {
         let speed = guard.side.sign() * now.rate;
         guard.gap(now.angle) > time * (speed + 0.5 * self.curvature * time)
     }
 
-    /// Carries a small deviation of the state over `h` seconds. Its components are the rigid angle and rate, then
+    /// Propagates a small deviation of the state over `h` seconds. Its components are the rigid angle and rate, then
     /// displacement and quadrature of each mode.
     pub fn carry(&self, h: f64, deviation: &mut [f64]) {
         deviation[0] += h * deviation[1];
@@ -270,7 +271,7 @@ impl Segment {
         }
     }
 
-    /// The derivative of a state with time on this segment, in the components of [`Segment::carry`].
+    /// Returns the time derivative of a state on this segment, in the components of [`Segment::carry`].
     pub fn velocity(&self, state: &State) -> DVector<f64> {
         let mut velocity = vec![state.rigid_rate, self.moment];
         for (swing, phase) in self.modes.iter().zip(&state.modes) {

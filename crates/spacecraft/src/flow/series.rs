@@ -1,33 +1,34 @@
-//! The Taylor series of a body whose frequencies drift, for one run or for runs side by side.
+//! Taylor series of a body whose frequencies drift, for one run or for a batch of runs in lanes.
 //!
-//! x_r'' = p, x_i'' + 2 zeta_i w_i r_i(t) x_i' + w_i² r_i(t)² x_i = k_i p with p = m - a x' and the ratios r_i given as series
-//! themselves: each coefficient follows from those before it. The series have order 20, and the step keeps what they leave
-//! out at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
+//! x_r'' = p, x_i'' + 2 zeta_i w_i r_i(t) x_i' + w_i² r_i(t)² x_i = k_i p with p = m - a x' and the ratios r_i given as
+//! series themselves: each coefficient follows from the previous ones. The series have order 20, and the step keeps
+//! their truncation error at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
 
 use crate::body::{Drift, Mode, Planar, SERIES};
 use crate::lanes::Real;
 
-/// e²: the step over the radius of convergence at which the series of this order leaves out the last bit of a double.
+/// Ratio e² of the radius of convergence to the step at which a series of this order truncates the last bit of a
+/// double.
 pub const SAFETY: f64 = 7.389_056_098_930_65;
-/// A step so little shorter than the reach is within it, however the reach is rounded.
+/// Safety factor on a step that covers the rounding of the valid time.
 const SURE: f64 = 1.000_001;
 
-/// What moves the coordinates: the rigid angle first, then the modes.
+/// Coefficients of the equations of motion, for the rigid angle and then the modes.
 #[derive(Clone, Debug)]
 pub struct Springs<R> {
     gain: Vec<R>,
-    /// w² and 2 zeta w at a ratio of 1; of the rigid one nothing.
+    /// Values of w², and 2 zeta w in `drag`, at a ratio of 1; 0 for the rigid angle.
     stiffness: Vec<R>,
     drag: Vec<R>,
     damped: Vec<bool>,
     back_emf: R,
-    /// The rates of so many coordinates are opposed by the back-EMF.
+    /// Number of coordinates whose rates the back-EMF opposes.
     felt: usize,
-    /// A time in which the fastest mode turns by a radian (s).
+    /// Time in which the fastest mode turns by a radian (s).
     unit: R,
 }
 
-/// The ratio of some modes over a step, and its square: their series, and how many terms are not 0.
+/// Series of the frequency ratio of some modes over a step and of its square, with the number of terms that are not 0.
 #[derive(Clone, Debug)]
 pub struct Ratio<R> {
     itself: [R; SERIES],
@@ -36,13 +37,13 @@ pub struct Ratio<R> {
 }
 
 impl<R: Real> Ratio<R> {
-    /// Before it is expanded.
+    /// Creates a ratio that is not yet expanded.
     pub fn new(kind: R) -> Self {
         let zero = kind.of(0.0);
         Self { itself: [zero; SERIES], square: [zero; SERIES], terms: (1, 1) }
     }
 
-    /// The ones at an index of runs side by side; terms that one of them lacks are 0.
+    /// Sets the lanes to the ratios of index `index` of a batch of runs; terms that one of them lacks are 0.
     #[inline(always)]
     pub fn put(&mut self, all: &[Vec<Ratio<f64>>], index: usize) {
         self.terms = (1, 1);
@@ -76,7 +77,8 @@ impl Ratio<f64> {
 }
 
 impl Springs<f64> {
-    /// Those of a body. A wheel takes back-EMF a (1/s) from the total rate, or from the rigid one.
+    /// Creates the equations of a body. A wheel's back-EMF a (1/s) acts on the total rate if `total` is true, else on
+    /// the rigid rate.
     pub fn new(body: &Planar, back_emf: f64, total: bool) -> Self {
         let frequencies = || body.modes.iter().map(|mode| mode.frequency.get());
         let with = |rigid: f64, of: &dyn Fn(&Mode) -> f64| {
@@ -94,7 +96,7 @@ impl Springs<f64> {
         }
     }
 
-    /// Those of bodies side by side; none unless they are of one structure.
+    /// Combines the equations of a batch of bodies in lanes; `None` unless they have the same structure.
     pub fn beside<R: Real>(kind: R, all: &[&Self]) -> Option<Springs<R>> {
         let [first, rest @ ..] = all else { return None };
         if rest.iter().any(|other| other.damped != first.damped || other.felt != first.felt) {
@@ -116,7 +118,7 @@ impl Springs<f64> {
         })
     }
 
-    /// The radius of convergence by the last two terms (s); infinite of a body at rest.
+    /// Estimates the radius of convergence from the last two terms (s); infinite for a body at rest.
     pub fn radius(&self, series: &[f64]) -> f64 {
         let size = self.size(series);
         let of = |n: usize| match self.largest(series, n) {
@@ -124,19 +126,19 @@ impl Springs<f64> {
             term => libm::pow(size / term, 1.0 / n as f64),
         };
         let radius = of(SERIES - 1).min(of(SERIES - 2));
-        // What is no number ends the run where it is seen.
+        // A NaN ends the run at the point where the state is evaluated.
         if radius > 0.0 { radius } else { f64::INFINITY }
     }
 }
 
 impl<R: Real> Springs<R> {
-    /// How many coordinates there are.
+    /// Returns the number of coordinates.
     #[inline(always)]
     pub fn count(&self) -> usize {
         self.gain.len()
     }
 
-    /// Finds all series from their first two terms, the n-th terms of all coordinates side by side, under a constant reduced
+    /// Computes all series from their first two terms, stored by order for all coordinates, under a constant reduced
     /// moment (rad/s²).
     #[inline(always)]
     pub fn fill(&self, ratios: &[Ratio<R>], moment: R, series: &mut [R]) {
@@ -176,7 +178,7 @@ impl<R: Real> Springs<R> {
         }
     }
 
-    /// Where series are certain to reach so far (s).
+    /// Returns a mask of the lanes whose series are certainly valid for `h` (s).
     #[inline(always)]
     pub fn surely_reach(&self, series: &[R], h: R) -> R::Mask {
         let size = self.size(series);
@@ -189,7 +191,7 @@ impl<R: Real> Springs<R> {
         (last * power * step).le(size) & (before * power).le(size)
     }
 
-    /// The largest of the n-th terms.
+    /// Returns the largest absolute value of the n-th terms.
     #[inline(always)]
     fn largest(&self, series: &[R], n: usize) -> R {
         let count = self.gain.len();
@@ -200,14 +202,14 @@ impl<R: Real> Springs<R> {
         largest
     }
 
-    /// The size of the motion, in the unit of its angles (rad).
+    /// Returns the size of the motion, in the unit of its angles (rad).
     #[inline(always)]
     fn size(&self, series: &[R]) -> R {
         let (angle, rate, half) = (self.largest(series, 0), self.largest(series, 1), self.largest(series, 2));
         angle.max(self.unit * rate).max(self.unit * self.unit * half)
     }
 
-    /// Angle, rate and acceleration of a coordinate `h` seconds after the series begin.
+    /// Returns angle, rate and acceleration of a coordinate at `h` seconds after the origin of the series.
     #[inline(always)]
     pub fn at(&self, series: &[R], index: usize, h: R) -> [R; 3] {
         let count = self.gain.len();

@@ -1,7 +1,8 @@
-//! The planar body where its modes do not move on their own: coupled by a wheel's back-EMF, or with frequencies that drift.
+//! The planar body with modes that are not independent: coupled by a wheel's back-EMF or damping, or with drifting
+//! frequencies.
 //!
-//! At constant frequencies the motion under a constant input is that of the matrix exponential, or in closed form by its
-//! poles; with drifting ones it is a Taylor series, anew between the kinks of their profiles.
+//! At constant frequencies the motion under a constant input is that of the matrix exponential, or in closed form by
+//! its poles; with drifting ones it is a Taylor series, restarted at the kinks of their profiles.
 
 use std::sync::Arc as Shared;
 
@@ -17,10 +18,10 @@ use crate::motion::{Sensed, State};
 use crate::numerics::phasor::abs;
 use crate::time::Span;
 
-/// So many transitions are kept, the newest last: the periods of a run are few.
+/// Number of cached transitions, the newest last: a run has few different periods.
 const KEPT: usize = 8;
 
-/// A motion under a constant input.
+/// Motion of a coupled body under a constant input.
 #[derive(Clone, Debug)]
 pub struct Coupling {
     mobility: f64,
@@ -29,7 +30,7 @@ pub struct Coupling {
     flow: Flow,
 }
 
-/// How the body moves.
+/// Method by which the motion is computed.
 #[derive(Clone, Debug)]
 enum Flow {
     Constant(Constant),
@@ -37,11 +38,11 @@ enum Flow {
     Drifting(Drifting),
 }
 
-/// A motion at constant frequencies, in closed form.
+/// Motion at constant frequencies, in closed form.
 #[derive(Clone, Debug)]
 struct Poles {
     system: Coupled,
-    /// Reduced moment (rad/s²), and z at departure.
+    /// Reduced moment (rad/s²); `from` is z at departure.
     moment: f64,
     from: DVector<f64>,
     flow: Shared<LinearFlow>,
@@ -51,17 +52,17 @@ struct Poles {
     levels: Vec<GuardLevel>,
 }
 
-/// A motion that someone else computes, before its first departure.
+/// Motion that a batch computes for this run, before its first departure.
 #[derive(Clone, Debug)]
 pub enum Lent {
-    /// Of drifting frequencies.
+    /// Motion with drifting frequencies.
     Drifting(Box<Drifting>),
-    /// Of constant ones.
+    /// Motion with constant frequencies.
     Constant(Box<Constant>),
 }
 
 impl Lent {
-    /// The angles of all coordinates at departure, and then their rates.
+    /// Returns the angles of all coordinates at departure, then their rates.
     pub fn start(&self) -> Vec<f64> {
         match self {
             Self::Drifting(drifting) => drifting.start().to_vec(),
@@ -72,35 +73,35 @@ impl Lent {
         }
     }
 
-    /// The motion of drifting frequencies.
+    /// Returns the motion, if its frequencies drift.
     pub fn drifting(&self) -> Option<&Drifting> {
         if let Self::Drifting(drifting) = self { Some(drifting) } else { None }
     }
 
-    /// The motion of constant frequencies.
+    /// Returns the motion, if its frequencies are constant.
     pub fn constant(&self) -> Option<&Constant> {
         if let Self::Constant(constant) = self { Some(constant) } else { None }
     }
 }
 
-/// A motion at constant frequencies, from transition to transition.
+/// Motion at constant frequencies, by transition matrices.
 #[derive(Clone, Debug)]
 pub struct Constant {
     system: Coupled,
-    /// The acceleration of the angle is this times z, and so much for each unit of the moment.
+    /// Acceleration of the angle: a row vector to multiply z, and the value per unit of the moment.
     acceleration: (RowDVector<f64>, f64),
-    /// Reduced moment (rad/s²), and z at departure.
+    /// Reduced moment (rad/s²); `from` is z at departure.
     moment: f64,
     from: DVector<f64>,
-    /// No part of the motion changes faster (rad/s).
+    /// Upper bound of the rate of change of the motion (rad/s).
     fastest: f64,
-    /// Spans (s) with their transitions.
+    /// Cached time spans (s) with their transitions.
     transitions: Vec<(f64, DMatrix<f64>, DVector<f64>)>,
 }
 
 impl Coupling {
-    /// A body at its start, under no input, by the poles of its flow. A wheel takes back-EMF a (1/s) from the total rate, or
-    /// from the rigid one.
+    /// Creates the motion of a body from its initial state, under no input, by the poles of its flow. A wheel's
+    /// back-EMF a (1/s) acts on the total rate if `total` is true, else on the rigid rate.
     pub fn by_poles(body: &Planar, flow: &Shared<LinearFlow>, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let start = body.start().to_vector(&frequencies);
@@ -123,7 +124,8 @@ impl Coupling {
         }
     }
 
-    /// A body at its start, under no input. A wheel takes back-EMF a (1/s) from the total rate, or from the rigid one.
+    /// Creates the motion of a body from its initial state, under no input. A wheel's back-EMF a (1/s) acts on the
+    /// total rate if `total` is true, else on the rigid rate.
     pub fn new(body: &Planar, drift: Option<&Drift>, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let here = body.start().to_vector(&frequencies);
@@ -149,7 +151,7 @@ impl Coupling {
         Self { mobility: 1.0 / body.inertia.get(), frequencies, here, flow }
     }
 
-    /// Begins a motion under another constant input (N m), from where the body was seen last, at a time (s).
+    /// Begins a motion under another constant input (N m), from the current state, at the time `now` (s).
     pub fn depart(&mut self, now: f64, input: f64) {
         let moment = input * self.mobility;
         match &mut self.flow {
@@ -166,7 +168,8 @@ impl Coupling {
         }
     }
 
-    /// The motion, for someone else to compute, and what a unit of torque accelerates (1/(kg m²)); none of one by its poles.
+    /// Returns a copy of the motion for a batch to compute, with the acceleration per unit of torque (1/(kg m²));
+    /// `None` for a motion by poles.
     pub fn lent(&self) -> Option<(Lent, f64)> {
         let lent = match &self.flow {
             Flow::Drifting(drifting) => Lent::Drifting(Box::new(drifting.clone())),
@@ -176,7 +179,7 @@ impl Coupling {
         Some((lent, self.mobility))
     }
 
-    /// Takes some steps towards `h` seconds after departure; whether no more are needed.
+    /// Advances by some steps towards `h` seconds after departure; returns true if that time is reached.
     pub fn approach(&mut self, h: f64) -> bool {
         match &mut self.flow {
             Flow::Constant(_) | Flow::Linear(_) => true,
@@ -184,7 +187,8 @@ impl Coupling {
         }
     }
 
-    /// The state `h` seconds after departure, not before one asked for earlier, and what a sensor sees.
+    /// Writes the state at `h` seconds after departure, which must not precede an earlier request; returns the motion
+    /// at the sensor.
     pub fn at(&mut self, h: f64, state: &mut State) -> Sensed {
         let sensed = match &mut self.flow {
             Flow::Constant(constant) => constant.go(h, &mut self.here),
@@ -210,11 +214,11 @@ impl Coupling {
         sensed
     }
 
-    /// The first guard of the angle that trips on this motion within a span; none is found but in closed form, which a law
-    /// with guards of a continuous sensor gets.
+    /// Returns the first guard of the angle that trips on this motion within `horizon`. Only the closed form finds one;
+    /// laws with guards of a continuous sensor use that form.
     ///
     /// # Errors
-    /// What `go_on` answers ends the search.
+    /// An error of `go_on` ends the search.
     pub fn trip<E>(
         &mut self,
         guards: &[Guard],
@@ -228,17 +232,18 @@ impl Coupling {
     }
 }
 
-/// A motion that is taken apart from its departure on.
+/// Taylor expansion of a motion from its departure on.
 #[derive(Clone, Debug)]
 pub enum Unfolding<'a> {
-    /// At constant frequencies.
+    /// Expansion at constant frequencies.
     Linear(stretch::Linear),
-    /// With drifting ones: as it is known, and on its way beyond.
+    /// Expansion with drifting frequencies: the present motion, and a copy of it once the expansion goes beyond its
+    /// first series.
     Drifting(&'a Drifting, Option<Box<Drifting>>),
 }
 
 impl Coupling {
-    /// The motion from its departure on.
+    /// Returns the Taylor expansion of the motion from its departure on.
     pub fn unfold(&self) -> Unfolding<'_> {
         match &self.flow {
             Flow::Constant(constant) => {
@@ -261,13 +266,13 @@ impl Coupling {
 }
 
 impl Unfolding<'_> {
-    /// Finds the series of all coordinates `h` seconds after departure, not before an earlier time, and returns how far they
-    /// reach (s): infinitely, if they do so for what is left of a span.
+    /// Expands all coordinates at `h` seconds after departure, which must not precede an earlier request. Returns the
+    /// time for which the series are valid (s), infinite if that covers the rest of `span`.
     pub fn expand(&mut self, h: f64, span: f64, into: &mut Expansion) -> f64 {
         match self {
             Self::Linear(linear) => {
                 let reach = linear.expand(h);
-                // Angles and rates take turns.
+                // Angles and rates alternate.
                 for (x, series) in into.coordinates.iter_mut().zip(linear.series().iter().step_by(2)) {
                     *x = *series;
                 }
@@ -286,17 +291,17 @@ impl Unfolding<'_> {
 }
 
 impl Constant {
-    /// Its matrices.
+    /// Returns the system matrices.
     pub fn system(&self) -> &Coupled {
         &self.system
     }
 
-    /// No part of the motion changes faster (rad/s).
+    /// Returns an upper bound of the rate of change of the motion (rad/s).
     pub fn fastest(&self) -> f64 {
         self.fastest
     }
 
-    /// Moves by the transition over `h` seconds.
+    /// Advances by the transition over `h` seconds from departure.
     fn go(&mut self, h: f64, here: &mut DVector<f64>) -> Sensed {
         let kept = self.transitions.iter().position(|(span, ..)| *span == h);
         let index = kept.unwrap_or_else(|| {

@@ -1,8 +1,8 @@
-//! The adjoint functions of a body: a command leaves rigid body and modes where it should if its products with them
-//! are right.
+//! Adjoint functions of a body: a command brings rigid body and modes to the wanted final state if its products with
+//! them have given values.
 //!
-//! They are functions of the part rho = (T - t)/T of the time that is left: 1, rho - 1/2, and for each zero the real and
-//! the imaginary part of exp(pole T rho), times rho, rho², ... where it is repeated.
+//! The argument is the remaining part rho = (T - t)/T of the time. The functions are 1, rho - 1/2, and for each zero
+//! the real and the imaginary part of exp(pole T rho), times rho, rho², ... if it is repeated.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -12,20 +12,20 @@ use crate::numerics::phasor::Phasor;
 use crate::numerics::phi::{exp, moment};
 use crate::waveform::{Term, TermShape, Waveform};
 
-/// Re(exp(pole rho) sum c\[n\] rho^n).
+/// Function Re(exp(pole rho) sum c\[n\] rho^n).
 struct Function {
     pole: Phasor,
     coefficients: Vec<Phasor>,
 }
 
-/// The adjoint functions of a task, and the products that its command must have with them.
+/// Adjoint functions of a task, and the products that its command must have with them.
 pub struct Adjoint {
     time: f64,
     functions: Vec<Function>,
 }
 
 impl Adjoint {
-    /// The adjoint functions of a rigid body and these zeros, which are in order of their frequency.
+    /// Creates the adjoint functions of a rigid body and the given zeros, which are in order of frequency.
     pub fn new(time: f64, zeros: &[Zero]) -> Self {
         let real = |c: &[f64]| Function {
             pole: Phasor::default(),
@@ -44,12 +44,12 @@ impl Adjoint {
         Self { time, functions }
     }
 
-    /// Their number.
+    /// Returns the number of functions.
     pub fn len(&self) -> usize {
         self.functions.len()
     }
 
-    /// The products with the command, over rho from 0 to 1.
+    /// Returns the products that the command must have with the functions, over rho from 0 to 1.
     pub fn products(&self, task: &Task) -> DVector<f64> {
         let mut products = DVector::zeros(self.len());
         products[0] = task.mean();
@@ -57,7 +57,7 @@ impl Adjoint {
         products
     }
 
-    /// The products of the functions with each other.
+    /// Returns the Gram matrix: the products of the functions with each other.
     pub fn gram(&self) -> DMatrix<f64> {
         let product = |a: &Function, b: &Function| {
             let mut sum = 0.0;
@@ -78,7 +78,7 @@ impl Adjoint {
         })
     }
 
-    /// The weights of the functions whose sum has these products: the command of the least energy.
+    /// Computes the weights of the functions whose sum has the given products: the command of minimum energy.
     pub fn least(&self, products: &DVector<f64>) -> Option<DVector<f64>> {
         let gram = self.gram();
         let scale = gram.diagonal().map(|d| 1.0 / f64::sqrt(d));
@@ -90,16 +90,16 @@ impl Adjoint {
             weights += factor.solve(&(&right - &scaled * &weights));
         }
         let gap = (&right - &scaled * &weights).amax();
-        // Where the functions are dependent to rounding, so is what they promise.
+        // If the functions are dependent within rounding, the solution is not reliable.
         (gap <= 1e-10 * right.amax()).then(|| weights.component_mul(&scale))
     }
 
-    /// The functions at rho, one after the other.
+    /// Returns the values of the functions at rho.
     pub fn at(&self, rho: f64) -> impl Iterator<Item = f64> {
         self.functions.iter().map(move |f| (exp(f.pole * rho) * f.polynomial(rho)).re)
     }
 
-    /// Their derivatives with rho, which they have without repetition.
+    /// Returns the derivatives of the functions with rho; valid without repeated zeros.
     pub fn slopes(&self, rho: f64) -> impl Iterator<Item = f64> {
         self.functions.iter().map(move |f| match f.coefficients.as_slice() {
             [c] => (exp(f.pole * rho) * f.pole * c).re,
@@ -107,7 +107,7 @@ impl Adjoint {
         })
     }
 
-    /// Their integrals from 0 to rho, which they have without repetition.
+    /// Returns the integrals of the functions from 0 to rho; valid without repeated zeros.
     pub fn integrals(&self, rho: f64) -> impl Iterator<Item = f64> {
         self.functions.iter().map(move |f| match f.coefficients.as_slice() {
             [c] if f.pole == Phasor::default() => c.re * rho,
@@ -116,12 +116,12 @@ impl Adjoint {
         })
     }
 
-    /// The fastest frequency for rho (rad).
+    /// Returns the highest frequency of the functions in rho (rad).
     pub fn fastest(&self) -> f64 {
         self.functions.iter().map(|f| f.pole.im).fold(0.0, f64::max)
     }
 
-    /// The command that is a weighted sum of the functions.
+    /// Returns the command that is a weighted sum of the functions.
     pub fn waveform(&self, weights: &DVector<f64>) -> Waveform {
         let term = |shape| Term { from: 0.0, to: self.time, shape };
         let slope = weights[1] / self.time;
@@ -140,7 +140,7 @@ impl Adjoint {
                 }));
                 continue;
             }
-            // rho^power = (1 - t/T)^power.
+            // The power rho^power is (1 - t/T)^power.
             let mut coefficients = Vec::new();
             let mut binomial = 1.0;
             for k in 0..=power {

@@ -1,4 +1,4 @@
-//! An attitude as a table in time: cubic splines of roll, pitch and yaw, at rest at both ends.
+//! Attitude as a table in time: cubic splines of roll, pitch and yaw, at rest at both ends.
 
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -32,17 +32,17 @@ impl AttitudeAt {
     }
 }
 
-/// The way through a table.
+/// Spline through the rows of a table.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AttitudeTable {
     times: Vec<f64>,
-    /// Roll, pitch and yaw (rad), and their second derivatives (rad/s²).
+    /// Roll, pitch and yaw (rad); `bends` are their second derivatives (rad/s²).
     angles: Vec<Vector>,
     bends: Vec<Vector>,
 }
 
 impl AttitudeTable {
-    /// The way through these rows, at least two whose times rise.
+    /// Creates the spline through the rows, at least two whose times increase.
     pub fn new(rows: &[AttitudeAt]) -> Self {
         let times: Vec<f64> = rows.iter().map(|row| row.time.get()).collect();
         let angles: Vec<Vector> = rows.iter().map(AttitudeAt::angles).collect();
@@ -50,7 +50,7 @@ impl AttitudeTable {
         Self { times, angles, bends }
     }
 
-    /// Rows that make no table: the key, and why.
+    /// Returns the key and the reason, if the rows make no table.
     pub fn fault(rows: &[AttitudeAt]) -> Option<Fault> {
         if rows.len() < 2 {
             return Some(Fault::new("table", format!("must have at least two rows, got {}", rows.len())));
@@ -64,17 +64,17 @@ impl AttitudeTable {
         Some(Fault::new(format!("table[{late}].time"), why))
     }
 
-    /// Duration (s).
+    /// Returns the duration (s).
     pub fn duration(&self) -> f64 {
         self.times.last().copied().unwrap_or(0.0)
     }
 
-    /// The attitude at its end.
+    /// Returns the final attitude.
     pub fn to(&self) -> Quaternion<f64> {
         self.angles.last().map_or_else(|| turned(0.0, 0.0, 0.0), |last| turned(last.x, last.y, last.z))
     }
 
-    /// About the largest rate on the way (rad/s).
+    /// Returns an estimate of the largest rate in the table (rad/s), from samples.
     pub fn fastest(&self) -> f64 {
         let parts = |pair: &[f64]| {
             let (from, length) = (pair[0], pair[1] - pair[0]);
@@ -83,7 +83,7 @@ impl AttitudeTable {
         self.times.windows(2).flat_map(parts).map(|t| self.at(t).rate.norm()).fold(0.0, f64::max)
     }
 
-    /// Where it is so many seconds after it began.
+    /// Returns attitude, rate and acceleration at `t` seconds after the start of the table.
     pub fn at(&self, t: f64) -> Pose {
         if t >= self.duration() {
             return Pose::at_rest(self.to());
@@ -99,7 +99,7 @@ impl AttitudeTable {
     }
 }
 
-/// The pose of roll, pitch and yaw with these derivatives.
+/// Returns attitude, rate and acceleration from roll, pitch and yaw and their first and second derivatives.
 fn turning(angles: &Vector, rates: &Vector, seconds: &Vector) -> Pose {
     let ((sr, cr), (sp, cp)) = (libm::sincos(angles.x), libm::sincos(angles.y));
     let (roll, pitch, yaw) = (rates.x, rates.y, rates.z);
@@ -119,7 +119,7 @@ fn turning(angles: &Vector, rates: &Vector, seconds: &Vector) -> Pose {
     }
 }
 
-/// Second derivatives of the cubic spline through these that is at rest at both ends.
+/// Returns the second derivatives of the cubic spline through the values that is at rest at both ends.
 fn clamped(times: &[f64], values: &[Vector]) -> Vec<Vector> {
     let count = times.len();
     let (h, slope): (Vec<f64>, Vec<Vector>) = (1..count)

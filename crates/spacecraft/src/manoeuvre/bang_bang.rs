@@ -1,12 +1,11 @@
-//! The command that turns a rigid body with the least peak: full one way, then full the other.
+//! Bang-bang command: turns a rigid body with the smallest peak, full one way, then full the other.
 
 use super::task::Task;
 use crate::waveform::{Term, TermShape, Waveform};
 
-/// The command: A until a switching, -A after it.
-///
-/// With P the impulse and E the travel beyond that of the mean, A² T² - 4 E A - P² = 0 and the switching is at
-/// T/2 + P/(2 A); of the two roots the larger has its switching within the time.
+/// Plans the bang-bang command: A before the switching, -A after it.
+/// || With P the impulse and E the excess travel over that of the mean command, A² T² - 4 E A - P² = 0 and the
+/// switching is at T/2 + P/(2 A); of the two roots the larger has its switching within the time.
 pub fn plan(task: &Task) -> Waveform {
     let (t, p, e) = (task.time, task.impulse, task.excess());
     let root = 2.0 * f64::sqrt(e * e + 0.25 * p * p * t * t);
@@ -25,7 +24,8 @@ pub fn plan(task: &Task) -> Waveform {
     pieces(&[0.0, switching, t], amplitude)
 }
 
-/// A command that is constant between these times, of this value first and of the other sign after each.
+/// Returns a command that is constant between the given times, `first` in the first interval, with a change of sign at
+/// each time.
 pub fn pieces(times: &[f64], first: f64) -> Waveform {
     let piece = |(index, ends): (usize, &[f64])| {
         let value = if index % 2 == 0 { first } else { -first };

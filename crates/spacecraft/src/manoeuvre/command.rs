@@ -1,4 +1,4 @@
-//! The kinds of command that turn a body.
+//! Kinds of command that turn a body.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -52,7 +52,7 @@ pub struct Polynomial {
 }
 
 impl Command {
-    /// The key of its table under `[manoeuvre.command]`.
+    /// Returns the key of the command's table under `[manoeuvre.command]`.
     pub fn kind(&self) -> &'static str {
         match self {
             Self::Sine(_) => "sine",
@@ -64,7 +64,7 @@ impl Command {
         }
     }
 
-    /// The zeros that it has, given a body's modes; what else is wrong with its parameters.
+    /// Returns the zeros of the command for a body's modes, or an error in its parameters.
     pub fn zeros(&self, modes: &[Mode]) -> Result<Vec<Zero>, Fault> {
         let place = format!("command.{}", self.kind());
         match self {
@@ -79,7 +79,7 @@ impl Command {
         }
     }
 
-    /// The command that does a task and has these zeros; its amplitudes if it is a series.
+    /// Plans the command that performs a task and has the given zeros; also returns its amplitudes if it is a series.
     pub fn waveform(
         &self,
         task: &Task,

@@ -1,4 +1,4 @@
-//! What a manoeuvre costs: peak, root of the mean square, and integral of the square.
+//! Effort of a manoeuvre: peak, root mean square, and integral of the square.
 
 use super::Plan;
 use super::extremum::Peak;
@@ -7,21 +7,21 @@ use super::plan::fastest;
 use crate::body::{Drive, Planar};
 use crate::numerics::quadrature::integral;
 
-/// What a command or a torque costs, in its unit.
+/// Effort of a command or a torque, in its unit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct PlanEffort {
-    /// The largest absolute value, and when.
+    /// Largest absolute value, with its time.
     pub peak: Peak,
-    /// The root of its mean square over the manoeuvre.
+    /// Root mean square over the manoeuvre.
     pub rms: f64,
-    /// The integral of its square over the manoeuvre.
+    /// Integral of the square over the manoeuvre.
     pub square: f64,
-    /// Its value just after the start.
+    /// Value just after the start.
     pub initial: f64,
 }
 
 impl PlanEffort {
-    /// That of the command.
+    /// Computes the effort of the command.
     pub fn of_command(plan: &Plan) -> Self {
         let command = &plan.waveform;
         let panel = 4.0 / command.fastest().max(1e-9);
@@ -29,7 +29,7 @@ impl PlanEffort {
         Self::new(plan, plan.peak(), panel, value)
     }
 
-    /// That of the torque on the hub (N m).
+    /// Computes the effort of the torque on the hub (N m).
     pub fn of_torque(plan: &Plan, body: &Planar) -> Self {
         match body.drive {
             Drive::Torque => Self::of_command(plan),

@@ -1,30 +1,30 @@
-//! The largest absolute value of a function that is smooth between breaks.
+//! Largest absolute value of a function that is smooth between breaks.
 
-/// A twenty-fourth of the period of a frequency: no peak falls between such samples.
+/// Returns a twenty-fourth of the period of a frequency (rad/s), a sampling step that resolves every peak.
 pub fn sampling(frequency: f64) -> f64 {
     std::f64::consts::TAU / (24.0 * frequency.max(1e-9))
 }
 
-/// A largest absolute value, and when it is reached.
+/// Largest absolute value, with its time.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct Peak {
-    /// When (s).
+    /// Time (s) at which the value is reached.
     pub time: f64,
-    /// The absolute value.
+    /// Largest absolute value.
     pub value: f64,
 }
 
-/// The largest absolute value of `f(middle, t)` over the pieces between these breaks, `middle` being a time inside the
-/// piece that t belongs to: at the ends of a piece it selects the limit. Samples are at most `step` apart, and
-/// at least 32 in a piece; what may be the largest is refined to rounding.
+/// Returns the largest absolute value of `f(middle, t)` over the pieces between `breaks`, where `middle` is a time
+/// inside the piece that t belongs to: at the ends of a piece it selects the limit. Samples are at most `step` apart,
+/// and at least 32 in a piece; candidates are refined to rounding.
 pub fn largest(breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> f64) -> Peak {
     largest_of(1, breaks, step, |middle, t| vec![f(middle, t)]).pop().unwrap_or_default()
 }
 
-/// A sample that is not smaller than its neighbours: the middle of its piece, the times of the three, its value.
+/// Sample not smaller than its neighbours: middle of its piece, times of the sample before, itself and the next, value.
 type Candidate = (f64, f64, f64, f64, f64);
 
-/// The same of each of so many functions, which are evaluated together.
+/// Returns the largest absolute value of each of `count` functions, which are evaluated together, as [`largest`] does.
 pub fn largest_of(count: usize, breaks: &[f64], step: f64, f: impl Fn(f64, f64) -> Vec<f64>) -> Vec<Peak> {
     let mut candidates: Vec<Vec<Candidate>> = vec![Vec::new(); count];
     for ends in breaks.windows(2) {
@@ -52,7 +52,7 @@ pub fn largest_of(count: usize, breaks: &[f64], step: f64, f: impl Fn(f64, f64) 
             }
             let found = refined(|t| f(middle, t)[index].abs(), from, to);
             let found = if found.value > value { found } else { Peak { time: at, value } };
-            // Of peaks that are equal but for rounding, the first.
+            // Of peaks that are equal within rounding, the first counts.
             if found.value > peak.value * (1.0 + 1e-13) || peak.value == 0.0 {
                 peak = found;
             }
@@ -62,13 +62,13 @@ pub fn largest_of(count: usize, breaks: &[f64], step: f64, f: impl Fn(f64, f64) 
     candidates.into_iter().enumerate().map(peak).collect()
 }
 
-/// The maximum of a function with a single one, by golden section.
+/// Finds the maximum of a unimodal function by golden section.
 fn refined(f: impl Fn(f64) -> f64, mut from: f64, mut to: f64) -> Peak {
     const GOLDEN: f64 = 0.618_033_988_749_894_9;
     let mut low = to - GOLDEN * (to - from);
     let mut high = from + GOLDEN * (to - from);
     let (mut at_low, mut at_high) = (f(low), f(high));
-    // The value is flat: its own rounding is reached with half the digits of the time.
+    // The value is flat: half the digits of the time give it to rounding.
     for _ in 0..40 {
         if at_low >= at_high {
             (to, high, at_high) = (high, low, at_low);

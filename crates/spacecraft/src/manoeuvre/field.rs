@@ -1,4 +1,4 @@
-//! The field: the commands that a planned manoeuvre is compared with, on the same body.
+//! Alternatives: the commands that a planned manoeuvre is compared with, on the same body.
 
 use rayon::prelude::*;
 use serde_json::{Value, json};
@@ -16,51 +16,52 @@ use crate::document::Fault;
 use crate::quantity::{Finite, Fraction, Positive};
 use crate::time::Span;
 
-/// No command of the field suppresses more modes.
+/// Largest number of modes that an alternative suppresses.
 const MOST: usize = 8;
 
-/// A command of the field.
+/// Alternative command of the comparison.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rival {
-    /// What it is called, the modes counted from 1.
+    /// Name, with modes counted from 1.
     pub name: String,
-    /// What turns the body.
+    /// Command that turns the body.
     pub command: Command,
-    /// What the command is convolved with.
+    /// Shaper with which the command is convolved.
     pub shaper: Option<Shaper>,
 }
 
-/// What a command of the field comes to.
+/// Result of one alternative.
 #[derive(Clone, Debug)]
 pub struct CommandCost {
-    /// What the command is called.
+    /// Name of the alternative.
     pub name: String,
-    /// The plan and what it comes to, or why there is none: the key, and what is wrong with it.
+    /// Result of its plan, or the key and the reason why there is none.
     pub outcome: Result<FieldOutcome, Fault>,
 }
 
-/// A plan of the field, what it costs and what it leaves.
+/// Plan of an alternative, with its effort and residuals.
 #[derive(Clone, Debug)]
 pub struct FieldOutcome {
-    /// The plan.
+    /// Plan of the alternative.
     pub plan: Plan,
-    /// What the torque on the hub costs (N m).
+    /// Effort of the torque on the hub (N m).
     pub torque: PlanEffort,
-    /// What is left in each coordinate.
+    /// Residual in each coordinate.
     pub residuals: Vec<FinalResidual>,
 }
 
-/// What is the same for the whole field.
+/// Quantity that is the same for all alternatives.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum FieldCommon {
-    /// The time (s).
+    /// Time of the manoeuvre (s).
     Time(Span),
-    /// The peak torque (N m): each command has its own time.
+    /// Peak torque (N m): each command has its own time.
     PeakTorque(Positive),
 }
 
 impl FieldCommon {
-    /// A peak torque that is asked for, else the manoeuvre's time, else the peak torque that its own time comes from.
+    /// Returns the peak torque `asked`, if any, else the manoeuvre's time, else the peak torque from which its time
+    /// follows.
     pub fn of(manoeuvre: &Manoeuvre, asked: Option<Positive>, plan: &Plan) -> Self {
         match (asked, manoeuvre.time, manoeuvre.peak_torque) {
             (Some(peak), _, _) | (None, None, Some(peak)) => Self::PeakTorque(peak),
@@ -69,7 +70,7 @@ impl FieldCommon {
     }
 }
 
-/// The commands that a body's modes allow.
+/// Returns the alternative commands that a body's modes allow.
 pub fn field(body: &Planar) -> Vec<Rival> {
     // Indices of the modes, by frequency.
     let mut order: Vec<usize> = (0..body.modes.len()).collect();
@@ -127,7 +128,7 @@ fn target(mode: usize, shift: f64, times: u32) -> Target {
     Target { mode, shift: Finite::new(shift).unwrap_or_default(), times }
 }
 
-/// So many lowest modes have double zeros: the first, the first two, all.
+/// Returns the numbers of lowest modes that get double zeros: the first, the first two, all.
 fn twice(modes: usize) -> Vec<usize> {
     let mut counts: Vec<usize> =
         [1, 2, modes].into_iter().filter(|count| *count <= modes && *count > 0).collect();
@@ -143,7 +144,7 @@ fn squares(count: usize) -> String {
     }
 }
 
-/// The robust series of a body whose modes have these indices, by frequency.
+/// Returns the robust series for the modes of these indices, which are in order of frequency.
 fn robust(kind: &str, modes: &[usize]) -> Vec<(&'static str, Suppression)> {
     // Zeros at the Chebyshev points of a band of 10 %.
     let side = 0.1 / std::f64::consts::SQRT_2;
@@ -167,7 +168,7 @@ fn robust(kind: &str, modes: &[usize]) -> Vec<(&'static str, Suppression)> {
     robust
 }
 
-/// The shapers of a body whose modes have these indices, by frequency.
+/// Returns the shapers for the modes of these indices, which are in order of frequency.
 fn shapers(modes: &[usize]) -> Vec<(&'static str, Shaper)> {
     let on = |count: usize| Shaped { modes: modes[..count].to_vec() };
     let ei = |count: usize| {
@@ -189,7 +190,7 @@ fn shapers(modes: &[usize]) -> Vec<(&'static str, Shaper)> {
     shapers
 }
 
-/// What the field comes to on a body, in its order: the manoeuvre with each command in turn.
+/// Computes the results of all alternatives on a body: the manoeuvre with each command in turn.
 pub fn compare(manoeuvre: &Manoeuvre, common: FieldCommon, body: &Planar, band: f64) -> Vec<CommandCost> {
     let (time, peak_torque) = match common {
         FieldCommon::Time(time) => (Some(time), None),
@@ -209,7 +210,7 @@ pub fn compare(manoeuvre: &Manoeuvre, common: FieldCommon, body: &Planar, band: 
 }
 
 impl CommandCost {
-    /// The row as a JSON object whose keys end with their units.
+    /// Returns the result as a JSON object whose keys end with their units.
     pub fn to_json(&self) -> Value {
         match &self.outcome {
             Err(fault) => json!({"command": self.name, "refused": fault.to_string()}),

@@ -1,22 +1,22 @@
-//! The modes of a body during a planned command, exactly.
+//! Exact response of a body's modes to a planned command.
 
 use super::suppression::Zero;
 use crate::body::{Drive, Planar};
 use crate::numerics::phasor::Phasor;
 use crate::waveform::Waveform;
 
-/// Modes that rest at the start of a command.
+/// Response of modes that are at rest at the start of a command.
 pub struct ModalHistory<'a> {
     command: &'a Waveform,
     inertia: f64,
     modes: Vec<Driven>,
 }
 
-/// A mode under the command.
+/// Mode excited by the command.
 struct Driven {
     pole: Phasor,
     zero: Zero,
-    /// Displacement for each unit of the imaginary part of the command's response.
+    /// Displacement per unit of the imaginary part of the command's response.
     gain: f64,
     modal_gain: f64,
 }
@@ -25,7 +25,7 @@ struct Driven {
 pub type ModalMotion = [f64; 3];
 
 impl<'a> ModalHistory<'a> {
-    /// The modes of a body, with all frequencies times a factor.
+    /// Creates the response of a body's modes, with all frequencies multiplied by `factor`.
     pub fn new(body: &Planar, command: &'a Waveform, factor: f64) -> Self {
         let inertia = body.commanded_inertia();
         let driven = |mode| {
@@ -37,8 +37,8 @@ impl<'a> ModalHistory<'a> {
         Self { command, inertia, modes: body.modes.iter().map(driven).collect() }
     }
 
-    /// Displacement (rad), rate and acceleration of each mode at a time (s); the acceleration is that of the piece of
-    /// the command around `middle`.
+    /// Returns displacement (rad), rate and acceleration of each mode at a time (s); the acceleration is that of the
+    /// piece of the command around `middle`.
     pub fn at(&self, middle: f64, t: f64) -> Vec<ModalMotion> {
         let moment = self.command.on_piece(middle, t) / self.inertia;
         let motion = |mode: &Driven| {
@@ -50,8 +50,7 @@ impl<'a> ModalHistory<'a> {
         self.modes.iter().map(motion).collect()
     }
 
-    /// The amplitude with which each mode goes on after a time (s), decaying from there: |x + i x'/w| of an undamped
-    /// mode (rad).
+    /// Returns the amplitude of each mode's free vibration from a time (s) on: |x + i x'/w| for an undamped mode (rad).
     pub fn amplitudes(&self, t: f64) -> Vec<f64> {
         let amplitude = |mode: &Driven| {
             (mode.gain * crate::numerics::phasor::abs(self.command.response(mode.pole, 0.0, t))).abs()
@@ -60,7 +59,8 @@ impl<'a> ModalHistory<'a> {
     }
 }
 
-/// The torque on the hub (N m) at a time: the command itself, or what makes the hub move so.
+/// Returns the torque on the hub (N m) at a time: the command itself, or the torque that gives the hub its commanded
+/// motion.
 pub fn torque(body: &Planar, history: &ModalHistory, middle: f64, t: f64) -> f64 {
     let command = history.command.on_piece(middle, t);
     match body.drive {

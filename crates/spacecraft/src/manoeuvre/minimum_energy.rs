@@ -1,4 +1,4 @@
-//! The command of the least integral of its square.
+//! Command with the smallest integral of its square.
 
 use super::adjoint::Adjoint;
 use super::suppression::Zero;
@@ -6,7 +6,7 @@ use super::task::Task;
 use crate::document::Fault;
 use crate::waveform::Waveform;
 
-/// The command: the sum of adjoint functions that has the task's products with each.
+/// Plans the command: the sum of adjoint functions that has the task's products with each.
 pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
     let adjoint = Adjoint::new(task.time, zeros);
     match adjoint.least(&adjoint.products(task)) {
@@ -15,7 +15,7 @@ pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
     }
 }
 
-/// Why a time is too short for the zeros.
+/// Returns the fault of a time that is too short for the zeros.
 pub fn too_short(time: f64) -> Fault {
     let why = format!("must be longer for the modes that are to be at rest after it, got {time} s");
     Fault::new("time", why)

@@ -1,8 +1,8 @@
-//! The command of the least peak that leaves modes at rest: bang-bang with many switchings.
+//! Command of the smallest peak that leaves modes at rest: bang-bang with many switchings.
 //!
-//! The command is A sign(f) with f a weighted sum of the adjoint functions g, and its products with them are
-//! S h, S = the integral of |f|, h = that of g sign(f). They are the gradient of S²/2, which is convex: the weights
-//! minimise S²/2 - lambda b, b being the products asked for, and A is S there. Newton's method with the exact second
+//! The command is A sign(f) with f a weighted sum of the adjoint functions g, and its products with them are S h, where
+//! S is the integral of |f|, and h that of g sign(f). They are the gradient of S²/2, which is convex: the weights
+//! minimise S²/2 - lambda b, where b are the required products, and A is S there. Newton's method with the exact second
 //! derivatives h h^T + 2 S sum g g^T/|f'| over the switchings finds them.
 
 use nalgebra::{DMatrix, DVector};
@@ -15,12 +15,12 @@ use super::task::Task;
 use crate::document::Fault;
 use crate::waveform::Waveform;
 
-/// Newton's steps at most; some thirty are needed.
+/// Largest number of Newton steps; some thirty are needed.
 const STEPS: usize = 400;
-/// Samples in the shortest period of f.
+/// Number of samples in the shortest period of f.
 const SAMPLES: f64 = 64.0;
 
-/// The command.
+/// Plans the command.
 pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
     let search = Search::new(task, zeros);
     let size = search.products.norm();
@@ -36,17 +36,17 @@ pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
     Ok(pieces(&times, last * bang.amplitude * size))
 }
 
-/// The search, with products of length 1.
+/// Search for the weights, with the required products scaled to length 1.
 struct Search {
     adjoint: Adjoint,
     products: DVector<f64>,
     target: DVector<f64>,
     grid: Vec<f64>,
-    /// The adjoint functions on the grid, a row a function.
+    /// Adjoint functions on the grid, one row for each function.
     samples: DMatrix<f64>,
 }
 
-/// A sign(f): the switchings in rho, in order, and the sign before the first.
+/// Bang-bang function A sign(f): the switchings in rho, in order, and the sign before the first.
 struct Bang {
     amplitude: f64,
     first: f64,
@@ -75,8 +75,8 @@ impl Search {
         let mut bang = self.bang(&weights);
         let mut value = self.value(&weights, &bang);
         let mut gradient = self.gap(&bang);
-        // Where there are fewer switchings than functions the second derivatives leave directions flat, and where
-        // two merge they have no bound: the steps are damped (Levenberg).
+        // With fewer switchings than functions the second derivatives leave directions flat, and if two switchings
+        // merge they are unbounded: the steps are damped (Levenberg).
         let mut damping = 1e-2;
         for _ in 0..STEPS {
             if gradient.amax() < 1e-14 || damping > 1e8 {
@@ -101,7 +101,7 @@ impl Search {
         self.polished(bang, &gradient)
     }
 
-    /// The bang-bang function of these weights, with S for its amplitude.
+    /// Returns the bang-bang function of the weights, with S for its amplitude.
     fn bang(&self, weights: &DVector<f64>) -> Bang {
         let f = self.samples.tr_mul(weights);
         let at = |rho: f64| self.adjoint.at(rho).zip(weights.iter()).map(|(g, w)| g * w).sum::<f64>();
@@ -111,7 +111,7 @@ impl Search {
             if (f[i - 1] > 0.0) != (f[i] > 0.0) {
                 switchings.push(root(at, (a, f[i - 1]), (b, f[i])));
             } else if i + 1 < f.len() && f[i].abs() < f[i - 1].abs() && f[i].abs() <= f[i + 1].abs() {
-                // Two switchings may hide about the sample nearest to zero.
+                // Between samples there may be two switchings near the sample closest to zero.
                 let (before, now, after) = (f[i - 1], f[i], f[i + 1]);
                 let bend = before - 2.0 * now + after;
                 let middle = b + 0.5 * (b - a) * (before - after) / bend;
@@ -129,7 +129,7 @@ impl Search {
         bang
     }
 
-    /// h: the products of a bang-bang function of amplitude 1.
+    /// Returns h: the products of a bang-bang function of amplitude 1 with the adjoint functions.
     fn products_of(&self, bang: &Bang) -> DVector<f64> {
         let mut h = DVector::zeros(self.adjoint.len());
         let mut sign = bang.first;
@@ -148,7 +148,7 @@ impl Search {
         0.5 * bang.amplitude * bang.amplitude - weights.dot(&self.target)
     }
 
-    /// The gradient: what the products are too large by.
+    /// Returns the gradient: the products minus the required ones.
     fn gap(&self, bang: &Bang) -> DVector<f64> {
         self.products_of(bang) * bang.amplitude - &self.target
     }
@@ -165,7 +165,7 @@ impl Search {
         curvature
     }
 
-    /// Moves amplitude and switchings by the last rounding errors of the weights, or reports that they are not small.
+    /// Corrects amplitude and switchings by the last rounding errors of the weights; `None` if they are not small.
     fn polished(&self, mut bang: Bang, gradient: &DVector<f64>) -> Option<Bang> {
         if gradient.amax() > 1e-8 {
             return None;
@@ -195,7 +195,7 @@ impl Search {
     }
 }
 
-/// The root of a function between two points at which it has different signs, to the last bit.
+/// Finds the root of a function between two points at which it has different signs, to the last bit.
 fn root(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -> f64 {
     // Regula falsi that halves the value of an end that stays (Illinois).
     let mut stayed = 0;

@@ -78,12 +78,12 @@ pub struct Manoeuvre {
 }
 
 impl Manoeuvre {
-    /// The body that it is planned for, of the body that makes it.
+    /// Returns the body for which the manoeuvre is planned: `model` if given, else `body`.
     pub fn planned_for<'a>(&'a self, body: &'a Planar) -> &'a Planar {
         self.model.as_ref().unwrap_or(body)
     }
 
-    /// The plan of the manoeuvre for a body.
+    /// Plans the manoeuvre for a body.
     pub fn plan(&self, body: &Planar) -> Result<Plan, Fault> {
         if let Some(index) = body.modes.iter().position(|mode| mode.damping.get() >= 1.0) {
             let damping = body.modes[index].damping.get();
@@ -98,7 +98,7 @@ impl Manoeuvre {
             (Some(time), Some(limit)) => {
                 let plan = planner.plan(time)?;
                 let peak = plan.peak_torque(body).value;
-                // A limit that is the peak itself as it was printed.
+                // The limit may be the peak itself as printed, so it is met within rounding.
                 if peak <= limit * (1.0 + 1e-9) {
                     return Ok(plan);
                 }

@@ -1,4 +1,4 @@
-//! Planning a manoeuvre for a time.
+//! Planner of a manoeuvre for a given time.
 
 use super::Manoeuvre;
 use super::command::Command;
@@ -9,9 +9,9 @@ use super::task::Task;
 use crate::body::Planar;
 use crate::document::Fault;
 
-/// A manoeuvre of a body, all of whose keys are good, for any time.
+/// Validated manoeuvre of a body, to be planned for any time.
 pub struct Planner<'a> {
-    /// The body.
+    /// Body that the manoeuvre turns.
     pub body: &'a Planar,
     command: &'a Command,
     zeros: Vec<Zero>,
@@ -23,7 +23,7 @@ pub struct Planner<'a> {
 }
 
 impl<'a> Planner<'a> {
-    /// A planner, if the manoeuvre fits the body.
+    /// Creates a planner, or returns the fault if the manoeuvre does not fit the body.
     pub fn new(manoeuvre: &'a Manoeuvre, body: &'a Planar) -> Result<Self, Fault> {
         let (angle, start_rate, end_rate) =
             (manoeuvre.angle.get(), manoeuvre.start_rate.get(), manoeuvre.end_rate.get());
@@ -41,12 +41,12 @@ impl<'a> Planner<'a> {
         Ok(Self { body, command, zeros, impulses, inertia, angle, start_rate, end_rate })
     }
 
-    /// The length of the shaper (s): the command itself has the rest of the time.
+    /// Returns the duration of the shaper (s): the command itself has the rest of the time.
     pub fn shaper(&self) -> f64 {
         self.impulses.iter().map(|impulse| impulse.delay).fold(0.0, f64::max)
     }
 
-    /// The plan for a time (s).
+    /// Plans the manoeuvre for a time (s).
     pub fn plan(&self, time: f64) -> Result<Plan, Fault> {
         let shaper = self.shaper();
         if shaper >= time {
@@ -55,7 +55,7 @@ impl<'a> Planner<'a> {
         }
         let impulse = self.inertia * (self.end_rate - self.start_rate);
         let travel = self.inertia * (self.angle - self.start_rate * time);
-        // Each impulse of the shaper leaves the command's own gain of rate less time to become travel.
+        // The rate gained by the command acts for a shorter time after each delayed impulse of the shaper.
         let mean: f64 = self.impulses.iter().map(|impulse| impulse.area * impulse.delay).sum();
         let task = Task { time: time - shaper, impulse, travel: travel - impulse * (shaper - mean) };
         let (own, coefficients) = self.command.waveform(&task, &self.zeros)?;
@@ -77,9 +77,9 @@ impl<'a> Planner<'a> {
         Err(Fault::new("time", format!("must be one for which the command is finite, got {time} s")))
     }
 
-    /// The time (s) below which no command of this peak torque (N m) turns the rigid body.
+    /// Returns the time (s) below which no command of the peak torque `peak` (N m) turns the rigid body.
     pub fn rigid_bound(&self, peak: f64) -> f64 {
-        // A² T² - 4 |E| A - P² = 0 with E = J (angle - mean rate T), which the bang-bang command meets.
+        // Solve A² T² - 4 |E| A - P² = 0 with E = J (angle - mean rate T), which the bang-bang command satisfies.
         let a = peak / self.body.inertia.get();
         let (gained, mean) = (self.end_rate - self.start_rate, 0.5 * (self.end_rate + self.start_rate));
         let mut first = f64::INFINITY;

@@ -1,12 +1,13 @@
-//! Commands whose angle is the smooth polynomial of an odd degree.
+//! Commands whose angle is a smooth polynomial of odd degree.
 
 use super::task::Task;
 use crate::waveform::{Term, TermShape, Waveform};
 
-/// The degrees that the angle may have.
+/// Degrees that the angle may have.
 pub const DEGREES: [u32; 6] = [3, 5, 7, 9, 11, 13];
 
-/// The command: with m = (degree - 1)/2, x = t/T, P the impulse and E the travel beyond that of the mean,
+/// Plans the command: with m = (degree - 1)/2, x = t/T, P the impulse and E the excess travel over that of the mean
+/// command,
 ///
 /// u = (x (1 - x))^(m-1) [ (2m-1)!/(m-1)!² P/T + (2m+1)!/m!² m (1 - 2x) E/T² ],
 ///
@@ -18,7 +19,7 @@ pub fn plan(task: &Task, degree: u32) -> Waveform {
     let square = |v: f64| v * v;
     let constant = factorial(2 * m - 1) / square(factorial(m - 1)) * task.impulse / t;
     let slope = factorial(2 * m + 1) / square(factorial(m)) * m as f64 * task.excess() / (t * t);
-    // (1 - x)^(m-1), times constant + slope (1 - 2x), shifted by x^(m-1), each power over T.
+    // Coefficients of (1 - x)^(m-1) times constant + slope (1 - 2x), shifted by x^(m-1), each power over T.
     let mut coefficients = vec![0.0; 2 * m];
     let mut binomial = 1.0;
     for k in 0..m {

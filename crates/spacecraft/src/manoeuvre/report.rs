@@ -1,4 +1,4 @@
-//! What a plan comes to on its body.
+//! Report of a plan on its body.
 
 use serde_json::{Value, json};
 
@@ -12,45 +12,45 @@ use super::timing::{Single, tuned};
 use crate::body::{Drive, Planar};
 use crate::waveform::TermShape;
 
-/// Times are tuned to so many modes of the lowest frequencies.
+/// Number of modes of the lowest frequencies for which tuned times are reported.
 const TUNED: usize = 3;
 
-/// What a plan comes to on its body, exactly but for rounding.
+/// Results of a plan on its body, exact except for rounding.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Report {
-    /// What the command costs, in its unit.
+    /// Effort of the command, in its unit.
     pub command: PlanEffort,
-    /// What the torque on the hub costs (N m): the same, unless the hub's motion is commanded.
+    /// Effort of the torque on the hub (N m): equal to `command`, unless the hub's motion is commanded.
     pub torque: PlanEffort,
-    /// The hub's angle at the end less the target (rad).
+    /// Hub angle at the end minus the target (rad).
     pub angle_error: f64,
-    /// The hub's rate at the end less the target (rad/s).
+    /// Hub rate at the end minus the target (rad/s).
     pub rate_error: f64,
     /// Elastic energy after the manoeuvre (J).
     pub energy: f64,
-    /// The band of the frequencies, relative to them.
+    /// Relative uncertainty of the frequencies.
     pub band: f64,
-    /// What is left in each coordinate.
+    /// Residual in each coordinate.
     pub residuals: Vec<FinalResidual>,
-    /// The largest elastic deflection of each coordinate during the manoeuvre, in the same order.
+    /// Largest elastic deflection of each coordinate during the manoeuvre, in the same order.
     pub deflections: Vec<Peak>,
-    /// Times near the planned one to which a single harmonic is tuned.
+    /// Times near the planned one for which a single harmonic leaves a mode at rest.
     pub tuned: Vec<RestTimes>,
 }
 
-/// The times nearest to the planned one (s) for which a single harmonic leaves a mode at rest.
+/// Times nearest to the planned one (s) for which a single harmonic leaves a mode at rest.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct RestTimes {
     /// Index of the mode.
     pub mode: usize,
-    /// For a sine, below and above.
+    /// Times for a sine, below and above the planned one.
     pub sine: (Option<f64>, f64),
-    /// For a cosine, which needs the same rate before and after, below and above.
+    /// Times for a cosine, below and above; `None` unless the rates before and after are equal.
     pub cosine: Option<(Option<f64>, f64)>,
 }
 
 impl Report {
-    /// The report of a plan on a body whose frequencies are known to within a relative band.
+    /// Computes the report of a plan on a body whose frequencies have a relative uncertainty of `band`.
     pub fn new(plan: &Plan, body: &Planar, band: f64) -> Self {
         let command = &plan.waveform;
         let history = ModalHistory::new(body, command, 1.0);
@@ -86,7 +86,7 @@ impl Report {
         }
     }
 
-    /// The report as one JSON object whose keys end with their units.
+    /// Returns the report as one JSON object whose keys end with their units.
     pub fn to_json(&self, plan: &Plan, body: &Planar) -> Value {
         let motion = body.drive == Drive::Motion;
         let unit = if motion { "rad_s2" } else { "nm" };
@@ -136,7 +136,7 @@ impl Report {
     }
 }
 
-/// Adds what is left in each coordinate to an object.
+/// Adds the residual in each coordinate to a JSON object.
 pub fn residuals_to_json(object: &mut Value, residuals: &[FinalResidual]) {
     let by_name = |value: &dyn Fn(&FinalResidual) -> f64| -> Value {
         residuals.iter().map(|r| (r.name.clone(), json!(value(r)))).collect()

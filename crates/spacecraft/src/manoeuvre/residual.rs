@@ -1,35 +1,35 @@
-//! What the modes still do after a manoeuvre, as planned and with other frequencies.
+//! Residual vibration after a manoeuvre, as planned and with other frequencies.
 
 use super::history::ModalHistory;
 use super::{Plan, extremum};
 use crate::body::{Drive, Planar};
 
-/// The band that is always reported.
+/// Relative uncertainty of the frequencies for which the residual is always reported.
 pub const NEAR: f64 = 0.05;
 
-/// What is left in a coordinate after the manoeuvre.
+/// Residual in a coordinate after the manoeuvre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FinalResidual {
-    /// Name of the coordinate: `angle` is the hub's, the others are outputs of the body.
+    /// Name of the coordinate: `angle` is that of the hub, the others are outputs of the body.
     pub name: String,
-    /// Its unit.
+    /// Unit of the coordinate.
     pub unit: String,
-    /// The sum of the modes' amplitudes in the coordinate.
+    /// Sum of the modes' amplitudes in the coordinate.
     pub nominal: f64,
-    /// The largest such sum with all frequencies off by at most 5 %.
+    /// Largest sum of the amplitudes with all frequencies changed by at most 5 %.
     pub near: f64,
-    /// The largest such sum with all frequencies off by at most the band.
+    /// Largest sum of the amplitudes with all frequencies changed by at most the band.
     pub worst: f64,
 }
 
-/// A coordinate: its name, its unit, and the weights of the modes' displacements in it.
+/// Coordinate with its name, its unit, and the weights of the modes' displacements in it.
 pub struct Coordinate {
     pub name: String,
     pub unit: String,
     pub weights: Vec<f64>,
 }
 
-/// The coordinates of a body: the hub's angle, then its outputs.
+/// Returns the coordinates of a body: the hub's angle, then its outputs.
 pub fn coordinates(body: &Planar) -> Vec<Coordinate> {
     let own = match body.drive {
         Drive::Torque => 1.0,
@@ -45,17 +45,18 @@ pub fn coordinates(body: &Planar) -> Vec<Coordinate> {
     std::iter::once(angle).chain(outputs).collect()
 }
 
-/// The sum of the modes' amplitudes in each coordinate after the manoeuvre, with all frequencies times a factor.
+/// Returns the sum of the modes' amplitudes in each coordinate after the manoeuvre, with all frequencies times
+/// `factor`.
 pub fn left(plan: &Plan, body: &Planar, coordinates: &[Coordinate], factor: f64) -> Vec<f64> {
     let amplitudes = ModalHistory::new(body, &plan.waveform, factor).amplitudes(plan.time);
     let sum = |c: &Coordinate| c.weights.iter().zip(&amplitudes).map(|(w, a)| w.abs() * a).sum();
     coordinates.iter().map(sum).collect()
 }
 
-/// What is left in each coordinate. Gains and weights stay as they are while the frequencies move together.
-///
-/// Over the factor of the frequencies, an amplitude turns as fast as the fastest mode does within the manoeuvre's time: the
-/// largest one is found as that of a motion is, on samples that no crest falls between, and refined to rounding.
+/// Computes the residual in each coordinate. Gains and weights are constant, and all frequencies vary by the same
+/// factor.
+/// || As a function of that factor, an amplitude varies as fast as the fastest mode turns within the manoeuvre's time:
+/// the largest one is found from samples that resolve every peak, and refined to rounding.
 pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<FinalResidual> {
     let coordinates = coordinates(body);
     let sums = |factor: f64| left(plan, body, &coordinates, factor);

@@ -1,9 +1,9 @@
 //! Commands as series of sines or of cosines that leave chosen modes at rest (\[Rotation\], equations (19) to (30)).
 //!
 //! With T the time of the manoeuvre and sigma = 2 pi/T the command is a constant A0, a series with the harmonics
-//! kappa that carries the travel, and, where A0 is not zero, a series of k sigma that takes out what A0 does to the modes.
-//! The Laplace transform of each is a factor that has no pole, times a rational function whose numerator holds the
-//! chosen zeros, so that every amplitude is a product:
+//! kappa that carries the travel, and, if A0 is not zero, a series of k sigma that cancels the effect of A0 on the
+//! modes. The Laplace transform of each is a factor that has no pole, times a rational function whose numerator holds
+//! the chosen zeros, so that every amplitude is a product:
 //!
 //! ```text
 //! q_j(s) = (s² + 2 zeta_j w_j s + w_j²)/w_j²         one factor for each zero
@@ -14,8 +14,8 @@
 //! ```
 //!
 //! A linear solve would lose all digits beyond some eight zeros; the products lose none. For undamped modes G_k is
-//! real, and these are the paper's series, except that the paper's 2p + 1 sines (or cosines) cannot meet two equations in
-//! one scalar for each mode unless A0 is zero: the constant needs the even series.
+//! real, and these are the paper's series, except that the paper's 2p + 1 sines (or cosines) cannot satisfy two
+//! equations in one scalar for each mode unless A0 is zero: the constant needs the even series.
 
 use std::f64::consts::PI;
 
@@ -24,35 +24,36 @@ use super::task::Task;
 use crate::numerics::phasor::Phasor;
 use crate::waveform::{Term, TermShape, Waveform};
 
-/// The amplitudes of a series, in units of the command.
+/// Amplitudes of a series, in units of the command.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct SeriesCoefficients {
-    /// The constant A0.
+    /// Constant A0 of the series.
     pub constant: f64,
-    /// Those of sin(k sigma t), or of cos((k - 1/2) sigma t), k = 1, 2, ...: antisymmetric about T/2.
+    /// Amplitudes of sin(k sigma t), or of cos((k - 1/2) sigma t), k = 1, 2, ...: antisymmetric about T/2.
     pub odd: Vec<f64>,
-    /// Those of cos(k sigma t), k = 1, 2, ...: symmetric about T/2. None if the constant is zero and nothing is damped.
+    /// Amplitudes of cos(k sigma t), k = 1, 2, ...: symmetric about T/2. Empty if the constant is zero and no zero is
+    /// damped.
     pub even: Vec<f64>,
 }
 
-/// What the series is made of.
+/// Family of functions of a series.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum SeriesFamily {
-    /// sin(k sigma t): the command begins and ends at zero.
+    /// Functions sin(k sigma t): the command begins and ends at zero.
     Sine,
-    /// cos((k - 1/2) sigma t): smaller for the same travel.
+    /// Functions cos((k - 1/2) sigma t): smaller command for the same travel.
     Cosine,
 }
 
-/// The command, and the amplitudes to report.
+/// Plans the command, and returns it with its amplitudes.
 pub fn plan(family: SeriesFamily, task: &Task, zeros: &[Zero]) -> (Waveform, SeriesCoefficients) {
     let sigma = 2.0 * PI / task.time;
     let constant = task.mean();
-    // The even series is no longer symmetric with damping: it travels too.
+    // With damping the even series is no longer symmetric: it contributes to the travel.
     let lag: f64 = zeros.iter().map(|zero| 2.0 * zero.damping / zero.frequency).sum();
     let travel = task.excess() - constant * task.time * lag;
 
-    // k and the phasor c of each harmonic Re(c exp(i kappa t)).
+    // Numbers k and phasors c of the harmonics Re(c exp(i kappa t)).
     let count = zeros.len();
     let (half, carry): (f64, Vec<Phasor>) = match family {
         SeriesFamily::Sine => {
@@ -108,12 +109,12 @@ pub fn plan(family: SeriesFamily, task: &Task, zeros: &[Zero]) -> (Waveform, Ser
     (Waveform { terms }, coefficients)
 }
 
-/// G_k of so many harmonics (k - half) sigma.
+/// Returns G_k for a series of `harmonics` harmonics (k - half) sigma.
 fn gain(k: usize, harmonics: usize, half: f64, sigma: f64, zeros: &[Zero]) -> Phasor {
     let own = k as f64 - half;
     let kappa = own * sigma;
     let mut others = (1..=harmonics).filter(|j| *j != k);
-    // One factor of each product at a time: the products by themselves would overflow.
+    // One factor of each product at a time: the complete products would overflow.
     let mut product = Phasor::new(1.0, 0.0);
     for zero in zeros {
         let w = zero.frequency;

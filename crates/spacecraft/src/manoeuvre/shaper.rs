@@ -1,4 +1,4 @@
-//! Input shapers: a command convolved with a few impulses, which takes modes out of it (\[SingerSeering90\]).
+//! Input shapers: a command is convolved with a few impulses, which suppresses modes (\[SingerSeering90\]).
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -53,17 +53,18 @@ fn twentieth() -> Fraction {
     Fraction::new(0.05).expect("between 0 and 1")
 }
 
-/// An impulse of a shaper; all together have the area 1.
+/// Impulse of a shaper; the areas of a shaper's impulses add up to 1.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Impulse {
-    /// When (s).
+    /// Delay of the impulse (s).
     pub delay: f64,
-    /// How much.
+    /// Area of the impulse.
     pub area: f64,
 }
 
 impl Shaper {
-    /// The impulses for these modes of a body: a sequence for each, convolved. They are half a damped period apart.
+    /// Returns the impulses for the shaper's modes of a body: one sequence for each mode, convolved. Those of a
+    /// sequence are half a damped period apart.
     pub fn impulses(&self, modes: &[Mode]) -> Result<Vec<Impulse>, Fault> {
         let (name, indices, areas) = match self {
             Self::Zv(shaped) => ("zv", &shaped.modes, vec![1.0, 1.0]),
@@ -98,7 +99,7 @@ impl Shaper {
     }
 }
 
-/// The impulses for one mode: each later one smaller by what damping took meanwhile.
+/// Returns the impulses for one mode: each later one is reduced by the damping of the elapsed time.
 fn sequence(areas: &[f64], mode: &Zero) -> Vec<Impulse> {
     let pole = mode.pole();
     let half = std::f64::consts::PI / pole.im;
@@ -116,7 +117,7 @@ fn sequence(areas: &[f64], mode: &Zero) -> Vec<Impulse> {
     sequence
 }
 
-/// A command convolved with impulses.
+/// Returns a command convolved with impulses.
 pub fn shaped(command: &Waveform, impulses: &[Impulse]) -> Waveform {
     let terms = impulses.iter().flat_map(|impulse| command.shifted(impulse.delay, impulse.area).terms);
     Waveform { terms: terms.collect() }

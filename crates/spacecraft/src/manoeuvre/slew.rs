@@ -1,4 +1,4 @@
-//! A turn from one attitude to another about one axis, in closed form (\[Wie08\], eigenaxis rotation).
+//! Slew from one attitude to another about one axis, in closed form (\[Wie08\], eigenaxis rotation).
 
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
@@ -19,24 +19,24 @@ pub enum Profile {
     Versine,
 }
 
-/// Where a turn is at an instant.
+/// Attitude, rate and acceleration of a reference motion at an instant.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Pose {
-    /// The attitude.
+    /// Attitude as a unit quaternion.
     pub attitude: Quaternion<f64>,
-    /// The rate in the axes of that attitude (rad/s).
+    /// Angular rate in the axes of that attitude (rad/s).
     pub rate: Vector,
-    /// The acceleration in the same axes (rad/s²).
+    /// Angular acceleration in the same axes (rad/s²).
     pub acceleration: Vector,
 }
 
 impl Pose {
-    /// At rest in an attitude.
+    /// Returns the motion at rest in an attitude.
     pub fn at_rest(attitude: Quaternion<f64>) -> Self {
         Self { attitude, rate: Vector::zeros(), acceleration: Vector::zeros() }
     }
 
-    /// The pose of what is in this one in axes that have another.
+    /// Composes this motion, which is relative to moving axes, with the motion of those axes.
     #[must_use]
     pub fn within(&self, axes: &Self) -> Self {
         let [carried, pushed] = [axes.rate, axes.acceleration].map(|of| into(&self.attitude, &of));
@@ -47,8 +47,8 @@ impl Pose {
         }
     }
 
-    /// Rate and acceleration in the axes of a body that is beyond it by so much (twice the sine of half the angle along its
-    /// axis, rad).
+    /// Returns rate and acceleration in the axes of a body that is rotated relative to this attitude by `beyond` (twice
+    /// the sine of half the angle along the rotation axis, rad).
     pub fn seen_from(&self, beyond: &Vector) -> [Vector; 2] {
         let half = beyond * 0.5;
         let turn = Quaternion::from_parts(f64::sqrt((1.0 - half.norm_squared()).max(0.0)), half);
@@ -59,24 +59,25 @@ impl Pose {
     }
 }
 
-/// A turn from rest to rest.
+/// Slew from rest to rest.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Slew {
     from: Quaternion<f64>,
     to: Quaternion<f64>,
-    /// The axis, the same in both attitudes, and the angle about it, at most pi (rad).
+    /// Rotation axis, with the same components in both attitudes; `angle` is the angle about it, at most pi (rad).
     axis: Vector,
     angle: f64,
     profile: Profile,
-    /// Largest acceleration (rad/s²) and rate (rad/s) of this turn.
+    /// Largest acceleration of this slew (rad/s²); `rate` is its largest rate (rad/s).
     acceleration: f64,
     rate: f64,
-    /// How long the rate rises, and how long it stays (s).
+    /// Time for which the rate rises (s); `coast` is the time for which it is constant (s).
     rise: f64,
     coast: f64,
 }
 
-/// The axis of the turn on the shorter way between two attitudes, the same in both, and the angle about it, at most pi (rad).
+/// Returns the axis of the shorter rotation between two attitudes, the same in both, and the angle about it, at most pi
+/// (rad).
 pub(super) fn eigenaxis(from: &Quaternion<f64>, to: &Quaternion<f64>) -> (Vector, f64) {
     let turn = from.conjugate() * to;
     let sine = turn.vector().norm();
@@ -86,7 +87,7 @@ pub(super) fn eigenaxis(from: &Quaternion<f64>, to: &Quaternion<f64>) -> (Vector
 }
 
 impl Slew {
-    /// The turn on the shorter way within these limits (rad/s², rad/s); the rate may be endless.
+    /// Plans the shorter rotation within the limits of acceleration (rad/s²) and rate (rad/s, may be infinite).
     pub fn new(
         [from, to]: [Quaternion<f64>; 2],
         acceleration: f64,
@@ -94,7 +95,7 @@ impl Slew {
         profile: Profile,
     ) -> Self {
         let (axis, angle) = eigenaxis(&from, &to);
-        // The mean of the acceleration while the rate rises.
+        // Mean of the acceleration while the rate rises.
         let mean = if profile == Profile::Versine { 0.5 * acceleration } else { acceleration };
         let rate = rate_limit.min(f64::sqrt(angle * mean));
         let rise = rate / mean;
@@ -102,7 +103,7 @@ impl Slew {
         Self { from, to, axis, angle, profile, acceleration, rate, rise, coast }
     }
 
-    /// The turn that is over as it begins.
+    /// Returns a slew of zero duration to an attitude.
     pub fn at_once(to: Quaternion<f64>) -> Self {
         Self {
             from: to,
@@ -117,7 +118,7 @@ impl Slew {
         }
     }
 
-    /// Its acceleration (rad/s²).
+    /// Returns the acceleration about the axis as a waveform (rad/s²).
     pub fn command(&self) -> Waveform {
         let one = |from: f64, sign: f64| {
             let (to, most) = (from + self.rise, sign * self.acceleration);
@@ -137,17 +138,17 @@ impl Slew {
         Waveform { terms: [one(0.0, 1.0), one(self.rise + self.coast, -1.0)].concat() }
     }
 
-    /// The attitude at its end.
+    /// Returns the final attitude.
     pub fn to(&self) -> Quaternion<f64> {
         self.to
     }
 
-    /// Duration (s).
+    /// Returns the duration (s).
     pub fn duration(&self) -> f64 {
         2.0 * self.rise + self.coast
     }
 
-    /// Where it is so many seconds after it began.
+    /// Returns attitude, rate and acceleration at `t` seconds after the start of the slew.
     pub fn at(&self, t: f64) -> Pose {
         if t >= self.duration() {
             return Pose::at_rest(self.to);
@@ -160,7 +161,7 @@ impl Slew {
         }
     }
 
-    /// Angle (rad), rate (rad/s) and acceleration (rad/s²) about the axis.
+    /// Returns angle (rad), rate (rad/s) and acceleration (rad/s²) about the axis at time `t` (s).
     fn along(&self, t: f64) -> [f64; 3] {
         if t < self.rise {
             self.rising(t)
@@ -172,7 +173,7 @@ impl Slew {
         }
     }
 
-    /// The same while the rate rises.
+    /// Returns angle (rad), rate (rad/s) and acceleration (rad/s²) about the axis at time `t` (s) while the rate rises.
     fn rising(&self, t: f64) -> [f64; 3] {
         let most = self.acceleration;
         match self.profile {
@@ -208,10 +209,10 @@ mod tests {
 
     #[test]
     fn sixty_degrees_take_as_long_as_by_hand() {
-        // 2 r/a + (A - r²/a)/r.
+        // Expected duration: 2 r/a + (A - r²/a)/r.
         let slew = slew(SIXTY, 8e-3, Profile::Trapezoid);
         assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-12, "{}", slew.duration());
-        // a t²/2 while it speeds up, and the same backwards at the end.
+        // Expected angle: a t²/2 while the rate rises, and symmetric at the end.
         let from = rotation(&Vector::zeros());
         let plain = Slew::new([from, turned(SIXTY)], 2e-4, 8e-3, Profile::Trapezoid);
         let at = |t: f64| plain.at(t).attitude;
@@ -263,7 +264,7 @@ mod tests {
         let nowhere = slew(0.0, 8e-3, Profile::Versine);
         assert_eq!(nowhere.duration(), 0.0);
         assert!(nowhere.at(0.0).attitude.norm().is_finite() && nowhere.at(0.0).acceleration.norm() == 0.0);
-        // 300 degrees are 60 the other way, whichever sign the quaternion has.
+        // A rotation by 300 degrees is one by 60 the other way, whichever sign the quaternion has.
         for sign in [1.0, -1.0] {
             let slew = Slew::new([turned(0.0), turned(5.0 * SIXTY) * sign], 2e-4, 8e-3, Profile::Trapezoid);
             assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-11, "{}", slew.duration());

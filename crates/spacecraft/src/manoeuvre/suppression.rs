@@ -1,4 +1,4 @@
-//! Which modes a command leaves at rest.
+//! Selection of the modes that a command leaves at rest.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use crate::document::Fault;
 use crate::numerics::phasor::Phasor;
 use crate::quantity::Finite;
 
-/// No command has more zeros.
+/// Largest number of zeros of a command.
 const MOST: usize = 40;
 
 /// Modes that a command leaves at rest. Both keys add up.
@@ -41,7 +41,7 @@ fn once() -> u32 {
     1
 }
 
-/// A zero that a command has: it leaves a mode of this frequency and damping at rest.
+/// Zero of a command: a frequency and damping ratio of modes that it leaves at rest.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Zero {
     /// Natural frequency (rad/s).
@@ -51,20 +51,20 @@ pub struct Zero {
 }
 
 impl Zero {
-    /// The pole -zeta w + i w_d of a mode (1/s).
+    /// Returns the pole -zeta w + i w_d of a mode (1/s).
     pub fn pole(&self) -> Phasor {
         let Self { frequency: w, damping: zeta } = *self;
         Phasor::new(-zeta * w, w * f64::sqrt((1.0 - zeta) * (1.0 + zeta)))
     }
 
-    /// The zero at a mode.
+    /// Returns the zero at a mode.
     pub fn of(mode: &Mode) -> Self {
         Self { frequency: mode.frequency.get(), damping: mode.damping.get() }
     }
 }
 
 impl Suppression {
-    /// The zeros, by frequency. `place` is the key of the table.
+    /// Returns the zeros, by frequency. `place` is the key of the table, for faults.
     pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Fault> {
         let mut zeros = lowest(self.suppress, modes, place)?;
         let beside: usize = self.zeros.iter().map(|target| target.times as usize).sum();
@@ -96,7 +96,8 @@ impl Suppression {
     }
 }
 
-/// The zeros at so many modes of the lowest frequencies. `place` is the key of the table that has the number.
+/// Returns the zeros at the `count` modes of the lowest frequencies. `place` is the key of the table that has the
+/// number.
 pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Fault> {
     let key = || format!("{place}.suppress");
     if count > modes.len() {
@@ -112,7 +113,7 @@ pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Fa
     Ok(zeros)
 }
 
-/// Why an index is none of a mode.
+/// Returns the message about an index that belongs to no mode.
 pub fn index_beyond(index: usize, modes: &[Mode]) -> String {
     match modes.len() {
         0 => format!("must be the index of a mode, and the body has none, got {index}"),

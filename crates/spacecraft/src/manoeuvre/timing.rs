@@ -1,24 +1,24 @@
-//! The shortest time of a manoeuvre whose peak torque is limited, and the times to which a single harmonic is tuned.
+//! Shortest time of a manoeuvre whose peak torque is limited, and the times to which a single harmonic is tuned.
 
 use super::plan::Plan;
 use super::planner::Planner;
 use crate::document::Fault;
 
-/// The search goes up by this factor until the peak is low enough.
+/// Factor by which the search increases the time until the peak is low enough.
 const STRIDE: f64 = 1.02;
-/// So many strides at most: a time ten thousand times that of the rigid body.
+/// Largest number of strides: a time ten thousand times that of the rigid body.
 const STRIDES: usize = 480;
 
-/// The plan of the shortest time whose peak torque (N m) does not exceed a limit.
+/// Plans the shortest manoeuvre whose peak torque does not exceed `limit` (N m).
 pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Fault> {
     let bound = planner.rigid_bound(limit);
     let mut low = match planner.body.drive {
         crate::body::Drive::Torque => bound,
-        // Modes that give way can make the hub's torque less than that of the rigid body.
+        // Flexible modes can make the hub's torque less than that of the rigid body.
         crate::body::Drive::Motion => 0.5 * bound,
     }
     .max(planner.shaper() * (1.0 + 1e-9));
-    // Where the bound itself is the time, its rounding is forgiven.
+    // The bound may be the time itself, so its rounding is tolerated.
     let peak = |time: f64| -> Result<f64, Fault> {
         let plan = planner.plan(time)?;
         Ok(plan.peak_torque(planner.body).value / limit - 1.0)
@@ -46,10 +46,11 @@ fn impossible(limit: f64) -> Fault {
     Fault::new("peak_torque", format!("must be enough for the command in some time, got {limit} N m"))
 }
 
-/// Where a function falls through zero, from above: a point at which it is not above, to 1e-13 of it.
+/// Finds the point at which a function falls through zero: a point at which it is not positive, within a relative
+/// 1e-13.
 fn crossing(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -> f64 {
     while high.0 - low.0 > 1e-13 * high.0 {
-        // A secant that stays off the ends, and the middle where it leads nowhere.
+        // Try a secant that stays off the ends, and the middle if the secant fails.
         let secant = low.0 + (high.0 - low.0) * (low.1 / (low.1 - high.1));
         let length = high.0 - low.0;
         let margin = 2e-14 * high.0;
@@ -70,20 +71,20 @@ fn crossing(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -
     high.0
 }
 
-/// A time for which a command of a single harmonic leaves a mode at rest.
+/// Family of a single-harmonic command that can leave a mode at rest.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Single {
-    /// A single sine: w T = 2 pi psi, psi >= 2.
+    /// Single sine: w T = 2 pi psi, psi >= 2.
     Sine,
-    /// A single cosine: w T = (2 psi + 1) pi, psi >= 1; it needs the same rate before and after.
+    /// Single cosine: w T = (2 psi + 1) pi, psi >= 1; it needs the same rate before and after.
     Cosine,
 }
 
-/// The times nearest to a given one (s), below and above it, for which a single harmonic leaves an undamped mode of this
-/// frequency (rad/s) at rest; there may be none below.
+/// Returns the times nearest to `time` (s), below and above it, for which a single harmonic leaves an undamped mode of
+/// this frequency (rad/s) at rest; there may be none below.
 pub fn tuned(single: Single, frequency: f64, time: f64) -> (Option<f64>, f64) {
     let half = std::f64::consts::PI / frequency;
-    // w T/pi is 4, 6, 8, ... or 3, 5, 7, ...
+    // The values of w T/pi are 4, 6, 8, ... or 3, 5, 7, ...
     let (first, step) = match single {
         Single::Sine => (4.0, 2.0),
         Single::Cosine => (3.0, 2.0),

@@ -1,4 +1,4 @@
-//! A turn about one axis by an acceleration that is a waveform: a planned command, or a turn with limits through a shaper.
+//! Slew about one axis with an acceleration that is a waveform: a planned command, or a limited slew through a shaper.
 
 use nalgebra::Quaternion;
 
@@ -7,25 +7,25 @@ use crate::attitude::{Vector, rotation};
 use crate::document::Fault;
 use crate::waveform::Waveform;
 
-/// How many places of a turn its largest rate is taken from, beside where its acceleration jumps.
+/// Number of samples from which the largest rate is taken, besides the breaks of the acceleration.
 const PLACES: u32 = 200;
 
-/// A turn from rest to rest.
+/// Slew from rest to rest by a planned command.
 #[derive(Clone, Debug, PartialEq)]
 pub struct RestToRest {
     from: Quaternion<f64>,
     to: Quaternion<f64>,
-    /// The axis, the same in both attitudes.
+    /// Rotation axis, with the same components in both attitudes.
     axis: Vector,
-    /// The acceleration about it (rad/s²).
+    /// Acceleration about the axis (rad/s²).
     acceleration: Waveform,
 }
 
 impl RestToRest {
-    /// The turn on the shorter way, with the acceleration (rad/s²) that is planned for its angle (rad).
+    /// Creates the shorter rotation, with the acceleration (rad/s²) that `plan` returns for its angle (rad).
     ///
     /// # Errors
-    /// Why there is no such plan.
+    /// The reason why there is no plan.
     pub fn new(
         [from, to]: [Quaternion<f64>; 2],
         plan: impl FnOnce(f64) -> Result<Waveform, Fault>,
@@ -34,24 +34,24 @@ impl RestToRest {
         Ok(Self { from, to, axis, acceleration: plan(angle)? })
     }
 
-    /// The attitude at its end.
+    /// Returns the final attitude.
     pub fn to(&self) -> Quaternion<f64> {
         self.to
     }
 
-    /// How long it lasts (s).
+    /// Returns the duration (s).
     pub fn duration(&self) -> f64 {
         self.acceleration.end()
     }
 
-    /// About the largest rate on the way (rad/s).
+    /// Returns an estimate of the largest rate of the slew (rad/s), from samples.
     pub fn fastest(&self) -> f64 {
         let step = self.duration() / f64::from(PLACES);
         let places = (0..=PLACES).map(|place| step * f64::from(place)).chain(self.acceleration.breaks());
         places.map(|t| self.acceleration.impulse(0.0, t).abs()).fold(0.0, f64::max)
     }
 
-    /// Where it is so many seconds after it began.
+    /// Returns attitude, rate and acceleration at `t` seconds after the start of the slew.
     pub fn at(&self, t: f64) -> Pose {
         if t >= self.duration() {
             return Pose::at_rest(self.to);

@@ -1,7 +1,7 @@
-//! The tables (.dat) of a frequency step of CalculiX.
+//! Tables (.dat) of a frequency step of CalculiX.
 //!
-//! Participation factors leave out the mass that couples clamped and free nodes: their error falls with the third power of
-//! the size of elements at the clamp.
+//! Participation factors omit the mass that couples clamped and free nodes: their error falls with the third power of
+//! the element size at the clamp.
 
 use std::io::BufRead;
 
@@ -9,7 +9,7 @@ use super::tables::{ParticipationTable, of_factors};
 use super::text::{Lines, TextLine};
 use super::{FileResults, Natural, lowest};
 
-/// The table that the lines are of.
+/// Table to which the current lines belong.
 #[derive(Copy, Clone, PartialEq, Eq)]
 enum At {
     Elsewhere,
@@ -19,10 +19,10 @@ enum At {
     TotalMass,
 }
 
-/// Reads a file.
+/// Reads the modes of a file.
 ///
 /// # Errors
-/// What is wrong with it, with its line.
+/// The error, with its line.
 pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut at = At::Elsewhere;
     let mut natural: Vec<Natural> = Vec::new();
@@ -87,12 +87,12 @@ fn eigenvalue(line: &TextLine, last: Option<&Natural>) -> Result<Natural, String
             "line {number}: mode {mode} must be stable, got an imaginary part of {imaginary} rad/time"
         ));
     }
-    // Shapes are normalised by mass.
+    // Shapes are mass-normalised.
     let natural = Natural { line: number, mode, frequency: fields.real(2)?, generalised_mass: 1.0 };
     natural.checked(fields.real(1)?, fields.real(3)?)
 }
 
-/// The mass of the free nodes: what moves along one axis, in the direction with most of it.
+/// Returns the mass of the free nodes: the largest of the masses that move along one axis.
 fn total(line: &TextLine) -> Result<f64, String> {
     let fields =
         line.fields(["X-COMPONENT", "Y-COMPONENT", "Z-COMPONENT", "X-ROTATION", "Y-ROTATION", "Z-ROTATION"])?;

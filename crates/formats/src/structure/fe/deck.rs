@@ -1,4 +1,4 @@
-//! The deck (.inp) of a run of CalculiX: what its results leave out of its masses.
+//! Deck (.inp) of a CalculiX run: the data about masses that the results omit.
 
 use std::collections::BTreeMap;
 use std::io::BufRead;
@@ -8,8 +8,8 @@ use nalgebra::Vector3;
 use super::element::MassRule;
 use super::text::{Lines, TextLine, real};
 
-/// Element types: their name, how many nodes a line of the deck gives them, and how their mass is integrated; none of a
-/// point mass. Those with incompatible modes (C3D8I, S4, B31) move in ways that results do not show.
+/// Element types: name, number of nodes in the deck, and rule of mass integration (`None` for a point mass). Types with
+/// incompatible modes (C3D8I, S4, B31) are excluded, because results do not contain all of their motion.
 const TYPES: [(&str, usize, Option<MassRule>); 17] = [
     ("C3D20", 20, Some(MassRule::Full)),
     ("C3D20R", 20, Some(MassRule::Reduced)),
@@ -30,35 +30,35 @@ const TYPES: [(&str, usize, Option<MassRule>); 17] = [
     ("MASS", 1, None),
 ];
 
-/// A mass at a node.
+/// Point mass at a node.
 #[derive(Debug)]
 pub struct PointMass {
-    /// Its node.
+    /// Number of the node.
     pub node: usize,
-    /// Its mass, in the deck's units.
+    /// Mass, in the deck's units.
     pub mass: f64,
-    /// Where its element stands in the deck.
+    /// Line of the element in the deck.
     pub line: usize,
 }
 
-/// What a deck tells.
+/// Mass data of a deck.
 #[derive(Debug, Default)]
 pub struct Deck {
     /// Densities of materials, by their names in capitals.
     pub densities: BTreeMap<String, f64>,
-    /// How the mass of each element is integrated.
+    /// Rule of mass integration of each element.
     pub rules: BTreeMap<usize, MassRule>,
-    /// Masses at nodes.
+    /// Point masses at nodes.
     pub masses: Vec<PointMass>,
     /// Positions of the nodes.
     pub positions: BTreeMap<usize, Vector3<f64>>,
 }
 
-/// The keyword that the lines belong to.
+/// Keyword to which the current lines belong.
 enum At {
     Elsewhere,
     Nodes,
-    /// Elements: their nodes that are still to come on further lines, their type, and their set.
+    /// Element lines: number of nodes still missing, type, and set.
     Elements {
         missing: usize,
         kind: usize,
@@ -78,10 +78,10 @@ enum At {
 struct Reader {
     deck: Deck,
     material: Option<String>,
-    /// Elements of each set: those of type MASS with their node and line, and names of sets within.
+    /// Elements of type MASS in each set, and names of sets within; `points` holds the elements' nodes and lines.
     members: BTreeMap<String, Vec<Member>>,
     points: BTreeMap<usize, (usize, usize)>,
-    /// Masses of sets, and the line of each.
+    /// Masses of sets, with the line of each.
     given: Vec<(String, f64, usize)>,
 }
 
@@ -94,7 +94,7 @@ enum Member {
 /// Reads a deck.
 ///
 /// # Errors
-/// What is wrong with it, with its line.
+/// The error, with its line.
 pub fn read(text: impl BufRead) -> Result<Deck, String> {
     let (mut reader, mut at) = (Reader::default(), At::Elsewhere);
     let mut lines = Lines::of(text);
@@ -104,7 +104,7 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
         if text.is_empty() || text.starts_with("**") {
             continue;
         }
-        // A keyword goes on behind a comma at its end.
+        // A keyword that ends with a comma continues on the next line.
         if text.starts_with('*') || keyword.ends_with(',') {
             keyword.push_str(&line.squeezed().to_ascii_uppercase());
             if !keyword.ends_with(',') {
@@ -118,7 +118,7 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
     reader.finish()
 }
 
-/// The value of a parameter of a keyword.
+/// Returns the value of a parameter of a keyword.
 fn parameter(keyword: &str, name: &str) -> Option<String> {
     let value = |word: &str| Some(word.strip_prefix(name)?.strip_prefix('=')?.to_owned());
     keyword.split(',').find_map(value)
@@ -180,7 +180,7 @@ impl Reader {
             At::Nodes => {
                 let mut position = Vector3::zeros();
                 for (axis, name) in ["x", "y", "z"].into_iter().enumerate() {
-                    // What is left out is 0.
+                    // Omitted coordinates are 0.
                     position[axis] = if words.len() > axis + 1 { number_at(axis + 1, name)? } else { 0.0 };
                 }
                 self.deck.positions.insert(whole(0, "node")?, position);
@@ -249,7 +249,7 @@ impl Reader {
         Ok(())
     }
 
-    /// Puts masses to the nodes of their elements.
+    /// Assigns the masses to the nodes of their elements.
     fn finish(mut self) -> Result<Deck, String> {
         let mut weighed: BTreeMap<usize, f64> = BTreeMap::new();
         for (set, mass, line) in &self.given {

@@ -1,56 +1,57 @@
-//! Solid elements: their shape functions in natural coordinates, and the points at which their mass is integrated.
+//! Solid elements: their shape functions in natural coordinates, and the quadrature points of their mass.
 //!
-//! Shape functions are the polynomials of a kind that are 1 at one node and 0 at the others, so nodes and monomials tell all.
+//! Shape functions are the polynomials of a kind that are 1 at one node and 0 at the others, and follow from nodes and
+//! monomials.
 
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
-/// The kinds of elements, with the order of nodes that `CalculiX` writes.
+/// Kinds of elements, with the order of nodes that `CalculiX` writes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum ElementKind {
-    /// A brick with nodes at its corners.
+    /// Brick with nodes at its corners.
     Brick8,
-    /// A brick with nodes at its corners and edges.
+    /// Brick with nodes at its corners and edges.
     Brick20,
-    /// A wedge with nodes at its corners.
+    /// Wedge with nodes at its corners.
     Wedge6,
-    /// A wedge with nodes at its corners and edges.
+    /// Wedge with nodes at its corners and edges.
     Wedge15,
-    /// A tetrahedron with nodes at its corners.
+    /// Tetrahedron with nodes at its corners.
     Tetrahedron4,
-    /// A tetrahedron with nodes at its corners and edges.
+    /// Tetrahedron with nodes at its corners and edges.
     Tetrahedron10,
 }
 
-/// How densely mass is integrated.
+/// Quadrature rule of the mass.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum MassRule {
-    /// As few points as a program that integrates such an element by a reduced rule takes.
+    /// Number of points of a program's reduced integration of the element.
     Reduced,
-    /// All.
+    /// Full number of points.
     Full,
 }
 
-/// A point of an element: natural coordinates, and its weight in them.
+/// Quadrature point of an element: natural coordinates, and weight.
 type Point = ([f64; 3], f64);
 
-/// The shape functions of a kind: each a sum of monomials.
+/// Shape functions of a kind of element: each is a sum of monomials.
 pub struct Functions {
     kind: ElementKind,
     monomials: Vec<[i32; 3]>,
-    /// A column a function.
+    /// Coefficients of the monomials, one column for each function.
     coefficients: DMatrix<f64>,
 }
 
-/// The shape functions at a point, and their derivatives by natural coordinates.
+/// Shape functions at a point, with their derivatives by natural coordinates.
 pub struct Values {
-    /// Their values.
+    /// Values of the functions.
     pub functions: Vec<f64>,
-    /// Their derivatives.
+    /// Derivatives of the functions.
     pub derivatives: Vec<Vector3<f64>>,
 }
 
 impl ElementKind {
-    /// The kind with a number of the format.
+    /// Returns the kind with a number of the format.
     pub const fn of(number: usize) -> Option<Self> {
         Some(match number {
             1 => Self::Brick8,
@@ -63,7 +64,7 @@ impl ElementKind {
         })
     }
 
-    /// How many nodes it has.
+    /// Returns the number of nodes.
     pub const fn count(self) -> usize {
         match self {
             Self::Brick8 => 8,
@@ -75,7 +76,7 @@ impl ElementKind {
         }
     }
 
-    /// Its nodes: corners, and edges as the format orders them, those of a brick or wedge bottom, upright, top.
+    /// Returns the nodes: corners, then edges as the format orders them, for a brick or wedge bottom, upright, top.
     fn nodes(self) -> Vec<[f64; 3]> {
         let (ring, prism): (&[[f64; 2]], bool) = match self {
             Self::Brick8 | Self::Brick20 => (&[[-1.0, -1.0], [1.0, -1.0], [1.0, 1.0], [-1.0, 1.0]], true),
@@ -100,7 +101,7 @@ impl ElementKind {
         nodes
     }
 
-    /// The monomials that its shape functions consist of.
+    /// Returns the monomials of which the shape functions consist.
     fn monomials(self) -> Vec<[i32; 3]> {
         let all = (0..27).map(|index| [index % 3, index / 3 % 3, index / 9]);
         let squares = |of: &[i32; 3]| of.iter().filter(|power| **power == 2).count();
@@ -108,7 +109,7 @@ impl ElementKind {
             let [x, y, z] = *of;
             match self {
                 Self::Brick8 => squares(of) == 0,
-                // One square beside what the corners have.
+                // At most one square, in addition to the monomials of the corners.
                 Self::Brick20 => squares(of) <= 1,
                 Self::Wedge6 => x + y <= 1 && z <= 1,
                 Self::Wedge15 => x + y <= 2 && z <= 1 || x + y <= 1,
@@ -119,7 +120,7 @@ impl ElementKind {
         all.filter(fits).collect()
     }
 
-    /// The points at which mass is integrated, and their weights.
+    /// Returns the quadrature points of the mass, with their weights.
     pub fn points(self, rule: MassRule) -> Vec<Point> {
         let line = |count: usize| -> &[(f64, f64)] {
             match count {
@@ -152,7 +153,7 @@ impl ElementKind {
                 places.map(|([x, y], z)| ([*x, *y, z.0], z.1 / 6.0)).collect()
             }
             Self::Tetrahedron4 => vec![([0.25; 3], 1.0 / 6.0)],
-            // Four points, as the program takes them.
+            // Four points, as in the program.
             Self::Tetrahedron10 => {
                 let (near, far) = (0.138_196_601_125_010_5, 0.585_410_196_624_968_5);
                 [[near; 3], [far, near, near], [near, far, near], [near, near, far]]
@@ -162,7 +163,7 @@ impl ElementKind {
         }
     }
 
-    /// How far natural coordinates are outside of it: 0 within.
+    /// Returns the distance of natural coordinates from the element: 0 inside.
     pub fn outside(self, at: &Vector3<f64>) -> f64 {
         let beyond = |excess: f64| excess.max(0.0);
         match self {
@@ -176,7 +177,7 @@ impl ElementKind {
 }
 
 impl Functions {
-    /// Those of a kind.
+    /// Creates the shape functions of a kind of element.
     pub fn of(kind: ElementKind) -> Self {
         let (nodes, monomials) = (kind.nodes(), kind.monomials());
         let count = kind.count();
@@ -186,12 +187,12 @@ impl Functions {
         Self { kind, monomials, coefficients }
     }
 
-    /// Their kind.
+    /// Returns the kind of element.
     pub const fn kind(&self) -> ElementKind {
         self.kind
     }
 
-    /// Their values at a point.
+    /// Returns the values of the functions at a point.
     pub fn at(&self, point: [f64; 3]) -> Values {
         let count = self.monomials.len();
         let mut values = Values { functions: vec![0.0; count], derivatives: vec![Vector3::zeros(); count] };
@@ -219,12 +220,12 @@ fn monomial(powers: [i32; 3], at: [f64; 3]) -> f64 {
 }
 
 impl Values {
-    /// What is interpolated of numbers at the nodes.
+    /// Interpolates vectors given at the nodes.
     pub fn of(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Vector3<f64> {
         self.functions.iter().zip(nodes).map(|(function, at)| at * *function).sum()
     }
 
-    /// Derivatives of what is interpolated: a column for each natural coordinate.
+    /// Returns the derivatives of vectors interpolated from the nodes: one column for each natural coordinate.
     pub fn slopes(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Matrix3<f64> {
         self.derivatives.iter().zip(nodes).map(|(slope, at)| at * slope.transpose()).sum()
     }

@@ -1,7 +1,7 @@
-//! The printed results (.f06) of Nastran and MYSTRAN: eigenvalues, participation factors, effective masses.
+//! Printed results (.f06) of Nastran and MYSTRAN: eigenvalues, participation factors, effective masses.
 //!
-//! Nastran breaks tables into pages, and heads each page of an eigenvalue table with its title, but those of `MEFFMASS` with the
-//! headings of the columns alone. So a table goes on until another text begins.
+//! Nastran breaks tables into pages, and heads each page of an eigenvalue table with its title, but those of `MEFFMASS`
+//! with the headings of the columns alone. A table therefore continues until another text begins.
 
 use std::io::BufRead;
 
@@ -14,7 +14,7 @@ const ASK: &str = "ask for `MEFFMASS(ALL) = YES`, in MYSTRAN for `MPFACTOR = ALL
 const NO_EIGENVALUES: &str =
     "must have a table `R E A L   E I G E N V A L U E S`: run normal modes (SOL 103)";
 
-/// The table that the lines are of.
+/// Table to which the current lines belong.
 #[derive(Copy, Clone, PartialEq, Eq)]
 enum At {
     Elsewhere,
@@ -23,18 +23,18 @@ enum At {
     Masses,
     /// Forces at the clamp in a mode, as MYSTRAN prints them.
     Reactions,
-    /// A matrix whose first number is the mass.
+    /// Matrix whose first number is the mass.
     MassMatrix,
 }
 
-/// An eigenvalue table, and what it says of residual vectors.
+/// Eigenvalue table, and its remark about residual vectors.
 #[derive(Default)]
 struct Eigenvalues {
     remark: Remark,
     rows: Vec<Natural>,
 }
 
-/// Which of the tables of a run with residual vectors it is.
+/// Position of an eigenvalue table relative to the augmentation by residual vectors.
 #[derive(Copy, Clone, Default, PartialEq, Eq)]
 enum Remark {
     #[default]
@@ -45,25 +45,25 @@ enum Remark {
 
 struct Reader {
     at: At,
-    /// Lines of a page's head that are still to come.
+    /// Number of remaining lines in the head of a page.
     head: usize,
     eigenvalues: Vec<Eigenvalues>,
-    /// A title was read, and the rows have not begun.
+    /// Remark of a title whose table rows have not begun.
     titled: Option<Remark>,
     factors: ParticipationTable,
     masses: ParticipationTable,
-    /// Whether the factors are MYSTRAN's.
+    /// True if the factors are those of MYSTRAN.
     mystran: bool,
-    /// The mode that MYSTRAN's lines are about.
+    /// Mode to which MYSTRAN's current lines belong.
     eigenvector: Option<usize>,
     reactions: Reactions,
     mass: Option<f64>,
 }
 
-/// Reads a file.
+/// Reads the modes of a file.
 ///
 /// # Errors
-/// What is wrong with it, with its line.
+/// The error, with its line.
 pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut reader = Reader {
         at: At::Elsewhere,
@@ -95,7 +95,7 @@ impl Reader {
             self.head = 3;
         }
         if self.head > 0 {
-            // A title, a subtitle, a label: the label is behind a 0.
+            // A page head has a title, a subtitle and a label, which begins with a 0.
             self.head = if text.starts_with('0') { 0 } else { self.head - 1 };
             return Ok(());
         }
@@ -155,7 +155,7 @@ impl Reader {
         };
         fields.real(6)?;
         let natural = natural.checked(fields.real(2)?, fields.real(4)?)?;
-        // The title of a next page is no new table.
+        // The title on a further page does not begin a new table.
         let goes_on = self.eigenvalues.last().is_some_and(|table| {
             let rises = table.rows.last().is_some_and(|last| last.mode < natural.mode);
             rises && self.titled.is_none_or(|remark| remark == table.remark)
@@ -170,7 +170,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The first row of a matrix in stars, which begins with the mass.
+    /// Reads the first row of a matrix in stars, which begins with the mass.
     fn mass_row(&mut self, line: &TextLine) -> Result<(), String> {
         let Some(row) = line.text.trim_start().strip_prefix('*').filter(|row| !row.starts_with('*')) else {
             return Ok(());
@@ -197,7 +197,7 @@ impl Reader {
             }
             of_masses(&natural, &self.masses, ASK)?
         } else if self.mystran {
-            // MYSTRAN's factors are those of forces on the clamp.
+            // MYSTRAN's factors are those of the forces on the clamp.
             let modes = of_factors(&natural, &self.factors, &self.masses, -1.0)?;
             self.reactions.confirm(&natural, &modes)?;
             modes
@@ -207,7 +207,7 @@ impl Reader {
         Ok(FileResults { modes, mass: self.mass })
     }
 
-    /// The modes of one table: the one that residual vectors were added to, if there is such a one.
+    /// Returns the modes of the eigenvalue table: of the one augmented by residual vectors, if there is such a table.
     fn chosen(&mut self) -> Result<Vec<Natural>, String> {
         let mut tables = std::mem::take(&mut self.eigenvalues);
         if tables.iter().any(|table| table.remark == Remark::After) {
@@ -223,7 +223,7 @@ impl Reader {
     }
 }
 
-/// The table that a title without its blanks begins, if it is one that could be taken for another.
+/// Returns the table that a title (without blanks) begins, if it is the title of a relevant or similar table.
 fn title(squeezed: &str) -> Option<At> {
     Some(match squeezed {
         "MODALPARTICIPATIONFACTORS" => At::Factors,
@@ -247,7 +247,7 @@ fn remark(squeezed: &str) -> Remark {
     }
 }
 
-/// Whether a line may stand between the title of a table and its rows, or between rows.
+/// Returns true if a line may be between the title of a table and its rows, or between rows.
 fn heading(squeezed: &str) -> bool {
     const BEGINNINGS: [&str; 11] =
         ["MODE", "NO.", "NUM", "ORDER", "MASS", "GRID", "SYS", "(", "Reference", "REFERENCE", "Units"];

@@ -1,6 +1,6 @@
-//! A flexible body of 42: mass, stiffness and damping matrices of its modes, and their integrals, in SI.
+//! Flexible body of 42: mass, stiffness and damping matrices of its modes, and their integrals, in SI.
 //!
-//! Headings begin with stars, values end where a `!` begins a comment, and elements that are not there are 0.
+//! Headings begin with stars, values end where a `!` begins a comment, and missing elements are 0.
 
 use std::io::BufRead;
 
@@ -12,31 +12,31 @@ use crate::structure::eigen;
 use crate::structure::mode_table::MOST_MODES;
 use crate::structure::reduced::Unsolved;
 
-/// Angular integrals and linear ones agree to this part.
+/// Relative tolerance between angular and linear integrals.
 const AGREEMENT: f64 = 1e-4;
-/// Matrices are symmetric to this part of their largest element, as they are printed.
+/// Relative tolerance of the symmetry of matrices, as printed.
 const PRINTED: f64 = 1e-6;
-/// Damping couples modes by no more than this part of what it does to each.
+/// Largest coupling of modes by damping, relative to the damping of each mode, that is neglected.
 const MODAL: f64 = 0.1;
 
-/// What a section holds.
+/// Contents of a section.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 enum Holds {
     Mass,
     Stiffness,
     Damping,
-    /// The integral of phi dm.
+    /// Linear momentum: the integral of phi dm.
     Pf,
-    /// The integral of r x phi dm.
+    /// Angular momentum: the integral of r x phi dm.
     Hf,
-    /// The integral of phi r' dm.
+    /// First moments: the integral of phi r' dm.
     L,
 }
 
-/// A section that is being read.
+/// Section that is being read.
 struct Section {
     holds: Holds,
-    /// How many elements it says it has.
+    /// Number of elements stated in the section.
     count: Option<usize>,
     taken: usize,
 }
@@ -47,15 +47,15 @@ struct Reader {
     mass: DMatrix<f64>,
     stiffness: DMatrix<f64>,
     damping: DMatrix<f64>,
-    /// For each mode t, r x phi and r phi', row by row.
+    /// Integrals of phi, r x phi and r phi' (row by row) for each mode.
     integrals: DMatrix<f64>,
     complete: Vec<Holds>,
 }
 
-/// Reads a file.
+/// Reads the modes of a file.
 ///
 /// # Errors
-/// What is wrong with it, with its line.
+/// The error, with its line.
 pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut lines = Lines::of(text);
     let first = lines.next()?.map(|line| line.squeezed()).unwrap_or_default();
@@ -85,14 +85,14 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
     reader.results(keep)
 }
 
-/// A line without its comment.
+/// Returns a line without its comment.
 fn values(line: &TextLine) -> TextLine {
     let text = line.text.split('!').next().unwrap_or_default().trim_end().to_owned();
     TextLine { number: line.number, text, ended: line.ended }
 }
 
 impl Holds {
-    /// How often a section has a row: once a mode, or as often as it says.
+    /// Returns true if the section has one row for each mode; other sections state their number of elements.
     const fn is_full(self) -> bool {
         matches!(self, Self::Pf | Self::Hf)
     }
@@ -166,7 +166,7 @@ impl Reader {
                 let fields = line.fields(["i", "j", "Mode", "Value"])?;
                 let (i, j) = (within(fields.whole(0)?, 3, "i")?, within(fields.whole(1)?, 3, "j")?);
                 let mode = within(fields.whole(2)?, self.modes, "Mode")?;
-                // phi r' there, r phi' here.
+                // The file has phi r', the result r phi'.
                 self.integrals[(mode, 6 + 3 * j + i)] = fields.real(3)?;
             }
         }
@@ -227,7 +227,7 @@ impl Reader {
         Ok(FileResults { modes: (0..count).map(mode).collect(), mass: None })
     }
 
-    /// The integrals, of which rotations follow from first moments where these are there.
+    /// Returns the integrals, with rotations computed from the first moments if those are given.
     fn integrals(&self) -> Result<DMatrix<f64>, String> {
         let mut integrals = self.integrals.clone();
         if integrals.columns(0, 3).amax() == 0.0 {
@@ -262,7 +262,7 @@ impl Reader {
     }
 }
 
-/// Whether a damping matrix of modes is that of each alone, and not nothing.
+/// Returns true if a modal damping matrix is not zero and has negligible coupling of modes.
 fn is_modal(damping: &DMatrix<f64>) -> bool {
     let order = damping.nrows();
     let coupled = |i: usize, j: usize| {

@@ -1,6 +1,7 @@
-//! The shapes (.frd) of a frequency step of CalculiX, as text: nodes, elements, displacements of each mode.
+//! Shapes (.frd) of a frequency step of CalculiX, as text: nodes, elements, displacements of each mode.
 //!
-//! Numbers stand in fixed columns and may touch. Of sections that are not needed, as forces and stresses, nothing is read.
+//! Numbers stand in fixed columns and may touch. Sections that are not needed, such as forces and stresses, are
+//! skipped.
 
 use std::collections::BTreeMap;
 use std::io::BufRead;
@@ -12,50 +13,50 @@ use super::Natural;
 use super::element::ElementKind;
 use super::text::{Lines, TextLine};
 
-/// A node's number and displacement each have so many columns.
+/// Columns of a node's number; `WIDE` is the number of columns of each displacement.
 const NODE: Range<usize> = 3..13;
 const WIDE: usize = 12;
 
-/// An element.
+/// Element of the structure.
 #[derive(Debug)]
 pub struct Element {
-    /// Where it stands in the file.
+    /// Line in the file.
     pub line: usize,
-    /// Its number.
+    /// Number of the element.
     pub number: usize,
-    /// What it is.
+    /// Kind of the element.
     pub kind: ElementKind,
-    /// The number of its material.
+    /// Number of its material.
     pub material: usize,
-    /// The places of its nodes.
+    /// Indices of its nodes.
     pub nodes: Vec<usize>,
 }
 
-/// A mode: its frequency, and the displacement of each node.
+/// Mode: its frequency, and the displacement of each node.
 #[derive(Debug)]
 pub struct NodalMode {
-    /// Its frequency.
+    /// Natural frequency of the mode.
     pub natural: Natural,
     /// Displacements, in the order of positions.
     pub displacements: Vec<Vector3<f64>>,
 }
 
-/// What a file holds.
+/// Contents of a file.
 #[derive(Debug, Default)]
 pub struct Frd {
-    /// Materials by their numbers, in capitals.
+    /// Names of materials in capitals, by their numbers.
     pub materials: BTreeMap<usize, String>,
-    /// The places of nodes, by their numbers.
+    /// Indices of nodes, by their numbers.
     pub places: BTreeMap<usize, usize>,
     /// Positions of the nodes.
     pub positions: Vec<Vector3<f64>>,
-    /// The elements.
+    /// Elements of the structure.
     pub elements: Vec<Element>,
-    /// The modes.
+    /// Modes with their shapes.
     pub shapes: Vec<NodalMode>,
 }
 
-/// The block that the lines are of.
+/// Block to which the current lines belong.
 #[derive(PartialEq)]
 enum At {
     Elsewhere,
@@ -64,7 +65,7 @@ enum At {
     Displacements,
 }
 
-/// What stands before the displacements of a mode.
+/// Data before the displacements of a mode.
 #[derive(Default)]
 struct Head {
     generalised_mass: Option<f64>,
@@ -73,10 +74,10 @@ struct Head {
     cycles: Option<(usize, f64)>,
 }
 
-/// Reads a file.
+/// Reads the shapes of a file.
 ///
 /// # Errors
-/// What is wrong with it, with its line.
+/// The error, with its line.
 pub fn read(text: impl BufRead) -> Result<Frd, String> {
     let (mut frd, mut at, mut head, mut ended) = (Frd::default(), At::Elsewhere, Head::default(), false);
     let mut lines = Lines::of(text);
@@ -165,7 +166,7 @@ impl Frd {
         Ok(At::Displacements)
     }
 
-    /// Takes a row of a block.
+    /// Reads a row of a block.
     fn take(&mut self, line: &TextLine, at: &At) -> Result<(), String> {
         let second = line.text.starts_with(" -2");
         let number = line.number;
@@ -225,7 +226,7 @@ impl Frd {
             At::Displacements => {
                 let Some(shape) = self.shapes.last_mut() else { return Ok(()) };
                 let node = line.column(NODE, "node")?.whole()?;
-                // Nodes come in the order of their positions.
+                // Nodes are in the order of their positions.
                 if self.places.get(&node) != Some(&shape.displacements.len()) {
                     return Err(format!(
                         "line {number}: must have the nodes in the order of their positions, got {node}"
@@ -252,7 +253,7 @@ impl Frd {
         }
     }
 
-    /// Whether the last element has all its nodes.
+    /// Checks that the last element has all its nodes.
     fn is_whole(&self) -> Result<(), String> {
         match self.elements.last() {
             Some(Element { line, number, kind, nodes, .. }) if nodes.len() != kind.count() => Err(format!(
@@ -265,7 +266,7 @@ impl Frd {
     }
 }
 
-/// The three numbers of a node.
+/// Reads the three numbers of a node.
 fn three(line: &TextLine) -> Result<Vector3<f64>, String> {
     let mut three = Vector3::zeros();
     for (axis, name) in ["D1", "D2", "D3"].into_iter().enumerate() {

@@ -1,6 +1,7 @@
-//! What a mode moves: its integrals over the solids of a structure, with the masses that the run had.
+//! Integrals of a mode over the solids of a structure, with the masses of the run.
 //!
-//! Four numbers a node are enough, m = the integral of w dm and s = that of r w dm, with w the node's shape function.
+//! Four numbers for each node suffice: m, the integral of w dm, and s, that of r w dm, with the node's shape function
+//! w.
 
 use std::collections::BTreeMap;
 
@@ -11,17 +12,18 @@ use super::element::{ElementKind, Functions, MassRule, Values};
 use super::frd::{Element, Frd};
 use super::{FileMode, FileResults, StructurePoint, lowest, tables::ParticipationTable};
 
-/// Shapes are normalised by the mass of the structure, and orthogonal in it, to this part.
+/// Tolerance of the normalisation and orthogonality of shapes in the mass of the structure.
 const NORMALISED: f64 = 1e-3;
-/// A point is in an element that it is outside of by less than this part of the element.
+/// Tolerance by which a point of an element may be outside of it, relative to the element.
 const INSIDE: f64 = 1e-3;
-/// And in its middle in a direction, to this part of it: positions have six digits.
+/// Tolerance by which a point is in the middle of an element in a direction, relative to the element: positions have
+/// six digits.
 const MIDDLE: f64 = 1e-3;
 
-/// The modes of a file of shapes, with the masses of its deck.
+/// Computes the modes of a file of shapes, with the masses of its deck.
 ///
 /// # Errors
-/// What does not fit, with its line.
+/// An inconsistency, with its line.
 pub fn modes(
     mut frd: Frd,
     deck: &Deck,
@@ -72,7 +74,7 @@ pub fn modes(
     Ok(FileResults { modes: modes.collect(), mass: Some(sums.masses.iter().sum()) })
 }
 
-/// Shape functions, each made once.
+/// Cache of shape functions and quadrature points.
 #[derive(Default)]
 struct Rules {
     functions: BTreeMap<ElementKind, Functions>,
@@ -92,13 +94,13 @@ impl Rules {
     }
 }
 
-/// What is summed over elements and masses.
+/// Sums over elements and masses.
 struct Sums {
-    /// Of each node the integral of its function.
+    /// Integral of each node's shape function over mass.
     masses: Vec<f64>,
-    /// And of that times the position.
+    /// Integral of each node's shape function times position over mass.
     moments: Vec<Vector3<f64>>,
-    /// The integrals of phi_i . phi_j.
+    /// Integrals of phi_i . phi_j over mass.
     products: DMatrix<f64>,
 }
 
@@ -146,7 +148,7 @@ impl Sums {
         Ok(())
     }
 
-    /// Adds a mass somewhere in an element.
+    /// Adds a mass at a position in an element.
     fn add_mass(
         &mut self,
         mass: f64,
@@ -168,7 +170,7 @@ impl Sums {
         }
     }
 
-    /// Adds a mass at a node: of a solid, or of a shell or beam that became one, in which it moves as its place does.
+    /// Adds a mass at a node: of a solid, or of a shell or beam that was expanded to solids, with which it moves.
     fn add_point(
         &mut self,
         point: &PointMass,
@@ -203,7 +205,7 @@ impl Sums {
         Ok(())
     }
 
-    /// Whether shapes are normalised by these masses.
+    /// Checks that the shapes are normalised by these masses.
     fn are_normalised(&self) -> Result<(), String> {
         for i in 0..self.products.nrows() {
             for j in 0..=i {
@@ -222,24 +224,25 @@ impl Sums {
     }
 }
 
-/// A point, and the elements that it is in.
+/// Point with the elements that contain it.
 struct Found {
     within: Vec<Within>,
 }
 
-/// A point in an element.
+/// Position of a point in an element.
 struct Within {
     element: usize,
-    /// Its natural coordinates.
+    /// Natural coordinates of the point.
     natural: Vector3<f64>,
-    /// The functions there.
+    /// Shape functions at the point.
     values: Values,
-    /// Derivatives of the position by natural coordinates, a column each.
+    /// Derivatives of the position by natural coordinates, one column each.
     directions: Matrix3<f64>,
 }
 
 impl Within {
-    /// The points whose mean is that over the section of a beam, or the thickness of a shell, which this point is the middle of.
+    /// Returns the points whose mean represents the section of a beam or the thickness of a shell, of which this point
+    /// is the middle.
     fn across(&self) -> Vec<[f64; 3]> {
         let longest = (0..3).map(|axis| self.directions.column(axis).norm()).fold(0.0, f64::max);
         let mut points = vec![self.natural];
@@ -277,8 +280,9 @@ impl Found {
         Ok(Self { within })
     }
 
-    /// The displacement and rotation of a shape at the point. Of the directions of an element the short ones tell the rotation: a
-    /// thin one's sections turn as its nodes move, and along it shapes bend more than its functions can.
+    /// Returns displacement and rotation of a shape at the point. The rotation is weighted towards the short directions
+    /// of an element: sections of a thin one turn as its nodes move, and along it shapes bend more than its functions
+    /// can.
     fn shape(&self, frd: &Frd, shape: &[Vector3<f64>], scale: f64) -> [[f64; 3]; 2] {
         let (mut moved, mut turned) = (Vector3::zeros(), Vector3::zeros());
         let part = scale / self.within.len() as f64;
@@ -299,7 +303,7 @@ impl Found {
     }
 }
 
-/// A place in an element, by Newton's method, if it is there.
+/// Finds the natural coordinates of a position in an element by Newton's method; `None` if it is outside.
 fn locate(
     functions: &Functions,
     (index, element): (usize, &Element),

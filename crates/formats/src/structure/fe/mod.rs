@@ -1,6 +1,6 @@
-//! Clamped modes out of the results of finite-element programs: Nastran, MYSTRAN, CalculiX, and files of 42.
+//! Clamped modes from the results of finite-element programs: Nastran, MYSTRAN, CalculiX, and files of 42.
 //!
-//! Modes are about the point that the file's participations are about, in its axes, normalised by mass.
+//! Modes are about the reference point of the file's participations, in its axes, and mass-normalised.
 
 mod calculix;
 mod deck;
@@ -23,64 +23,64 @@ use super::file::open_text_up_to;
 use super::mode_table::MOST_MODES;
 use tables::ParticipationTable;
 
-/// Files are no longer (bytes): what is has shapes or stresses of thousands of nodes, of which nothing is read.
+/// Largest size of a file (bytes): larger ones contain shapes or stresses of thousands of nodes, which are not used.
 const LONGEST: u64 = 64 << 20;
-/// A mode that is this much below the next is none of a clamped structure.
+/// Ratio of a frequency to the next below which the mode does not belong to a clamped structure.
 const MECHANISM: f64 = 1e-3;
-/// A frequency and its square, printed beside each other, agree to this part.
+/// Relative tolerance between a printed frequency and its square.
 const PRINTED: f64 = 1e-5;
 
-/// A format of results.
+/// Format of results.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum ResultFormat {
-    /// The printed results of Nastran or MYSTRAN.
+    /// Printed results of Nastran or MYSTRAN.
     F06,
-    /// The tables of CalculiX.
+    /// Tables of CalculiX.
     CalculiX,
-    /// The shapes of CalculiX, beside its deck.
+    /// Shapes of CalculiX, with the deck in the same directory.
     Frd,
-    /// A flexible body of 42.
+    /// Flexible body of 42.
     Flex,
 }
 
-/// A mode of a clamped structure, in the file's units.
+/// Mode of a clamped structure, in the file's units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileMode {
     /// Natural frequency (rad/s).
     pub frequency: f64,
-    /// The integral of phi dm (sqrt(mass)).
+    /// Integral of phi dm (sqrt(mass)).
     pub translation: [f64; 3],
-    /// The integral of r x phi dm (sqrt(mass) length).
+    /// Integral of r x phi dm (sqrt(mass) length).
     pub rotation: [f64; 3],
-    /// The integral of r phi' dm (sqrt(mass) length), row by row, where the file has it.
+    /// Integral of r phi' dm (sqrt(mass) length), row by row, if the file has it.
     pub moments: Option<[[f64; 3]; 3]>,
-    /// Damping ratio, where the file has it.
+    /// Damping ratio, if the file has it.
     pub damping: Option<f64>,
-    /// Its displacement (1/sqrt(mass)) and rotation (1/(sqrt(mass) length)) at each of the points that were asked for, where
-    /// the file has shapes.
+    /// Displacement (1/sqrt(mass)) and rotation (1/(sqrt(mass) length)) at each requested point, if the file has
+    /// shapes.
     pub shapes: Vec<[[f64; 3]; 2]>,
 }
 
-/// A point of a structure, in the file's axes and units.
+/// Point of a structure, in the file's axes and units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct StructurePoint {
-    /// What errors call it.
+    /// Name for messages.
     pub name: String,
-    /// Where it is.
+    /// Position of the point.
     pub at: [f64; 3],
 }
 
-/// What a file has.
+/// Modes and mass read from a file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FileResults {
-    /// The modes with the lowest frequencies, increasing.
+    /// Modes with the lowest frequencies, increasing.
     pub modes: Vec<FileMode>,
-    /// The mass of the structure, where the file has it: that of the nodes that are free, or of all.
+    /// Mass of the structure, if the file has it: of the free nodes, or of all.
     pub mass: Option<f64>,
 }
 
 impl ResultFormat {
-    /// The format of a file, by the end of its name.
+    /// Returns the format of a file by its extension.
     pub fn of(path: &Path) -> Option<Self> {
         match path.extension()?.to_ascii_lowercase().to_str()? {
             "f06" => Some(Self::F06),
@@ -91,15 +91,15 @@ impl ResultFormat {
         }
     }
 
-    /// Whether it has shapes, of which points are taken.
+    /// Returns true if the format contains shapes, which can be evaluated at points.
     pub const fn has_shapes(self) -> bool {
         matches!(self, Self::Frd)
     }
 
-    /// Reads the lowest modes of a file, all of them without a number, with their shapes at some points.
+    /// Reads the `keep` lowest modes of a file (all for `None`), with their shapes at `points`.
     ///
     /// # Errors
-    /// What is wrong with it, with its line.
+    /// The error, with its line.
     pub fn read(
         self,
         path: &Path,
@@ -112,7 +112,7 @@ impl ResultFormat {
             Self::CalculiX => calculix::read(text, keep),
             Self::Flex => flex::read(text, keep),
             Self::Frd => {
-                // A run names its results as its deck.
+                // CalculiX gives results the name of their deck.
                 let beside = path.with_extension("inp");
                 let told = |why: String| format!("the deck {}: {why}", beside.display());
                 let deck = deck::read(open_text_up_to(&beside, LONGEST).map_err(told)?).map_err(told)?;
@@ -122,7 +122,7 @@ impl ResultFormat {
     }
 }
 
-/// A natural frequency of a file's table of eigenvalues.
+/// Natural frequency in a file's table of eigenvalues.
 #[derive(Clone, Debug)]
 struct Natural {
     line: usize,
@@ -133,7 +133,7 @@ struct Natural {
 }
 
 impl Natural {
-    /// The mode with its participations.
+    /// Returns the mode with the given participations.
     fn with(&self, [a, b, c, d, e, f]: [f64; 6]) -> FileMode {
         let (translation, rotation) = ([a, b, c], [d, e, f]);
         FileMode {
@@ -146,7 +146,7 @@ impl Natural {
         }
     }
 
-    /// The numbers of its row, printed as eigenvalue, rad/s and Hz, which have to say the same.
+    /// Checks that eigenvalue, rad/s and Hz of the row agree.
     fn checked(self, eigenvalue: f64, cycles: f64) -> Result<Self, String> {
         let Self { line, mode, frequency, generalised_mass } = self;
         if eigenvalue <= 0.0 || frequency <= 0.0 {
@@ -169,7 +169,7 @@ impl Natural {
     }
 }
 
-/// The modes with the lowest frequencies, increasing, out of all that the other tables of a file may name.
+/// Returns the modes with the lowest frequencies, increasing; checks that other tables name only modes of this list.
 fn lowest(
     mut natural: Vec<Natural>,
     tables: [&ParticipationTable; 2],
@@ -193,7 +193,7 @@ fn lowest(
     Ok(natural)
 }
 
-/// How many of the modes of a file are kept.
+/// Returns the number of modes to keep of the modes of a file.
 fn kept(there: usize, keep: Option<usize>) -> Result<usize, String> {
     match keep {
         None if there > MOST_MODES => {

@@ -1,16 +1,16 @@
-//! What MYSTRAN's participation factors are right for: forces at the clamp that are those of one grid.
+//! Validity of MYSTRAN's participation factors: they require that the forces at the clamp act at one grid.
 //!
-//! The rotation columns sum moments at clamped grids and leave out the arms of forces there. With one clamped grid they
-//! are right about it; with several nothing in the file tells the arms.
+//! The rotation columns sum the moments at clamped grids without the arms of the forces there. With one clamped grid
+//! they are correct about that grid; with several the file does not contain the arms.
 
 use std::collections::BTreeMap;
 
 use super::text::TextLine;
 use super::{FileMode, Natural};
 
-/// A grid is clamped if its force or moment is more than this part of the largest.
+/// Ratio of a grid's force or moment to the largest one above which the grid counts as clamped.
 const CLAMPED: f64 = 1e-6;
-/// Factors and forces agree to this part of a mode's largest.
+/// Relative tolerance between factors and forces, of a mode's largest.
 const AGREEMENT: f64 = 1e-4;
 
 /// Forces and moments at the clamp, mode by mode.
@@ -20,7 +20,7 @@ pub struct Reactions {
 }
 
 impl Reactions {
-    /// Takes a row `grid, system, three forces, three moments`.
+    /// Reads a row `grid, system, three forces, three moments`.
     ///
     /// # Errors
     /// Fields that are not of this form.
@@ -30,7 +30,7 @@ impl Reactions {
         Ok(())
     }
 
-    /// Whether the modes are about the grid that is clamped, the only one, and push it as they should.
+    /// Checks that only one grid is clamped, and that its forces agree with the participations of the modes.
     ///
     /// # Errors
     /// No forces, several grids, or other forces.

@@ -1,4 +1,5 @@
-//! Real files of shapes with their decks: participations, first moments and the motion of points, and what is refused of broken ones.
+//! Tests with real files of shapes and their decks: participations, first moments, the motion of points, and errors of
+//! broken files.
 
 use std::path::{Path, PathBuf};
 
@@ -12,7 +13,7 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(golden(name)).expect("there")
 }
 
-/// The rows of a structure in a table.
+/// Returns the rows of a structure in a table.
 fn rows(table: &str, structure: &str) -> Vec<Vec<f64>> {
     let row = |row: &str| row.split(',').map(|field| field.parse().expect("a number")).collect();
     text(table).lines().filter_map(|line| line.strip_prefix(&format!("{structure},"))).map(row).collect()
@@ -56,7 +57,7 @@ fn first_moments_follow_from_shapes_and_masses() {
 
 #[test]
 fn points_move_as_the_structure_at_their_place() {
-    // The mean of the nodes of an end face is its centre but for how the face warps.
+    // The mean of the nodes of an end face is its centre, except for the warping of the face.
     for (structure, at, moved, turned) in
         [("boom", [3.05, 1.25, 2.1], 1e-3, 2e-3), ("beam", [4.0, 0.0, 0.0], 2e-5, 1e-4)]
     {
@@ -73,7 +74,7 @@ fn points_move_as_the_structure_at_their_place() {
         }
         assert!(worst[0] < moved && worst[1] < turned, "{structure}: {worst:?}");
     }
-    // The tip of a cantilever with a point mass moves across by x/L of what its middle of mass tells: here a node's own numbers.
+    // At the position of a node, a point has the displacement of that node.
     let results = file("panel.frd", &[tip([6.0, 0.0, 0.0])]);
     assert!((results.modes[0].shapes[0][0][2] - 0.326_269).abs() < 1e-12);
     let error = read(&text("boom.frd"), &text("boom.inp"), &[tip([1.0, 1.0, 0.0])]).expect_err("outside");
@@ -151,7 +152,7 @@ fn what_is_wrong_is_told_with_its_line_and_field() {
     for (error, why) in cases {
         assert!(error.contains(why), "{why}: {error}");
     }
-    // The order of a deck in place of that of the format.
+    // Node order of a deck in place of that of the format.
     let mut mixed = frd.clone();
     for line in frd.lines().filter(|line| line.starts_with(" -2") && line.len() == 103) {
         let order = [0, 1, 6, 7, 8, 9, 2, 3, 4, 5].map(|place| &line[3 + 10 * place..13 + 10 * place]);
@@ -180,7 +181,8 @@ fn sets_of_masses_may_be_written_anyhow() {
 
 #[test]
 fn every_kind_of_element_weighs_what_the_run_took_it_to_weigh() {
-    // A block of 2 m by 0.2 m, askew, by 0.3 m: 6 modes of each kind, which are not normalised by another rule of integration.
+    // Block of 2 m by 0.2 m (skewed) by 0.3 m: 6 modes of each element kind, normalised with only one rule of
+    // integration.
     for kind in ["c3d4", "c3d6", "c3d8", "c3d8r", "c3d10", "c3d15", "c3d20r", "s3", "s4r", "b31r"] {
         let results =
             ResultFormat::Frd.read(&golden(&format!("elements/{kind}.frd")), None, &[]).expect(kind);

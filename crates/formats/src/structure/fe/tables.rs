@@ -1,30 +1,30 @@
-//! Tables of a number for each mode and direction, and participations out of them.
+//! Tables with one number for each mode and direction, and participations computed from them.
 
 use std::ops::{Range, RangeInclusive};
 
 use super::text::{Fields, TextLine};
 use super::{FileMode, Natural};
 
-/// Tables with more rows are none of modes.
+/// Largest number of rows of a table of modes.
 const MOST_ROWS: usize = 20_000;
-/// Numbers that are printed twice agree to this part of them.
+/// Relative tolerance between numbers that are printed twice.
 const PRINTED: f64 = 1e-5;
-/// Effective masses and squares of factors agree to this part of the largest of a mode.
+/// Relative tolerance between effective masses and squares of factors, of a mode's largest.
 const SQUARED: f64 = 1e-4;
-/// What is less, of the largest in its table, is nothing.
+/// Value, relative to the largest in its table, below which a number counts as zero.
 const NOTHING: f64 = 1e-8;
 
-/// A row: a mode, and its six numbers in translation and rotation.
+/// Row of a table: a mode, and its six numbers in translation and rotation.
 #[derive(Clone, Debug)]
 pub struct ParticipationRow {
     line: usize,
     mode: usize,
-    /// Frequency (Hz), where the row has it.
+    /// Frequency (Hz), if the row has it.
     cycles: Option<f64>,
     parts: [f64; 6],
 }
 
-/// A table of such rows, in rising order of modes.
+/// Table of participation rows, in increasing order of modes.
 #[derive(Clone, Debug)]
 pub struct ParticipationTable {
     name: &'static str,
@@ -32,12 +32,12 @@ pub struct ParticipationTable {
 }
 
 impl ParticipationTable {
-    /// An empty table, and what errors call it.
+    /// Creates an empty table with a name for messages.
     pub fn new(name: &'static str) -> Self {
         Self { name, rows: Vec::new() }
     }
 
-    /// Takes a row `mode, Hz, six numbers`.
+    /// Appends a row `mode, Hz, six numbers`.
     ///
     /// # Errors
     /// Fields that are not of this form, and modes that begin again.
@@ -47,7 +47,7 @@ impl ParticipationTable {
         self.push(line, &fields, cycles, 2)
     }
 
-    /// Takes a row `mode, six numbers`.
+    /// Appends a row `mode, six numbers`.
     ///
     /// # Errors
     /// Fields that are not of this form, and modes that begin again.
@@ -85,15 +85,15 @@ impl ParticipationTable {
         Ok(())
     }
 
-    /// Whether there is no row.
+    /// Returns true if there is no row.
     pub fn is_empty(&self) -> bool {
         self.rows.is_empty()
     }
 
-    /// Whether all its modes are among those with eigenvalues.
+    /// Checks that all modes of the table are among those with eigenvalues.
     ///
     /// # Errors
-    /// One that is not.
+    /// A mode without an eigenvalue.
     pub fn is_within(&self, modes: &RangeInclusive<usize>) -> Result<(), String> {
         self.rows.iter().find(|row| !modes.contains(&row.mode)).map_or(Ok(()), |row| {
             let (first, last) = (modes.start(), modes.end());
@@ -104,7 +104,7 @@ impl ParticipationTable {
         })
     }
 
-    /// The row of a mode.
+    /// Returns the row of a mode, whose frequencies must agree.
     fn of(&self, natural: &Natural) -> Result<&ParticipationRow, String> {
         let mode = natural.mode;
         let row = self.rows.iter().find(|row| row.mode == mode).ok_or_else(|| {
@@ -126,8 +126,9 @@ impl ParticipationTable {
     }
 }
 
-/// The modes, of participation factors and their generalised masses: factors of shapes as they are scaled, the sign of
-/// which a program may print the other way round. Effective masses in the file have to be what follows from them.
+/// Computes the modes from participation factors and generalised masses. The factors are those of shapes as the program
+/// scales them, multiplied by `sign` for programs that print the opposite. Effective masses in the file must agree with
+/// them.
 ///
 /// # Errors
 /// Modes without factors, and tables that contradict each other.
@@ -151,7 +152,8 @@ pub fn of_factors(
         .collect()
 }
 
-/// The modes, of effective masses alone: their signs are lost, which only a mode with one direction has no need of.
+/// Computes the modes from effective masses alone, which have lost the signs: this is unambiguous only for one
+/// direction.
 ///
 /// # Errors
 /// A mode with two directions, with what to ask the solver for.
@@ -190,7 +192,7 @@ pub fn of_masses(
         .collect()
 }
 
-/// Whether effective masses are the squares of the factors, times the generalised mass.
+/// Checks that effective masses are the squares of the factors times the generalised mass.
 fn agree(natural: &Natural, factors: &ParticipationRow, masses: &ParticipationRow) -> Result<(), String> {
     const NAMES: [&str; 6] = ["T1", "T2", "T3", "R1", "R2", "R3"];
     for kind in [0..3, 3..6] {

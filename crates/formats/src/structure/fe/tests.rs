@@ -1,4 +1,4 @@
-//! Real files of finite-element programs, and what is refused of broken ones.
+//! Tests with real files of finite-element programs, and errors of broken files.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -30,7 +30,7 @@ fn file(name: &str) -> FileResults {
     ResultFormat::of(&path).expect("a format").read(&path, None, &[]).expect("modes")
 }
 
-/// The modes of a structure by another computation: frequency, t, r, r phi'.
+/// Returns the modes of a structure from an independent computation: frequency, t, r, r phi'.
 fn expected(structure: &str) -> Vec<[f64; 16]> {
     let text = String::from_utf8(bytes("expected.csv")).expect("text");
     let rows = text.lines().filter_map(|line| line.strip_prefix(&format!("{structure},")));
@@ -38,7 +38,7 @@ fn expected(structure: &str) -> Vec<[f64; 16]> {
     rows.map(|line| row(line).try_into().expect("16 numbers")).collect()
 }
 
-/// The largest deviations in frequency (relative), of t in sqrt(mass) and of r in sqrt(inertia).
+/// Returns the largest deviations in frequency (relative), of t in sqrt(mass) and of r in sqrt(inertia).
 fn deviations(modes: &[FileMode], structure: &str, mass: f64, inertia: f64) -> [f64; 3] {
     let expected = expected(structure);
     let mut worst = [0.0_f64; 3];
@@ -55,7 +55,7 @@ fn deviations(modes: &[FileMode], structure: &str, mass: f64, inertia: f64) -> [
 
 #[test]
 fn participations_are_those_of_shapes_and_masses() {
-    // CalculiX leaves out the mass between clamped and free nodes: a coarse panel has t to 3e-3.
+    // CalculiX omits the mass between clamped and free nodes: a coarse panel has t to 3e-3.
     let cases = [
         ("bars.F06", "bars", 14.4, 116.95, [1e-7, 3e-7, 2e-7]),
         ("barsmax.F06", "barsmax", 14.4, 116.95, [1e-7, 3e-7, 2e-7]),
@@ -93,7 +93,7 @@ fn the_first_moments_of_42_are_turned_over() {
 
 #[test]
 fn matrices_of_42_that_are_not_diagonal_are_solved() {
-    // The modes q of bars, in coordinates p with q = A p: M = A'A, K = A' W² A, C = A' D A, Pf, Hf and L times A.
+    // Modes q of bars, in coordinates p with q = A p: M = A'A, K = A' W² A, C = A' D A, and Pf, Hf and L times A.
     let text = String::from_utf8(bytes("bars.flex")).expect("text");
     let rows = expected("bars");
     let a = [[1.0, 0.5, 0.0, 0.0], [0.0, 2.0, 0.0, 0.3], [0.2, 0.0, 1.0, 0.0], [0.0, 0.0, -0.4, 3.0]];
@@ -264,7 +264,7 @@ fn residual_vectors_leave_one_table() {
     assert!(parse(ResultFormat::F06, two.as_bytes(), None).expect_err("two").contains("several subcases"));
 }
 
-/// Numbers that look drawn.
+/// Generator of pseudo-random numbers.
 struct Draws(u64);
 
 impl Draws {
@@ -283,7 +283,7 @@ fn damaged_files_are_refused_or_read_and_never_crash() {
         let whole = bytes(name);
         let sound = parse(format, &whole, None).ok();
         for _ in 0..200 {
-            // What a cut file still tells is what the whole one tells.
+            // Results of a cut file must equal those of the complete one.
             if let Ok(results) = parse(format, &whole[..draws.below(whole.len())], None) {
                 assert_eq!(Some(&results.modes), sound.as_ref().map(|sound| &sound.modes), "{name}");
             }

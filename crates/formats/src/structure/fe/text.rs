@@ -1,23 +1,23 @@
-//! Lines of a text file with their numbers, and the numbers on them as Fortran prints them.
+//! Lines of a text file, and numbers as Fortran prints them.
 
 use std::io::{BufRead, Read};
 use std::ops::Range;
 
-/// No line of a result is longer (bytes): what has longer ones is no text.
+/// Largest length of a line (bytes): files with longer lines are not text.
 const LONGEST: usize = 4096;
 
-/// A line.
+/// Line of a text file.
 #[derive(Debug)]
 pub struct TextLine {
-    /// Its number, from 1.
+    /// Line number, from 1.
     pub number: usize,
-    /// What is on it, without its end and the blanks before that.
+    /// Text of the line, without its end and trailing blanks.
     pub text: String,
-    /// Whether it has an end: the last line of a file that was cut has none.
+    /// True if the line has an end: the last line of a truncated file has none.
     pub ended: bool,
 }
 
-/// The lines of a file, one at a time.
+/// Reader of the lines of a file, one at a time.
 pub struct Lines<R> {
     text: R,
     number: usize,
@@ -25,15 +25,15 @@ pub struct Lines<R> {
 }
 
 impl<R: BufRead> Lines<R> {
-    /// The lines of a text.
+    /// Creates a reader of the lines of a text.
     pub fn of(text: R) -> Self {
         Self { text, number: 0, bytes: Vec::new() }
     }
 
-    /// The next line, none at the end.
+    /// Returns the next line; `None` at the end.
     ///
     /// # Errors
-    /// A line that cannot be read, or is too long for one.
+    /// A line that cannot be read, or is too long.
     pub fn next(&mut self) -> Result<Option<TextLine>, String> {
         self.number += 1;
         let number = self.number;
@@ -47,27 +47,27 @@ impl<R: BufRead> Lines<R> {
         if !ended && self.bytes.len() >= LONGEST {
             return Err(format!("line {number}: must be shorter than {LONGEST} bytes: is this a text file?"));
         }
-        // Titles may be in any encoding, and nothing that is read is.
+        // Titles may be in any encoding; the data that is read is ASCII.
         let text = String::from_utf8_lossy(&self.bytes).trim_end().to_owned();
         Ok(Some(TextLine { number, text, ended }))
     }
 }
 
 impl TextLine {
-    /// The line without blanks: titles are spaced.
+    /// Returns the line without blanks, because titles are spaced.
     pub fn squeezed(&self) -> String {
         self.text.chars().filter(|c| !c.is_whitespace()).collect()
     }
 
-    /// Whether it begins with a whole number, as the rows of tables do, after blanks.
+    /// Returns true if the line begins with a whole number after blanks, as the rows of tables do.
     pub fn is_row(&self) -> bool {
         self.text.split_whitespace().next().is_some_and(|word| word.bytes().all(|byte| byte.is_ascii_digit()))
     }
 
-    /// Its fields, which must be as many as there are names.
+    /// Returns the fields of the line, which must be as many as `names`.
     ///
     /// # Errors
-    /// Another count, or a line without end.
+    /// Another number of fields, or a line without end.
     pub fn fields<const N: usize>(&self, names: [&'static str; N]) -> Result<Fields<'_, N>, String> {
         let number = self.number;
         if !self.ended {
@@ -81,7 +81,7 @@ impl TextLine {
     }
 }
 
-/// What stands in columns of a line.
+/// Text in fixed columns of a line.
 pub struct Column<'a> {
     number: usize,
     name: &'static str,
@@ -89,10 +89,10 @@ pub struct Column<'a> {
 }
 
 impl TextLine {
-    /// What stands between two columns, without blanks around it; columns count from 0.
+    /// Returns the text between two columns, without surrounding blanks; columns count from 0.
     ///
     /// # Errors
-    /// A line that ends before.
+    /// A line that ends before the columns.
     pub fn column(&self, columns: Range<usize>, name: &'static str) -> Result<Column<'_>, String> {
         let number = self.number;
         let word = self.text.get(columns.clone()).filter(|_| self.ended).ok_or_else(|| {
@@ -103,18 +103,18 @@ impl TextLine {
 }
 
 impl Column<'_> {
-    /// As a number.
+    /// Parses the text as a number.
     ///
     /// # Errors
-    /// What else it is.
+    /// A text that is not a finite number.
     pub fn real(&self) -> Result<f64, String> {
         real(self.word).ok_or_else(|| self.wrong("a finite number"))
     }
 
-    /// As a whole number of 0 or more.
+    /// Parses the text as a whole number of 0 or more.
     ///
     /// # Errors
-    /// What else it is.
+    /// A text that is not a whole number.
     pub fn whole(&self) -> Result<usize, String> {
         self.word.parse().map_err(|_| self.wrong("a whole number"))
     }
@@ -124,7 +124,7 @@ impl Column<'_> {
     }
 }
 
-/// The fields of a row.
+/// Fields of a row.
 pub struct Fields<'a, const N: usize> {
     number: usize,
     names: [&'static str; N],
@@ -132,26 +132,26 @@ pub struct Fields<'a, const N: usize> {
 }
 
 impl<const N: usize> Fields<'_, N> {
-    /// A field as a number.
+    /// Parses a field as a number.
     ///
     /// # Errors
-    /// What else it is.
+    /// A field that is not a finite number.
     pub fn real(&self, field: usize) -> Result<f64, String> {
         real(self.words[field]).ok_or_else(|| self.wrong(field, "a finite number"))
     }
 
-    /// A field as a whole number of 0 or more.
+    /// Parses a field as a whole number of 0 or more.
     ///
     /// # Errors
-    /// What else it is.
+    /// A field that is not a whole number.
     pub fn whole(&self, field: usize) -> Result<usize, String> {
         self.words[field].parse().map_err(|_| self.wrong(field, "a whole number"))
     }
 
-    /// Six fields from one on, as numbers.
+    /// Parses six fields from index `from` on as numbers.
     ///
     /// # Errors
-    /// What else they are.
+    /// A field that is not a finite number.
     pub fn six(&self, from: usize) -> Result<[f64; 6], String> {
         let mut six = [0.0; 6];
         for (index, part) in six.iter_mut().enumerate() {
@@ -166,7 +166,7 @@ impl<const N: usize> Fields<'_, N> {
     }
 }
 
-/// A number as Fortran prints it: `D` is an `E`, and an exponent of three digits has neither.
+/// Parses a number as Fortran prints it: `D` stands for `E`, and three-digit exponents have neither.
 pub fn real(field: &str) -> Option<f64> {
     let mut plain = String::with_capacity(field.len() + 1);
     for c in field.chars() {

@@ -1,4 +1,4 @@
-//! The topics of a log: what each row holds, with its units.
+//! Topics of a log: the fields of each row, with their units.
 
 mod one_angle;
 mod run;
@@ -23,12 +23,12 @@ pub use three_axes::{
     TrackedMode, Tracking, Vibration, Vibrations, Wheel, WheelEvent, Wheels,
 };
 
-/// The declarations, in the order of the list.
+/// Topic declarations, in the order of the list.
 const PARTS: [&[Topic]; 4] = [one_angle::DECLARED, three_axes::DECLARED, run::DECLARED, foxglove::DECLARED];
 
 const COUNT: usize = PARTS[0].len() + PARTS[1].len() + PARTS[2].len() + PARTS[3].len() + 1;
 
-/// All topics.
+/// All topics of a log.
 pub const TOPICS: &[Topic] = {
     const ALL: [Topic; COUNT] = {
         let mut all = [Plumes::TOPIC; COUNT];
@@ -48,7 +48,7 @@ pub const TOPICS: &[Topic] = {
     &ALL
 };
 
-/// The position of a topic in [`TOPICS`], found when the program is compiled.
+/// Returns the index of a topic in [`TOPICS`], at compile time.
 pub const fn index_of(name: &str) -> usize {
     let mut index = 0;
     while !same(TOPICS[index].name.as_bytes(), name.as_bytes()) {
@@ -65,7 +65,7 @@ const fn same(a: &[u8], b: &[u8]) -> bool {
     i == a.len() && i == b.len()
 }
 
-/// The label of an enumeration's value, by its identifier in the schema of a log.
+/// Returns the label of an enumeration's value, by its identifier in the schema of a log.
 pub fn label_of(identifier: &str) -> String {
     let states = [
         &Lock::LABELS,

@@ -1,4 +1,4 @@
-//! Topics of bodies with one angle, of laws and of what learns.
+//! Topics of one-axis bodies, of laws and of adaptation.
 
 use crate::label::labels;
 use crate::record::row::{label_cells, rows};
@@ -258,7 +258,7 @@ rows! {
 }
 
 impl Command {
-    /// The three time fields of an instant.
+    /// Returns the three time fields of an instant.
     pub fn times(now: Instant) -> (f64, u64, u64) {
         let (whole, femtoseconds) = now.parts();
         (now.seconds(), whole, femtoseconds)

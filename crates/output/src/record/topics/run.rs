@@ -1,4 +1,4 @@
-//! Topics of a run as a whole: what was simulated, and what it came to.
+//! Topics of a run as a whole: the simulated scenario, and its results.
 
 use crate::record::row::rows;
 use crate::record::states::Onset;

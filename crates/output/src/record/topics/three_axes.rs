@@ -1,4 +1,4 @@
-//! Topics of bodies with three axes.
+//! Topics of three-axis bodies.
 
 use crate::label::labels;
 use crate::motion::turning::Slip;

@@ -1,4 +1,4 @@
-//! An appendage of a spacecraft, as a scenario writes it: a panel, an antenna, a mass on a spring.
+//! Appendage of a spacecraft, as a scenario describes it: a panel, an antenna, a mass on a spring.
 
 use std::borrow::Cow;
 
@@ -83,24 +83,25 @@ pub enum Plate {
 }
 
 impl Appendage {
-    /// Whether it has no extent of its own.
+    /// Returns true if the appendage is a point mass, with zero inertia tensor.
     pub(super) fn is_point(&self) -> bool {
         tensor(&self.inertia) == Matrix3::zeros()
     }
 
-    /// Turns vectors of its own axes, as they are where its drive has this angle (rad), into those of the body.
+    /// Returns the matrix that transforms vectors from the appendage's axes, at drive angle `angle` (rad), to the
+    /// body's.
     pub(super) fn axes(&self, angle: f64) -> Matrix3<f64> {
         let turned = self.turned.matrix();
         self.drive.as_ref().map_or(turned, |drive| turned * drive.turn(angle))
     }
 
-    /// Its clamped modes: those it is written with, or that of its hinge.
+    /// Returns the clamped modes: those of the table, or the single mode of the hinge.
     pub fn clamped_modes(&self) -> Cow<'_, [ClampedMode]> {
         let hinged = self.hinge.as_ref().and_then(|hinge| hinge.mode(&self.swung()));
         hinged.map_or(Cow::Borrowed(&self.modes), |mode| Cow::Owned(vec![mode]))
     }
 
-    /// What it is to its hinge.
+    /// Returns the appendage as a rigid body on its hinge.
     fn swung(&self) -> Swung<'_> {
         Swung {
             mass: self.mass.get(),
@@ -110,10 +111,10 @@ impl Appendage {
         }
     }
 
-    /// What is wrong with its hinge, and what does not go with one.
+    /// Checks the hinge, and that no key is given that is inconsistent with one.
     ///
     /// # Errors
-    /// A key, and why.
+    /// The faulty key, and the reason.
     pub(super) fn check_hinge(&self) -> Result<(), Fault> {
         let Some(hinge) = &self.hinge else { return Ok(()) };
         let others = [
@@ -129,7 +130,7 @@ impl Appendage {
         hinge.check(&self.swung()).map_err(|fault| fault.within("hinge"))
     }
 
-    /// What it is to its drive, if it has one: the next of so many.
+    /// Returns the appendage as a panel of the integrator; its drive, if it has one, gets the index `drives`.
     pub(super) fn panel(&self, drives: usize) -> DrivenPanel {
         let mode = |mode: &ClampedMode| PanelMode {
             frequency: mode.frequency.get(),
@@ -149,7 +150,8 @@ impl Appendage {
         }
     }
 
-    /// What it weighs and how it turns, not deformed, in the body's axes from O, where its own are turned so.
+    /// Returns the mass properties of the undeformed appendage in the body's axes, from the point O; `axes` transforms
+    /// vectors from the appendage's axes to the body's.
     pub(super) fn mass_properties(&self, axes: &Matrix3<f64>) -> MassProperties {
         MassProperties {
             mass: self.mass.get(),
@@ -158,12 +160,13 @@ impl Appendage {
         }
     }
 
-    /// Whether the first moments of a mode are known, and not only their antisymmetric part.
+    /// Returns true if the complete first moments of a mode are known, and not only their antisymmetric part.
     pub(super) fn knows_moments(&self, mode: &ClampedMode) -> bool {
         mode.moments.is_some() || self.plate.is_some() || self.is_point()
     }
 
-    /// Participation of each mode in translation (sqrt(kg)) and in rotation about the root (sqrt(kg) m), in its own axes.
+    /// Returns the participation of each mode in translation (sqrt(kg)) and in rotation about the root (sqrt(kg) m), in
+    /// the axes of the appendage.
     pub fn participations(&self) -> Vec<(Vector, Vector)> {
         self.clamped_modes()
             .iter()
@@ -171,12 +174,12 @@ impl Appendage {
             .collect()
     }
 
-    /// Participation of a mode in translation, in the axes of the appendage (sqrt(kg)).
+    /// Returns the participation of a mode in translation, in the axes of the appendage (sqrt(kg)).
     pub(super) fn translation(&self, mode: &ClampedMode) -> Vector {
         mode.translation(self.mass.get())
     }
 
-    /// First moments of a mode about the root, in the axes of the appendage (sqrt(kg) m).
+    /// Returns the first moments of a mode about the root, in the axes of the appendage (sqrt(kg) m).
     pub(super) fn moments(&self, mode: &ClampedMode) -> Matrix3<f64> {
         if let Some(moments) = mode.moments() {
             return moments;
@@ -186,10 +189,10 @@ impl Appendage {
         }
         let r = mode.rotation.as_ref().map_or_else(Vector::zeros, vector);
         match self.plate {
-            // Bending and torsion leave no doubt; in plane, points move across the length.
+            // Bending and torsion are unambiguous; in plane, points are assumed to move across the length.
             Some(Plate::Y) => Matrix3::new(0.0, 0.0, -r.y, -r.z, 0.0, r.x, 0.0, 0.0, 0.0),
             Some(Plate::X) => Matrix3::new(0.0, r.z, -r.y, 0.0, 0.0, r.x, 0.0, 0.0, 0.0),
-            // Nothing tells the symmetric part: it is left out.
+            // The symmetric part is unknown: it is set to zero.
             None => -0.5 * r.cross_matrix(),
         }
     }

@@ -1,4 +1,4 @@
-//! From the written parts to numbers: total mass, clamped modes as the hub sees them, free modes, points.
+//! Assembly of a spacecraft from its parts: total mass, clamped modes relative to the hub, free modes, points.
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
@@ -21,7 +21,7 @@ use crate::motion::turning::{ClampedModes, DrivenSpacecraft, Flexible, Free, Fre
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
 
-/// A clamped mode as a part of the spacecraft.
+/// Clamped mode as a part of the spacecraft.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Part {
     /// Natural frequency with the root held (rad/s).
@@ -32,28 +32,29 @@ pub struct Part {
     pub translation: Vector,
     /// First moments about the total centre of mass, in the body's axes (sqrt(kg) m).
     pub moments: Matrix3<f64>,
-    /// Whether the first moments are known, and not only their antisymmetric part.
+    /// True if the complete first moments are known, and not only their antisymmetric part.
     pub knows_moments: bool,
-    /// Whether it is the swing of a rigid body on a hinge, which is exact at any angle and rate.
+    /// True if the mode is the swing of a rigid body on a hinge, which is exact at any angle and rate.
     pub is_hinge: bool,
 }
 
-/// An appendage, and what turns vectors of its own axes into those of the body.
+/// Appendage with the matrix that transforms vectors from its axes to the body's.
 type Turned<'a> = (&'a Appendage, Matrix3<f64>);
 
-/// A point of the structure: where it is in the body, and what the clamped modes do there.
+/// Point of the structure: its position in the body, and the shapes of the clamped modes there.
 struct Place<'a> {
     point: &'a NamedPoint,
     at: Vector,
-    /// Displacement and rotation for a unit of each clamped mode, against the hub.
+    /// Displacement and rotation per unit of each clamped mode, relative to the hub.
     shapes: Vec<(Vector, Vector)>,
 }
 
 impl Craft {
-    /// Puts a spacecraft together, with the drives of its appendages at these angles (rad), which those without a drive have too.
+    /// Assembles a spacecraft with the drives at `angles` (rad), one for each appendage (ignored for those without a
+    /// drive).
     ///
     /// # Errors
-    /// A key of data that no spacecraft has, such as `appendage[1].modes[0].translation`, and why.
+    /// The key of inconsistent data, such as `appendage[1].modes[0].translation`, and the reason.
     pub fn assemble(
         spacecraft: &Spacecraft,
         appendages: &[Appendage],
@@ -112,7 +113,7 @@ impl Craft {
     }
 }
 
-/// The spacecraft as drives and hinges turn it, if it has any.
+/// Returns the spacecraft with drives and hinges for the integrator; `None` if it has neither.
 fn driven(
     spacecraft: &Spacecraft,
     appendages: &[Appendage],
@@ -129,21 +130,22 @@ fn driven(
 }
 
 impl HubRotor {
-    /// Its inertia tensor about its axis alone (kg m²).
+    /// Returns the rotor's inertia tensor about its axis alone (kg m²), in the body's axes.
     pub fn spinning(&self) -> Matrix3<f64> {
         self.spin_inertia * self.axis * self.axis.transpose()
     }
 }
 
 impl Part {
-    /// What a unit of the mode adds to the inertia tensor (sqrt(kg) m): 2 tr(N) 1 - N - N'.
+    /// Returns the change of the inertia tensor per unit of the mode (sqrt(kg) m): 2 tr(N) 1 - N - N'.
     fn stretching(&self) -> Matrix3<f64> {
         let n = &self.moments;
         2.0 * n.trace() * Matrix3::identity() - n - n.transpose()
     }
 }
 
-/// The clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C t)'.
+/// Returns the clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C
+/// t)'.
 fn parts(appendages: &[Turned<'_>], centre: &Vector) -> Vec<Part> {
     let of = |(appendage, axes): &Turned<'_>| -> Vec<Part> {
         let from_centre = vector(&appendage.at) - centre;
@@ -169,7 +171,7 @@ fn columns(parts: &[Part], of: impl Fn(&Part) -> Vector) -> Matrix3xX<f64> {
     Matrix3xX::from_fn(columns.len(), |row, column| columns[column][row])
 }
 
-/// All points, those of the hub first.
+/// Returns all points, those of the hub first.
 fn places<'a>(hub: &'a [NamedPoint], appendages: &[Turned<'a>], modes: usize) -> Vec<Place<'a>> {
     let rigid = || vec![(Vector::zeros(), Vector::zeros()); modes];
     let mut places: Vec<_> =
@@ -198,7 +200,7 @@ fn points(places: &[Place], centre: &Vector) -> Result<Vec<NamedPoint>, Fault> {
     places.iter().map(point).collect()
 }
 
-/// The free modes with their state at the start and their shapes at all points.
+/// Returns the free modes with their state at the start and their shapes at all points.
 fn modes(
     appendages: &[Appendage],
     held: &ClampedModes,
@@ -227,7 +229,8 @@ fn modes(
 }
 
 impl Place<'_> {
-    /// Displacement u + phi x (p - c) + F Y and rotation phi + R Y of the point in a free mode, whose clamped parts are Y.
+    /// Returns the displacement u + phi x (p - c) + F Y and the rotation phi + R Y of the point in a free mode that
+    /// consists of the clamped modes Y.
     fn shape(&self, free: &Free, mode: usize, centre: &Vector) -> Result<Shape, Fault> {
         let rotation = free.rotation(mode);
         let hub = (free.translation(mode) + rotation.cross(&(self.at - centre)), rotation);

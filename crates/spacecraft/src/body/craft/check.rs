@@ -1,4 +1,5 @@
-//! Data that no spacecraft can have, each with its key: more mass in the modes than there is, lengths in other units.
+//! Checks for data that no spacecraft can have, each with its key: modes that carry more mass than the appendage has,
+//! lengths in other units.
 
 use nalgebra::{DMatrix, Matrix3, Matrix6, SymmetricEigen, Vector6};
 
@@ -13,19 +14,19 @@ use crate::document::key::bare_or_quoted;
 use crate::structure::eigenvalues;
 use crate::structure::mode_table::MOST_MODES;
 
-/// No part is larger (m): what is, is not in metres.
+/// Largest dimension of a part (m): a larger number is not in metres.
 const LARGEST: f64 = 1000.0;
-/// Printed participations may leave so much less than nothing, as a part of the appendage's own mass.
+/// Tolerance by which rounded participations may exceed the appendage's mass or inertia, relative to it.
 const ROUNDING: f64 = 1e-3;
-/// Parts of a tensor and of first moments that are to agree do so up to this part of them.
+/// Relative tolerance within which redundant parts of a tensor and of first moments must agree.
 const AGREEMENT: f64 = 1e-4;
-/// Participations whose squares are this many times too large are in other units.
+/// Ratio of squared participations to the appendage's mass or inertia above which they are in other units.
 const OTHER_UNITS: f64 = 100.0;
 
-/// What is wrong with the parts of a spacecraft, each by itself and beside the others.
+/// Checks the parts of a spacecraft, each alone and against the others.
 ///
 /// # Errors
-/// The key, and why.
+/// The faulty key, and the reason.
 pub fn check(spacecraft: &Spacecraft, appendages: &[Appendage]) -> Result<(), Fault> {
     hub(spacecraft).map_err(|fault| fault.within("spacecraft"))?;
     let hub_points = spacecraft.hub_points();
@@ -100,7 +101,7 @@ fn in_metres(key: &str, length: f64) -> Result<(), Fault> {
     Err(Fault::new(key, format!("must be within {LARGEST} m, got {length} m: is it in mm?")))
 }
 
-/// The radius of gyration must be a length in metres too.
+/// Checks that the radius of gyration is a plausible length in metres.
 fn extent(inertia: &Matrix3<f64>, mass: f64) -> Result<(), Fault> {
     let radius = f64::sqrt(0.5 * inertia.trace() / mass);
     if radius <= LARGEST {
@@ -160,10 +161,10 @@ fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), Fault> {
     Ok(())
 }
 
-/// Modes must leave the appendage a mass matrix without negative values: the six rigid motions' less what the modes carry.
-///
-/// It is taken about the centre of mass and in principal axes, each divided by what the appendage has there, so that what is
-/// rounding does not depend on units or on the distance of the root.
+/// Checks that the modes leave the appendage a positive semidefinite mass matrix: that of the six rigid motions minus
+/// the part carried by the modes.
+/// || The matrix is taken about the centre of mass and in principal axes, each divided by the appendage's own value, so
+/// that the rounding tolerance does not depend on units or on the distance of the root.
 fn residual(appendage: &Appendage) -> Result<(), Fault> {
     let (mass, centre) = (appendage.mass.get(), vector(&appendage.centre));
     let inertia = tensor(&appendage.inertia);
@@ -227,10 +228,10 @@ fn residual(appendage: &Appendage) -> Result<(), Fault> {
     Ok(())
 }
 
-/// The hub must keep inertia of its own, beside what the modes carry and the rotors spin with.
+/// Checks that the hub keeps inertia besides that carried by the modes and that of the rotors about their axes.
 ///
 /// # Errors
-/// The key of the hub, and what is left.
+/// The key of the hub's inertia, and the least moment left.
 pub fn hub_keeps(left: &Matrix3<f64>, whole: &Matrix3<f64>) -> Result<(), Fault> {
     let matrix = DMatrix::from_iterator(3, 3, left.iter().copied());
     let least = eigenvalues(&matrix).and_then(|values| values.first().copied()).unwrap_or(f64::NAN);

@@ -1,4 +1,4 @@
-//! A mode of an appendage whose root is held, as a scenario or a file gives it.
+//! Mode of an appendage whose root is held, as a scenario or a file gives it.
 
 use std::collections::BTreeMap;
 
@@ -46,20 +46,20 @@ pub struct ClampedMode {
 }
 
 impl ClampedMode {
-    /// Participation in translation (sqrt(kg)) of an appendage of this mass (kg).
+    /// Returns the participation in translation (sqrt(kg)) for an appendage of mass `mass` (kg).
     pub fn translation(&self, mass: f64) -> Vector {
         self.along
             .as_ref()
             .map_or_else(|| vector(&self.translation), |along| vector(along).normalize() * f64::sqrt(mass))
     }
 
-    /// First moments, if they are given (sqrt(kg) m).
+    /// Returns the first moments, if they are given (sqrt(kg) m).
     pub fn moments(&self) -> Option<Matrix3<f64>> {
         self.moments.as_ref().map(tensor)
     }
 }
 
-/// The integral of r x phi dm, from that of r phi' dm: its antisymmetric part.
+/// Returns the integral of r x phi dm, which is the antisymmetric part of the first moments, the integral of r phi' dm.
 pub fn rotation_of(moments: &Matrix3<f64>) -> Vector {
     let n = moments;
     Vector::new(n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)])

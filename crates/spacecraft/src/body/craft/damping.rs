@@ -1,25 +1,25 @@
-//! The damping of free modes: what the clamped modes' own ratios come to.
+//! Damping of free modes, computed from the damping ratios of the clamped modes.
 
 use nalgebra::DMatrix;
 
 use crate::motion::turning::Free;
 
-/// Off-diagonal damping below this is no more than a small error of the response.
+/// Off-diagonal damping coupling below which neglecting it causes only a small error of the response.
 const SMALL: f64 = 0.05;
 
-/// Damping of free modes, Dq = Y' D Y with D = 2 zeta O of the clamped ones.
+/// Damping matrix of free modes, Dq = Y' D Y with D = 2 zeta O of the clamped ones.
 #[derive(Clone, Debug, PartialEq)]
 pub struct FreeDamping {
-    /// The whole matrix Dq (1/s).
+    /// Full matrix Dq (1/s).
     pub matrix: DMatrix<f64>,
-    /// Damping ratios of its diagonal, Dq_ii/(2 W_i).
+    /// Damping ratios of the diagonal of Dq, Dq_ii/(2 W_i).
     pub ratios: Vec<f64>,
-    /// The largest of |Dq_ij| W/|W_i² - W_j²|: about what part of a mode is lost if only the diagonal is kept.
+    /// Largest |Dq_ij| W/|W_i² - W_j²|: the approximate relative error of a mode if only the diagonal is kept.
     pub coupling: f64,
 }
 
 impl FreeDamping {
-    /// The damping of free modes, from the clamped modes' frequencies and ratios.
+    /// Computes the damping of free modes from the frequencies and damping ratios of the clamped modes.
     pub fn new(free: &Free, frequencies: &[f64], ratios: &[f64]) -> Self {
         let mut scaled = free.shapes.clone();
         for (mut row, (frequency, ratio)) in scaled.row_iter_mut().zip(frequencies.iter().zip(ratios)) {
@@ -33,7 +33,7 @@ impl FreeDamping {
             for column in 0..row {
                 let apart = (own[row] * own[row] - own[column] * own[column]).abs();
                 let damped = matrix[(row, column)].abs() * own[row].max(own[column]);
-                // Modes that coincide are coupled by any damping at all.
+                // Any damping at all couples modes of equal frequency.
                 if damped > 0.0 {
                     coupling = coupling.max(damped / apart);
                 }
@@ -43,7 +43,7 @@ impl FreeDamping {
         Self { ratios: ratios.collect(), coupling, matrix }
     }
 
-    /// The whole matrix, if its diagonal does not say enough, or it is asked for.
+    /// Returns the full matrix if the coupling is not small, or if `asked` requires it.
     pub fn whole(&self, asked: bool) -> Option<DMatrix<f64>> {
         (asked || self.coupling > SMALL).then(|| self.matrix.clone())
     }

@@ -1,4 +1,4 @@
-//! The drive of an appendage: the axis about which it turns during a run, and its angle as a function of time.
+//! Drive of an appendage: the axis about which it turns during a run, and its angle as a function of time.
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -58,34 +58,34 @@ pub enum Track {
     Sun,
 }
 
-/// From a time on (s): angle (rad), rate (rad/s) and acceleration (rad/s²) there.
+/// Piece of a drive's profile: start time (s), with angle (rad), rate (rad/s) and constant acceleration (rad/s²) there.
 pub type Piece = [f64; 4];
 
-/// No drive is further turned at the start (rad).
+/// Largest angle of a drive at the start (rad).
 const MOST_ANGLE: f64 = 100.0;
 
 impl Drive {
-    /// The unit vector along its axis, in the axes of the appendage.
+    /// Returns the unit vector along the drive's axis, in the axes of the appendage.
     pub fn axis(&self) -> Vector {
         vector(&self.about).normalize()
     }
 
-    /// What faces the Sun, a unit vector in the axes of the appendage.
+    /// Returns the direction to turn to the Sun, a unit vector in the axes of the appendage.
     pub fn facing(&self) -> Vector {
         self.normal.as_ref().map_or_else(Vector::z, |normal| vector(normal).normalize())
     }
 
-    /// The rotation by an angle (rad) about its axis.
+    /// Returns the rotation by an angle (rad) about the drive's axis.
     pub fn turn(&self, angle: f64) -> Matrix3<f64> {
         let axis = self.axis();
         let (sin, cos) = libm::sincos(angle);
         (1.0 - cos) * axis * axis.transpose() + cos * Matrix3::identity() + sin * axis.cross_matrix()
     }
 
-    /// What single values cannot show to be wrong: a key within, and why.
+    /// Checks the drive for values that are inconsistent with each other.
     ///
     /// # Errors
-    /// See above.
+    /// A key within the drive, and the reason.
     pub fn check(&self) -> Result<(), Fault> {
         let length = vector(&self.about).norm();
         if !(1e-6..=1e6).contains(&length) {
@@ -131,7 +131,7 @@ impl Drive {
         self.fits_in_time()
     }
 
-    /// Whether what follows begins when what comes before has ended.
+    /// Checks that each change of the rate begins after the previous one has ended.
     fn fits_in_time(&self) -> Result<(), Fault> {
         for (index, pair) in self.table.windows(2).enumerate() {
             let [before, after] = [pair[0].time.get(), pair[1].time.get()];
@@ -160,9 +160,10 @@ impl Drive {
         Ok(())
     }
 
-    /// What it does from which time on, if nothing has to be followed; before the first it is at rest, at the angle of that.
+    /// Returns the profile of a drive that tracks no object; before the first piece the drive rests at that piece's
+    /// angle.
     pub fn pieces(&self) -> Vec<Piece> {
-        // Each change of the rate: when it is, and to what.
+        // Each change of the rate: its time (s) and the new rate (rad/s).
         let changes: Vec<[f64; 2]> = if let Some(rate) = self.rate {
             let from = self.from.map_or(0.0, NonNegative::get);
             let until = self.until.map(|until| [until.get(), 0.0]);
@@ -177,7 +178,7 @@ impl Drive {
             self.table.windows(2).map(slope).chain(last).collect()
         };
         let start = self.table.first().map_or(self.angle.get(), |first| first.angle.get());
-        // A drive that turns from the start on has done so before.
+        // A drive that turns from the start on has turned before too.
         let mut now: Piece = [0.0, start, 0.0, 0.0];
         let mut pieces = Vec::new();
         for (index, [time, rate]) in changes.into_iter().enumerate() {
@@ -186,7 +187,7 @@ impl Drive {
                 Some(acceleration) if index > 0 || time > 0.0 => change.abs() / acceleration.get(),
                 _ => 0.0,
             };
-            // Between points of a table half of the change is before the point.
+            // In a table, half of the change of rate is before the point.
             let begins = if self.rate.is_some() { time } else { time - 0.5 * lasts };
             if index == 0 {
                 now[0] = begins;

@@ -1,4 +1,4 @@
-//! A hinge at the root of an appendage: the appendage is a rigid body that swings on it, at any angle, against a spring.
+//! Hinge at the root of an appendage, which swings on it as a rigid body, at any angle, against a spring.
 
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
@@ -31,13 +31,13 @@ pub struct Hinge {
     pub rate: Finite,
 }
 
-/// No hinge is further turned at the start (rad).
+/// Largest angle of a hinge at the start (rad).
 const MOST_ANGLE: f64 = 3.2;
 
-/// An appendage has at least such a part of its inertia about its hinge.
+/// Smallest moment of inertia about the hinge, relative to the appendage's inertia about the root.
 const LEAST: f64 = 1e-9;
 
-/// What swings on a hinge, in the axes of the appendage.
+/// Rigid body that swings on a hinge, in the axes of the appendage.
 pub(super) struct Swung<'a> {
     /// Mass (kg).
     pub mass: f64,
@@ -45,28 +45,29 @@ pub(super) struct Swung<'a> {
     pub centre: Vector,
     /// Inertia tensor about the centre of mass (kg m²).
     pub inertia: Matrix3<f64>,
-    /// Named points.
+    /// Named points of the appendage.
     pub points: &'a [NamedPoint],
 }
 
 impl Hinge {
-    /// The unit vector along its axis, in the axes of the appendage.
+    /// Returns the unit vector along the hinge's axis, in the axes of the appendage.
     pub fn axis(&self) -> Vector {
         vector(&self.about).normalize()
     }
 
-    /// The hinge in terms of the motion.
+    /// Returns the hinge in the integrator's form.
     pub(super) fn of_motion(&self, swung: &Swung<'_>) -> turning::Hinge {
         turning::Hinge { about: self.axis(), inertia: swung.about(&self.axis()) }
     }
 
-    /// Its mode, in which the appendage turns as a whole, by 1/sqrt(I) for a unit; none if its frequency is out of range.
+    /// Returns the mode of the hinge, in which the appendage turns as a whole, by 1/sqrt(I) per unit; `None` if its
+    /// frequency is out of range.
     pub(super) fn mode(&self, swung: &Swung<'_>) -> Option<ClampedMode> {
         let (axis, centre, own) = (self.axis(), swung.centre, &swung.inertia);
         let inertia = swung.about(&axis);
         let unit = f64::sqrt(inertia);
         let frequency = f64::sqrt(self.stiffness.get() / inertia);
-        // The integral of r r' dm, of which r (a x r)' is the product with [a]'.
+        // Integral of r r' dm. That of r (a x r)' is its product with [a]'.
         let second = 0.5 * own.trace() * Matrix3::identity() - own + swung.mass * centre * centre.transpose();
         let moments = second * axis.cross_matrix().transpose() / unit;
         let three = |v: Vector| [v.x, v.y, v.z].map(|of| Finite::new(of).unwrap_or_default());
@@ -87,10 +88,10 @@ impl Hinge {
         })
     }
 
-    /// What single values cannot show to be wrong.
+    /// Checks the hinge for values that are inconsistent with each other or with the appendage.
     ///
     /// # Errors
-    /// A key within, and why.
+    /// A key within the hinge, and the reason.
     pub(super) fn check(&self, swung: &Swung<'_>) -> Result<(), Fault> {
         let length = vector(&self.about).norm();
         if !(1e-6..=1e6).contains(&length) {
@@ -124,7 +125,7 @@ impl Hinge {
 }
 
 impl Swung<'_> {
-    /// Moment of inertia about an axis through the root (kg m²).
+    /// Returns the moment of inertia about an axis through the root (kg m²).
     fn about(&self, axis: &Vector) -> f64 {
         axis.dot(&(self.inertia * axis)) + self.mass * axis.cross(&self.centre).norm_squared()
     }

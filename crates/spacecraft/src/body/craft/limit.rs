@@ -1,23 +1,24 @@
-//! How fast a spacecraft may turn, by its modes.
+//! Largest rate of rotation of a spacecraft for which the model of its modes is valid.
 
 use super::{Craft, Part};
 
-/// Faster than this part of a clamped frequency the terms count that are of second order in the deformation.
+/// Ratio of rate to clamped frequency above which terms of second order in the deformation are significant.
 const WITH_MOMENTS: f64 = 0.2;
-/// The same where first moments are not known, and the pull on what turns is left out.
+/// As `WITH_MOMENTS`, for unknown first moments, with which centrifugal forces on the modes are neglected.
 const WITHOUT_MOMENTS: f64 = 0.01;
 
-/// The largest rate of a spacecraft.
+/// Largest rate of rotation of a spacecraft, with its reason.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Limit {
-    /// It (rad/s).
+    /// Largest rate (rad/s).
     pub rate: f64,
-    /// What it follows from, to be read after the number.
+    /// Explanation of the limit, as a text that follows the number.
     pub why: &'static str,
 }
 
 impl Craft {
-    /// The largest rate up to which its modes tell how it bends; none if it is rigid, or all swing on hinges.
+    /// Returns the largest rate at which the model of the modes is valid; `None` if the spacecraft is rigid, or all
+    /// modes are of hinges.
     pub fn rate_limit(&self) -> Option<Limit> {
         let limit = |part: &Part| {
             if part.knows_moments {

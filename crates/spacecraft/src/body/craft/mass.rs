@@ -1,4 +1,4 @@
-//! Mass, centre of mass and inertia of rigid parts, and of what they are together.
+//! Mass, centre of mass and inertia of rigid parts, and of their sum.
 
 use nalgebra::Matrix3;
 
@@ -11,23 +11,23 @@ pub struct MassProperties {
     pub mass: f64,
     /// Centre of mass (m).
     pub centre: Vector,
-    /// Inertia tensor about that centre (kg m²).
+    /// Inertia tensor about the part's centre of mass (kg m²).
     pub inertia: Matrix3<f64>,
 }
 
 impl MassProperties {
-    /// What parts are together.
+    /// Returns the mass properties of several parts joined rigidly.
     pub fn together(parts: &[Self]) -> Self {
         let mass: f64 = parts.iter().map(|part| part.mass).sum();
         let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector>() / mass;
         let about = |part: &Self| part.inertia + of_point(part.mass, &(part.centre - centre));
         let inertia: Matrix3<f64> = parts.iter().map(about).sum();
-        // Rotated tensors are symmetric but for rounding.
+        // Rotated tensors are symmetric only within rounding.
         Self { mass, centre, inertia: 0.5 * (inertia + inertia.transpose()) }
     }
 }
 
-/// The inertia tensor of a point mass at a distance.
+/// Returns the inertia tensor of a point mass (kg) at a position (m).
 pub fn of_point(mass: f64, at: &Vector) -> Matrix3<f64> {
     mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
 }

@@ -1,7 +1,7 @@
-//! A spacecraft from its parts: a rigid hub, appendages known by their clamped modes, rotors.
+//! A spacecraft assembled from its parts: a rigid hub, appendages with clamped modes, rotors.
 //!
-//! [`Spacecraft`] and [`Appendage`] are what a scenario writes, [`Craft`] is what they come to before anything moves: one body in
-//! free modes (`docs/spacecraft.md`).
+//! [`Spacecraft`] and [`Appendage`] are the forms of a scenario; [`Craft`] is the body in free modes that is assembled
+//! from them before a run (`docs/spacecraft.md`).
 
 mod appendage;
 mod assembly;
@@ -36,32 +36,33 @@ pub use spacecraft::Spacecraft;
 pub use thermal::{Bending, Thermal};
 pub use turned::{Turn, Turned};
 
-/// A rotor of the hub that turns freely about its axis.
+/// Rotor of the hub that turns freely about its axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct HubRotor {
-    /// Unit vector along its axis, in the body's axes.
+    /// Unit vector along the rotor's axis, in the body's axes.
     pub axis: Vector,
     /// Moment of inertia about that axis (kg m²).
     pub spin_inertia: f64,
 }
 
-/// A spacecraft as it moves.
+/// Spacecraft assembled from hub and appendages.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Craft {
-    /// Its rigid body and its free modes, which do not act back on it. Positions are from the total centre of mass.
+    /// Rigid body and free modes, without the action of the modes on the rotation. Positions are from the total centre
+    /// of mass.
     pub spatial: Spatial,
-    /// The coupling of its rotation and its modes in both directions.
+    /// Two-way coupling of rotation and modes.
     pub flexible: Flexible,
     /// Total mass (kg).
     pub mass: f64,
     /// Total centre of mass, from the point O (m).
     pub centre: Vector,
-    /// The clamped modes as the hub sees them, appendage by appendage.
+    /// Clamped modes in the body's axes, appendage by appendage.
     pub parts: Vec<Part>,
-    /// Thermal bending of its appendages.
+    /// Thermal bending of the appendages.
     pub bendings: Vec<Bending>,
     /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
     pub damping_coupling: f64,
-    /// The same parts as drives and hinges turn them, if any does.
+    /// Hub and appendages with drives and hinges for the integrator; `None` if there are neither.
     pub driven: Option<Arc<DrivenSpacecraft>>,
 }

@@ -1,4 +1,4 @@
-//! What jets and forces move a spacecraft by: its mass, and where the point is that is watched.
+//! Translation of a spacecraft under jets and forces: its mass, and the position of its first point.
 
 use nalgebra::Quaternion;
 
@@ -6,19 +6,19 @@ use crate::attitude::{Vector, vector};
 use crate::body::spatial::Spatial;
 use crate::motion::turning::TurningSight;
 
-/// A spacecraft that is pushed, and the point of its hub whose place is told.
+/// Mass of a spacecraft, and the point of its hub whose position is logged.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Moving {
     /// Total mass (kg).
     mass: f64,
-    /// Where the point is while nothing is bent, from the centre of mass (m).
+    /// Position of the point on the undeformed body, from the centre of mass (m).
     at: Vector,
-    /// By how much it moves from there for a unit of each free mode, in the hub's axes (1/sqrt(kg)).
+    /// Displacement of the point per unit of each free mode, in the hub's axes (1/sqrt(kg)).
     shifts: Vec<Vector>,
 }
 
 impl Moving {
-    /// The first point of a body of this mass (kg).
+    /// Creates the translation of a body of the given mass (kg), for its first point.
     pub fn new(body: &Spatial, mass: f64) -> Self {
         let first = body.points.first();
         let at = first.map_or_else(Vector::zeros, |point| vector(&point.position));
@@ -26,12 +26,12 @@ impl Moving {
         Self { mass, at, shifts }
     }
 
-    /// The acceleration of the centre of mass under a force (N), in m/s².
+    /// Returns the acceleration of the centre of mass under a force (N), in m/s².
     pub fn acceleration(&self, force: &Vector) -> Vector {
         force / self.mass
     }
 
-    /// Where the point is, in inertial axes from where the centre of mass was at the start (m), and how fast it moves (m/s).
+    /// Returns the point's position, in inertial axes from the centre of mass at the start (m), and its velocity (m/s).
     pub fn place(&self, seen: &TurningSight) -> [Vector; 2] {
         let sum = |of: &[f64]| -> Vector {
             self.shifts.iter().zip(of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)

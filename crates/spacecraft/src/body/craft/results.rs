@@ -1,4 +1,4 @@
-//! The modes of an appendage out of the results of a finite-element program, and the keys for what these do not tell.
+//! Modes of an appendage from the results of a finite-element program, and the keys for data that such results omit.
 
 use std::path::Path;
 
@@ -13,7 +13,8 @@ use crate::structure::Shape;
 use crate::structure::fe::{FileMode, ResultFormat, StructurePoint};
 use crate::structure::mode_table::{MOST_MODES, ModeRow};
 
-/// The structure of a file weighs what the appendage weighs, but for this part: its clamped nodes, or what is no structure.
+/// Relative difference allowed between the masses of the file's structure and of the appendage, for clamped nodes and
+/// attached equipment.
 const OWN_MASS: f64 = 0.2;
 
 /// Units of a file that states none, because the solver leaves them to its user.
@@ -29,7 +30,7 @@ pub enum Units {
 }
 
 impl Units {
-    /// The unit of length (m).
+    /// Returns the unit of length (m).
     const fn length(self) -> f64 {
         match self {
             Self::Metres => 1.0,
@@ -37,7 +38,7 @@ impl Units {
         }
     }
 
-    /// The unit of mass (kg).
+    /// Returns the unit of mass (kg).
     const fn mass(self) -> f64 {
         match self {
             Self::Metres => 1.0,
@@ -47,10 +48,10 @@ impl Units {
 }
 
 impl Appendage {
-    /// Reads the modes, if they are in a file, or takes over what another appendage read from the same one.
+    /// Reads the modes, if they are in a file, or copies them from another appendage that was read from the same file.
     ///
     /// # Errors
-    /// The key, and what is wrong with it or with the file.
+    /// The key, and the reason or the error in the file.
     pub fn read_modes(&mut self, directory: &Path, others: Option<&Self>) -> Result<(), Fault> {
         self.modes.locate(directory);
         let file = self.modes.file();
@@ -92,13 +93,13 @@ impl Appendage {
         Ok(())
     }
 
-    /// Keeps the modes, and forgets where they were read.
+    /// Keeps the modes inline, and removes the reference to their file.
     pub fn forget_file(&mut self) {
         self.modes.forget_file();
         (self.damping, self.keep, self.units) = (None, None, None);
     }
 
-    /// Keys that tell what results leave out are not there without such results.
+    /// Checks that keys which complete finite-element results are absent without such results.
     fn no_keys_of_results(&self) -> Result<(), Fault> {
         let keys = [
             ("damping", self.damping.is_some()),
@@ -111,7 +112,7 @@ impl Appendage {
         })
     }
 
-    /// Its points in the units of the file.
+    /// Returns the appendage's points in the units of the file.
     fn places(&self) -> Vec<StructurePoint> {
         let unit = self.units.unwrap_or_default().length();
         let place = |point: &NamedPoint| StructurePoint {
@@ -121,7 +122,7 @@ impl Appendage {
         self.points.iter().map(place).collect()
     }
 
-    /// Whether the structure of the file can be this appendage.
+    /// Checks that the mass of the file's structure (kg) agrees with the appendage's.
     fn weighs(&self, structure: f64) -> Result<(), Fault> {
         let mass = self.mass.get();
         if (structure - mass).abs() <= OWN_MASS * mass {
@@ -134,7 +135,7 @@ impl Appendage {
         Err(Fault::new("mass", why))
     }
 
-    /// The damping ratios: those that are given, or else those of the file.
+    /// Returns the damping ratios: those of the scenario if given, else those of the file.
     fn dampings(&self, modes: &[FileMode]) -> Result<Vec<NonNegative>, Fault> {
         let count = modes.len();
         match &self.damping {
@@ -149,7 +150,7 @@ impl Appendage {
         }
     }
 
-    /// A mode in SI.
+    /// Converts a mode of the file to SI units.
     fn clamped(&self, mode: &FileMode, damping: NonNegative) -> Result<ClampedMode, String> {
         let units = self.units.unwrap_or_default();
         let root = f64::sqrt(units.mass());

@@ -1,4 +1,4 @@
-//! The hub of a spacecraft, as a scenario writes it.
+//! Hub of a spacecraft, as a scenario describes it.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -37,12 +37,12 @@ pub struct Spacecraft {
 }
 
 impl Spacecraft {
-    /// What the hub weighs, and how it turns.
+    /// Returns the mass properties of the hub.
     pub(super) fn mass_properties(&self) -> MassProperties {
         MassProperties { mass: self.mass.get(), centre: vector(&self.centre), inertia: tensor(&self.inertia) }
     }
 
-    /// The points of the hub: one at O, if none is named.
+    /// Returns the points of the hub: one at O, if none is named.
     pub(super) fn hub_points(&self) -> Vec<NamedPoint> {
         if self.points.is_empty() {
             return vec![NamedPoint { name: "hub".to_owned(), position: <[Finite; 3]>::default() }];

@@ -1,4 +1,4 @@
-//! Thermal bending of an appendage in sunlight, as the deflection that its modes approach.
+//! Thermal bending of an appendage in sunlight, as a deflection that its modes approach.
 
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
@@ -19,17 +19,17 @@ pub struct Thermal {
     pub time_constant: Positive,
 }
 
-/// The forces of thermal bending on free modes (N/sqrt(kg)), and its time constant (s).
+/// Forces of thermal bending on free modes (N/sqrt(kg)), and their time constant (s).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bending {
-    /// The forces in sunlight beyond the shadow, in the end.
+    /// Steady force on each free mode in sunlight, relative to shadow (N/sqrt(kg)).
     pub forces: Vec<f64>,
     /// Time constant (s).
     pub time_constant: f64,
 }
 
 impl Thermal {
-    /// A deflection that is not one of each mode: the key, and why.
+    /// Returns the key and the reason, if there is not one deflection for each mode.
     pub(super) fn fault(&self, modes: usize) -> Option<Fault> {
         let given = self.deflection.len();
         (given != modes).then(|| {
@@ -41,8 +41,8 @@ impl Thermal {
     }
 }
 
-/// The bending of each appendage that has any, where its clamped modes, of these frequencies (rad/s), make these parts of the free
-/// ones: a force O² eta on a clamped mode has the displacement eta in the end.
+/// Returns the bending of each appendage that has any. `frequencies` (rad/s) are those of the clamped modes, and
+/// `shapes` their parts in the free modes: a force O² eta on a clamped mode has the steady displacement eta.
 pub(super) fn bendings(appendages: &[Appendage], frequencies: &[f64], shapes: &DMatrix<f64>) -> Vec<Bending> {
     let mut first = 0;
     let mut bendings = Vec::new();

@@ -1,4 +1,4 @@
-//! How the axes of an appendage are turned against those of the body: one turn, or one after another.
+//! Orientation of an appendage's axes relative to those of the body: one rotation, or a sequence.
 
 use std::borrow::Cow;
 use std::fmt;
@@ -25,13 +25,13 @@ pub struct Turn {
     pub by: Finite,
 }
 
-/// One turn, or several of which each is about the axes that those before it have turned.
+/// One rotation, or a sequence in which each is about the axes rotated by those before it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Turned {
-    /// One.
+    /// A single rotation.
     Once(Turn),
-    /// One after another.
+    /// A sequence of rotations.
     InOrder(Vec<Turn>),
 }
 
@@ -49,20 +49,20 @@ impl Turned {
         }
     }
 
-    /// Whether nothing is turned.
+    /// Returns true if there is no rotation.
     pub fn is_none(&self) -> bool {
         self.turns().is_empty()
     }
 
-    /// The matrix that brings vectors from the turned axes to those before.
+    /// Returns the matrix that transforms vectors from the rotated axes to the original ones.
     pub fn matrix(&self) -> Matrix3<f64> {
         self.turns().iter().fold(Matrix3::identity(), |matrix, turn| matrix * turn.matrix())
     }
 
-    /// What single values cannot show to be wrong.
+    /// Checks the axis and the angle of each rotation.
     ///
     /// # Errors
-    /// A key within, and why.
+    /// A key within the orientation, and the reason.
     pub fn check(&self) -> Result<(), Fault> {
         for (index, turn) in self.turns().iter().enumerate() {
             let place = if let Self::Once(_) = self { String::new() } else { format!("[{index}]") };
@@ -73,7 +73,7 @@ impl Turned {
 }
 
 impl Turn {
-    /// (1 - cos) a a' + cos 1 + sin \[a\], with the unit axis a.
+    /// Returns the rotation matrix (1 - cos) a a' + cos 1 + sin \[a\], with the unit axis a.
     fn matrix(&self) -> Matrix3<f64> {
         let axis = vector(&self.about);
         let axis = axis / axis.norm();

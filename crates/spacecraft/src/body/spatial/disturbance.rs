@@ -1,4 +1,4 @@
-//! The torque of the surroundings: a constant, and a part of the orbit's period.
+//! Torque of the environment: a constant, and a part with the orbit's period.
 
 use std::f64::consts::TAU;
 
@@ -31,19 +31,19 @@ fn orbit() -> Positive {
 }
 
 impl Periodic {
-    /// The torque at a time since the start (N m).
+    /// Returns the torque at a time since the start (N m).
     pub fn at(&self, t: f64) -> Vector {
         let turns = TAU * t / self.period.get();
         let sine = |axis: usize| self.amplitude[axis].get() * libm::sin(turns + self.phase[axis].get());
         vector(&self.constant) + Vector::from_fn(|axis, _| sine(axis))
     }
 
-    /// No torque is larger (N m).
+    /// Returns an upper bound of the torque (N m).
     pub fn bound(&self) -> f64 {
         vector(&self.constant).norm() + vector(&self.amplitude).norm()
     }
 
-    /// How fast it changes (rad/s).
+    /// Returns the angular frequency of the periodic part (rad/s).
     pub fn frequency(&self) -> f64 {
         TAU / self.period.get()
     }

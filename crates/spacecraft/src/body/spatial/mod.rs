@@ -1,9 +1,10 @@
-//! The spatial body: three axes, elastic modes with their shapes at named points of the structure.
+//! The spatial body: three axes, and elastic modes with their shapes at named points of the structure.
 //!
-//! J w' + w x J w = M, Q' = 1/2 Q o (0, w), and q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j f_i(r_j) . F_j + phi_i(r_j) . M_j
-//! (\[Timakov14\], equations (1) and (2); hybrid coordinates, \[Likins70\]): mass-normalised modes, which the forces of the jets
-//! excite and which a gyro sees.
-//! The modes do not act back on the rigid motion. Q turns vectors of the body into inertial ones: v = Q o v_body o Q*.
+//! J w' + w x J w = M, Q' = 1/2 Q o (0, w), and q_i'' + 2 zeta_i w_i q_i' + w_i² q_i = sum_j f_i(r_j) . F_j +
+//! phi_i(r_j) . M_j (\[Timakov14\], equations (1) and (2); hybrid coordinates, \[Likins70\]): mass-normalised modes,
+//! which the forces of the jets excite and a gyro measures.
+//! The modes do not act back on the rigid motion. Q transforms vectors from the body's axes to inertial axes: v = Q o
+//! v_body o Q*.
 
 mod disturbance;
 mod modes;
@@ -77,23 +78,23 @@ pub struct SpatialMode {
 }
 
 impl Spatial {
-    /// The inertia tensor (kg m²).
+    /// Returns the inertia tensor (kg m²).
     pub fn tensor(&self) -> Matrix3<f64> {
         tensor(&self.inertia)
     }
 
-    /// The position of a point from the centre of mass (m), if there is a point of this name.
+    /// Returns the position of a point from the centre of mass (m), if there is a point of this name.
     pub fn point(&self, name: &str) -> Option<Vector> {
         self.points.iter().find(|point| point.name == name).map(|point| vector(&point.position))
     }
 
-    /// The names of all points, for errors.
+    /// Returns the names of all points, for messages.
     pub fn point_names(&self) -> String {
         let names: Vec<_> = self.points.iter().map(|point| format!("`{}`", point.name)).collect();
         if names.is_empty() { "none".to_owned() } else { names.join(", ") }
     }
 
-    /// Translation (1/sqrt(kg)) and rotation (rad/(m sqrt(kg))) of each mode at a point.
+    /// Returns the translation (1/sqrt(kg)) and rotation (rad/(m sqrt(kg))) of each mode at a point.
     pub fn shapes(&self, point: &str) -> Vec<(Vector, Vector)> {
         let of = |mode: &SpatialMode| {
             let shape = mode.shapes.get(point).copied().unwrap_or_default();
@@ -102,8 +103,8 @@ impl Spatial {
         self.modes.iter().map(of).collect()
     }
 
-    /// By how much a place at an offset (m) from a point moves for a unit of each mode, in axes of the hub, which turns as the first
-    /// point does (1/sqrt(kg)).
+    /// Returns the displacement per unit of each mode of the place at an offset (m) from a point, in hub axes that turn
+    /// with the first point (1/sqrt(kg)).
     pub fn shifts(&self, point: &str, offset: &Vector) -> Vec<Vector> {
         let first = self.points.first().map_or("", |point| &point.name);
         let at = self.point(point).unwrap_or_default();
@@ -113,10 +114,10 @@ impl Spatial {
         self.shapes(point).iter().zip(&self.shapes(first)).map(shift).collect()
     }
 
-    /// What single values cannot show to be wrong.
+    /// Checks the body for values that are inconsistent with each other.
     ///
     /// # Errors
-    /// A key within the body, and why.
+    /// A key within the body, and the reason.
     pub fn check(&self) -> Result<(), Fault> {
         let refused = |key: &str, why: String| Err(Fault::new(key, why));
         let tensor = self.tensor();

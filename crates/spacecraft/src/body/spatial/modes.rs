@@ -1,4 +1,4 @@
-//! The modes of a spatial body as lines of a table.
+//! Modes of a spatial body as rows of a table.
 
 use std::collections::BTreeMap;
 
@@ -6,7 +6,7 @@ use super::SpatialMode;
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::mode_table::{ModeCommon, ModeRow, ModeTable};
 
-/// The modes, which are a slice; those of a file once it is read.
+/// Modes of a spatial body, which dereference to a slice; those of a file once it is read.
 pub type SpatialModes = ModeTable<SpatialMode>;
 
 impl ModeRow for SpatialMode {

@@ -1,4 +1,4 @@
-//! The first trip of a guard on a segment as it is guessed, polished and certified without a search.
+//! Prediction of the first trip of a guard on a segment: predicted, refined and certified without a search.
 
 use super::Segment;
 use crate::body::Planar;
@@ -9,7 +9,7 @@ use crate::motion::guess::{self, Departure, FARTHEST_TURN, GuessLevel, GuessOsci
 use crate::motion::{Sensed, State};
 use crate::time::Span;
 
-/// The highest frequency (rad/s), and room for the modes on their way.
+/// Predictor of crossings: the highest frequency (rad/s), and work space for the modes.
 #[derive(Clone, Debug)]
 pub struct Guess {
     fastest: f64,
@@ -23,7 +23,7 @@ enum Modes {
 }
 
 impl Guess {
-    /// Room for a body's modes; none where one is damped critically or more.
+    /// Creates the predictor of a body's modes; `None` if one is critically damped or overdamped.
     pub fn new(body: &Planar) -> Option<Self> {
         let mode = |(frequency, _): (f64, f64)| oscillator(frequency, Undamped);
         let damped = |(frequency, ratio): (f64, f64)| oscillator(frequency, Damped::new(frequency, ratio));
@@ -44,8 +44,8 @@ fn oscillator<D>(frequency: f64, damping: D) -> GuessOscillator<f64, D> {
 }
 
 impl Segment {
-    /// The first trip of one or two guards within a span, as it is guessed, polished and certified without a search; the state
-    /// there is put into `state`. Nothing if it is not certain.
+    /// Predicts the first trip of one or two guards within `horizon`, without a search, and writes the state there to
+    /// `state`. `None` if the prediction is not certain.
     pub fn guess(&mut self, guards: &[Guard], horizon: Span, state: &mut State) -> Option<Option<Trip>> {
         if self.forced.is_some() {
             return None;
