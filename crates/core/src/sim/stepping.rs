@@ -49,7 +49,7 @@ impl Simulation {
         self.now == self.end
     }
 
-    /// Reads the sensors for the first sample, if the run has not begun, so that measurements and estimates are available.
+    /// Reads the sensors for the first sample, if the run has not begun, so that measurements and estimates exist.
     ///
     /// # Errors
     /// Fails like [`Simulation::run_until`].
