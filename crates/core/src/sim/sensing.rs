@@ -132,7 +132,7 @@ impl Sensing {
         self.sensors.iter().find_map(|due| due.sensor.halted())
     }
 
-    /// Returns the true bias of the first gyro at the last sample (rad/s); 0 without a gyro.
+    /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.
     pub fn bias(&self) -> [f64; 3] {
         self.sensors.iter().find_map(|due| due.sensor.bias()).unwrap_or_default()
     }
