@@ -1,4 +1,5 @@
-//! Flights of runs of the relay law: which runs of a scenario can fly, how they begin, and what is told of them.
+//! Runs of the relay law in the relay kernel: which scenarios it supports, their initial setup, and conversions of its
+//! state.
 
 use crate::adaptation::Adaptation;
 use crate::body::{Drive, Mode, Planar};
@@ -15,25 +16,26 @@ pub use flexsc_flight::{
     Crew, CyclePlace, LaneRest, LaneSight, MOST, Searched, Setup, Structure, fly_alone, fly_beside,
 };
 
-/// The body and the law of a scenario whose runs can fly.
+/// Returns the body and the law of a scenario that the relay kernel can run; `None` otherwise.
 pub fn flies(scenario: &Scenario) -> Option<(&Planar, &Relay)> {
     let (Some(body), Law::Relay(law)) = (scenario.model.planar(), &scenario.law) else { return None };
     suits(scenario, body, law).then_some((body, law))
 }
 
-/// The modes of the envelope's model; none without one.
+/// Returns the modes of the envelope's model; empty without an envelope estimator.
 pub fn watched(scenario: &Scenario) -> &[Mode] {
     let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
     envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(|| own(scenario)))
 }
 
-/// The modes of the body.
+/// Returns the modes of the one-axis body.
 fn own(scenario: &Scenario) -> &[Mode] {
     scenario.model.planar().map_or(&[], |body| &body.modes)
 }
 
-/// Whether the law alone moves the body, whose modes are damped below critical damping or not at all, and nothing but the envelope
-/// is estimated. Motions at critical damping and above are no turns, and rare: their runs go one by one.
+/// Returns true if the relay law alone moves the body, all modes are below critical damping, and nothing but the
+/// envelope is estimated. Motions at or above critical damping are no rotations of a phasor, and rare: such runs go
+/// through the loop one by one.
 fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
     let observes = scenario
         .estimator
@@ -61,22 +63,22 @@ fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
         && law.sides == Sides::Two
 }
 
-/// A run at its start, for a flight of its own; none of a run that has to be simulated otherwise.
+/// Returns the initial setup for a single run in the relay kernel; `None` if the run has to be simulated by the loop.
 pub fn alone(scenario: &Scenario) -> Option<Setup> {
     let (model, law) = flies(scenario)?;
-    // A mode that nothing excites may come out of the mirror with zeros of another sign.
+    // A mode that nothing excites may leave the kernel's mirrored coordinates with zeros of the other sign.
     let mut modes = model.modes.iter().chain(watched(scenario));
     modes.all(|mode| mode.gain.get() != 0.0).then(|| setup(scenario, model, law))
 }
 
-/// What runs of a scenario have in common in a flight.
+/// Returns the numbers of modes and the presence of damping, which all runs of a batch share.
 pub fn structure(scenario: &Scenario) -> Structure {
     let (modes, tracks) = (own(scenario), watched(scenario));
     let is_damped = modes.iter().chain(tracks).any(|mode| mode.damping.get() > 0.0);
     Structure { modes: modes.len(), tracks: tracks.len(), is_damped }
 }
 
-/// A run at its start.
+/// Returns the initial setup of a run.
 pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
     let mobility = 1.0 / model.commanded_inertia();
     let of = |mode: &Mode| {
@@ -84,7 +86,7 @@ pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
         let ratio = mode.damping.get();
         [mode.frequency.get(), mode.excitability(), phase.displacement, phase.quadrature, ratio]
     };
-    // As the envelope has it.
+    // In the form of the envelope's phasor: the imaginary part in place of the quadrature.
     let track = |mode: &Mode| {
         let [frequency, k, displacement, _, ratio] = of(mode);
         let damped = Damped::new(frequency, ratio);
@@ -110,7 +112,7 @@ pub fn setup(scenario: &Scenario, model: &Planar, law: &Relay) -> Setup {
     }
 }
 
-/// The guards of a place of the cycle.
+/// Returns the guards of the law at a place of the limit cycle, on the given side.
 pub fn guards(setup: &Setup, place: CyclePlace, side: f64) -> Guards {
     match place {
         CyclePlace::Coast => Guards::two(Guard::at_least(setup.edge), Guard::at_most(-setup.edge)),
@@ -120,7 +122,7 @@ pub fn guards(setup: &Setup, place: CyclePlace, side: f64) -> Guards {
     }
 }
 
-/// The state of the law at a place of the cycle.
+/// Returns the state of the relay law at a place of the limit cycle, on the given side.
 pub fn phase(place: CyclePlace, side: f64) -> Phase {
     match (place, side > 0.0) {
         (CyclePlace::Coast, true) => Phase::WeakRight,
@@ -132,7 +134,8 @@ pub fn phase(place: CyclePlace, side: f64) -> Phase {
     }
 }
 
-/// Takes over what was searched: the span since departure, whether it is the first guard, and where the modes are.
+/// Fills `found` with a guard crossing: the span since the segment's start, whether it is the first guard, and the
+/// modes there.
 pub fn searched(found: &mut Searched, after: Span, is_first: bool, state: &State) {
     *found = Searched {
         after: ((Instant::START + after).parts(), after.seconds()),
@@ -143,7 +146,7 @@ pub fn searched(found: &mut Searched, after: Span, is_first: bool, state: &State
     found.modes.extend(state.modes.iter().map(|phase| [phase.displacement, phase.quadrature]));
 }
 
-/// Takes a sight over.
+/// Copies the motion of a lane into a one-axis state.
 pub fn see(state: &mut State, sight: &LaneSight) {
     (state.rigid_angle, state.rigid_rate) = (sight.angle, sight.rate);
     for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&sight.modes) {
@@ -151,7 +154,7 @@ pub fn see(state: &mut State, sight: &LaneSight) {
     }
 }
 
-/// An instant of whole seconds and ticks.
+/// Returns the instant of whole seconds and femtoseconds.
 pub fn instant((whole, part): (u64, u64)) -> Instant {
     Instant::of_parts(whole, part)
 }

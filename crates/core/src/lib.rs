@@ -2,20 +2,20 @@
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 //!
-//! A [`Scenario`] is what the user wrote; a [`Simulation`] is what moves; a [`record::Record`] is the only way
-//! out. Within a run data goes one way round:
+//! A [`Scenario`] is the validated input; a [`Simulation`] is the state of one run; a [`record::Record`] receives all
+//! output. Within a run data flows in one direction:
 //!
 //! ```text
-//! body --truth--> sensor --reading--> estimator --belief--> law --hold--> actuator --wrench--> body
-//!                                                            ^                ^
-//!                        envelope --mean--> adaptation ------+                |
-//!                   manoeuvre or target --goal---------------+--waveform------+
+//! body --truth--> sensor --reading--> estimator --estimate--> law --hold--> actuator --wrench--> body
+//!                                                              ^                ^
+//!                        envelope --mean--> adaptation --------+                |
+//!                   manoeuvre or target --goal-----------------+--waveform------+
 //! ```
 //!
-//! One loop runs bodies with one angle and with three axes (plain single-axis runs may take a shorter one with the same records,
-//! `sim/plain.rs`); about each axis there are a belief, a law and a goal. Each role is a
-//! trait: [`sensor::Sense`], [`estimator::Estimate`], [`law::Control`], [`actuator::Actuate`]. `docs/extending.md` tells how to add
-//! a kind.
+//! One loop runs one-axis and three-axis bodies (relay runs of one axis may run in the kernel of `flexsc_flight`
+//! instead, with the same records); each axis has an estimate, a law and a goal. Each role is a trait:
+//! [`sensor::Sense`], [`estimator::Estimate`], [`law::Control`], [`actuator::Actuate`]. `docs/extending.md` describes
+//! how to add a kind.
 //!
 //! ```
 //! use flexsc_core::{Scenario, Simulation, record::{Detail, Trace}};

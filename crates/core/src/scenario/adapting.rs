@@ -1,4 +1,4 @@
-//! What does not fit of an adaptation: the number that it tunes, and what it measures.
+//! Checks of an adaptation: the parameter that it tunes, and its objective.
 
 use super::Scenario;
 use crate::actuator::Actuator;
@@ -37,7 +37,7 @@ impl Scenario {
         None
     }
 
-    /// Why the law has no such number.
+    /// Returns the reason why the law has no parameter `tunes`.
     fn untunable(&self, tunes: &str, tunable: &[Tunable]) -> String {
         let known: Vec<_> = tunable.iter().map(|number| format!("`{}`", number.key)).collect();
         match (known.is_empty(), tunes) {
@@ -50,7 +50,7 @@ impl Scenario {
         }
     }
 
-    /// Why the objective of an adaptation cannot be measured: a key within it, and the reason.
+    /// Returns the reason why the objective of an adaptation cannot be measured, with the key within the adaptation.
     fn objective_fault(&self, adaptation: &Adaptation) -> Option<(&'static str, String)> {
         let objective = adaptation.objective();
         if objective == Objective::EnvelopeMean {
@@ -97,7 +97,7 @@ impl Scenario {
         Some((".objective", format!("`{word}` {why}")))
     }
 
-    /// Whether there are wheels whose speed is known.
+    /// Returns true if there are wheels with known speed.
     fn spins(&self) -> bool {
         self.actuator.any(|kind| match kind {
             Actuator::Wheels(_) => true,
@@ -106,7 +106,7 @@ impl Scenario {
         })
     }
 
-    /// Whether the law about an axis has states between which it switches.
+    /// Returns true if the law about an axis has states between which it switches.
     fn has_states(&self, axis: usize) -> bool {
         let law = self.law.about(axis);
         law.switches() || matches!(law, Law::PhasePlane(_) | Law::Own(_))

@@ -1,4 +1,4 @@
-//! The body of a scenario, put together from whatever describes it.
+//! Assembly of the body's model from its description.
 
 use std::path::Path;
 use std::sync::Arc;
@@ -9,8 +9,8 @@ use crate::body::{Body, Model};
 use crate::document::{Document, Fault, ScenarioError};
 
 impl Written {
-    /// Makes the body of what describes it, with modes that are in files, whose paths begin at a directory. Of another scenario,
-    /// what was read from the same files is taken over, and the same body.
+    /// Assembles the model from the description of the body, with modes read from files relative to `directory`. Files
+    /// and models that are unchanged from `parent` are reused.
     pub(super) fn assemble(
         &mut self,
         document: &Document,
@@ -33,7 +33,8 @@ impl Written {
         }
     }
 
-    /// A spacecraft, whose wheels are locked in the hub as it is written, and turn freely.
+    /// Assembles the model of a spacecraft; in its written data the wheels are locked in the hub, in the model they
+    /// turn freely.
     fn craft(
         &mut self,
         spacecraft: &Spacecraft,
@@ -54,7 +55,7 @@ impl Written {
     }
 }
 
-/// A body that is described in one table.
+/// Assembles the model of a body that is described in one table.
 fn alone(body: &mut Body, parent: Option<&Scenario>, directory: &Path) -> Result<Model, Fault> {
     let other = parent.and_then(|parent| parent.body.as_ref());
     body.locate(directory);

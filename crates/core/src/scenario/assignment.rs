@@ -1,4 +1,4 @@
-//! Several actuators: which go together, and whether their shares make the whole of what laws demand.
+//! Checks of several actuators: their combination, and whether their shares sum to the whole demand.
 
 use super::Written;
 use crate::actuator::{Actuator, ActuatorMember, ActuatorTask, Assigned, Unloading};
@@ -8,11 +8,11 @@ use crate::law::Law;
 use crate::parts::Parts;
 use crate::quantity::Time;
 
-/// Shares are rounded; their sum is 1 to this.
+/// Tolerance of the sum of rounded shares.
 const ROUNDING: f64 = 1e-9;
 
 impl Written {
-    /// What of the actuators does not fit: of each on its own, of those of one kind, of their shares.
+    /// Checks the actuators: each alone, duplicates, phases, and shares.
     pub(super) fn assignment_fault(&self) -> Option<Fault> {
         let members = self.actuator.members();
         let each = self.actuator.iter().enumerate();
@@ -24,7 +24,7 @@ impl Written {
             .or_else(|| self.share_fault(&members))
     }
 
-    /// What of an actuator's part of the demand does not fit: a key within it, and why.
+    /// Checks the axes and share of an actuator; returns the error at its key.
     fn assigned_fault(&self, of: &Assigned) -> Option<Fault> {
         let at = |key: &str, why: &str| Some(Fault::new(key, why));
         if of.unloads.is_some() {
@@ -46,7 +46,7 @@ impl Written {
         twice.and_then(|(_, axis)| at("axes", &format!("names `{}` twice", AXES[axis.index()])))
     }
 
-    /// Two actuators where there can be one.
+    /// Checks that there is one actuator where only one is allowed.
     fn twin_fault(&self, members: &[ActuatorMember<'_>]) -> Option<Fault> {
         for (index, member) in members.iter().enumerate() {
             let before = &members[..index];
@@ -84,7 +84,7 @@ impl Written {
         None
     }
 
-    /// A phase where the first period would be missed.
+    /// Checks that a phase does not miss a first period.
     fn phase_fault(&self, members: &[ActuatorMember<'_>]) -> Option<Fault> {
         let planned = (0..self.axis_count()).any(|axis| matches!(self.law.about(axis), Law::PhasePlane(_)));
         members.iter().find_map(|member| {
@@ -109,7 +109,7 @@ impl Written {
         })
     }
 
-    /// Shares that are not the whole of what laws demand.
+    /// Checks that the shares about each axis sum to 1.
     fn share_fault(&self, members: &[ActuatorMember<'_>]) -> Option<Fault> {
         for (axis, name) in AXES.iter().enumerate().take(self.axis_count()) {
             let serving: Vec<&ActuatorMember<'_>> =
@@ -141,7 +141,7 @@ impl Written {
     }
 }
 
-/// What of unloading does not fit.
+/// Checks the unloading of wheels or control moment gyros.
 fn unloading_fault(actuators: &Parts<Assigned>, members: &[ActuatorMember<'_>]) -> Option<Fault> {
     if let Some((wheels, key)) = actuators.wheels()
         && let Some(fault) = wheels.unloading.as_deref().and_then(Unloading::inconsistency)

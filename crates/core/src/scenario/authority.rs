@@ -1,4 +1,4 @@
-//! What the actuator can do about each axis, and how near to its target a law then keeps the body.
+//! Authority of the actuators about each axis, and the error bands that laws keep with it.
 
 use super::Written;
 use super::study::Study;
@@ -11,11 +11,11 @@ use crate::law::{ActiveDamping, Authority, Law, PhasePlane, Promise, band};
 use crate::quantity::Positive;
 use crate::time::Instant;
 
-/// No structure has elastic rates like this (rad/s).
+/// Elastic rate that no structure reaches (rad/s).
 const NO_MOTION: f64 = 1.0;
 
 impl Study {
-    /// What the actuators can do about an axis: until the first of them is at its limit with its share.
+    /// Returns the authority of all actuators about an axis, until the first of them is at its limit with its share.
     pub(super) fn authority(&self, written: &Written, axis: usize) -> Authority {
         let members = written.actuator.members();
         let acting: Vec<_> = members.iter().filter(|member| member.share(axis) > 0.0).collect();
@@ -37,7 +37,7 @@ impl Study {
         Authority { axis, accelerations, width, delay, threshold: 0.0 }
     }
 
-    /// The same of one actuator that acts alone: largest accelerations (rad/s²), what becomes of pulses, and delay (s).
+    /// Returns the authority of one actuator acting alone: largest accelerations (rad/s²), pulse widths, and delay (s).
     fn authority_of(&self, kind: &Actuator, axis: usize) -> ([f64; 2], PulseWidth, f64) {
         let inertia = self.axes[axis].commanded_inertia();
         match kind {
@@ -74,7 +74,7 @@ impl Study {
         }
     }
 
-    /// The elastic rate beyond which the active damping of an axis acts (rad/s); 0 of a law without it.
+    /// Returns the elastic rate above which the active damping of an axis acts (rad/s); 0 for a law without it.
     pub(super) fn threshold(&self, written: &Written, axis: usize) -> Result<f64, Fault> {
         let Law::PhasePlane(PhasePlane { damping: Some(damping), .. }) = written.law.about(axis) else {
             return Ok(0.0);
@@ -105,7 +105,7 @@ impl Study {
                 Promise::Nothing => None,
                 Promise::Within(band) => Some(band),
                 Promise::Part(part) => {
-                    // Of the whole turn to the last target.
+                    // Relative to the whole rotation to the last target.
                     let end = Instant::START + written.duration;
                     let goal = self.way.target(written.last_target(end));
                     let before = written.targets().iter().rev().nth(1);
@@ -119,7 +119,7 @@ impl Study {
         }
     }
 
-    /// How near to a target the body has arrived, about each axis (rad).
+    /// Returns the arrival band about a target, for each axis (rad); NaN without one.
     pub fn zones(&self, written: &Written) -> [f64; 3] {
         let mut zones = [f64::NAN; 3];
         for (axis, (zone, band)) in zones.iter_mut().zip(&self.bands).enumerate() {
@@ -132,7 +132,7 @@ impl Study {
     }
 }
 
-/// The threshold of active damping about an axis, for the modes of the design.
+/// Returns the threshold of active damping about an axis (rad/s), for the modes of the observer's design.
 fn threshold(
     damping: &ActiveDamping,
     plan: &adaptive::ObserverDesign,

@@ -1,4 +1,4 @@
-//! What the single values of a scenario cannot show to be wrong: keys that do not fit each other.
+//! Consistency of the keys of a scenario with each other.
 
 use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
@@ -14,10 +14,10 @@ use crate::law::{Extra, Itinerary, Law, Target};
 use crate::quantity::Time;
 
 impl Scenario {
-    /// Checks what the single values cannot show to be wrong.
+    /// Checks that the keys are consistent with each other.
     ///
     /// # Errors
-    /// The first key that does not fit the others, and what is wrong with it.
+    /// Fails with the first inconsistent key, and the reason.
     pub(super) fn consistent(&self) -> Result<(), Fault> {
         self.inconsistency().map_or(Ok(()), Err)
     }
@@ -32,7 +32,7 @@ impl Scenario {
             let example = "2026-03-20T14:46:00Z";
             return at("epoch", format!("must be a date and time from 1970 to 2500, such as {example}"));
         }
-        // The first day of 2554 is the last whose nanoseconds fit 64 bits.
+        // The first day of 2554 is the last whose nanoseconds since 1970 fit 64 bits.
         let longest = (u64::MAX - self.epoch_ns()) as f64 / 1e9;
         if self.duration.seconds() >= longest {
             let why = format!(
@@ -52,7 +52,7 @@ impl Scenario {
         {
             return Some(fault.within("reference.pointing"));
         }
-        // The parts of a spatial loop were found to fit each other when it was put together.
+        // The compatibility of three-axis parts was checked before.
         let parts = match self.model.axes() {
             Axes::One(body) => self.planar_inconsistency(body),
             Axes::Three(_) => self.spatial_inconsistency(),
@@ -76,7 +76,7 @@ impl Scenario {
         })
     }
 
-    /// What is wrong with keys that are drawn together.
+    /// Checks the groups of correlated keys.
     fn correlation_fault(&self) -> Option<Fault> {
         self.correlated.iter().enumerate().find_map(|(group, correlated)| {
             let within = format!("correlated[{group}]");
@@ -107,7 +107,7 @@ impl Scenario {
             .or_else(|| self.adaptation_inconsistency())
     }
 
-    /// A spacecraft that turns faster than its modes tell how it bends.
+    /// Checks that a spacecraft does not rotate faster than the limit of its modal model.
     fn rate_inconsistency(&self) -> Option<Fault> {
         let craft = self.model.craft()?;
         let Limit { rate: limit, why } = craft.rate_limit()?;
@@ -164,7 +164,7 @@ impl Scenario {
         None
     }
 
-    /// The key of the damping matrix.
+    /// Returns the key of the damping matrix.
     pub(super) fn damping_key(&self) -> String {
         format!("body.{}.damping_matrix", self.body_kind())
     }
@@ -216,7 +216,7 @@ impl Scenario {
         None
     }
 
-    /// A schedule of gains that is out of order.
+    /// Checks that the points of gain schedules are in order.
     fn schedule_inconsistency(&self) -> Option<Fault> {
         (0..self.axis_count()).find_map(|axis| {
             let Law::Pd(pd) = self.law.about(axis) else { return None };
@@ -236,7 +236,7 @@ impl Scenario {
         })
     }
 
-    /// Times that are out of order, or do not fit a period.
+    /// Checks the order of times, and times against their periods.
     fn timing_inconsistency(&self) -> Option<Fault> {
         let at = |key: &str, why: String| Some(Fault::new(key, why));
         let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);

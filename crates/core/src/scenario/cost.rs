@@ -1,5 +1,5 @@
-//! What work asks of the machine, counted before any of it is done: what nothing can do is refused, what takes long needs a
-//! yes.
+//! Estimate of time, memory and disk space before a computation: infeasible scenarios are rejected, expensive ones need
+//! a confirmation.
 
 use super::Scenario;
 use crate::actuator::{ActuatorTask, Unloads};
@@ -16,64 +16,65 @@ use crate::record::Detail;
 use crate::sensor::Sensor;
 use crate::time::Span;
 
-/// No run takes more steps of one kind: it would take days.
+/// Largest number of steps of one kind in a run; more would take days.
 pub const MOST_STEPS: f64 = 1e12;
-/// No campaign has more runs: what they come to is held in memory.
+/// Largest number of runs in a campaign, because their results are held in memory.
 pub const MOST_RUNS: u64 = 100_000_000;
-/// No body has more modes.
+/// Largest number of modes of a body.
 const MOST_MODES: usize = 2000;
-/// Nor where they are coupled, or a filter estimates them: its matrices are full.
+/// Largest number of modes that are coupled or estimated by a filter, because their matrices are full.
 const MOST_COUPLED: usize = 200;
-/// No more commands wait for a wheel.
+/// Largest number of commands in the delay line of a wheel.
 const MOST_WAITING: f64 = 1e6;
 
-/// Without a yes nothing takes longer on one core (s) ...
+/// Time on one core (s) above which a confirmation is needed.
 const LONG_S: f64 = 36_000.0;
-/// ... or more memory (bytes) ...
+/// Memory (bytes) above which a confirmation is needed.
 const MUCH_MEMORY: f64 = 4e9;
-/// ... or more room for logs (bytes).
+/// Disk space for logs (bytes) above which a confirmation is needed.
 const MUCH_DISK: f64 = 2e10;
 
-/// Time of a step (s), and what each mode adds. A rough figure, of an ordinary core.
+/// Approximate time of a step on an ordinary core (s): constant part, and part per mode.
 const STEP_S: (f64, f64) = (3e-7, 4e-8);
-/// Steps of a relay law for each radian of the fastest mode: between those of runs in lanes, and of damped modes one by one, which
-/// take half and twice as long.
+/// Steps of a relay law per radian of the fastest mode: between runs in batches, which take half as long, and single
+/// runs with damped modes, which take twice as long.
 const RELAY_STRIDES: f64 = 0.1;
-/// A step of a rotation about three axes, with its passes over the stages, takes as long as so many others.
+/// Duration of a step of a three-axis rotation, with its iterations over the stages, relative to other steps.
 const PASSES: f64 = 20.0;
-/// Looks at the motion within an exposure, and more for each radian of the fastest mode.
+/// Evaluations of the motion within an exposure: constant part, and part per radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
-/// What the steps of a rotation are told by.
+/// Key to which the steps of a rotation are attributed.
 const TURNS: &str = "duration";
-/// Time of an operation with numbers of a matrix (s).
+/// Time of a floating-point operation in a matrix product (s).
 const PRODUCT_S: f64 = 1e-9;
-/// What is kept of a run of a campaign (bytes).
+/// Memory kept for each run of a campaign (bytes).
 const KEPT: f64 = 2e3;
-/// What a message of a log takes (bytes): its own, and for each mode; two thirds are left of it when it is packed.
+/// Size of a log message (bytes): constant part, and part per mode; compression leaves two thirds of it.
 const MESSAGE: (f64, f64) = (200.0, 30.0);
 
-/// An estimate of what work asks for.
+/// Estimated cost of a computation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cost {
-    /// What asks for most of it, such as a key, and how often it acts.
+    /// Largest contribution: a description, such as a key, and its number of steps.
     pub most: (String, f64),
-    /// How many runs there are.
+    /// Number of runs.
     pub runs: f64,
-    /// Time of all of it on one core (s).
+    /// Total time on one core (s).
     pub seconds: f64,
     /// Memory (bytes).
     pub memory: f64,
-    /// Room for logs (bytes).
+    /// Disk space for logs (bytes).
     pub disk: f64,
 }
 
 impl Cost {
-    /// The cost of work that is no simulation: so many steps of it, and the time of each on one core (s).
+    /// Returns the cost of a computation other than a simulation, of `steps` steps with `step_s` seconds each on one
+    /// core.
     pub fn of_work(what: &str, steps: f64, step_s: f64) -> Self {
         Self { most: (what.to_owned(), steps), runs: 1.0, seconds: steps * step_s, memory: 0.0, disk: 0.0 }
     }
 
-    /// Why the work needs a yes, if it does.
+    /// Returns the reason why the computation needs a confirmation; `None` if it is within the limits.
     pub fn excess(&self) -> Option<String> {
         let Self { most: (what, steps), runs, seconds, memory, disk } = self;
         let within = *seconds <= LONG_S && *memory <= MUCH_MEMORY && *disk <= MUCH_DISK;
@@ -93,7 +94,7 @@ impl Cost {
         ))
     }
 
-    /// The same work so many times, of which what each comes to is kept.
+    /// Returns the cost of `runs` such computations, whose results are kept in memory.
     #[must_use]
     pub fn times(self, runs: u64) -> Self {
         let runs = runs as f64;
@@ -101,7 +102,7 @@ impl Cost {
         Self { most, runs, seconds: runs * seconds, memory: memory + runs * KEPT, disk: runs * disk }
     }
 
-    /// The larger of two estimates, by what is asked for most.
+    /// Returns the larger of two costs, relative to the limits.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
         let part =
@@ -133,13 +134,13 @@ fn bytes(number: f64) -> String {
 }
 
 impl Scenario {
-    /// What a run asks for, with a log of this detail in memory or a file.
+    /// Returns the cost of a run with a log of the given detail, kept in memory or written to a file.
     pub fn cost(&self, log: Option<Detail>, in_memory: bool) -> Cost {
         let modes = self.mode_count() as f64;
         let step = STEP_S.0 + modes * STEP_S.1;
         let own = |(key, steps): &(String, f64)| match &self.estimator {
             _ if *key == TURNS && self.axis_count() == 3 => steps * PASSES * step,
-            // A filter takes every sample, with matrices of the order of its state.
+            // A filter processes every sample, with matrices of the order of its state.
             Some(filter) if key.starts_with("sensor") && filter.filters() => {
                 steps * (step + filter_work(filter, modes) * PRODUCT_S)
             }
@@ -161,7 +162,7 @@ impl Scenario {
         Cost { most: (format!("`{key}`"), steps), runs: 1.0, seconds, memory, disk }
     }
 
-    /// The first key that asks for what no machine can do, and why.
+    /// Returns the error at the first key that is infeasible on any machine.
     pub(super) fn impossible(&self) -> Option<Fault> {
         let modes = self.mode_count();
         let filtered = self.estimator.as_ref().is_some_and(Estimator::filters);
@@ -196,12 +197,12 @@ impl Scenario {
         ))
     }
 
-    /// How often the law of a wheel decides, if at fixed times.
+    /// Returns the period of the commands to a wheel, if they come at fixed times.
     fn decided_every(&self) -> Option<Span> {
         self.study.cycle.or(self.study.sampling)
     }
 
-    /// What happens again and again in a run: its key, and how often.
+    /// Returns the recurring actions of a run: the key of each, and the number of its steps.
     fn steps(&self) -> Vec<(String, f64)> {
         let duration = self.duration.seconds();
         let mut steps = Vec::new();
@@ -255,7 +256,7 @@ impl Scenario {
                 each(format!("disturbance[{index}].period"), until - disturbance.from.get(), period);
             }
         }
-        // Crossings are guessed or searched, and exact panels integrated, by strides within a vibration.
+        // Crossings are predicted or searched, and exact panels integrated, by steps that are a part of a vibration.
         let strides = match &self.law {
             _ if self.model.chain().is_some() => 20.0,
             Law::Relay(_) if self.study.sampling.is_none() => RELAY_STRIDES,
@@ -277,7 +278,7 @@ impl Scenario {
         steps
     }
 
-    /// How fast a body with three axes is expected to turn at most, and what acts on it to change (rad/s).
+    /// Returns the expected largest frequency (rad/s) of the rotation and loads of a three-axis body.
     fn fastest_turn(&self, body: &Spatial) -> f64 {
         let start = vector(&body.rate).norm();
         let limits = self.targets().iter().filter_map(Target::fastest).map(|(_, rate)| rate);
@@ -287,14 +288,15 @@ impl Scenario {
         limits.fold(start, f64::max) + around + own + gimbals
     }
 
-    /// How often steps follow the imbalance of wheels, at their speed at the start or their bias (s).
+    /// Returns the length of steps that resolve the imbalance of wheels at their initial or bias speed (s); infinite
+    /// without wheels.
     fn shaken_every(&self) -> f64 {
         let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
         let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
         SHAKE / (highest * wheels.fastest())
     }
 
-    /// What a log of this detail holds beside what changes: the key, and how many messages.
+    /// Returns the periodic messages of a log of the given detail: the key and the number of messages of each.
     fn messages(&self, log: Option<Detail>) -> Vec<(String, f64)> {
         let (duration, period) = (self.duration.seconds(), self.log_period());
         let topics = if self.axis_count() == 3 { 4.0 } else { 5.0 };
@@ -310,7 +312,7 @@ impl Scenario {
     }
 }
 
-/// Operations of a filter for each sample.
+/// Returns the number of operations of a filter per sample.
 fn filter_work(filter: &Estimator, modes: f64) -> f64 {
     let order = 4.0 + 2.0 * modes;
     let passes = if matches!(filter, Estimator::UnscentedKalman(_)) { 4.0 } else { 2.0 };

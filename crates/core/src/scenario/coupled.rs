@@ -1,4 +1,4 @@
-//! What couples the modes of a body with one angle: a wheel, or damping.
+//! Coupled modes of a one-axis body: by a wheel, or by a damping matrix.
 
 use std::sync::Arc;
 
@@ -9,12 +9,12 @@ use crate::flow::{Coupled, Coupling};
 use crate::motion::linear::LinearFlow;
 use crate::structure::TOO_FAR_APART;
 
-/// More modes than these are not taken apart into the poles of their coupled motion.
+/// Largest number of modes whose coupled motion is decomposed into poles.
 const MOST_COUPLED: usize = 100;
 
 impl Scenario {
-    /// The motion of a body whose modes a wheel or damping couples, or whose frequencies drift; none if they move on their
-    /// own.
+    /// Returns the motion of a one-axis body whose modes are coupled by a wheel or by damping, or drift; `None` if its
+    /// modes are uncoupled.
     pub fn coupling(&self, body: &Planar) -> Option<Coupling> {
         let (back_emf, total) = self.back_emf(body);
         if let Some(flow) = &self.linear {
@@ -24,13 +24,14 @@ impl Scenario {
             .then(|| Coupling::new(body, self.drift.as_ref(), back_emf, total))
     }
 
-    /// What a wheel's back-EMF takes from a rate (1/s), and whether from that of the elastic body.
+    /// Returns the damping rate by a wheel's back-EMF (1/s), and whether it acts on the rate of the elastic body.
     pub fn back_emf(&self, body: &Planar) -> (f64, bool) {
         let (back_emf, total) = self.study.back_emf;
         (back_emf / body.inertia.get(), total)
     }
 
-    /// The flow by poles of a body that a damping matrix couples, or a wheel under a law that switches at crossings.
+    /// Computes the flow by poles of a body with a damping matrix, or with a wheel under a law that switches at
+    /// crossings.
     pub(super) fn flow(&self) -> Result<Option<Arc<LinearFlow>>, Fault> {
         let Some(body) = self.model.planar() else { return Ok(None) };
         let wheel = self.actuator.wheel().map(|(_, key)| key);

@@ -1,4 +1,4 @@
-//! What does not fit of a drift: its profiles, and how many there are.
+//! Checks of a drift: its profiles, and their number.
 
 use super::Scenario;
 use crate::body::{Drift, Profile};

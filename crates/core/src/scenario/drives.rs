@@ -1,5 +1,5 @@
-//! The drives of a scenario's appendages: their angles at every instant of the run, known before it begins; and what does not go
-//! with appendages that turn.
+//! Appendage drives: their angles at every instant of the run, known before it begins, and checks of parts that need
+//! fixed appendages.
 
 use std::sync::Arc;
 
@@ -16,62 +16,64 @@ use crate::motion::turning::{Angles, DrivenSpacecraft};
 use crate::sensor::Sensor;
 use crate::time::{Instant, Span};
 
-/// Panels turn by so much at most until modes of another angle carry the motion on (rad).
+/// Largest change of a drive angle (rad) before the modes are replaced by those of another angle.
 const APART: f64 = 1.0 / 32.0;
 
-/// A run has so many such changes at most.
+/// Largest number of such changes in a run.
 const MOST_CHANGES: f64 = 1e6;
 
-/// The Sun must be so far from the axis of a drive that follows it (sine of the angle).
+/// Smallest sine of the angle between the Sun and the axis of a drive that tracks it.
 const ACROSS: f64 = 0.1;
 
-/// At so many instants of a run rates of drives that follow the Sun are looked at.
+/// Number of intervals of a run at whose ends the rates of Sun-tracking drives are sampled.
 const LOOKS: u32 = 4096;
 
-/// The drives of a run.
+/// Appendage drives of a run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Drives {
-    /// What they turn.
+    /// Model of the spacecraft with appendages that rotate on drives or hinges.
     pub driven: Arc<DrivenSpacecraft>,
-    /// How.
+    /// Angles of the drives over time.
     pub courses: Arc<Courses>,
 }
 
-/// How drives turn.
+/// Angles of all drives over time.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Courses {
     each: Vec<Course>,
     fastest: f64,
-    /// The instants at which other modes carry the motion on, or a rate changes, and the time between which and the next is that of
-    /// these modes (s).
+    /// Instants at which the modes are replaced or a rate changes, each with the time (s) in the middle of the interval
+    /// that follows, at whose drive angles the modes are computed.
     pub changes: Vec<(Instant, f64)>,
 }
 
-/// How a drive turns.
+/// Angle of one drive over time.
 #[derive(Clone, Debug, PartialEq)]
 enum Course {
-    /// By accelerations that are constant from time to time.
+    /// Pieces with constant acceleration.
     Pieces(Vec<Piece>),
-    /// After the Sun.
+    /// Sun tracking.
     Sun(Box<Following>),
 }
 
-/// A drive that follows the Sun.
+/// Sun tracking of a drive.
 #[derive(Clone, Debug, PartialEq)]
 struct Following {
     sky: Sky,
     sun: Vector,
-    /// Where the spacecraft points to.
+    /// Frame of the spacecraft's target, and (`attitude`) the target attitude in it.
     frame: Frame,
     attitude: Quaternion<f64>,
-    /// The axes of the appendage with its drive at 0, the drive's axis and what faces the Sun in them.
+    /// Axes of the appendage with the drive at angle 0; in these axes, the drive's axis and the normal that faces the
+    /// Sun.
     axes: Matrix3<f64>,
     about: Vector,
     facing: Vector,
 }
 
 impl Following {
-    /// Parts of the direction to the Sun along what faces it at an angle of 0 and at a quarter of a turn, and their rates (1/s).
+    /// Returns the components of the direction to the Sun along the normal at drive angle 0 and at a quarter of a turn,
+    /// each with its rate (1/s).
     fn seen(&self, t: f64) -> [[f64; 2]; 2] {
         let pose = self.frame.at(&self.sky, t);
         let rate: Vector = into(&self.attitude, &pose.rate);
@@ -86,7 +88,7 @@ impl Following {
         [libm::atan2(y, x), (x * dy - y * dx) / (x * x + y * y)]
     }
 
-    /// The sine of the angle between the Sun and the axis.
+    /// Returns the sine of the angle between the Sun and the drive's axis.
     fn across(&self, t: f64) -> f64 {
         let [[x, y], _] = self.seen(t);
         libm::hypot(x, y)
@@ -121,32 +123,32 @@ impl Angles for Courses {
 }
 
 impl Courses {
-    /// How many drives there are.
+    /// Returns the number of drives.
     pub fn count(&self) -> usize {
         self.each.len()
     }
 }
 
 impl Study {
-    /// The drives, if any turns: hinges alone have none.
+    /// Returns the drives; `None` if appendages only swing on hinges, or are fixed.
     pub fn driven(&self) -> Option<&Drives> {
         self.drives.as_ref().filter(|drives| drives.courses.count() > 0)
     }
 
-    /// How many appendages swing on hinges.
+    /// Returns the number of appendages that swing on hinges.
     pub fn hinges(&self) -> usize {
         self.drives.as_ref().map_or(0, |drives| drives.driven.hinges())
     }
 }
 
 impl Written {
-    /// The angles of the drives at the start (rad), 0 of an appendage without one.
+    /// Returns the drive angles at the start (rad), 0 for appendages without a drive.
     pub(super) fn start_angles(&self) -> Result<Vec<f64>, Fault> {
         let angle = |index| Ok(self.course(index)?.map_or(0.0, |course| course.at(0.0)[0]));
         (0..self.appendage.len()).map(angle).collect()
     }
 
-    /// How the drive of an appendage turns, if it has one.
+    /// Returns the angle of an appendage's drive over time; `None` without a drive.
     fn course(&self, index: usize) -> Result<Option<Course>, Fault> {
         let appendage = &self.appendage[index];
         let Some(drive) = &appendage.drive else { return Ok(None) };
@@ -155,7 +157,7 @@ impl Written {
         if drive.track == Some(Track::Sun) {
             return self.following(appendage, drive).map(Some).map_err(within);
         }
-        // Times are instants of the run.
+        // Times are rounded to instants of the run.
         let rounded = |[from, angle, rate, acceleration]: Piece| {
             [Span::from_seconds(from).seconds(), angle, rate, acceleration]
         };
@@ -203,7 +205,7 @@ impl Written {
         Ok(Course::Sun(Box::new(following)))
     }
 
-    /// All drives of the run.
+    /// Returns all drives of the run; `None` if no appendage rotates.
     pub(super) fn drives(&self, model: &Model) -> Result<Option<Drives>, Fault> {
         let Some(driven) = model.craft().and_then(|craft| craft.driven.clone()) else { return Ok(None) };
         let (mut each, mut fastest, mut edges) = (Vec::new(), 0.0_f64, vec![Instant::START]);
@@ -215,7 +217,7 @@ impl Written {
                     edges.extend(pieces.iter().map(|piece| Instant::START + Span::from_seconds(piece[0])));
                     pieces.iter().map(|piece| piece[2].abs()).fold(0.0, f64::max)
                 }
-                // A little more than at the instants that are looked at.
+                // The margin covers rates between the sampled instants.
                 Course::Sun(following) => {
                     1.1 * looks(self.duration).map(|t| following.at(t)[1].abs()).fold(0.0, f64::max)
                 }
@@ -252,7 +254,7 @@ impl Written {
         Ok(Some(Drives { driven, courses: Arc::new(Courses { each, fastest, changes }) }))
     }
 
-    /// Refuses a drive that is too fast for the modes of its appendage.
+    /// Checks that a drive is slow enough for the modes of its appendage.
     fn too_fast(&self, index: usize, most: f64) -> Result<(), Fault> {
         let clamped = self.appendage[index].clamped_modes();
         let own = clamped.iter().map(|mode| mode.frequency.get());
@@ -269,7 +271,7 @@ impl Written {
 }
 
 impl Scenario {
-    /// What does not go with drives and hinges.
+    /// Returns the error of a part that is incompatible with drives and hinges.
     pub(super) fn drive_fault(&self) -> Option<Fault> {
         let driven = &self.study.drives.as_ref()?.driven;
         let spacecraft = self.spacecraft.as_ref()?;
@@ -321,7 +323,7 @@ impl Scenario {
     }
 }
 
-/// Instants of a run (s).
+/// Returns evenly spaced instants of a run (s), start and end included.
 fn looks(duration: Span) -> impl Iterator<Item = f64> {
     let end = duration.seconds();
     (0..=LOOKS).map(move |look| end * f64::from(look) / f64::from(LOOKS))

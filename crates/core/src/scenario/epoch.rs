@@ -1,4 +1,4 @@
-//! The date of a run's start, as a count of nanoseconds.
+//! Date of a run's start, as a count of nanoseconds.
 
 use std::fmt;
 
@@ -8,7 +8,7 @@ use toml::value::Datetime;
 
 use crate::document::DATE;
 
-/// Reads a date.
+/// Deserialises a date and time.
 pub fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Datetime>, D::Error> {
     struct Date;
     impl Visitor<'_> for Date {
@@ -25,10 +25,11 @@ pub fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Datetim
     deserializer.deserialize_newtype_struct(DATE, Date).map(Some)
 }
 
-/// Nanoseconds from 1970 to a date and time, which is UTC unless it has an offset; within 1970 to 2500.
+/// Returns the nanoseconds since 1970 of a date and time, which is UTC unless it has an offset; `None` outside 1970 to
+/// 2500.
 pub fn nanoseconds_since_1970(epoch: &Datetime) -> Option<u64> {
     let (date, time) = (epoch.date?, epoch.time?);
-    // Days from the civil calendar, in years that begin in March, so that a leap day comes last.
+    // Days in the civil calendar, with years that begin in March, so that a leap day comes last.
     let (year, month) = (i64::from(date.year), i64::from(date.month));
     let (year, month) = if month > 2 { (year, month - 3) } else { (year - 1, month + 9) };
     let days = 365 * year + year.div_euclid(4) - year.div_euclid(100)

@@ -1,4 +1,4 @@
-//! Failures of sensors and actuators: what of them does not fit, and when each lasts.
+//! Failures of sensors and actuators: checks, and intervals.
 
 use super::{Scenario, Written};
 use crate::actuator::{Failure, Lasting};
@@ -8,21 +8,21 @@ use crate::document::Fault;
 use crate::law::Law;
 use crate::outage::Outage;
 
-/// A failure of a part.
+/// Failure of a part with its interval.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Failing {
-    /// The key of the part.
+    /// Key of the part.
     pub part: String,
-    /// What of it fails, if not all.
+    /// Component that fails, such as `wheel 2`; empty if the whole part fails.
     pub of: String,
-    /// The kind of failure.
+    /// Kind of failure.
     pub fault: &'static str,
-    /// How long it lasts.
+    /// Interval of the failure.
     pub outage: Outage,
 }
 
 impl Written {
-    /// All failures: of sensors in their order, then of the actuator.
+    /// Returns all failures: of sensors in their order, then of actuators.
     pub fn failing(&self) -> Vec<Failing> {
         let mut all = Vec::new();
         for (index, sensor) in self.sensor.iter().enumerate() {
@@ -54,7 +54,7 @@ impl Written {
 }
 
 impl Scenario {
-    /// A failure that does not fit its sensor or actuator, or the motion.
+    /// Checks that the failures are consistent with their sensors and actuators, and with the motion.
     pub(super) fn failing_fault(&self) -> Option<Fault> {
         for (number, sensor) in self.sensor.iter().enumerate() {
             let disorder = |fault: &crate::sensor::Fault| fault.outage().disorder();
@@ -68,7 +68,8 @@ impl Scenario {
         failed.or_else(|| self.sines_fault())
     }
 
-    /// Sines in a torque where the motion under them has no closed form, and no steps that follow them.
+    /// Checks that the motion under sinusoidal torques has a closed form, or is integrated with steps that resolve
+    /// them.
     fn sines_fault(&self) -> Option<Fault> {
         let disturbed = self.disturbance.iter().position(|of| !of.sines.is_empty());
         let disturbed = disturbed.map(|index| format!("disturbance[{index}].sines"));

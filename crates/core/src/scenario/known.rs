@@ -1,4 +1,4 @@
-//! What the estimator and the monitor of the envelope are told of a scenario before a run.
+//! Scenario data for the estimator, the monitor of the envelope and the meter of an objective, before a run.
 
 use super::{Scenario, Written};
 use crate::adaptation::{Adaptation, Objective};
@@ -7,7 +7,7 @@ use crate::estimator::{Estimator, Known, Meter, Monitor, Searching};
 use crate::random::Seed;
 
 impl Scenario {
-    /// What its estimator knows before a run.
+    /// Returns the scenario data that the estimator needs before a run.
     pub fn known(&self) -> Known<'_> {
         let study = &self.study;
         let axes = 0..study.axes.len();
@@ -25,7 +25,7 @@ impl Scenario {
         }
     }
 
-    /// The monitor of the envelope that it asks for, if any.
+    /// Creates the monitor of the envelope, if the scenario has one.
     pub fn monitor(&self, seed: Seed) -> Option<Monitor> {
         let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
         let learns = self.objective() == Some(Objective::EnvelopeMean);
@@ -40,7 +40,7 @@ impl Scenario {
         Some(Monitor::of_three_axes(envelope, &modes, search))
     }
 
-    /// The meter of another objective of its adaptation, if any.
+    /// Creates the meter of the adaptation's objective, if it has one other than the envelope's mean.
     pub fn meter(&self, seed: Seed) -> Option<Meter> {
         let (adaptation, objective) = (self.adaptation.as_ref()?, self.objective()?);
         let window = adaptation.window().filter(|_| objective != Objective::EnvelopeMean)?;
@@ -48,19 +48,19 @@ impl Scenario {
         Some(Meter::new(objective, window, goal, self.searching(seed)?))
     }
 
-    /// The unit of its torques.
+    /// Returns the unit of the torques.
     pub fn torque_unit(&self) -> &'static str {
         self.model.commanded().1
     }
 }
 
 impl Written {
-    /// What its adaptation measures, if it has one.
+    /// Returns the objective of the adaptation, if there is one.
     pub fn objective(&self) -> Option<Objective> {
         self.adaptation.as_ref().map(Adaptation::objective)
     }
 
-    /// The number of the law that its adaptation tunes, as it is at the start; none without one.
+    /// Returns the initial value of the law's parameter that the adaptation tunes; `None` without an adaptation.
     pub fn tuned(&self) -> Option<f64> {
         let tunes = self.adaptation.as_ref()?.tunes();
         self.law.tunable().into_iter().find(|number| number.key == tunes).map(|number| number.value)

@@ -1,4 +1,4 @@
-//! What does not fit of an estimator: its own keys, and the modes that it knows.
+//! Checks of an estimator: its own keys, and its modes.
 
 use super::Scenario;
 use crate::body::{Body, Drive, Planar};
@@ -6,10 +6,10 @@ use crate::document::Fault;
 use crate::estimator::{Estimator, Form};
 use crate::quantity::Positive;
 
-/// No filter of an axis of three estimates more modes: its matrices are full.
+/// Largest number of modes in a filter about each of three axes, because its matrices are full.
 const MOST_FILTERED: usize = 24;
 
-/// Why an array is refused for one angle.
+/// Message for an array where a one-axis body needs one number.
 const ONE_NUMBER: &str = "must be one number for a body with one angle, got one for each of three axes";
 
 impl Scenario {
@@ -35,7 +35,7 @@ impl Scenario {
         })
     }
 
-    /// What is wrong with a monitor of the envelope of three axes.
+    /// Checks a monitor of the envelope on a three-axis body.
     pub(super) fn envelope_inconsistency(&self) -> Option<Fault> {
         let envelope = self.estimator.as_ref().and_then(Estimator::envelope)?;
         let at = |key: &str, why: &str| Some(Fault::new(format!("estimator.envelope{key}"), why));
@@ -60,7 +60,7 @@ impl Scenario {
         Some(Fault::new(format!("{}.damping", self.body_key()), why))
     }
 
-    /// What is wrong with an estimator that acts at each sample.
+    /// Checks an estimator that works on samples.
     pub(super) fn filter_inconsistency(&self, estimator: &Estimator) -> Option<Fault> {
         if estimator.envelope().is_some() {
             return None;

@@ -1,4 +1,4 @@
-//! The table `[log]`: how densely a full log holds the motion, and how a log with a scene draws it.
+//! Table `[log]`: sampling period of the motion in a full log, and options of the scene.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,13 +7,13 @@ use crate::document::Fault;
 use crate::quantity::Positive;
 use crate::time::Span;
 
-/// No frames are nearer than this (s), unless a scenario asks for it: viewers show no more.
+/// Shortest default period of the frames (s), because viewers show no more.
 const SHORTEST_PERIOD: f64 = 0.04;
 
-/// A full log holds no more instants of its period than this, unless a scenario asks for it: viewers take minutes to load more.
+/// Largest default number of samples in a full log, because viewers take minutes to load more.
 const MOST_INSTANTS: f64 = 1e4;
 
-/// What is drawn larger than this is out of any picture, and its square soon no number.
+/// Largest magnification: anything larger is outside every picture, and its square soon overflows.
 const LARGEST_FACTOR: f64 = 1e9;
 
 /// Contents of a full log.
@@ -34,7 +34,7 @@ fn tenth() -> Span {
 }
 
 impl Log {
-    /// The period for runs of this duration.
+    /// Returns the sampling period for runs of this duration.
     pub fn period_for(&self, duration: Span) -> Span {
         if let Some(period) = self.period {
             return period;
@@ -63,12 +63,12 @@ pub struct SceneSpec {
 }
 
 impl SceneSpec {
-    /// Whether the scenario leaves everything out.
+    /// Returns true if no option is given.
     pub fn is_default(&self) -> bool {
         *self == Self::default()
     }
 
-    /// The first factor that leaves no picture, and why.
+    /// Checks that the magnifications are not too large; returns the error at the key.
     pub fn inconsistency(&self) -> Option<Fault> {
         let factors = [("bending", self.bending), ("turning", self.turning)];
         let (key, factor) = factors.into_iter().find(|(_, f)| f.is_some_and(|f| f.get() > LARGEST_FACTOR))?;
@@ -78,7 +78,7 @@ impl SceneSpec {
         ))
     }
 
-    /// The period of the frames, where a log has this one.
+    /// Returns the period of the frames, for a log with period `log`.
     pub fn period(&self, log: Span) -> Span {
         self.period.unwrap_or_else(|| log.max(Span::from_seconds(SHORTEST_PERIOD)))
     }

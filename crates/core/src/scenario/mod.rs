@@ -1,4 +1,4 @@
-//! The scenario: everything that a user writes about a study, what it comes to, and nothing that moves.
+//! Scenario: everything that a user writes about a study, and the data that follow from it before a run.
 
 mod adapting;
 mod assembly;
@@ -43,18 +43,18 @@ pub use reference::{Pointing, Reference};
 pub use study::Study;
 pub use written::Written;
 
-/// A scenario: what is written, and what it comes to.
+/// A validated scenario: the keys as written, and the data resolved from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
-    /// What is written.
+    /// Keys as written, with defaults.
     pub written: Written,
-    /// The body as it moves.
+    /// Model of the body.
     pub model: Model,
-    /// The plan of the manoeuvre.
+    /// Plan of the manoeuvre, if there is one.
     pub plan: Option<Plan>,
-    /// The exact flow of a body whose modes are coupled, where the motion is in closed form.
+    /// Exact flow of a one-axis body with coupled modes, where the motion has a closed form.
     pub linear: Option<Arc<LinearFlow>>,
-    /// What the parts come to together.
+    /// Data resolved from all parts together.
     pub study: Study,
 }
 
@@ -72,7 +72,7 @@ impl Scenario {
         Self::from_document(&Document::load(path)?)
     }
 
-    /// Reads a scenario from a text. `origin` is what errors call it.
+    /// Reads a scenario from a text. `origin` is its name in error messages.
     pub fn parse(origin: &str, text: &str) -> Result<Self, ScenarioError> {
         Self::from_document(&Document::parse(origin, text.to_owned())?)
     }
@@ -82,13 +82,14 @@ impl Scenario {
         Self::solved(document, None, &OwnParts::default(), true)
     }
 
-    /// Reads a scenario from a document that differs from another scenario in some keys. If the body is not among them,
-    /// its modes are taken over.
+    /// Reads a scenario from a document that differs from `parent` in some keys. If the body is not among them, its
+    /// modes are reused.
     pub fn from_document_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
         Self::solved(document, Some(parent), &parent.own_parts(), true)
     }
 
-    /// The same of a document that differs in the values of numbers alone: every key of it is known.
+    /// Reads a scenario from a document that differs from `parent` only in numeric values, without a check for unknown
+    /// keys.
     pub(crate) fn from_numbers_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
         Self::solved(document, Some(parent), &parent.own_parts(), false)
     }
@@ -117,7 +118,8 @@ impl Scenario {
         Self::fitted(written, model).map_err(|fault| document.inconsistent(&fault))
     }
 
-    /// The scenario of a body that is solved, and of parts that are found to fit each other.
+    /// Completes a scenario from its keys and its model: checks that they are consistent, resolves the data, and plans
+    /// the manoeuvre.
     fn fitted(written: Written, model: Model) -> Result<Self, Fault> {
         written.fit(&model)?;
         let study = Study::of(&written, &model)?;
@@ -128,10 +130,10 @@ impl Scenario {
         Ok(scenario)
     }
 
-    /// The scenario's body of one angle, for what is an analysis of such bodies.
+    /// Returns the one-axis body, for analyses that need one.
     ///
     /// # Errors
-    /// The body is a spatial one.
+    /// Fails for a three-axis body.
     pub fn one_angle(&self) -> Result<&Planar, ScenarioError> {
         self.model.planar().ok_or_else(|| ScenarioError::Key {
             origin: self.name.clone(),
@@ -140,12 +142,12 @@ impl Scenario {
         })
     }
 
-    /// How many elastic modes the body has.
+    /// Returns the number of elastic modes of the body.
     pub fn mode_count(&self) -> usize {
         self.model.mode_count()
     }
 
-    /// The plan of the manoeuvre, if there is one.
+    /// Plans the manoeuvre, if there is one.
     fn planned(&self) -> Result<Option<Plan>, Fault> {
         let (Some(manoeuvre), Some(own)) = (&self.manoeuvre, self.model.planar()) else { return Ok(None) };
         let body = manoeuvre.planned_for(own);
@@ -161,7 +163,7 @@ impl Scenario {
         manoeuvre.plan(body).map(Some).map_err(|fault| fault.within("manoeuvre"))
     }
 
-    /// Where the law shall bring the body: the end of the manoeuvre, or angle 0 from the start on.
+    /// Returns the setpoint of a one-axis body: the end of the manoeuvre, or angle 0 from the start on.
     pub fn goal(&self) -> Goal {
         let planned = self.plan.as_ref().zip(self.model.planar());
         planned.map_or_else(Goal::default, |(plan, body)| Goal {
@@ -172,7 +174,7 @@ impl Scenario {
         })
     }
 
-    /// How near to its goal the body has to stay: by the scenario, else as its manoeuvre or its law promises.
+    /// Returns the error band about the goal: as written in the scenario, else as the manoeuvre or the law promises.
     pub fn promise(&self) -> Promise {
         match (self.reference.band, &self.plan) {
             (Some(band), _) => Promise::Within(band.get()),
@@ -184,8 +186,8 @@ impl Scenario {
         }
     }
 
-    /// What is written, without need of any file: the matrices of a structure give way to the modes that they came to, the path
-    /// of a file of modes to the modes.
+    /// Returns the keys without references to files: matrices of a structure are replaced by their modes, paths of mode
+    /// files by the modes.
     #[must_use]
     pub fn self_contained(&self) -> Written {
         let mut written = self.written.clone();
@@ -199,19 +201,19 @@ impl Scenario {
         written
     }
 
-    /// The JSON Schema of scenarios.
+    /// Returns the JSON Schema of scenarios.
     pub fn schema() -> serde_json::Value {
         schemars::schema_for!(Written).to_value()
     }
 
-    /// The unit of a key, such as rad/s of `body.planar.rate`; none of a ratio.
+    /// Returns the unit of a key, such as rad/s of `body.planar.rate`; `None` for a dimensionless key.
     pub fn unit_of(&self, key: &str) -> Option<&'static str> {
         let unit = crate::document::unit_at(units(), key)?;
         Some(if unit == "N m" && self.model.has_unit_inertia() { "rad/s²" } else { unit })
     }
 }
 
-/// The schema, whose descriptions say the units of keys.
+/// Returns the JSON Schema, whose descriptions contain the units of the keys.
 fn units() -> &'static serde_json::Value {
     static SCHEMA: OnceLock<serde_json::Value> = OnceLock::new();
     SCHEMA.get_or_init(Scenario::schema)

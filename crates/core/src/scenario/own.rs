@@ -1,4 +1,4 @@
-//! Parts of a program's own in a scenario: put in place beside its text, which cannot hold them, and taken over where keys change.
+//! Custom parts of a scenario: set in addition to its text, which cannot contain them, and kept when keys change.
 
 use toml::{Table, Value};
 
@@ -11,30 +11,30 @@ use crate::law::{Law, Rule};
 use crate::own::Own;
 use crate::sensor::{Instrument, Sensor};
 
-/// What stands in a text for a sensor and for an actuator of a program's own.
+/// Placeholders in a text for a custom sensor and for a custom actuator.
 const SENSOR: &str = "continuous";
 const ACTUATOR: &str = "ideal";
 
-/// Parts of a program's own, one of each role at most, and sensors and actuators.
+/// Custom parts of a scenario: at most one law, estimator and adaptation, and any number of sensors and actuators.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct OwnParts {
-    /// The law.
+    /// Custom law.
     pub law: Option<Own<dyn Rule + Send + Sync>>,
-    /// Sensors, each with its place among those of the scenario.
+    /// Custom sensors, each with its index among the sensors of the scenario.
     pub sensors: Vec<(usize, Own<dyn Instrument>)>,
-    /// The estimator.
+    /// Custom estimator.
     pub estimator: Option<Own<dyn Observe>>,
-    /// The adaptation.
+    /// Custom adaptation.
     pub adaptation: Option<Own<dyn Adapt>>,
-    /// Actuators, each with its place among those of the scenario.
+    /// Custom actuators, each with its index among the actuators of the scenario.
     pub actuators: Vec<(usize, Own<dyn Effector>)>,
 }
 
 impl Scenario {
-    /// The scenario with a part of a program's own, such as `law: Law::Own(..)`, in place of what was read.
+    /// Returns the scenario with a change of its keys, such as a custom part `law: Law::Own(..)`.
     ///
     /// # Errors
-    /// The part does not fit the others.
+    /// Fails if the changed scenario is inconsistent.
     pub fn with(mut self, change: impl FnOnce(&mut Written)) -> Result<Self, ScenarioError> {
         change(&mut self.written);
         let origin = self.name.clone();
@@ -42,18 +42,20 @@ impl Scenario {
         Self::fitted(self.written, self.model).map_err(fault)
     }
 
-    /// Reads a scenario from a document beside which these parts stand, in place of what it says of their roles.
+    /// Reads a scenario from a document with custom parts: for roles that the document leaves out, and for sensors and
+    /// actuators with a placeholder.
     ///
     /// # Errors
-    /// The document is not accepted, or the parts do not fit the others.
+    /// Fails if the document is invalid or inconsistent with the parts.
     pub fn from_document_beside(document: &Document, own: &OwnParts) -> Result<Self, ScenarioError> {
         Self::solved(document, None, own, true)
     }
 
-    /// The scenario with these parts in place of its own, and beside those that it has of a program.
+    /// Returns the scenario with the parts of `own` in place of those of the same role or index, and with its other
+    /// custom parts.
     ///
     /// # Errors
-    /// The parts do not fit the others.
+    /// Fails if the parts are inconsistent with the others.
     pub fn bringing(&self, own: OwnParts) -> Result<Self, ScenarioError> {
         let mut all = self.own_parts();
         all.sensors.retain(|(place, _)| own.sensors.iter().all(|(other, _)| other != place));
@@ -67,7 +69,7 @@ impl Scenario {
         for role in all.each().into_iter().filter(|role| !["sensor", "actuator"].contains(role)) {
             table.remove(role);
         }
-        // A sensor or an actuator that is replaced gives its place up.
+        // Replaced sensors and actuators become placeholders.
         for (place, _) in &all.sensors {
             self.give_up(&mut table, ("sensor", self.sensor.len()), *place, SENSOR)?;
         }
@@ -80,8 +82,8 @@ impl Scenario {
 }
 
 impl Written {
-    /// Lets a part of a program's own have a place in the text among so many, with the word that stands there for it. An actuator
-    /// keeps what it is for.
+    /// Writes the placeholder `word` of a custom part into the table, at index `place` of `count` parts of a role. An
+    /// actuator keeps its axes, share and unloading.
     fn give_up(
         &self,
         table: &mut Table,
@@ -122,12 +124,12 @@ impl Written {
         Ok(())
     }
 
-    /// Whether it has a part of a program's own, which no text can hold.
+    /// Returns true if the scenario has a custom part, which no text can contain.
     pub fn has_own_parts(&self) -> bool {
         !self.own_parts().each().is_empty()
     }
 
-    /// Its parts of a program's own.
+    /// Returns the custom parts of the scenario.
     pub fn own_parts(&self) -> OwnParts {
         let sensor = |(place, sensor): (usize, &Sensor)| match sensor {
             Sensor::Own(own) => Some((place, own.clone())),
@@ -152,7 +154,8 @@ impl Written {
         }
     }
 
-    /// The scenario with all its defaults, as a table without its parts of a program's own.
+    /// Returns the scenario with all its defaults, as a table with placeholders for custom sensors and actuators, and
+    /// without other custom parts.
     pub fn table_beside_own_parts(&self) -> Table {
         let mut table = self.to_table();
         let is_own = |part: &Value| part.get("own").is_some();
@@ -166,7 +169,7 @@ impl Written {
         table
     }
 
-    /// Takes over parts of a program's own where the document says nothing else.
+    /// Sets the custom parts for roles that the document leaves out, and for sensors and actuators with a placeholder.
     pub(super) fn take_own_parts(&mut self, own: &OwnParts, document: &Document) {
         let OwnParts { law, sensors, estimator, adaptation, actuators } = own;
         if let Some(law) = law.as_ref().filter(|_| !document.has("law")) {
@@ -193,7 +196,7 @@ impl Written {
 }
 
 impl OwnParts {
-    /// The roles of which there is one, by their keys.
+    /// Returns the keys of the roles that have a custom part.
     pub fn each(&self) -> Vec<&'static str> {
         let all = [
             ("law", self.law.is_some()),

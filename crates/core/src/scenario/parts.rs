@@ -1,4 +1,4 @@
-//! Which parts go together: what does not is refused here, with the reason and what would do.
+//! Compatibility of the parts of a scenario; errors give the reason and an alternative.
 
 use super::Written;
 use crate::actuator::{Actuator, ActuatorTask};
@@ -9,10 +9,10 @@ use crate::law::{Itinerary, Law, Measure, Target};
 use crate::sensor::Sensor;
 
 impl Written {
-    /// Checks that the parts go together.
+    /// Checks that the parts of the scenario are compatible.
     ///
     /// # Errors
-    /// A key that does not fit the others, and why.
+    /// Fails with the first key that is incompatible with the others, and the reason.
     pub(super) fn fit(&self, model: &Model) -> Result<(), Fault> {
         let faults = [
             self.axes_fault(),
@@ -27,7 +27,7 @@ impl Written {
         faults.into_iter().flatten().next().map_or(Ok(()), Err)
     }
 
-    /// A part for bodies with one angle, or with three axes, of a scenario with the other.
+    /// Returns the error of a part for one-axis bodies with a three-axis body, or the reverse.
     fn axes_fault(&self) -> Option<Fault> {
         let refused = |key: &str, why: &str| Some(Fault::new(key, why));
         if self.axis_count() == 1 {
@@ -136,7 +136,7 @@ impl Written {
                 let why = "are those of the scenario: leave out `law.phase_plane.targets`";
                 return Some(Fault::new("target", why));
             }
-            // Their order is a matter of the law.
+            // The order of the targets is checked with the law.
             if Target::disorder(&law.targets).is_some() {
                 return None;
             }

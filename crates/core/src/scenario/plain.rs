@@ -1,11 +1,11 @@
-//! Whether the law alone moves the body of a scenario, which quicker loops and lanes need.
+//! Condition for the relay kernel: the law alone moves the body.
 
 use super::Scenario;
 use crate::body::Model;
 use crate::sensor::Sensor;
 
 impl Scenario {
-    /// Whether the law alone moves a body of one angle, in closed form, and knows its angle at every instant.
+    /// Returns true if only the law moves a one-axis body, in closed form, and its angle is measured at every instant.
     pub fn is_plain(&self) -> bool {
         matches!(self.model, Model::Planar(_))
             && self.linear.is_none()

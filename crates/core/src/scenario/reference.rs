@@ -1,4 +1,4 @@
-//! The table `[reference]`: what metrics compare with.
+//! Table `[reference]`: reference values of the metrics.
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -36,13 +36,13 @@ pub struct Pointing {
 }
 
 impl Pointing {
-    /// Whether a time (s) counts.
+    /// Returns true if a time (s) lies in the window.
     pub fn counts(&self, t: f64) -> bool {
         let [from, to] = self.window.map(Time::get);
         from <= t && t <= to
     }
 
-    /// What is wrong on a body with so many axes: a key, and why.
+    /// Checks the requirement for a body with `axes` axes; returns the error at its key.
     pub fn fault(&self, axes: usize) -> Option<Fault> {
         let [from, to] = self.window.map(Time::get);
         if axes == 1 {
@@ -57,7 +57,7 @@ impl Pointing {
 }
 
 impl Reference {
-    /// Whether the scenario leaves everything out.
+    /// Returns true if no reference value is given.
     pub fn is_empty(&self) -> bool {
         *self == Self::default()
     }

@@ -1,4 +1,4 @@
-//! What does not fit of sensors, and of estimators with what they read.
+//! Checks of sensors, and of estimators and laws with their inputs.
 
 use super::Written;
 use crate::document::Fault;
@@ -51,7 +51,7 @@ impl Written {
         None
     }
 
-    /// A tachometer without wheels, without another sensor, or beside another.
+    /// Checks that a tachometer has wheels, is the only one, and is listed with a sensor of the body.
     fn tachometer_fault(&self) -> Option<Fault> {
         let (index, _) = self.sensor.tachometer()?;
         let at = |index: usize, why: &str| Some(Fault::new(self.sensor_key(index), why));
@@ -67,7 +67,7 @@ impl Written {
         tachometers.nth(1).and_then(|(other, _)| at(other, "is on each wheel already: list only one"))
     }
 
-    /// An accelerometer on another body than a spacecraft, or without another sensor.
+    /// Checks that accelerometers are on a spacecraft, and are listed with a sensor of the body.
     fn accelerometer_fault(&self) -> Option<Fault> {
         let (index, _) = self.sensor.accelerometers().next()?;
         let why = if self.spacecraft.is_none() {
@@ -80,7 +80,7 @@ impl Written {
         Some(Fault::new(self.sensor_key(index), why))
     }
 
-    /// What no loop that is analysed has a place for: rates that are measured late, and attitudes that are means.
+    /// Returns the error of a sensor that linear loop analysis cannot represent: delayed rates, and mean attitudes.
     pub fn unlike_loops(&self) -> Option<Fault> {
         let of = |index: usize| {
             let sensor = &self.sensor[index];
@@ -92,12 +92,12 @@ impl Written {
         Some(Fault::new(key, "is not supported in linear loops: leave it out"))
     }
 
-    /// The key of a sensor, its kind included.
+    /// Returns the key of a sensor, including its kind.
     pub fn sensor_key(&self, index: usize) -> String {
         format!("{}.{}", self.sensor.key("sensor", index), self.sensor[index].kind())
     }
 
-    /// An estimator that nothing reads, or a law that reads what no estimator tells.
+    /// Checks that the estimator is used, and that the estimates that laws read are available.
     pub(super) fn reading_fault(&self) -> Option<Fault> {
         let reads: Vec<Reads> = (0..self.axis_count()).map(|axis| self.law.about(axis).reads()).collect();
         if let Some(axis) = reads.iter().position(|reads| *reads == Reads::DominantMode) {

@@ -1,4 +1,4 @@
-//! What parts need of the surroundings: orbit, field and Sun.
+//! Checks of parts that need the environment: orbit, magnetic field and Sun.
 
 use std::f64::consts::TAU;
 
@@ -7,11 +7,11 @@ use crate::document::Fault;
 use crate::environment::{Sky, Sun};
 use crate::sensor::Sensor;
 
-/// The planet's shadow is known for so many orbits at most.
+/// Largest number of orbits in a run for which the planet's shadow is computed.
 const MOST_ORBITS: f64 = 1e6;
 
 impl Written {
-    /// An environment that does not fit itself, or the run.
+    /// Checks that the environment is consistent in itself and with the run.
     pub(super) fn environment_fault(&self) -> Option<Fault> {
         let around = self.environment.as_ref()?;
         if let Some(fault) = around.fault() {
@@ -31,13 +31,13 @@ impl Written {
         (turns > MOST_ORBITS).then(|| Fault::new("environment.orbit", why()))
     }
 
-    /// What is around the body wherever it faces.
+    /// Returns the orbit environment in inertial axes, independent of the body's attitude.
     pub fn sky(&self) -> Sky {
         let of = |environment| Sky::new(environment, self.duration, self.epoch_ns());
         self.environment.as_ref().map(of).unwrap_or_default()
     }
 
-    /// Why a B-dot law cannot act.
+    /// Returns the error of a B-dot law without a magnetometer or magnetorquers.
     pub(super) fn b_dot_fault(&self) -> Option<Fault> {
         let why = if !self.sensor.iter().any(Sensor::measures_field) {
             "reads the field of a `[sensor.magnetometer]`, and there is none"
@@ -49,7 +49,7 @@ impl Written {
         Some(Fault::new("", why))
     }
 
-    /// A sensor of a vector that there is not.
+    /// Returns the error of a vector sensor whose field or Sun is missing.
     pub(super) fn vector_fault(&self, sensor: &Sensor) -> Option<Fault> {
         let around = self.environment.as_ref();
         match sensor {

@@ -1,4 +1,5 @@
-//! A scenario solved: its body as laws and estimators of one axis know it, and its parts as they fit each other.
+//! Data resolved from all parts of a scenario: one-axis models for laws and estimators, placement, allocation and
+//! authority.
 
 use nalgebra::{Cholesky, Matrix3};
 
@@ -19,75 +20,75 @@ use crate::quantity::{Finite, Positive};
 use crate::random::Seed;
 use crate::time::{Instant, Span};
 
-/// A run without a period of its own is assessed once in so long (s).
+/// Assessment period of a run without a period of its own (s).
 const TICK: f64 = 1.0;
-/// Shares are rounded.
+/// Tolerance for rounded shares.
 const ROUNDING: f64 = 1e-9;
 
-/// What the parts of a scenario come to together.
+/// Data resolved from all parts of a scenario together.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Study {
-    /// The body about each of its axes, as if that axis were alone.
+    /// One-axis model of the body about each of its axes, as if that axis were alone.
     pub axes: Vec<Planar>,
-    /// What the actuator can do about each.
+    /// Authority of the actuators about each axis.
     pub authorities: Vec<Authority>,
-    /// The law's period, if it has one.
+    /// Period of the law, if it has one.
     pub cycle: Option<Span>,
-    /// The period of the samples; none where the angle is known at every instant.
+    /// Sampling period; `None` if the angle is measured at every instant.
     pub sampling: Option<Span>,
-    /// How often a body with three axes is assessed.
+    /// Assessment period of a three-axis body.
     pub tick: Span,
-    /// The points of a body with three axes at which each sensor is.
+    /// Point of a three-axis body at which each sensor is mounted.
     pub sensed_at: Vec<String>,
-    /// The point of a body with three axes at which torques act.
+    /// Point of a three-axis body at which torques act.
     pub acts_at: String,
-    /// What moves a spacecraft that jets or forces push.
+    /// Translation of a spacecraft, if jets or forces can push it.
     pub moving: Option<Moving>,
-    /// What is around a body with three axes.
+    /// Environment of a three-axis body.
     pub around: Option<Around>,
-    /// The drives of appendages.
+    /// Drives and hinges of appendages.
     pub drives: Option<Drives>,
-    /// The way to the targets.
+    /// Sequence of targets of a three-axis body.
     pub way: Itinerary,
-    /// What each group of jets by which laws act does: for each axis, plus and minus.
+    /// Effect of each group of jets that execute the law's commands: about each axis, plus and minus.
     pub groups: Option<[[FiringGroup; 2]; 3]>,
-    /// What each thruster of jets does, whether laws act by them or they unload wheels.
+    /// Effect of each thruster of jets, whether they execute commands or unload wheels.
     pub nozzles: Vec<OpenThruster>,
-    /// About which axes jets are the only actuator.
+    /// True for axes about which jets are the only actuator.
     pub fired: [bool; 3],
-    /// Whether jets are the only actuator of all.
+    /// True if jets are the only actuator.
     pub jets_alone: bool,
-    /// What each group of jets that unload wheels does.
+    /// Effect of each group of jets that unload wheels: about each axis, plus and minus.
     pub unloading: Option<[[FiringGroup; 2]; 3]>,
-    /// How a torque is allocated to wheels about axes of their own.
+    /// Allocation of a torque to wheels with their own axes.
     pub wheels: Option<Allocation>,
-    /// The axes of control moment gyros with their gimbals at angle 0.
+    /// Axes of control moment gyros with the gimbals at angle 0.
     pub gimbals: Vec<GyroAxes>,
-    /// The bearings of wheels with friction or imbalance.
+    /// Bearings of wheels with friction or imbalance.
     pub bearings: Vec<Bearing>,
-    /// Back-EMF of a wheel for each unit of the rate (N m s), and whether it is that of the elastic body.
+    /// Back-EMF torque of a wheel per unit of the rate (N m s), and whether the rate is that of the elastic body.
     pub back_emf: (f64, bool),
-    /// The adaptive observers.
+    /// Design of the adaptive observers.
     pub adaptive: Option<Box<adaptive::ObserverDesign>>,
-    /// What the sensors are to an attitude filter.
+    /// Sensor data of an attitude filter.
     pub attitude: Option<attitude::AttitudeSetting>,
-    /// What the motions of all runs have in common.
+    /// Integration steps shared by all runs.
     pub common: CommonSteps,
-    /// How near to its target the law of each axis promises to keep the body (rad), if it does.
+    /// Error band about the target that the law of each axis promises (rad), if it promises one.
     pub bands: Vec<Option<f64>>,
 }
 
 impl Study {
-    /// The study of a scenario whose body is solved and whose parts were checked one by one.
+    /// Resolves the data of a scenario with its model, after the parts have been checked one by one.
     ///
     /// # Errors
-    /// A key that does not fit the others, and why.
+    /// Fails with a key that is inconsistent with the others, and the reason.
     pub fn of(written: &Written, model: &Model) -> Result<Self, Fault> {
         let cycle = written.law.period();
         let samples = written.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_none());
         let mut study = Self {
             cycle,
-            // A continuous sensor is read in the cycles of the law, where an estimator acts at samples.
+            // With an estimator that works on samples, a continuous sensor is sampled at the law's period.
             sampling: written.sensor.period(cycle).or(cycle.filter(|_| samples)),
             way: Itinerary::new(written.targets(), &written.sky(), &model.free_modes()),
             back_emf: written
@@ -142,7 +143,7 @@ impl Study {
         Ok(study)
     }
 
-    /// The places of sensor and actuator on a body with three axes, its groups of jets, and its axes as if each were alone.
+    /// Resolves the three-axis data: mounting points, groups of jets, allocation, environment, and one-axis models.
     fn place(&mut self, written: &Written, model: &Model, body: &Spatial) -> Result<(), Fault> {
         let first = body.points.first().map_or(String::new(), |point| point.name.clone());
         let named = |key: &str, point: Option<&str>| {
@@ -223,7 +224,7 @@ impl Study {
         Ok(())
     }
 
-    /// What is measured of a body with three axes, and what its actuators do to it.
+    /// Returns the measured modal rates of a three-axis body, and the effect of its actuators on them.
     pub fn measured(&self, body: &Spatial) -> adaptive::MeasuredRates {
         let (seen, hub) = (rotations(body, &self.sensed_at[0]), rotations(body, &self.acts_at));
         let tensor = body.tensor();
@@ -248,12 +249,12 @@ impl Study {
         }
     }
 
-    /// Whether jets fire.
+    /// Returns true if the body has jets.
     pub fn fires(&self) -> bool {
         self.groups.is_some() || self.unloading.is_some()
     }
 
-    /// What turns the body as laws command.
+    /// Returns the conversion of the laws' commands into torques about the axes.
     pub fn distribution(&self, scenario: &Scenario) -> TorqueDistribution {
         match scenario.model.axes() {
             Axes::One(body) => TorqueDistribution::of_one_angle(body.commanded_inertia()),
@@ -263,7 +264,7 @@ impl Study {
         }
     }
 
-    /// The actuator of a run.
+    /// Creates the actuators of a run.
     pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuate> {
         let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
         let manoeuvre = scenario.manoeuvre.as_ref();
@@ -294,7 +295,7 @@ impl Study {
         Box::new(Several::new(settings.len(), started))
     }
 
-    /// One actuator before it first acts.
+    /// Creates one actuator before it first acts.
     fn start(
         &self,
         scenario: &Scenario,
@@ -317,7 +318,7 @@ impl Study {
     }
 }
 
-/// What is around a body, of which wheels are a part that its inertia is without.
+/// Creates the environment of a three-axis body, including the wheels' inertia that the body's tensor excludes.
 fn surroundings(written: &Written, model: &Model, body: &Spatial) -> Result<Option<Around>, Fault> {
     let bendings = model.craft().map_or(&[][..], |craft| &craft.bendings);
     let sunny =
@@ -338,12 +339,12 @@ fn surroundings(written: &Written, model: &Model, body: &Spatial) -> Result<Opti
     Ok(Some(around.warming(bendings)))
 }
 
-/// Rotations of the modes at a point (rad/(m sqrt(kg))).
+/// Returns the modal rotations at a point (rad/(m sqrt(kg))).
 fn rotations(body: &Spatial, point: &str) -> Vec<Vector> {
     body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect()
 }
 
-/// What is measured of a body with one angle: the modes show in the angle as they are.
+/// Returns the measured modal rates of a one-axis body: the modes appear in the angle with weight 1, or not at all.
 fn of_one_angle(model: &Planar) -> adaptive::MeasuredRates {
     let visible = if model.drive == Drive::Torque { 1.0 } else { 0.0 };
     adaptive::MeasuredRates {

@@ -1,4 +1,4 @@
-//! The scenario as a file writes it.
+//! Scenario as written in a file.
 
 use std::collections::BTreeMap;
 
@@ -97,22 +97,22 @@ pub struct Written {
 }
 
 impl Written {
-    /// How many axes the body has.
+    /// Returns the number of axes of the body.
     pub fn axis_count(&self) -> usize {
         self.body.as_ref().map_or(3, Body::axis_count)
     }
 
-    /// The kind of its body.
+    /// Returns the kind of the body.
     pub fn body_kind(&self) -> &'static str {
         self.body.as_ref().map_or("spacecraft", Body::kind)
     }
 
-    /// The key of its body.
+    /// Returns the key of the body.
     pub fn body_key(&self) -> String {
         self.body.as_ref().map_or_else(|| "spacecraft".to_owned(), |body| format!("body.{}", body.kind()))
     }
 
-    /// The attitudes that a body with three axes shall turn to.
+    /// Returns the target attitudes of a three-axis body.
     pub fn targets(&self) -> &[Target] {
         match &self.law {
             Law::PhasePlane(law) if !law.targets.is_empty() => &law.targets,
@@ -120,13 +120,13 @@ impl Written {
         }
     }
 
-    /// When the last target begins that does so before an instant; the start without one.
+    /// Returns the start of the last target that begins before `before`; the start of the run if there is none.
     pub fn last_target(&self, before: Instant) -> Instant {
         let begins = self.targets().iter().rev().map(Target::begins);
         begins.into_iter().find(|from| *from < before).unwrap_or(Instant::START)
     }
 
-    /// The key of the law about an axis.
+    /// Returns the key of the law about an axis.
     pub fn law_key(&self, axis: usize) -> String {
         match &self.law {
             Law::PerAxis(laws) => {
@@ -136,23 +136,23 @@ impl Written {
         }
     }
 
-    /// The scenario with all its defaults, as a table.
+    /// Returns the scenario with all its defaults, as a table.
     pub fn to_table(&self) -> Table {
-        // A scenario holds nothing that TOML cannot express.
+        // Every scenario can be expressed in TOML.
         Table::try_from(self).unwrap_or_default()
     }
 
-    /// The scenario with all its defaults, as TOML.
+    /// Returns the scenario with all its defaults, as TOML.
     pub fn to_toml(&self) -> String {
         toml::to_string(&self.to_table()).unwrap_or_default()
     }
 
-    /// Period at which a full log holds the motion.
+    /// Returns the sampling period of the motion in a full log.
     pub fn log_period(&self) -> Span {
         self.log.period_for(self.duration)
     }
 
-    /// Takes the modes of three axes into itself, where they have keys, out of their files.
+    /// Replaces references to mode files by the modes that were read from them.
     pub(crate) fn forget_files(&mut self) {
         if let Some(Body::Spatial(spatial)) = &mut self.body {
             spatial.modes.forget_file();
@@ -160,12 +160,12 @@ impl Written {
         self.appendage.iter_mut().for_each(Appendage::forget_file);
     }
 
-    /// The date of the start in nanoseconds since 1970 UTC; 0 without one.
+    /// Returns the date of the start in nanoseconds since 1970 UTC; 0 without one.
     pub fn epoch_ns(&self) -> u64 {
         self.epoch.as_ref().and_then(epoch::nanoseconds_since_1970).unwrap_or(0)
     }
 
-    /// Whether the torque is more than the switchings of a law.
+    /// Returns true if the torque consists of more than the switchings of a law.
     pub fn tells_torque(&self) -> bool {
         !self.law.switches() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
     }

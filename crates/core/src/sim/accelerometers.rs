@@ -1,4 +1,4 @@
-//! Accelerometers of a run: nothing reads them, and a record gets what they tell.
+//! Accelerometers of a run: neither estimators nor laws read them; their samples go to the record.
 
 use super::plant::{Mount, Plant};
 use super::{Simulation, SimulationError};
@@ -8,12 +8,12 @@ use crate::scenario::Scenario;
 use crate::sensor::{Accelerating, Accelerometer, MeasuredAcceleration};
 use crate::time::Instant;
 
-/// The accelerometers at work, each with its place among the sensors.
+/// Run-time state of the accelerometers, each with its index among the sensors and its mount.
 #[derive(Clone, Debug)]
 pub struct Accelerometers(Vec<(usize, Mount, Accelerating)>);
 
 impl Accelerometers {
-    /// Those of a scenario, before its start.
+    /// Creates the accelerometers of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         let seed = Seed { scenario: scenario.seed, run };
         let of = |(index, accelerometer): (usize, &Accelerometer)| {
@@ -24,14 +24,15 @@ impl Accelerometers {
         Self(scenario.sensor.accelerometers().filter_map(of).collect())
     }
 
-    /// When one samples or tells next.
+    /// Returns the next instant at which an accelerometer samples or has a sample ready.
     pub fn due(&self) -> Option<Instant> {
         self.0.iter().map(|(.., sensor)| sensor.due()).min()
     }
 }
 
 impl Simulation {
-    /// Samples the accelerometers that are due now, after all that acts has changed, and tells what they tell.
+    /// Samples the accelerometers that are due, after all loads have changed, and records the samples whose latency has
+    /// elapsed.
     pub(super) fn tell_accelerations(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.telling.accelerometers.due().is_none_or(|due| due > now) {

@@ -1,4 +1,4 @@
-//! The end of the manoeuvre: how far from the goal, and what vibration is left.
+//! State at the end of the manoeuvre: distance from the goal and residual vibration.
 
 use crate::body::{Drive, Planar};
 use crate::law::Goal;
@@ -8,23 +8,23 @@ use crate::scenario::Scenario;
 use crate::sensor::Truth;
 use crate::time::Instant;
 
-/// The end of a manoeuvre that lies ahead.
+/// Pending end of a manoeuvre.
 #[derive(Clone, Debug)]
 pub struct Arrival {
-    /// When.
+    /// Instant of the end.
     pub at: Instant,
     goal: Goal,
     body: Planar,
 }
 
 impl Arrival {
-    /// The end of a scenario's manoeuvre, if it has one.
+    /// Creates the end of a scenario's manoeuvre; `None` without one.
     pub fn new(scenario: &Scenario, goal: &Goal) -> Option<Self> {
         let body = scenario.model.planar().filter(|_| scenario.plan.is_some())?.clone();
         Some(Self { at: goal.from, goal: *goal, body })
     }
 
-    /// What is logged, for a body in this state.
+    /// Returns the row of the record for a body in this state.
     pub fn row(&self, truth: &Truth, state: &State) -> record::Arrival {
         let modes = || self.body.modes.iter().zip(&state.modes);
         let amplitudes: Vec<f64> = modes().map(|(mode, phase)| mode.amplitude(*phase)).collect();

@@ -1,4 +1,4 @@
-//! From samples to beliefs: what is measured goes through the estimator, and angles count from the target of now.
+//! From sensor samples to state estimates, with angles counted from the current target.
 
 use super::{Simulation, SimulationError};
 use crate::estimator::Taken;
@@ -6,7 +6,7 @@ use crate::record::Record;
 use crate::time::Instant;
 
 impl Simulation {
-    /// Takes a sample, which the estimator makes a belief of.
+    /// Reads the sensors that are due and updates the estimates.
     pub(super) fn sense(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.view(now)?;
@@ -36,7 +36,7 @@ impl Simulation {
         self.tell_estimates(record)
     }
 
-    /// Counts angles from the target of now: what is believed of them changes with it.
+    /// Moves the origin of the angles to the current target, and shifts the estimates accordingly.
     #[inline]
     pub(super) fn turn_to_target(&mut self, now: Instant) {
         if self.next_target.is_none_or(|begins| now < begins) {

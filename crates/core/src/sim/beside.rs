@@ -1,4 +1,5 @@
-//! A simulation whose motion is computed elsewhere, beside those of other runs: it senses, estimates and decides on its own.
+//! Stepping interface for batches that integrate the motion of many runs: each run senses, estimates and decides
+//! itself.
 
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
@@ -8,8 +9,8 @@ use crate::record::Record;
 use crate::time::Instant;
 
 impl Simulation {
-    /// Lends the motion of its body before the run begins: none but that of coupled or drifting modes. It is for laws without
-    /// guards, and nothing may look between events.
+    /// Hands the motion of the body to a batch before the run begins; `None` unless its modes are coupled or drift.
+    /// Only for laws without guards and runs without rows between events.
     pub(crate) fn lend(&mut self) -> Option<Lent> {
         let Plant::Planar(plant) = &mut self.plant else { return None };
         if self.monitor.is_some() { None } else { plant.lend() }
@@ -18,25 +19,26 @@ impl Simulation {
     /// Begins the run.
     ///
     /// # Errors
-    /// As a run.
+    /// Fails like [`Simulation::run_until`].
     pub(crate) fn begin_lent(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.open(record)?;
         self.resume(None, record).map(|_| ())
     }
 
-    /// When anything is due next, and whether that is within the run; else its end.
+    /// Returns the next instant at which anything is due, at most the end, and whether that is within the run.
     pub(crate) fn following(&self) -> (Instant, bool) {
         let next = self.next();
         (next.min(self.end), next <= self.end)
     }
 
-    /// The motion that began last: when, its reduced moment (rad/s²), and its torques; none since this was asked last.
+    /// Returns the start of the last motion segment, its reduced moment (rad/s²) and its torques, once per segment;
+    /// `None` if no segment has begun since the last call.
     pub(crate) fn departed(&mut self) -> Option<(Instant, f64, Exerted)> {
         let Plant::Planar(plant) = &mut self.plant else { return None };
         plant.departed().map(|(at, moment)| (at, moment, self.exerted))
     }
 
-    /// Brings the body to an instant: angle and rate of each coordinate.
+    /// Sets the motion at `now`: angle and rate of each coordinate.
     pub(crate) fn bring(&mut self, now: Instant, motion: impl Iterator<Item = [f64; 2]>) {
         if let Plant::Planar(plant) = &mut self.plant {
             plant.bring(now, motion);
@@ -47,26 +49,27 @@ impl Simulation {
         }
     }
 
-    /// Measures what there is.
+    /// Reads the sensors that are due; returns true if anything was measured.
     pub(super) fn measure(&mut self) -> bool {
         self.turn_to_target(self.now);
         self.sensing.read(self.now, &self.plant, &self.origin)
     }
 
-    /// Where it is in time.
+    /// Returns the current instant of the run.
     pub(crate) fn now(&self) -> Instant {
         self.now
     }
 
-    /// Whether a sample is due where the body is.
+    /// Returns true if a sample is due at the current instant.
     pub(crate) fn samples(&self) -> bool {
         self.sensing.next == Some(self.now)
     }
 
-    /// Takes the angle of a sample ahead of what is done with it (rad); none of a silent sensor.
+    /// Reads the sample at the current instant before the estimator uses it, and returns its angle (rad); `None` if the
+    /// sensor gives no measurement.
     ///
     /// # Errors
-    /// As a run.
+    /// Fails if the state is no longer finite.
     pub(crate) fn read_ahead(&mut self) -> Result<Option<f64>, SimulationError> {
         self.plant.view(self.now)?;
         let measured = self.measure();
@@ -74,28 +77,28 @@ impl Simulation {
         Ok(measured.then(|| self.sensing.measured[0][0]))
     }
 
-    /// The filter, and the mean reduced moment since its last sample (rad/s²).
+    /// Returns the filter, and the mean reduced moment since its last sample (rad/s²).
     pub(crate) fn filter(&mut self) -> Option<(&mut KalmanFilter, Option<f64>)> {
         self.estimator.filter(self.now)
     }
 
-    /// The true state of the filter's components.
+    /// Returns the true values of the filter's state components.
     pub(crate) fn true_state(&self) -> Vec<f64> {
         self.estimator.true_state(self.now, &self.plant.about(0, &self.origin))
     }
 
-    /// Does what is due where the body is.
+    /// Processes everything that is due at the current instant.
     ///
     /// # Errors
-    /// As a run.
+    /// Fails like [`Simulation::run_until`].
     pub(crate) fn act(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.serve(record)
     }
 
-    /// Ends the run where the body is.
+    /// Ends the run, if it is at its end.
     ///
     /// # Errors
-    /// As a run.
+    /// Fails like [`Simulation::run_until`].
     pub(crate) fn end(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.plant.view(self.now)?;
         self.finish(record)

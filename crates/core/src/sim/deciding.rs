@@ -1,11 +1,11 @@
-//! Decisions: the laws that an event concerns are asked once, and the actuator gets what they command.
+//! Control step: the laws that an event concerns decide once, and the actuator executes their commands.
 
 use super::{MOST_DECISIONS, Simulation, SimulationError};
 use crate::law::{Cause, Event};
 use crate::record::Record;
 
 impl Simulation {
-    /// Asks the laws that an event concerns; tells the cause.
+    /// Asks the laws that an event concerns; returns the cause of a switching.
     pub(super) fn ask(&mut self, event: Event) -> Option<Cause> {
         let Self { reference, now, laws, beliefs, .. } = self;
         if laws.are_steered() {
@@ -21,7 +21,7 @@ impl Simulation {
         laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
     }
 
-    /// Lets the laws decide on what has come up, and begins the motion under what they command.
+    /// Lets the laws decide on `event`, and begins a motion segment under their commands.
     pub(super) fn decide(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.steered = false;
@@ -32,7 +32,7 @@ impl Simulation {
         self.plant.view(now)?;
         self.turn_to_target(now);
         if self.sensing.next.is_none() {
-            // What is continuous is as it is.
+            // A continuous sensor gives the true state.
             let truth = self.plant.viewed();
             let angles = truth.orientation.at(truth.seen()).beyond(&self.origin);
             for (axis, belief) in self.beliefs.iter_mut().enumerate() {

@@ -1,4 +1,4 @@
-//! Departures: a motion ends, and the next begins under what acts from now on.
+//! Motion segments: one ends, and the next begins under the loads from the current instant on.
 
 use super::plant::Exerted;
 use super::{Simulation, SimulationError};
@@ -6,7 +6,7 @@ use crate::record::Record;
 use crate::time::Instant;
 
 impl Simulation {
-    /// Begins a motion under what acts from now on, and finds the next trip.
+    /// Begins a motion segment under the loads from the current instant on, and finds its first guard crossing.
     pub(super) fn depart(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.tell_course(now, &self.exerted, record)?;
@@ -31,10 +31,10 @@ impl Simulation {
         self.seek(record)
     }
 
-    /// Finds the next trip of the motion that begins.
+    /// Finds the first guard crossing of the segment that begins.
     pub(super) fn seek(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.trip = None;
-        // A sampled sensor trips its guards at samples.
+        // With a sampled sensor, guards are checked at the samples.
         if self.sensing.next.is_none() && !self.laws.guards().is_empty() {
             let ends = [self.laws.until(), self.drive.due].into_iter().flatten().fold(self.end, Instant::min);
             self.trip = self.plant.trip(self.laws.guards(), ends.since(self.now), record)?;

@@ -1,4 +1,4 @@
-//! What drives the body: the actuator, which executes laws and manoeuvre, and the surroundings.
+//! Loads on the body: the actuator, which executes the laws and the manoeuvre, disturbances, and the environment.
 
 use crate::actuator::Actuate;
 use crate::belief::Belief;
@@ -11,25 +11,25 @@ use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-/// All that acts on the body.
+/// Everything that acts on the body.
 #[derive(Clone, Debug)]
 pub struct Loads {
-    /// The actuator at work.
+    /// Run-time state of the actuator.
     pub actuator: Box<dyn Actuate>,
     distribution: TorqueDistribution,
     disturbances: Vec<Disturbing>,
-    /// The instants, latest first, at which the waveform breaks, a disturbance or what is around changes, the drift has a kink, or
-    /// drives have turned so far that other modes carry the motion on.
+    /// Instants, latest first, at which the waveform has a break, a disturbance or the environment changes, the
+    /// frequency drift has a kink, or the appendage drives reach the angles at which the modes are replaced.
     edges: Vec<Instant>,
-    /// The next of them, or of what disturbances draw.
+    /// Next instant of `edges`, or of the random changes of disturbances.
     edge: Option<Instant>,
-    /// The next instant at which anything changes by itself.
+    /// Next instant at which a load changes without a command.
     pub due: Option<Instant>,
     wrench: Wrench,
 }
 
 impl Loads {
-    /// The drive of a scenario, before its start.
+    /// Creates the loads of a scenario, before its start.
     pub fn new(scenario: &Scenario, seed: Seed) -> Self {
         let at = |t: f64| Instant::START + Span::from_seconds(t);
         let breaks = scenario.plan.iter().flat_map(|plan| plan.waveform.breaks()).map(at);
@@ -59,15 +59,14 @@ impl Loads {
         drive
     }
 
-    /// Finds what is due next.
+    /// Finds the next instant at which a load changes.
     fn look_ahead(&mut self) {
         let drawn = self.disturbances.iter().filter_map(Disturbing::due).min();
         self.edge = self.edges.last().copied().into_iter().chain(drawn).min();
         self.due = self.edge.into_iter().chain(self.actuator.due()).min();
     }
 
-    /// Takes over what laws command from now on, of a body that is believed to move so, and turns at these rigid rates
-    /// (rad/s).
+    /// Applies the commands of the laws from `now` on, given the state estimates and the rigid rates (rad/s).
     pub fn command(&mut self, now: Instant, commands: [Command; 3], beliefs: &[Belief], rigid: [f64; 3]) {
         let actuator = &mut self.actuator;
         let demands = self.distribution.demands(commands, beliefs, || actuator.stored(now));
@@ -75,7 +74,7 @@ impl Loads {
         self.due = self.edge.into_iter().chain(actuator.due()).min();
     }
 
-    /// Does what is due now, after laws have decided, for a body that turns at these rigid rates (rad/s).
+    /// Applies the changes of loads that are due at `now`, after the laws have decided, given the rigid rates (rad/s).
     pub fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
         while self.edges.last().is_some_and(|edge| *edge <= now) {
             self.edges.pop();
@@ -85,7 +84,7 @@ impl Loads {
         self.look_ahead();
     }
 
-    /// All that acts from now on.
+    /// Returns the wrench of all loads from `now` on.
     pub fn wrench(&mut self, now: Instant) -> &Wrench {
         self.wrench.clear();
         self.actuator.exert(now, &mut self.wrench);
@@ -100,14 +99,14 @@ impl Loads {
         &self.wrench
     }
 
-    /// What the actuator alone exerts from now on.
+    /// Returns the wrench of the actuator alone from `now` on.
     pub fn commanded(&self, now: Instant) -> Wrench {
         let mut wrench = Wrench::default();
         self.actuator.exert(now, &mut wrench);
         wrench
     }
 
-    /// The disturbances about an axis (N m).
+    /// Returns the torque of all disturbances about an axis (N m).
     pub fn disturbance(&self, now: Instant, axis: usize) -> f64 {
         self.sum(|disturbance| disturbance.torque(now, axis))
     }

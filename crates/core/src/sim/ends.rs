@@ -1,11 +1,11 @@
-//! The start of a run and its end.
+//! Start and end of a run.
 
 use super::{Simulation, SimulationError};
 use crate::law::Event;
 use crate::record::Record;
 
 impl Simulation {
-    /// Begins the run, after its first sample.
+    /// Begins the run after its first sample: first decision, first motion segment, first rows.
     pub(super) fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.plant.view(self.now)?;
         self.ask(Event::Start);
@@ -22,7 +22,7 @@ impl Simulation {
         self.tell_begin(record)
     }
 
-    /// Ends the run, if this is its end and it has not ended yet.
+    /// Ends the run if it is at its end and has not been ended yet.
     pub(super) fn finish(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.now == self.end && self.telling.close() {
             self.plant.tell_course(self.now, &self.exerted, record)?;

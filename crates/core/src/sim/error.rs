@@ -1,4 +1,4 @@
-//! Why a run ends before its end.
+//! Errors that end a run before its end.
 
 use thiserror::Error;
 
@@ -6,42 +6,42 @@ use crate::own::Halt;
 use crate::record::RecordError;
 use crate::time::Instant;
 
-/// A simulation that cannot go on.
+/// Error that ends a simulation.
 #[derive(Debug, Error)]
 pub enum SimulationError {
     /// The state of the body is no longer a finite number.
     #[error("the state is no longer finite at t = {at} s")]
     NonFinite {
-        /// When.
+        /// Instant of the state.
         at: Instant,
     },
-    /// The law switches without end at one instant.
+    /// The law switches endlessly at one instant.
     #[error("chatter: the law decided {count} times at t = {at} s")]
     Chatter {
-        /// When.
+        /// Instant of the decisions.
         at: Instant,
-        /// How often.
+        /// Number of decisions.
         count: u32,
     },
-    /// Wheels slip and stick without end.
+    /// Wheels slip and stick endlessly.
     #[error("chatter: wheels slipped and stuck {count} times within a nanosecond at t = {at} s")]
     WheelChatter {
-        /// When.
+        /// Instant of the last event.
         at: Instant,
-        /// How often.
+        /// Number of events within a nanosecond.
         count: u32,
     },
-    /// A part of a program's own cannot go on.
+    /// A custom part cannot go on.
     #[error("the {role} at t = {at} s: {source}")]
     Own {
-        /// When.
+        /// Instant of the failure.
         at: Instant,
-        /// Its role.
+        /// Role of the part, such as `law`.
         role: &'static str,
-        /// Why.
+        /// Error of the part.
         source: Halt,
     },
-    /// The record could not be kept.
+    /// The record could not be written.
     #[error(transparent)]
     Record(#[from] RecordError),
 }

@@ -1,4 +1,4 @@
-//! What is new in a run, for its journal: its start and end, targets, arrivals, active damping, trust in estimators.
+//! Detection of state changes for the journal: start and end, targets, arrivals, active damping, trust in estimators.
 
 use crate::attitude::{AXES, angles};
 use crate::belief::Damped;
@@ -11,25 +11,25 @@ use crate::sim::journal::{Journal, adapted, opening};
 use crate::time::Instant;
 use nalgebra::Quaternion;
 
-/// What was known before.
+/// Last reported states, to detect changes for the journal.
 #[derive(Clone, Debug)]
 pub struct Events {
     journal: Journal,
     opening: String,
     target: Option<(Frame, Quaternion<f64>)>,
-    /// Whether the body is on its way to the target.
+    /// True while the body turns towards the target and has not arrived.
     travelling: bool,
-    /// How near to a target it arrives, about each axis (rad).
+    /// Error about each axis below which the body has arrived at a target (rad).
     zones: [f64; 3],
     latched: [bool; 3],
     resting: [bool; 3],
     trusted: [bool; 3],
-    /// Whether filters had lost the body.
+    /// True for axes whose filter has lost the body.
     lost: [bool; 3],
 }
 
 impl Events {
-    /// Nothing is known.
+    /// Creates the state of the journal before the first event.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         Self {
             journal: Journal::new(scenario),
@@ -44,27 +44,27 @@ impl Events {
         }
     }
 
-    /// An instant as a date.
+    /// Returns the date of an instant.
     pub fn stamp(&self, now: Instant) -> Stamp {
         self.journal.stamp(now)
     }
 
-    /// The run begins.
+    /// Writes the line of the run's start.
     pub fn begin(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.journal.tell(now, (LogLevel::Info, "run"), self.opening.clone(), record)
     }
 
-    /// The run ends.
+    /// Writes the line of the run's end.
     pub fn end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.journal.tell(now, (LogLevel::Info, "run"), "the end of the run".to_owned(), record)
     }
 
-    /// The run is left before its end.
+    /// Writes the line of a run that is stopped before its end.
     pub fn left(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.journal.tell(now, (LogLevel::Info, "run"), "the run is left before its end".to_owned(), record)
     }
 
-    /// The manoeuvre ends.
+    /// Writes the line of the manoeuvre's end.
     pub fn arrived(&self, now: Instant, row: &Arrival, record: &mut dyn Record) -> Result<(), RecordError> {
         let line = format!(
             "the manoeuvre ends {:.3e} rad from its goal, with a vibration of {:.3e} rad",
@@ -73,7 +73,7 @@ impl Events {
         self.journal.tell(now, (LogLevel::Info, "manoeuvre"), line, record)
     }
 
-    /// The adaptation takes a step.
+    /// Writes the line of an adaptation step, from the gain `before`.
     pub fn adapted(
         &self,
         now: Instant,
@@ -85,7 +85,7 @@ impl Events {
         self.journal.tell(now, (LogLevel::Info, "adaptation"), line, record)
     }
 
-    /// Filters of so many axes lose the body, or follow it again.
+    /// Writes the changes of the filters about the first `axes` axes: lost the body, or following it again.
     pub fn lost(
         &mut self,
         now: Instant,
@@ -106,7 +106,7 @@ impl Events {
         Ok(())
     }
 
-    /// A new target of three axes, or the attitude comes near to it.
+    /// Writes a new three-axis target, or that the attitude `error` (rad) has come within the arrival band about it.
     pub fn target(
         &mut self,
         now: Instant,
@@ -132,7 +132,7 @@ impl Events {
         Ok(())
     }
 
-    /// A wheel passes through zero speed, sticks, or slips again.
+    /// Writes that a wheel passes through zero speed, sticks, or slips again.
     pub fn slipped(
         &self,
         now: Instant,
@@ -148,7 +148,7 @@ impl Events {
         self.journal.tell(now, (LogLevel::Info, "wheels"), line, record)
     }
 
-    /// A failure of a part begins or ends.
+    /// Writes that a failure of a part begins or ends.
     pub fn failed(
         &self,
         now: Instant,
@@ -159,7 +159,7 @@ impl Events {
         self.journal.tell(now, what, line, record)
     }
 
-    /// What has changed in active damping, and in the trust in what it acts on.
+    /// Writes the changes of active damping, and of the trust in the estimates on which it acts.
     pub fn damping(
         &mut self,
         now: Instant,

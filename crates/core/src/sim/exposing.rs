@@ -1,7 +1,8 @@
-//! Exposures of star trackers: the mean over each is taken in a copy of the body, one smooth piece of the motion after another.
+//! Star-tracker exposures: the mean attitude over each is computed from a copy of the plant, one smooth motion segment
+//! after another.
 //!
-//! What acts on the body changes at departures, which are not known ahead: a piece is averaged when it is over. The body of the run
-//! itself is not moved back.
+//! Loads change at segment starts that are not known in advance, so a segment is averaged when it is over. The plant of
+//! the run itself is never moved back.
 
 use super::plant::Plant;
 use super::sensing::Sensing;
@@ -12,33 +13,34 @@ use crate::scenario::Scenario;
 use crate::sensor::{Exposure, Orientation};
 use crate::time::{Instant, Span};
 
-/// The exposures of a run.
+/// Exposures of all star trackers of a run.
 #[derive(Clone, Debug)]
 pub struct Exposures {
     shutters: Vec<Shutter>,
-    /// While an exposure is open, a copy of the body that departed as the run's did, and the instant up to which the mean is taken.
+    /// Copy of the plant in the current segment, while an exposure is open; `averaged` is the instant up to which the
+    /// mean is accumulated.
     copy: Option<Plant>,
     averaged: Instant,
 }
 
-/// What lets light into a tracker.
+/// Exposure timing of one star tracker.
 #[derive(Clone, Debug)]
 struct Shutter {
-    /// Its place among the sensors.
+    /// Index among the sensors.
     sensor: usize,
     period: Span,
-    /// Half an exposure.
+    /// Half the exposure time.
     half: Span,
-    /// The middle of the exposure that is open or comes next.
+    /// Middle of the exposure that is open or comes next.
     middle: Instant,
-    /// When it closes or opens.
+    /// Instant at which the exposure closes or opens next.
     due: Instant,
     is_open: bool,
     exposure: Exposure,
 }
 
 impl Exposures {
-    /// Those of a scenario, before its start.
+    /// Creates the exposures of a scenario, before its start.
     pub fn new(scenario: &Scenario) -> Self {
         let shutter = |(sensor, [period, half]): (usize, [Span; 2])| Shutter {
             sensor,
@@ -53,31 +55,31 @@ impl Exposures {
         Self { shutters, copy: None, averaged: Instant::START }
     }
 
-    /// When one opens or closes next.
+    /// Returns the next instant at which an exposure opens or closes.
     pub fn due(&self) -> Option<Instant> {
         self.shutters.iter().map(|shutter| shutter.due).min()
     }
 
-    /// Copies the body before it moves on from now, if an exposure is open and there is no copy of this motion.
+    /// Copies the plant before it advances from `now`, if an exposure is open and there is no copy of this segment.
     pub fn copy_body(&mut self, now: Instant, plant: &Plant) {
         if self.copy.is_none() && self.shutters.iter().any(|shutter| shutter.is_open) {
             (self.copy, self.averaged) = (Some(plant.clone()), now);
         }
     }
 
-    /// Drops the copy: its motion ends.
+    /// Discards the copy at the end of its segment.
     pub fn drop_copy(&mut self) {
         self.copy = None;
     }
 
-    /// Closes and opens what is due now; sensors take what they gathered.
+    /// Closes and opens the exposures that are due, and hands the means of closed ones to their sensors.
     fn serve(&mut self, now: Instant, sensing: &mut Sensing) {
         for shutter in self.shutters.iter_mut().filter(|shutter| shutter.due <= now) {
             if shutter.is_open {
                 sensing.gather(shutter.sensor, &shutter.exposure);
                 shutter.exposure.clear();
                 shutter.middle += shutter.period;
-                // Two halves may be rounded to a tick more than the period.
+                // Two rounded halves may exceed the period by a tick.
                 shutter.due = shutter.middle.before(shutter.half).max(now);
                 shutter.is_open = false;
             }
@@ -93,7 +95,7 @@ impl Exposures {
 }
 
 impl Simulation {
-    /// Closes and opens the exposures that are due now.
+    /// Closes and opens the exposures that are due at the current instant.
     pub(super) fn expose(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.exposures.due().is_some_and(|due| due <= self.now) {
             self.average(record)?;
@@ -102,7 +104,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Averages the motion up to now, of which the mean is not taken yet, where an exposure is open.
+    /// Accumulates the mean of open exposures from the last averaged instant up to now.
     pub(super) fn average(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (Exposures { shutters, copy, averaged }, now) = (&mut self.exposures, self.now);
         let Some(plant) = copy.as_mut().filter(|_| now > *averaged) else { return Ok(()) };

@@ -1,4 +1,4 @@
-//! Failures of sensors and actuators as they begin and end, for log and journal.
+//! Begin and end of sensor and actuator failures, for log and journal.
 
 use super::Simulation;
 use crate::record::foxglove::LogLevel;
@@ -6,30 +6,30 @@ use crate::record::{Command, FaultEvent, Onset, Record, RecordError, Sample};
 use crate::scenario::{Failing, Scenario};
 use crate::time::Instant;
 
-/// What fails in a run, and when, the latest first.
+/// Pending beginnings and ends of failures, latest first.
 #[derive(Clone, Debug)]
 pub struct Failures(Vec<(Instant, Onset, Failing)>);
 
 impl Failures {
-    /// The failures of a scenario.
+    /// Creates the beginnings and ends of a scenario's failures.
     pub fn new(scenario: &Scenario) -> Self {
         let mut edges = Vec::new();
         for failing in scenario.failing() {
             edges.push((failing.outage.begins(), Onset::Begins, failing.clone()));
             edges.extend(failing.outage.ends().map(|ends| (ends, Onset::Ends, failing)));
         }
-        // At one instant in the order of the scenario.
+        // Events at one instant keep the order of the scenario.
         edges.reverse();
         edges.sort_by_key(|edge| std::cmp::Reverse(edge.0));
         Self(edges)
     }
 
-    /// When one begins or ends next.
+    /// Returns the next instant at which a failure begins or ends.
     pub fn due(&self) -> Option<Instant> {
         self.0.last().map(|(at, ..)| *at)
     }
 
-    /// One that begins or ends by now.
+    /// Removes and returns the next failure that begins or ends by `now`.
     fn next(&mut self, now: Instant) -> Option<(Onset, Failing)> {
         let (_, onset, failing) = self.0.pop_if(|(at, ..)| *at <= now)?;
         Some((onset, failing))
@@ -37,7 +37,7 @@ impl Failures {
 }
 
 impl Simulation {
-    /// Tells what begins or ends to fail now.
+    /// Records the failures that begin or end now.
     pub(super) fn tell_failures(&mut self, record: &mut dyn Record) -> Result<(), RecordError> {
         let now = self.now;
         while let Some((onset, Failing { part, of, fault, .. })) = self.telling.failures.next(now) {

@@ -1,6 +1,6 @@
-//! Runs that a flight makes from their start on: the kernel of runs in lanes, with one number in the place of lanes.
+//! Runs that the relay kernel simulates from their start: the kernel of batches, with one number in place of the lanes.
 //!
-//! What it comes to, and what it tells, is to the bit what the loop comes to, which takes the run over at the last departure
+//! Results and records are bit-identical to those of the loop, which takes the run over at the last segment start
 //! before its end.
 
 use super::plant::{Exerted, Plant};
@@ -12,22 +12,22 @@ use crate::law::Command;
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
-/// Who has the one run.
+/// Adapter that runs a single simulation through the relay kernel.
 struct Alone<'a> {
     run: &'a mut Simulation,
     record: &'a mut dyn Record,
     setup: Setup,
-    /// Whether the flight has not begun.
+    /// True until the kernel has taken the setup.
     waits: bool,
     listens: bool,
-    /// Whether it goes on elsewhere, and why it does not go on at all.
+    /// True if the loop has to continue the run; `failed` is the error that ends it.
     stopped: bool,
     failed: Option<SimulationError>,
     rest: LaneRest,
 }
 
 impl Simulation {
-    /// Flies from the start as far as an instant, or the last departure before it, if this run can.
+    /// Runs in the kernel from the start up to `until`, or to the last segment start before it, if this run can.
     pub(super) fn fly(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         let band = match record.course() {
             Course::None => f64::INFINITY,
@@ -48,7 +48,8 @@ impl Simulation {
         failed.map_or(Ok(()), Err)
     }
 
-    /// Whether nobody looks at the run on its way, or steers it.
+    /// Returns true if nothing is due on the way but the law's switchings and windows, and nothing commands the run
+    /// from outside.
     fn is_left_alone(&self) -> bool {
         self.telling.due().is_none()
             && self.telling.scene.is_none()
@@ -60,7 +61,7 @@ impl Simulation {
             && !(self.met || self.steered || self.laws.are_steered())
     }
 
-    /// Takes the run over at a departure.
+    /// Continues the run in the loop from the segment start at which the kernel stopped.
     fn land(&mut self, rest: &LaneRest, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (Some(place), now) = (rest.place, instant(rest.from.at)) else { return Ok(()) };
         if now == Instant::START {
@@ -82,7 +83,7 @@ impl Simulation {
         self.seek(record)
     }
 
-    /// Begins a motion at what was seen, under a torque (N m).
+    /// Begins a motion segment from the kernel's state `from`, under a constant torque (N m).
     fn set_off(&mut self, from: &LaneSight, torque: f64) {
         self.exerted = Exerted { constant: torque, feedback: torque, back_emf: (0.0, false) };
         if let Plant::Planar(plant) = &mut self.plant {
@@ -93,7 +94,7 @@ impl Simulation {
 }
 
 impl Alone<'_> {
-    /// Keeps why the run cannot go on.
+    /// Stores the first error that ends the run.
     fn keep<E: Into<SimulationError>>(&mut self, result: Result<(), E>) {
         if let Err(error) = result {
             self.failed.get_or_insert(error.into());
@@ -207,7 +208,8 @@ mod tests {
         Scenario::from_document(&document).expect("valid")
     }
 
-    /// What a run in pieces tells of its events, and the motion at its end, as text, whose digits are those of all bits.
+    /// Returns the events of a run that is stopped after each of `pieces` equal parts, and the motion at its end, as
+    /// text with all digits.
     fn told(scenario: &Scenario, detail: Detail, pieces: u32) -> String {
         let mut trace = Trace::new(detail);
         let mut simulation = Simulation::new(scenario, 3);
@@ -220,7 +222,8 @@ mod tests {
         format!("{topics:?} {:?} {sensed:?} {:?}", simulation.state(), simulation.beliefs)
     }
 
-    /// A record of rows at fixed times has the loop from the start on.
+    /// Compares event records, which use the kernel, with full records, whose rows at fixed times need the loop from
+    /// the start on.
     fn compare(scenario: &Scenario, name: &str) {
         let expected = told(scenario, Detail::Full, 1);
         for pieces in [1, 7] {
@@ -245,7 +248,7 @@ mod tests {
         let three = "[{ frequency = 0.44, gain = 0.0213, damping = 0.002, displacement = 2.75e-6 }, \
                      { frequency = 0.755, gain = 0.0216 }, { frequency = 3.4, gain = 0.01, damping = 0.4 }]";
         let other = "{ window = 500.0, modes = [{ frequency = 0.5, gain = 0.02, damping = 0.01 }] }";
-        // A light build has no kernels for damped modes.
+        // Without the feature `damped-flights`, there are no kernels for damped modes.
         let flies = cfg!(feature = "damped-flights");
         for name in ["relay-fixed", "relay-adaptive"] {
             for modes in [one, three] {

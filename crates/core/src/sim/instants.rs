@@ -1,4 +1,4 @@
-//! The motion at instants of one's own choice: between events, and exactly at them.
+//! Motion at instants chosen by the caller: between events, and exactly at them.
 
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
@@ -8,13 +8,13 @@ use crate::time::{Instant, Span};
 const FEMTOSECONDS: i128 = 1_000_000_000_000_000;
 
 impl Simulation {
-    /// Runs on to the instant that a number of seconds stands for, everything that is due then included.
+    /// Runs to the instant that `seconds` stands for, including everything that is due at that instant.
     ///
-    /// A double stands for many femtoseconds. If an event, or a period of the scenario's log, lies among them, it is the
-    /// instant meant: what is seen then is the row of the log to the bit. Else it is the nearest femtosecond.
+    /// A double stands for many femtoseconds. If an event or a row of the scenario's log lies among them, the run stops
+    /// there, so that the motion is the row of the log to the bit; otherwise it stops at the nearest femtosecond.
     ///
     /// # Errors
-    /// As of [`Simulation::run_until`].
+    /// Fails like [`Simulation::run_until`].
     pub fn run_to(&mut self, seconds: f64, record: &mut dyn Record) -> Result<(), SimulationError> {
         let named = (Instant::START + Span::from_seconds(seconds)).min(self.end);
         let early = named.before(Span::from_seconds(seconds * f64::EPSILON));
@@ -36,10 +36,11 @@ impl Simulation {
         Ok(())
     }
 
-    /// Tells the motion of now, and of one angle what the law does, whatever the record wants otherwise.
+    /// Records the motion at the current instant, and the law's row of a one-axis body, whatever rows the record wants
+    /// otherwise.
     ///
     /// # Errors
-    /// A state that is no longer finite, and a record that cannot be kept.
+    /// Fails if the state is no longer finite or the record cannot be written.
     pub fn tell_now(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.view(now)?;
@@ -55,7 +56,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The instant of the row of a dense log that is nearest to one.
+    /// Returns the instant of the dense log's row that is nearest to `at`.
     fn row_nearest(&self, at: Instant) -> Instant {
         let femtoseconds = |instant: Instant| {
             let (whole, part) = instant.parts();
@@ -80,7 +81,8 @@ mod tests {
         trace.topic(topic).expect("a topic").clone()
     }
 
-    /// Rows of a dense log, and what is seen at their times by a run that nobody watches on the way.
+    /// Compares rows of a dense log with the motion that a run without a record on the way has at their times, to the
+    /// bit.
     fn both(name: &str, duration: f64, topics: &[&str], every: usize) {
         let path = format!("{SCENARIOS}/{name}.toml");
         let mut scenario = Scenario::load(path.as_ref()).expect("a scenario");
@@ -112,7 +114,7 @@ mod tests {
 
     #[test]
     fn what_is_seen_at_a_row_is_the_row() {
-        // Switchings among them, whose times a double rounds.
+        // Some rows are at switchings, whose times are rounded in a double.
         both("relay-adaptive", 12_000.0, &["/attitude", "/rate", "/modes", "/envelope"], 7);
         both("relay-sampled", 9_200.0, &["/attitude", "/rate"], 13);
         both("rotation-robust", 40.0, &["/attitude", "/goal", "/torque", "/outputs"], 3);

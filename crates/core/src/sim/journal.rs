@@ -1,4 +1,4 @@
-//! The journal: what happened in a run, line by line, for people.
+//! Journal: a log in sentences of the events of a run.
 
 use crate::adaptation::Decision;
 use crate::record::foxglove::{Log, LogLevel};
@@ -7,19 +7,19 @@ use crate::record::{Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-/// Who writes lines: it knows the date of the start.
+/// Writer of journal lines with absolute dates.
 #[derive(Copy, Clone, Debug)]
 pub struct Journal {
     epoch_ns: u64,
 }
 
 impl Journal {
-    /// The journal of a scenario's runs.
+    /// Creates the journal of a scenario's runs.
     pub fn new(scenario: &Scenario) -> Self {
         Self { epoch_ns: scenario.epoch_ns() }
     }
 
-    /// Writes a line in the name of a part of the loop.
+    /// Writes a line with a level, in the name of a part of the loop.
     pub fn tell(
         self,
         now: Instant,
@@ -31,18 +31,18 @@ impl Journal {
         record.record(now, Sample::Log(&Log { timestamp, level, message, name: name.to_owned() }))
     }
 
-    /// An instant as a date.
+    /// Returns the date of an instant.
     pub fn stamp(self, now: Instant) -> Stamp {
         Stamp(self.epoch_ns + now.nanoseconds())
     }
 }
 
-/// The line with which a run begins.
+/// Returns the first line of a run's journal.
 pub fn opening(scenario: &Scenario, run: u64) -> String {
     format!("{}: {} s, seed {}, run {run}", scenario.name, scenario.duration.seconds(), scenario.seed)
 }
 
-/// The line of a step of the adaptation.
+/// Returns the journal line of an adaptation step, with the gain before it and after it.
 pub fn adapted(window: u64, decision: Decision, before: f64, gain: f64) -> String {
     let why = match decision {
         Decision::Begin => "the search begins",

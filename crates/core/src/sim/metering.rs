@@ -1,4 +1,4 @@
-//! What the meter of an adaptation's objective is told of a run.
+//! Inputs of the meter of an adaptation's objective: motion, torque, control cycles, switchings.
 
 use super::plant::Plant;
 use super::telling::Telling;
@@ -11,7 +11,7 @@ use crate::record::{Record, RecordError, Sample};
 use crate::time::Instant;
 
 impl Simulation {
-    /// Lets laws know which of their numbers is tuned: its value is logged from the start on.
+    /// Declares the tuned parameter to the laws, so that its value is logged from the start on.
     pub(super) fn name_tuned(&mut self) {
         let monitored = self.monitor.as_ref().and_then(Monitor::search);
         if let Some(search) = monitored.or(self.meter.as_ref().map(Meter::search)) {
@@ -20,13 +20,13 @@ impl Simulation {
         }
     }
 
-    /// The number of the law that is tuned, as the monitor of the envelope logs it.
+    /// Returns the value of the tuned parameter, as the monitor of the envelope logs it.
     pub(super) fn tuned(&self) -> f64 {
         let search = self.monitor.as_ref().and_then(Monitor::search).map(Searching::tunes);
         search.filter(|(key, _)| *key != "k_t").map_or_else(|| self.laws.about(0).tuned(), |(_, value)| value)
     }
 
-    /// Measures the motion about one axis until now.
+    /// Adds the one-axis motion up to `now` to the objective.
     pub(super) fn measure_course(&mut self, now: Instant) {
         let (Some(meter), Plant::Planar(plant)) = (&mut self.meter, &self.plant) else { return };
         if !meter.integrates() || now <= meter.measured {
@@ -40,7 +40,7 @@ impl Simulation {
         meter.measured = now;
     }
 
-    /// Measures torques that act from now on.
+    /// Adds the torques that act from now on to the objective.
     pub(super) fn measure_torque(&mut self) {
         let now = self.now;
         let Some(meter) = &mut self.meter else { return };
@@ -59,7 +59,7 @@ impl Simulation {
         }
     }
 
-    /// Measures three axes at the start of a control cycle.
+    /// Adds the three-axis motion at the start of a control cycle to the objective and to the envelope.
     pub(super) fn measure_cycle(&mut self) {
         if let (Some(monitor), Plant::Spatial(plant)) = (&mut self.monitor, &self.plant) {
             monitor.see(self.now, || plant.swings());
@@ -99,7 +99,7 @@ impl Simulation {
         meter.sample(value);
     }
 
-    /// The states of the laws, if their switchings count.
+    /// Returns the states of the laws if the objective counts their switchings; otherwise empty.
     pub(super) fn states(&self) -> Vec<Phase> {
         if self.meter.as_ref().is_none_or(|meter| meter.objective != Objective::Switchings) {
             return Vec::new();
@@ -107,7 +107,7 @@ impl Simulation {
         (0..self.beliefs.len()).map(|axis| self.laws.about(axis).state()).collect()
     }
 
-    /// Counts the laws whose states are no longer these.
+    /// Adds the number of laws whose state differs from `before` to the objective.
     pub(super) fn count_switchings(&mut self, before: Vec<Phase>) {
         let Some(meter) = self.meter.as_mut().filter(|_| !before.is_empty()) else { return };
         let switched = before.into_iter().enumerate();
@@ -115,7 +115,7 @@ impl Simulation {
         meter.switched(self.now, u32::try_from(count).unwrap_or(u32::MAX));
     }
 
-    /// Closes the envelope's window that ends now, and lets the law have what the adaptation learned.
+    /// Closes the envelope's window that ends now, and sets the law's parameter to the value that the adaptation chose.
     pub(super) fn close_window(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.plant.view(self.now)?;
         let gain = self.tuned();
@@ -127,7 +127,8 @@ impl Simulation {
         Ok(self.telling.window(self.now, &closed, record)?)
     }
 
-    /// Closes the window of the objective, if it ends now, and lets the law have what the adaptation learned.
+    /// Closes the objective's window, if it ends now, and sets the law's parameter to the value that the adaptation
+    /// chose.
     pub(super) fn close_objective(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.meter.as_ref().is_none_or(|meter| meter.closes != now) {
@@ -145,7 +146,7 @@ impl Simulation {
 }
 
 impl Telling {
-    /// A window that ended, and what the adaptation made of it.
+    /// Records a closed window of the envelope and the step of the adaptation.
     pub fn window(
         &self,
         now: Instant,
@@ -158,7 +159,7 @@ impl Telling {
         self.events.adapted(now, row, *before, record)
     }
 
-    /// A window of the objective that ended, and what the adaptation made of it.
+    /// Records a closed window of the objective and the step of the adaptation.
     pub fn objective(
         &self,
         now: Instant,

@@ -1,8 +1,8 @@
-//! The loop of all runs.
+//! The run loop, for one-axis and three-axis bodies.
 //!
-//! At one instant, in this order: the body arrives, the sensor measures, the estimator takes the sample, the monitor closes its
-//! window and the adaptation learns, the laws decide once, the actuator acts, the record gets its rows. Between events all that
-//! acts is constant, or a waveform, and the motion exact. `docs/events.md` states the rules.
+//! Order at one instant: the body is advanced, the sensors measure, the estimator processes the sample, the monitor
+//! closes its window and the adaptation learns, the laws decide once, the actuator acts, the record gets its rows.
+//! Between events every input is constant or a waveform, and the motion is exact. `docs/events.md` states the rules.
 
 mod accelerometers;
 mod arrival;
@@ -52,10 +52,10 @@ use reference::Reference;
 use sensing::Sensing;
 use telling::Telling;
 
-/// More decisions than this at one instant are chatter: no scenario's law needs more than a few.
+/// Largest number of decisions at one instant; more are chatter, because no scenario's law needs more than a few.
 const MOST_DECISIONS: u32 = 32;
 
-/// All that moves in a run.
+/// State of one run.
 #[derive(Clone, Debug)]
 #[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub struct Simulation {
@@ -65,43 +65,44 @@ pub struct Simulation {
     sensing: Sensing,
     exposures: Exposures,
     estimator: Box<dyn Estimate>,
-    /// Whether there is one.
+    /// True if the scenario has an estimator.
     estimates: bool,
-    /// Until when the estimator knows what a waveform gave.
+    /// Instant up to which the estimator knows the impulse of the waveform.
     given: Instant,
     monitor: Option<Monitor>,
-    /// The meter of the adaptation's objective, unless that is the envelope.
+    /// Meter of the adaptation's objective, unless the objective is the envelope.
     meter: Option<Meter>,
     reference: Reference,
-    /// From where angles count, and until when.
+    /// Attitude or angle from which the angles are counted, and (`next_target`) the instant at which it changes next.
     origin: Orientation,
     next_target: Option<Instant>,
     beliefs: Vec<Belief>,
     laws: Controls,
     drive: Loads,
-    /// The torques of the present motion.
+    /// Torques during the current motion segment.
     exerted: Exerted,
-    /// The instant and index of the guard that trips next, as long as the hold lasts.
+    /// Instant and index of the next guard crossing, as long as the inputs do not change before.
     trip: Option<(Instant, usize)>,
     decisions: u32,
-    /// Whether a wheel has come to rest or let go now, how often in the last nanosecond, and since when.
+    /// True if a wheel in bearings has stuck or let go at the current instant; `slips`: number of such events within a
+    /// nanosecond, and the first's instant.
     met: bool,
     slips: (u32, Instant),
     telling: Telling,
-    /// Whether anything was measured now, if that was read ahead.
+    /// True if the sample that was read ahead for the current instant has a measurement; `None` if none was read ahead.
     read: Option<bool>,
-    /// What came up at this instant and is not yet answered, where the run was stopped between.
+    /// Event at the current instant to which the laws have not responded yet, because the run was stopped before.
     unanswered: Option<Event>,
-    /// Whether there are commands from outside that the actuator does not have yet.
+    /// True if there are external commands that the actuator does not have yet.
     steered: bool,
-    /// Whether parts of it are a program's own.
+    /// True if the scenario has custom parts.
     own: bool,
-    /// The start of a flight of its own, if it can make one.
+    /// Initial setup for the relay kernel, if it can simulate this run.
     flight: Option<Box<Setup>>,
 }
 
 impl Simulation {
-    /// A run of a scenario, before its start.
+    /// Creates the run number `run` of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         let seed = Seed { scenario: scenario.seed, run };
         let (study, reference) = (&scenario.study, Reference::new(scenario));
@@ -142,7 +143,8 @@ impl Simulation {
         self.run_until(Instant::END, record)
     }
 
-    /// Runs to an instant, or to the end of the scenario if that is earlier, everything that is due then included.
+    /// Runs to `until`, or to the end of the scenario if that is earlier, including everything that is due at that
+    /// instant.
     pub fn run_until(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         let until = until.min(self.end);
         self.open(record)?;
@@ -154,7 +156,8 @@ impl Simulation {
         self.finish(record)
     }
 
-    /// Brings the body to the next instant at which anything is due, until an instant; tells whether anything is.
+    /// Advances the body to the next instant at which anything is due, at most to `until`; returns true if anything is
+    /// due there.
     fn arrive(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
         let mut next = self.next();
         self.exposures.copy_body(self.now, &self.plant);
@@ -174,7 +177,7 @@ impl Simulation {
         Ok(next <= until)
     }
 
-    /// The next instant at which anything is due.
+    /// Returns the next instant at which anything is due.
     #[inline]
     fn next(&self) -> Instant {
         let trip = self.trip.map(|(at, _)| at);
@@ -193,14 +196,14 @@ impl Simulation {
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
-    /// Does what is due now.
+    /// Processes everything that is due at the current instant.
     fn serve(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let event = self.event();
         self.perceive(record)?;
         self.answer(event, record)
     }
 
-    /// What comes up for laws now.
+    /// Returns the event at the current instant for the laws.
     fn event(&self) -> Event {
         match self.trip {
             _ if self.samples() || self.read.is_some() => Event::Due { sampled: true },
@@ -209,7 +212,7 @@ impl Simulation {
         }
     }
 
-    /// Measures and estimates what is due now.
+    /// Reads the sensors and updates the estimates, windows and objectives that are due at the current instant.
     fn perceive(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.expose(record)?;
         let now = self.now;
@@ -223,7 +226,7 @@ impl Simulation {
         self.tell_arrival(record)
     }
 
-    /// Laws decide on what has come up, and the actuator acts.
+    /// Lets the laws decide on `event`, applies their commands and changes of the loads, and records the instant.
     fn answer(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.steered || self.concerns(event) {

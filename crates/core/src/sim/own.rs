@@ -1,10 +1,10 @@
-//! Parts of a program's own in a run: where one cannot go on, the run ends.
+//! Custom parts in a run: a run ends when one of them fails.
 
 use super::{Simulation, SimulationError};
 use crate::estimator::{Meter, Monitor, Searching};
 
 impl Simulation {
-    /// Ends a run with a part of a program's own that cannot go on.
+    /// Fails if a custom part cannot go on.
     #[inline]
     pub(super) fn check_own_parts(&self) -> Result<(), SimulationError> {
         if !self.own {

@@ -1,4 +1,4 @@
-//! Where the body shall be: on a manoeuvre and at its end, or at targets of three axes.
+//! Guidance: the reference motion on a manoeuvre and at its end, or along the targets of a three-axis body.
 
 use std::sync::Arc;
 
@@ -11,29 +11,29 @@ use crate::time::{Instant, Span};
 use crate::waveform::Waveform;
 use nalgebra::Quaternion;
 
-/// Where the body shall be.
+/// Reference motion of a scenario.
 #[derive(Clone, Debug)]
 pub struct Reference {
-    /// The end of the manoeuvre, or angle 0.
+    /// Setpoint after the manoeuvre; angle 0 without one.
     pub goal: Goal,
-    /// The manoeuvre.
+    /// Manoeuvre of a one-axis body, if there is one.
     planned: Option<Planned>,
-    /// The way to the targets of a body with three axes.
+    /// Sequence of targets of a three-axis body.
     way: Option<Itinerary>,
 }
 
-/// A manoeuvre, as a rigid body makes it.
+/// Manoeuvre as a rigid body executes it.
 #[derive(Clone, Debug)]
 struct Planned {
     waveform: Arc<Waveform>,
-    /// Angle (rad) and rate (rad/s) at which it begins.
+    /// Initial angle (rad) and rate (rad/s).
     from: (f64, f64),
-    /// What a unit of its command accelerates (kg m²).
+    /// Inertia (kg m²) that converts the waveform into acceleration.
     inertia: f64,
 }
 
 impl Planned {
-    /// That of a scenario, if it has one.
+    /// Creates the planned manoeuvre of a scenario; `None` without one.
     fn new(scenario: &Scenario) -> Option<Self> {
         let (manoeuvre, plan) = scenario.manoeuvre.as_ref().zip(scenario.plan.as_ref())?;
         let body = scenario.model.planar()?;
@@ -46,7 +46,7 @@ impl Planned {
 }
 
 impl Reference {
-    /// That of a scenario.
+    /// Creates the reference of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             goal: scenario.goal(),
@@ -55,7 +55,8 @@ impl Reference {
         }
     }
 
-    /// Angle (rad) and rate (rad/s) where a body with one angle shall be: on the manoeuvre, where it would be if it were rigid.
+    /// Returns the reference angle (rad) and rate (rad/s) of a one-axis body: during the manoeuvre, those of a rigid
+    /// body.
     pub fn at(&self, now: Instant) -> (f64, f64) {
         match &self.planned {
             Some(Planned { waveform, from: (angle, rate), inertia }) if now < self.goal.from => {
@@ -67,7 +68,8 @@ impl Reference {
         }
     }
 
-    /// What a law about an axis aims at, where the reference of three axes leads it or not: one that tracks follows the manoeuvre.
+    /// Returns the setpoint of a law about an axis: `led` if the three-axis reference moves; the manoeuvre for laws
+    /// that track; else the goal.
     pub fn aim(&self, law: &dyn Control, now: Instant, led: Option<Goal>) -> Goal {
         if let Some(goal) = led {
             return goal;
@@ -79,7 +81,7 @@ impl Reference {
         self.goal
     }
 
-    /// From where angles count: from the target of three axes, or from 0.
+    /// Returns the origin of the angles: the current reference attitude of three axes, or angle 0.
     pub fn origin(&self, now: Instant) -> Orientation {
         match &self.way {
             None => Orientation::Angle(0.0),
@@ -87,7 +89,7 @@ impl Reference {
         }
     }
 
-    /// The target that the body is on its way to, of three axes, or 0.
+    /// Returns the target attitude towards which a three-axis body turns; angle 0 for one axis.
     pub fn target(&self, now: Instant) -> Orientation {
         match &self.way {
             None => Orientation::Angle(0.0),
@@ -95,12 +97,14 @@ impl Reference {
         }
     }
 
-    /// The same as it is written, of three axes: the axes that it is from, and the attitude in them.
+    /// Returns the current target as written in the scenario: its reference frame and the attitude in it; `None` for
+    /// one axis.
     pub fn written(&self, now: Instant) -> Option<(Frame, Quaternion<f64>)> {
         self.way.as_ref().map(|way| way.written(now))
     }
 
-    /// What each of three axes is led along, while the reference moves, of a body that is believed to be where it is.
+    /// Returns the setpoints of the three axes while the reference moves, at the estimated angles; `None` while it
+    /// rests.
     pub fn led(&self, now: Instant, beliefs: &[Belief]) -> Option<[Goal; 3]> {
         let way = self.way.as_ref().filter(|way| way.moves(now))?;
         let beyond = Vector::from_fn(|axis, _| beliefs.get(axis).map_or(0.0, |belief| belief.angle));
@@ -110,12 +114,13 @@ impl Reference {
         Some([0, 1, 2].map(goal))
     }
 
-    /// When the origin changes after an instant: at once while the reference moves, else when the next target begins.
+    /// Returns the instant after `now` at which the origin changes: the next tick while the reference moves, else the
+    /// start of the next target.
     pub fn next_target(&self, now: Instant) -> Option<Instant> {
         self.way.as_ref().and_then(|way| if way.moves(now) { Some(now + Span::TICK) } else { way.next(now) })
     }
 
-    /// What the manoeuvre commands (N m).
+    /// Returns the feedforward torque of the manoeuvre (N m).
     pub fn feedforward(&self, now: Instant) -> f64 {
         self.planned.as_ref().map_or(0.0, |planned| planned.waveform.at(now.seconds()))
     }

@@ -1,4 +1,4 @@
-//! The sensors of a run: when each is due, and what their readings come to about each axis.
+//! Sensors of a run: when each samples, and the latest measurements about each axis.
 
 use super::Simulation;
 use super::plant::Plant;
@@ -10,42 +10,43 @@ use crate::scenario::Scenario;
 use crate::sensor::{Exposure, Orientation, Reading, Sense, Sensor, Truth};
 use crate::time::{Instant, Span};
 
-/// The sensors at work.
+/// Run-time state of the sensors.
 #[derive(Clone, Debug)]
 pub struct Sensing {
     sensors: Vec<Due>,
-    /// What was read at the last samples, of each sensor; nothing of one that was not due, or silent.
+    /// New reading of each sensor; `None` if it was not due or gives no measurement.
     pub fresh: Vec<Option<Reading>>,
-    /// What all readings so far come to: the last orientation, and the last rates.
+    /// Latest measurements of all sensors together: the last orientation, and the last rates.
     pub reading: Option<Reading>,
-    /// The same about each axis: angle (rad) and rate (rad/s).
+    /// Latest measured angle (rad) and rate (rad/s) about each axis.
     pub measured: Vec<[f64; 2]>,
-    /// The magnetic field in the body's axes as it was measured last (T), when, and how fast it changed (T/s).
+    /// Instant and value of the last measured magnetic field in body axes (T); `field_rate` is its rate of change
+    /// (T/s).
     pub field: Option<(Instant, Vector)>,
-    /// See `field`.
+    /// Rate of change of `field` (T/s); `None` before the second sample.
     pub field_rate: Option<Vector>,
-    /// When the next is due; none of a continuous sensor.
+    /// Next sampling instant of all sensors; `None` with a continuous sensor.
     pub next: Option<Instant>,
 }
 
-/// A sensor, and when it is due.
+/// Sensor with its sampling schedule.
 #[derive(Clone, Debug)]
 struct Due {
     sensor: Box<dyn Sense>,
-    /// Whether it tells where the body points, or the rates alone.
+    /// True if the sensor measures the attitude or angle, not only rates.
     orients: bool,
     period: Option<Span>,
     next: Option<Instant>,
-    /// What it read before what is fresh.
+    /// Reading before the newest one.
     last: Option<Reading>,
-    /// Whether it is the magnetometer whose field counts.
+    /// True for the magnetometer that provides the field.
     feels: bool,
-    /// Whether rates are the differences of its angles.
+    /// True if rates are derived from differences of the sensor's angles.
     differs: bool,
 }
 
 impl Sensing {
-    /// The sensors of a scenario, before its start.
+    /// Creates the sensors of a scenario, before its start.
     pub fn new(scenario: &Scenario, seed: Seed) -> Self {
         let (study, axes) = (&scenario.study, scenario.study.axes.len());
         let all = &scenario.sensor;
@@ -79,7 +80,8 @@ impl Sensing {
         }
     }
 
-    /// Reads what is due now, of a body that was viewed now, with angles beyond an origin; tells whether anything was measured.
+    /// Reads the sensors that are due at `now`, with angles counted from `origin`; returns true if anything was
+    /// measured. The plant has to be evaluated at `now`.
     pub fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         let mut any = false;
         for (index, due) in self.sensors.iter_mut().enumerate() {
@@ -120,24 +122,24 @@ impl Sensing {
         any
     }
 
-    /// A sensor takes what it gathered over the exposure that ends now.
+    /// Hands the mean of the exposure that ends now to a sensor.
     pub fn gather(&mut self, sensor: usize, exposure: &Exposure) {
         self.sensors[sensor].sensor.gather(exposure);
     }
 
-    /// Why a sensor from outside cannot go on.
+    /// Returns the error of a custom sensor that cannot go on.
     pub fn halted(&self) -> Option<Halt> {
         self.sensors.iter().find_map(|due| due.sensor.halted())
     }
 
-    /// The true bias of the first gyro now (rad/s).
+    /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.
     pub fn bias(&self) -> [f64; 3] {
         self.sensors.iter().find_map(|due| due.sensor.bias()).unwrap_or_default()
     }
 }
 
 impl Simulation {
-    /// Lets the actuator have the magnetic field as it was measured last, or as it is where nothing measures it.
+    /// Sets the magnetic field in the actuator: the last measured one, or the true one if no sensor measures it.
     pub(super) fn feel(&mut self) {
         let truth = self.plant.viewed();
         let measured = self.sensing.field.map(|(_, field)| field);
@@ -152,7 +154,8 @@ impl Simulation {
 }
 
 impl Due {
-    /// Rates of a sensor of angles alone: their differences over the period, and at first the true ones.
+    /// Returns the rates (rad/s) of a sensor that measures angles only: differences over the period, and the true rates
+    /// at first.
     fn differences(&self, now: Instant, reading: &Reading, truth: &Truth) -> Option<[f64; 3]> {
         if !self.differs {
             return None;

@@ -1,4 +1,4 @@
-//! The scene of a run: its parts, its frames when they are due, its plumes when they are new.
+//! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
@@ -8,12 +8,12 @@ use crate::scenario::Scenario;
 use crate::scene::{PlanarView, Scene};
 
 impl Simulation {
-    /// Makes the run draw its scene for records that want it; before it begins.
+    /// Enables drawing of the scene for records that want it; to be called before the run begins.
     pub fn draw(&mut self, scenario: &Scenario) {
         self.telling.draw(scenario);
     }
 
-    /// What the scene consists of; a scene that no record wants is dropped.
+    /// Records the parts of the scene; discards a scene that no record wants.
     pub(super) fn set_the_scene(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (now, telling) = (self.now, &mut self.telling);
         match &telling.scene {
@@ -26,7 +26,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Frames and plumes.
+    /// Records the frames that are due and the plumes that have changed.
     pub(super) fn show(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.telling.scene.is_none() {
             return Ok(());
@@ -65,7 +65,7 @@ impl Simulation {
                         .drives()
                         .map_or_else(Vec::new, |of| of.drives.iter().map(|drive| drive.angle_rad).collect());
                     let frames = match plant.hinges() {
-                        // Hinges move by any angle, and beside them modes are not drawn.
+                        // Hinges move by any angle; with hinges, modes are not drawn.
                         Some(Hinges { hinges }) => {
                             angles.extend(hinges.iter().map(|hinge| hinge.angle_rad));
                             scene.frames(stamp, plant.attitude(), &[], &angles)

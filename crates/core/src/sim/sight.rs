@@ -1,4 +1,4 @@
-//! What moves in a run, as a row of numbers with names and units: the state, what is measured of it, and what is believed.
+//! State of a run as a flat vector with names and units: true state, measurements, and estimates.
 
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
@@ -8,59 +8,59 @@ use crate::record::Hinges;
 use crate::scenario::Scenario;
 use crate::sensor::Truth;
 
-/// What the numbers of a field are to the control system.
+/// Origin of the values of a field.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum LookGroup {
-    /// What is so.
+    /// True state.
     State,
-    /// What the sensors measured last; not a number before.
+    /// Latest measurement of the sensors; NaN before the first.
     Measured,
-    /// What laws are told.
+    /// State estimate that the laws read.
     Believed,
 }
 
-/// A quantity in the row of [`Simulation::look`].
+/// Quantity in the vector of [`Simulation::look`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct LookField {
-    /// What it is to the control system.
+    /// Origin of the values.
     pub group: LookGroup,
-    /// Its name within the group.
+    /// Name within the group.
     pub name: &'static str,
-    /// Its unit.
+    /// Unit; empty for a dimensionless field.
     pub unit: &'static str,
-    /// How many numbers it has, if it is more than one by its nature.
+    /// Number of values of a vector; `None` for a scalar.
     pub count: Option<usize>,
 }
 
 impl LookField {
-    /// How many numbers it takes in the row.
+    /// Returns the number of values in the flat vector.
     pub fn width(&self) -> usize {
         self.count.unwrap_or(1)
     }
 }
 
 impl Simulation {
-    /// The state of a body with one angle now.
+    /// Returns the state of a one-axis body at the current instant.
     pub fn state(&self) -> Option<&State> {
         if let Plant::Planar(plant) = &self.plant { Some(plant.state()) } else { None }
     }
 
-    /// The state of a body with three axes now.
+    /// Returns the state of a three-axis body at the current instant.
     pub fn spatial_state(&self) -> Option<&SpatialState> {
         if let Plant::Spatial(plant) = &self.plant { Some(plant.state()) } else { None }
     }
 
-    /// The mean of the total envelope over the window that was closed last (rad).
+    /// Returns the mean of the total envelope over the last closed window (rad).
     pub fn window_mean(&self) -> Option<f64> {
         self.monitor.as_ref().map(|monitor| monitor.mean)
     }
 
-    /// Tunes a number of the law, such as `k_t`, as an adaptation does.
+    /// Sets a tunable parameter of the law, such as `k_t`, as an adaptation does.
     pub fn tune(&mut self, key: &str, value: f64) {
         self.laws.tune(key, value);
     }
 
-    /// The fields of a row, in its order, of a run of this scenario.
+    /// Returns the fields of the vector of [`Simulation::look`], in its order, for a run of this scenario.
     pub fn fields(&self, scenario: &Scenario) -> Vec<LookField> {
         let field = |group, name, unit, count| LookField { group, name, unit, count };
         let state = |name, unit, count| field(LookGroup::State, name, unit, count);
@@ -118,14 +118,14 @@ impl Simulation {
         fields
     }
 
-    /// Puts what moves into a row of [`Simulation::fields`], as it is now. A sensor that measures at every instant, and what is
-    /// believed by it, is as it is now too; else both are those of the last sample.
+    /// Writes the current state into a vector with the fields of [`Simulation::fields`]. With a sensor that measures at
+    /// every instant, measurements and estimates are current too; otherwise they are those of the last sample.
     ///
     /// # Errors
-    /// The state is no longer finite.
+    /// Fails if the state is no longer finite.
     ///
     /// # Panics
-    /// The row has another width than its fields.
+    /// Panics if the length of `row` differs from the total width of the fields.
     pub fn look(&mut self, row: &mut [f64]) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.view(now)?;
@@ -182,18 +182,18 @@ impl Simulation {
         Ok(())
     }
 
-    /// The hinges of appendages; none without hinges.
+    /// Returns the motion of the appendages' hinges; `None` without hinges.
     fn hinges(&self) -> Option<Hinges> {
         if let Plant::Spatial(plant) = &self.plant { plant.hinges() } else { None }
     }
 
-    /// The torque that the actuator gives about an axis (N m).
+    /// Returns the torque that the actuator applies about an axis (N m).
     fn torque(&self, axis: usize, truth: &Truth) -> f64 {
         self.drive.actuator.applied(self.now, axis, [truth.rate[axis], truth.rigid[axis]])
     }
 }
 
-/// What is left of a row.
+/// Cursor into an output row.
 struct Row<'a>(&'a mut [f64]);
 
 impl Row<'_> {

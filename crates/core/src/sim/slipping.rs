@@ -1,4 +1,4 @@
-//! Wheels in bearings: when they come to rest or let go, what their drives know of it, and what is told of it.
+//! Stick and slip events of wheels with bearing friction: detection of chatter, update of their drives, and records.
 
 use super::plant::{Plant, SpatialPlant};
 use super::{MOST_DECISIONS, Simulation, SimulationError};
@@ -7,7 +7,7 @@ use crate::record::{self, Command, Record, Sample};
 use crate::time::Instant;
 
 impl Simulation {
-    /// A wheel comes to rest or lets go at an instant.
+    /// Counts an event at `at` at which a wheel sticks or lets go; fails if such events chatter.
     pub(super) fn slips(&mut self, at: Instant) -> Result<(), SimulationError> {
         let (count, since) = &mut self.slips;
         if at.since(*since).seconds() > 1e-9 {
@@ -21,7 +21,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Wheels in bearings are as the motion has them.
+    /// Copies the speeds and momenta of wheels in bearings from the motion into the actuator.
     pub(super) fn turned(&mut self, now: Instant) {
         let turned = self.plant.borne();
         if !turned.is_empty() {
@@ -29,7 +29,7 @@ impl Simulation {
         }
     }
 
-    /// The bearings of wheels, if they have any.
+    /// Returns the bearing rows of the wheels; `None` without bearings.
     pub(super) fn bearings(&self, plant: &SpatialPlant) -> Option<record::Bearings> {
         let of = |(wheel, known_rad_s): (SlippedRotor, f64)| record::BearingMotion {
             sliding: wheel.slip.into(),
@@ -42,14 +42,15 @@ impl Simulation {
         (!wheels.is_empty()).then_some(record::Bearings { wheels })
     }
 
-    /// How wheels slip at the start.
+    /// Initialises the slip states of the wheels at the start, to detect changes.
     pub(super) fn tell_first_slips(&mut self) {
         if let Plant::Spatial(plant) = &self.plant {
             self.telling.slips = plant.slips().to_vec();
         }
     }
 
-    /// What wheels do otherwise than at the last instant: they pass through zero speed, stick, or slip again.
+    /// Records the wheels whose slip state has changed since the last instant: passes through zero speed, sticking,
+    /// slipping again.
     pub(super) fn tell_slips(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (Plant::Spatial(plant), now) = (&self.plant, self.now) else { return Ok(()) };
         let slips = plant.slips();

@@ -1,27 +1,27 @@
-//! Runs in pieces: to an instant or to what comes next, between what is sensed there and what is done about it, with commands
-//! from outside.
+//! Runs in pieces: to an instant or to the next event of a kind, stopped between sensing and the response, with
+//! external commands.
 
 use super::{Simulation, SimulationError};
 use crate::law::{Command, Event};
 use crate::record::Record;
 use crate::time::Instant;
 
-/// What a run can be stopped at.
+/// Kind of event at which a run can be stopped.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum Occasion {
-    /// A sensor measures: before anything is done about it.
+    /// A sensor has measured; estimates are updated, and the laws have not responded yet.
     Sample,
     /// A law is about to decide.
     Decision,
     /// A law has changed its state.
     Switching,
-    /// A window of the envelope's mean has ended: before anything is done about it.
+    /// A window of the envelope's mean has ended; the laws have not responded yet.
     Window,
 }
 
 impl Simulation {
-    /// Commands in the place of the scenario's laws from now on, about each axis, until it is told otherwise: the actuator of
-    /// the scenario executes it. What a law would answer at the same instant is not asked any more.
+    /// Sets external commands about each axis, which replace those of the scenario's laws until the next call; the
+    /// scenario's actuator executes them. A law's pending decision at the current instant is dropped.
     ///
     /// ```
     /// use flexsc_core::{Scenario, Simulation, law::Command, time::Instant};
@@ -39,20 +39,20 @@ impl Simulation {
         self.steered = true;
     }
 
-    /// Where the run is in time.
+    /// Returns the current instant of the run.
     pub fn time(&self) -> Instant {
         self.now
     }
 
-    /// Whether the run is over.
+    /// Returns true if the run is at its end.
     pub fn is_done(&self) -> bool {
         self.now == self.end
     }
 
-    /// Takes the first sample, if the run has not begun: what is measured and believed is known from then on.
+    /// Reads the sensors for the first sample, if the run has not begun, so that measurements and estimates exist.
     ///
     /// # Errors
-    /// As a run.
+    /// Fails like [`Simulation::run_until`].
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if self.telling.open(self.now, record)? {
             self.sense(record)?;
@@ -61,19 +61,20 @@ impl Simulation {
         Ok(())
     }
 
-    /// Runs to an instant, or to the end of the scenario if that is earlier. What is due there is sensed, and answered only when
-    /// the run goes on: commands that come between act from this instant. Wherever a run is cut, it comes to the same.
+    /// Runs to `until`, or to the end of the scenario if that is earlier. Samples that are due there are taken; the
+    /// response follows when the run goes on, so commands set in between act from this instant. Stopping a run does not
+    /// change its results.
     ///
     /// # Errors
-    /// As a run.
+    /// Fails like [`Simulation::run_until`].
     pub fn run_up_to(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
         self.walk(until, None, record).map(|_| ())
     }
 
-    /// Runs to what comes next, but not beyond an instant; tells whether it came.
+    /// Runs to the next event of a kind, at most to `until`; returns true if it occurred.
     ///
     /// # Errors
-    /// As a run.
+    /// Fails like [`Simulation::run_until`].
     pub fn run_to_next(
         &mut self,
         occasion: Occasion,
@@ -83,10 +84,10 @@ impl Simulation {
         self.walk(until, Some(occasion), record)
     }
 
-    /// Tells a record what it lacks of the present motion where the run is left before its end.
+    /// Completes the record of the current segment when the run is abandoned before its end.
     ///
     /// # Errors
-    /// A record that cannot be kept.
+    /// Fails if the record cannot be written.
     pub fn leave(&self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if !self.is_done() {
             self.plant.tell_course(self.now, &self.exerted, record)?;
@@ -122,7 +123,7 @@ impl Simulation {
                 self.plant.view(self.now)?;
                 return Ok(came);
             }
-            // What comes at the end is answered there.
+            // At the end of the run, the response follows immediately.
             came |= self.resume(occasion, record)?;
             if came && self.is_done() {
                 return self.run_until(until, record).map(|()| true);
@@ -134,8 +135,8 @@ impl Simulation {
         Ok(came)
     }
 
-    /// Answers what came up before the run was stopped, or was commanded since; tells whether a law has switched, if that is
-    /// asked for.
+    /// Responds to the event at which the run was stopped, or to external commands set since; returns true if
+    /// `occasion` is a switching and a law has switched.
     pub(super) fn resume(
         &mut self,
         occasion: Option<Occasion>,
@@ -158,7 +159,7 @@ impl Simulation {
         if event == Event::Start { self.begin(record) } else { self.answer(event, record) }
     }
 
-    /// Whether laws have to decide on what has come up.
+    /// Returns true if the laws have to decide on `event`.
     pub(super) fn concerns(&self, event: Event) -> bool {
         let sampled = event == Event::Due { sampled: true };
         matches!(event, Event::Guard(_)) || self.laws.concerned(self.now, sampled, &self.beliefs)

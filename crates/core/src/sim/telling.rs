@@ -1,4 +1,4 @@
-//! The rows of a run: when records get them, and what they hold.
+//! Rows of a run: when they are due, and their content.
 
 use super::accelerometers::Accelerometers;
 use super::arrival::Arrival;
@@ -17,40 +17,40 @@ use crate::scenario::Scenario;
 use crate::scene::Scene;
 use crate::time::{Instant, Span};
 
-/// What is told of a run, and when.
+/// Schedule and memory of everything that a run writes to its record.
 #[derive(Clone, Debug)]
 pub struct Telling {
-    /// The journal.
+    /// Detector of state changes for the journal.
     pub events: Events,
-    /// The scene, and when its frames are due.
+    /// Scene of the run; `None` if it is not drawn.
     pub scene: Option<Box<Scene>>,
-    /// See `scene`.
+    /// Instant at which the frames of the scene are due next.
     pub next_frames: Option<Instant>,
-    /// From one row of a dense record to the next.
+    /// Period of the rows of a dense record.
     pub log_period: Span,
     next_dense: Option<Instant>,
     next_law: Instant,
-    /// The cycles of a body with three axes.
+    /// Period of the cycle rows of a three-axis body.
     cycle: Option<Span>,
-    /// How wheels slipped when it was told last.
+    /// Slip states of the wheels as last recorded.
     pub slips: Vec<Slip>,
-    /// Pulses of jets that were told.
+    /// Number of jet pulses that are already recorded.
     pulses: u64,
     next_cycle: Option<Instant>,
-    /// The end of the manoeuvre that lies ahead, if any.
+    /// Pending end of the manoeuvre, if any.
     arrival: Option<Arrival>,
-    /// What accelerometers measure.
+    /// Accelerometers of the run, which only the record reads.
     pub accelerometers: Accelerometers,
-    /// What fails.
+    /// Pending beginnings and ends of failures.
     pub failures: Failures,
-    /// Whether the torque has more to it than switchings.
+    /// True if the torque consists of more than the switchings of a law.
     tells_torque: bool,
-    /// Whether jets are the only actuator.
+    /// True if jets are the only actuator.
     jets_alone: bool,
     stage: Stage,
 }
 
-/// How far the journal is.
+/// Stage of the journal: not yet opened, open, or closed.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 enum Stage {
     Before,
@@ -59,7 +59,7 @@ enum Stage {
 }
 
 impl Telling {
-    /// What is told of a scenario's run, before its start.
+    /// Creates the schedule of a scenario's run, before its start.
     pub fn new(scenario: &Scenario, reference: &Reference, run: u64) -> Self {
         Self {
             events: Events::new(scenario, run),
@@ -81,12 +81,12 @@ impl Telling {
         }
     }
 
-    /// Makes it draw the scene of a scenario.
+    /// Enables drawing of the scenario's scene.
     pub fn draw(&mut self, scenario: &Scenario) {
         self.scene = Some(Box::new(Scene::new(scenario)));
     }
 
-    /// Opens the journal, once; tells whether this is the start.
+    /// Opens the journal once; returns true if this call opened it.
     pub fn open(&mut self, now: Instant, record: &mut dyn Record) -> Result<bool, RecordError> {
         if self.stage != Stage::Before {
             return Ok(false);
@@ -96,17 +96,17 @@ impl Telling {
         Ok(true)
     }
 
-    /// Whether this is the end, once.
+    /// Marks the journal as closed; returns true the first time.
     pub fn close(&mut self) -> bool {
         std::mem::replace(&mut self.stage, Stage::After) != Stage::After
     }
 
-    /// The last line of the journal.
+    /// Writes the last line of the journal.
     pub fn journal_end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.events.end(now, record)
     }
 
-    /// When anything is due.
+    /// Returns the instant at which the next row or journal line is due.
     pub fn due(&self) -> Option<Instant> {
         let arrives = self.arrival.as_ref().map(|arrival| arrival.at);
         let told = earlier(earlier(arrives, self.next_dense), earlier(self.next_frames, self.next_cycle));
@@ -114,7 +114,7 @@ impl Telling {
     }
 }
 
-/// The first of two instants, either of which may not come.
+/// Returns the earlier of two optional instants.
 fn earlier(a: Option<Instant>, b: Option<Instant>) -> Option<Instant> {
     match (a, b) {
         (Some(a), Some(b)) => Some(a.min(b)),
@@ -123,7 +123,7 @@ fn earlier(a: Option<Instant>, b: Option<Instant>) -> Option<Instant> {
 }
 
 impl Simulation {
-    /// The rows of the start.
+    /// Records the rows of the start.
     pub(super) fn tell_begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if let Plant::Planar(_) = self.plant {
@@ -137,7 +137,7 @@ impl Simulation {
         self.set_the_scene(record)
     }
 
-    /// The rows that are due now, after all parts have acted.
+    /// Records the rows that are due at the current instant, after all parts have acted.
     pub(super) fn tell(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         if self.telling.next_cycle == Some(now) {
@@ -163,7 +163,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// The end of the manoeuvre, if that is now.
+    /// Records the end of the manoeuvre, if it is at the current instant.
     pub(super) fn tell_arrival(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         let Some(arrival) = self.telling.arrival.take_if(|arrival| arrival.at == now) else { return Ok(()) };
@@ -173,7 +173,8 @@ impl Simulation {
         Ok(self.telling.events.arrived(now, &row, record)?)
     }
 
-    /// A switching of the law of one angle, whose state was another before: what the sensor sees, and what is commanded.
+    /// Records a switching of the one-axis law, if its state was `before` and has changed, with the sensed angle (rad)
+    /// and rate (rad/s) and the commanded torque.
     pub(super) fn tell_switching(
         &self,
         before: Phase,
@@ -205,7 +206,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// What filters made of the sample that was just taken.
+    /// Records the estimates after the current sample, and journals losses of lock.
     pub(super) fn tell_estimates(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.telling.events.lost(now, self.estimator.lost(), self.beliefs.len(), record)?;
@@ -231,7 +232,7 @@ impl Simulation {
         record::Law { state: law.state(), torque_nm: self.drive.actuator.asked(0), gain: law.tuned() }
     }
 
-    /// The motion of a body with one angle now, for a dense record.
+    /// Records the motion of a one-axis body at the current instant, for a dense record.
     pub(super) fn tell_motion(&self, record: &mut dyn Record) -> Result<(), RecordError> {
         let (Plant::Planar(plant), now) = (&self.plant, self.now) else { return Ok(()) };
         let sampled = self.sensing.next.is_some();
@@ -254,11 +255,12 @@ impl Simulation {
         record.record(now, Sample::Motion(&motion))
     }
 
-    /// A cycle of a body with three axes, or of adaptive observers.
+    /// Records the cycle row of a three-axis body and of its estimator; also updates the angle origin and the
+    /// adaptation's objective.
     fn tell_cycle(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.view(now)?;
-        // A law that is never asked aims at the targets all the same.
+        // The origin follows the targets also if no law is asked.
         self.turn_to_target(now);
         let origin = self.origin;
         self.measure_cycle();
@@ -329,7 +331,7 @@ impl Simulation {
             },
         };
         let wheels = actuator.wheels(self.now, (rigid + elastic).into());
-        // Of jets on which nothing else acts their pulses tell.
+        // If only jets act, the torques follow from the recorded pulses.
         let alone = self.telling.jets_alone && !plant.is_surrounded();
         let torques = (!alone).then(|| Torques { axes: [0, 1, 2].map(torque).into() });
         SpatialMotion {

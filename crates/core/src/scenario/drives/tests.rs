@@ -1,8 +1,8 @@
-//! Drives as functions of time.
+//! Drive angles as functions of time.
 
 use super::*;
 
-/// A spacecraft on an orbit whose panel follows the Sun from the local axes.
+/// Returns a spacecraft on an orbit whose panel tracks the Sun from the local axes.
 fn tracker(extra: &str) -> Scenario {
     let text = format!(
         r#"
@@ -32,7 +32,8 @@ sun = [0.3, 1.0, 0.2]
     Scenario::parse("tracker.toml", &text).expect("a scenario")
 }
 
-/// The panel's normal has no part towards the Sun along the direction in which the drive moves it, and rates are derivatives.
+/// Checks that the panel's normal faces the Sun as far as the drive can turn it, and that rates are derivatives of
+/// angles.
 #[test]
 fn a_drive_that_follows_the_sun_faces_it() {
     let scenario = tracker("");
@@ -52,7 +53,7 @@ fn a_drive_that_follows_the_sun_faces_it() {
     }
 }
 
-/// From one set of modes to the next panels turn by at most 1/32 rad, and each rate's change begins one.
+/// Checks that the panels turn by at most 1/32 rad between two sets of modes, whose intervals are in order.
 #[test]
 fn modes_change_often_enough() {
     let scenario = tracker("");

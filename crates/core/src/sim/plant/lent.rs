@@ -1,8 +1,8 @@
-//! A motion that is computed elsewhere, beside those of other runs: when it begins anew, and under what.
+//! Segment starts of a motion that a batch computes.
 
 use crate::time::Instant;
 
-/// The motion as its body knows it.
+/// Interface to a motion that a batch computes.
 #[derive(Clone, Debug)]
 pub struct Elsewhere {
     mobility: f64,
@@ -10,17 +10,18 @@ pub struct Elsewhere {
 }
 
 impl Elsewhere {
-    /// That of a body that a unit of torque accelerates so (1/(kg m²)).
+    /// Creates it for a body with the given acceleration per unit of torque (1/(kg m²)).
     pub fn new(mobility: f64) -> Self {
         Self { mobility, departed: None }
     }
 
-    /// It begins anew under a constant input (N m).
+    /// Begins a motion segment under a constant input (N m).
     pub fn depart(&mut self, now: Instant, input: f64) {
         self.departed = Some((now, input * self.mobility));
     }
 
-    /// When it began anew, and its reduced moment (rad/s²); none since this was asked last.
+    /// Returns the start of the last segment and its reduced moment (rad/s²), once per segment; `None` since the last
+    /// call.
     pub fn departed(&mut self) -> Option<(Instant, f64)> {
         self.departed.take()
     }

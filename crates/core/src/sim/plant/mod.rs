@@ -1,4 +1,5 @@
-//! The body on its way: one angle in closed form wherever there is one, or three axes.
+//! Plant: model, motion and true state of the body, with one axis in closed form where there is one, or with three
+//! axes.
 
 mod lent;
 mod planar;
@@ -24,7 +25,7 @@ pub use planar::{Exerted, PlanarPlant};
 pub use spatial::SpatialPlant;
 pub use two_way::Mount;
 
-/// What there is to measure before anything is looked at.
+/// True state before the first evaluation.
 const UNSEEN: Truth = Truth {
     orientation: Orientation::Angle(0.0),
     elastic: [0.0; 3],
@@ -34,17 +35,17 @@ const UNSEEN: Truth = Truth {
     sky: SkySight { field: None, sun: None },
 };
 
-/// A body that moves.
+/// Moving body.
 #[derive(Clone, Debug)]
 pub enum Plant {
-    /// With one angle.
+    /// One-axis body.
     Planar(Box<PlanarPlant>),
-    /// With three axes.
+    /// Three-axis body.
     Spatial(Box<SpatialPlant>),
 }
 
 impl Plant {
-    /// The body of a scenario at the start, under nothing.
+    /// Creates the plant of a scenario at the start, without loads.
     pub fn new(scenario: &Scenario) -> Self {
         match scenario.model.axes() {
             Axes::One(body) => Self::Planar(Box::new(PlanarPlant::new(scenario, body))),
@@ -55,8 +56,8 @@ impl Plant {
         }
     }
 
-    /// Integrates up to an instant what has no closed form, as long as the record lets it; tells the instant before, at which it
-    /// stopped because a wheel came to rest or let go.
+    /// Integrates motions without a closed form up to `now`, unless the record fails; returns the earlier instant at
+    /// which it stopped because a wheel stuck or let go.
     pub fn approach(
         &mut self,
         now: Instant,
@@ -68,12 +69,12 @@ impl Plant {
         }
     }
 
-    /// Wheels in bearings at the instant seen last.
+    /// Returns the states of the wheels in bearings at the current instant.
     pub fn borne(&self) -> Vec<SlippedRotor> {
         if let Self::Spatial(plant) = self { plant.borne() } else { Vec::new() }
     }
 
-    /// What there is to measure at an instant, to which the body is brought.
+    /// Advances the body to `now`, evaluates the true state, and returns it.
     #[inline]
     pub fn view(&mut self, now: Instant) -> Result<&Truth, SimulationError> {
         let truth = match self {
@@ -83,7 +84,7 @@ impl Plant {
         truth.ok_or(SimulationError::NonFinite { at: now })
     }
 
-    /// What there was to measure at the instant viewed last.
+    /// Returns the true state of the last evaluation.
     #[inline]
     pub fn viewed(&self) -> &Truth {
         match self {
@@ -92,7 +93,7 @@ impl Plant {
         }
     }
 
-    /// The same at a sensor other than the first, which may be elsewhere.
+    /// Returns the true state of the last evaluation at the mounting point of a sensor.
     pub fn at_sensor(&self, sensor: usize) -> Cow<'_, Truth> {
         match self {
             Self::Spatial(plant) if sensor > 0 => Cow::Owned(plant.at_sensor(sensor)),
@@ -100,12 +101,12 @@ impl Plant {
         }
     }
 
-    /// No part of the motion about three axes changes faster at the instant seen last (rad/s).
+    /// Returns an upper bound on the frequencies in a three-axis motion at the current instant (rad/s); 0 for one axis.
     pub fn fastest(&self) -> f64 {
         if let Self::Spatial(plant) = self { plant.fastest() } else { 0.0 }
     }
 
-    /// Begins a new motion at the instant seen last, under what acts from now on.
+    /// Begins a motion segment at the current instant, under the loads from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         match self {
             Self::Planar(plant) => plant.depart(wrench),
@@ -113,7 +114,8 @@ impl Plant {
         }
     }
 
-    /// The instant and index of the guard that trips first on this motion, within a span; known in closed form alone.
+    /// Returns the instant and index of the first guard crossing within `horizon`; `None` also for motions without a
+    /// closed form.
     #[inline]
     pub fn trip(
         &mut self,
@@ -127,7 +129,7 @@ impl Plant {
         }
     }
 
-    /// Tells the motion that ends now, stretch by stretch, where the record wants it and the body has one angle.
+    /// Records the one-axis motion of the segment that ends at `now`, piece by piece, if the record wants it.
     pub fn tell_course(
         &self,
         now: Instant,
@@ -138,8 +140,8 @@ impl Plant {
         plant.tell_course(now, exerted, record)
     }
 
-    /// The modes as the monitor of the envelope takes them: those of one angle, or the rotations that those of three axes give the
-    /// first sensor.
+    /// Returns the modal state for the monitor of the envelope: that of one axis, or the rotations of the first sensor
+    /// by the modes of three axes.
     pub fn swings(&self) -> Cow<'_, State> {
         match self {
             Self::Planar(plant) => Cow::Borrowed(plant.state()),
@@ -147,8 +149,8 @@ impl Plant {
         }
     }
 
-    /// Lets the monitor of the envelope know what acts on the modes from now on: a torque (N m) on those of one angle, what is
-    /// commanded on those of three axes.
+    /// Updates the monitor of the envelope with what excites the modes from now on: a torque (N m) on those of one
+    /// axis, the commanded wrench on those of three axes.
     pub fn push_monitor(
         &self,
         monitor: &mut Monitor,
@@ -162,7 +164,7 @@ impl Plant {
         }
     }
 
-    /// The motion about an axis, of three axes beyond a target, as if that axis were alone.
+    /// Returns the motion about an axis as if that axis were alone; for three axes, with angles counted from `target`.
     pub fn about(&self, axis: usize, target: &Orientation) -> Cow<'_, State> {
         match self {
             Self::Planar(plant) => Cow::Borrowed(plant.state()),

@@ -1,4 +1,4 @@
-//! A body with one angle on its way: its motion since the last event, and what is seen of it now.
+//! Plant of a one-axis body: its motion segment since the last event, and the current state.
 
 mod course;
 
@@ -15,49 +15,49 @@ use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-/// The body, the motion that it is in, and the trip that lies ahead.
+/// One-axis body with its motion segment and the next guard crossing.
 #[derive(Clone, Debug)]
 pub struct PlanarPlant {
     motion: Motion,
     departed: Instant,
-    /// State and sight at `seen`.
+    /// State and sensed angle and rate at `seen`.
     state: State,
     sight: Sensed,
     seen: Instant,
-    /// What there is to measure, once it was asked for.
+    /// True state at the last evaluation.
     truth: Truth,
-    /// State, sight and instant of the next trip, found ahead of time.
+    /// State, sensed motion and instant of the next guard crossing, computed in advance.
     ahead: (State, Sensed, Instant),
     frequencies: Vec<f64>,
     outputs: Vec<Output>,
 }
 
-/// A motion under one input.
+/// Motion under one input.
 #[derive(Clone, Debug)]
 enum Motion {
-    /// In closed form.
+    /// Uncoupled modes, in closed form.
     Planar(Segment),
-    /// Integrated.
+    /// Chain of panels, integrated numerically.
     Chain(Box<ChainMotion>),
-    /// Of coupled or drifting modes.
+    /// Coupled or drifting modes.
     Coupled(Box<Coupling>),
-    /// Of drifting modes, computed elsewhere.
+    /// Drifting modes whose motion a batch computes.
     Lent(Elsewhere),
 }
 
-/// The torques of one motion, as metrics take them.
+/// Torques of one motion segment, for the metrics.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Exerted {
-    /// Of the actuator, beside the waveform of the command and the back-EMF (N m).
+    /// Constant part of the actuator's torque, without the waveform of the command and the back-EMF (N m).
     pub constant: f64,
-    /// What the law asks for (N m).
+    /// Torque that the law commands (N m).
     pub feedback: f64,
-    /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
+    /// Back-EMF torque per unit of the rate (N m s), and whether the rate is that of the elastic body.
     pub back_emf: (f64, bool),
 }
 
 impl PlanarPlant {
-    /// The body of a scenario at the start, under no input.
+    /// Creates the plant of a scenario at the start, without input.
     pub fn new(scenario: &Scenario, body: &Planar) -> Self {
         let state = body.start();
         let mut arc = Segment::new(body);
@@ -81,18 +81,18 @@ impl PlanarPlant {
         }
     }
 
-    /// The state at the instant seen last.
+    /// Returns the state at the current instant.
     pub fn state(&self) -> &State {
         &self.state
     }
 
-    /// Rates of the modes at the instant seen last (rad/s).
+    /// Returns the rates of the modes at the current instant (rad/s).
     pub fn mode_rates(&self) -> impl Iterator<Item = f64> {
         self.frequencies.iter().zip(&self.state.modes).map(|(w, phase)| w * phase.quadrature)
     }
 
-    /// Integrates up to an instant what has no closed form, as long as the record lets it: seeing the body there is then soon
-    /// done.
+    /// Integrates motions without a closed form up to `now`, unless the record fails, so that evaluating the body there
+    /// is cheap.
     pub fn approach(&mut self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         record.poll()?;
         if matches!(self.motion, Motion::Planar(_) | Motion::Lent(_)) {
@@ -112,7 +112,7 @@ impl PlanarPlant {
         }
     }
 
-    /// What a sensor sees at an instant, to which the body is brought.
+    /// Advances the body to `now` and returns the sensed angle and rate.
     pub fn view(&mut self, now: Instant) -> Sensed {
         if self.seen != now {
             self.seen = now;
@@ -126,7 +126,7 @@ impl PlanarPlant {
                     Motion::Planar(arc) => arc.at(h, &mut self.state),
                     Motion::Chain(flight) => flight.at(h, &mut self.state),
                     Motion::Coupled(coupling) => coupling.at(h, &mut self.state),
-                    // Whoever computes it has brought the body here.
+                    // The batch that computes the motion has already set the state at `now`.
                     Motion::Lent(_) => self.sight,
                 };
             }
@@ -134,7 +134,7 @@ impl PlanarPlant {
         self.sight
     }
 
-    /// What there is to measure at an instant, to which the body is brought; none if the motion is no longer finite.
+    /// Advances the body to `now` and returns its true state; `None` if the motion is no longer finite.
     pub fn measurable(&mut self, now: Instant) -> Option<&Truth> {
         let Sensed { angle, rate, .. } = self.view(now);
         if !(angle.is_finite() && rate.is_finite()) {
@@ -146,12 +146,12 @@ impl PlanarPlant {
         Some(truth)
     }
 
-    /// What there was to measure when that was asked last.
+    /// Returns the true state of the last evaluation.
     pub fn viewed(&self) -> &Truth {
         &self.truth
     }
 
-    /// Lets someone else compute the motion from now on; none but that of coupled or drifting modes between departures.
+    /// Hands the motion to a batch from now on; `None` unless the modes are coupled or drift, between segment starts.
     pub fn lend(&mut self) -> Option<Lent> {
         let Motion::Coupled(coupling) = &self.motion else { return None };
         let (motion, mobility) = coupling.lent()?;
@@ -159,7 +159,7 @@ impl PlanarPlant {
         Some(motion)
     }
 
-    /// Brings the body, whose motion is computed elsewhere, to an instant: angle and rate of each coordinate.
+    /// Sets the motion that a batch has computed at `now`: angle and rate of each coordinate.
     pub fn bring(&mut self, now: Instant, motion: impl Iterator<Item = [f64; 2]>) {
         (self.seen, self.sight) = (now, Sensed::default());
         for (index, [angle, rate]) in motion.enumerate() {
@@ -174,28 +174,29 @@ impl PlanarPlant {
         }
     }
 
-    /// When a motion that is computed elsewhere began anew, and its reduced moment (rad/s²); none since this was asked last.
+    /// Returns the start of the last segment of a motion that a batch computes, and its reduced moment (rad/s²), once
+    /// per segment.
     pub fn departed(&mut self) -> Option<(Instant, f64)> {
         if let Motion::Lent(lent) = &mut self.motion { lent.departed() } else { None }
     }
 
-    /// Begins a new motion at the instant seen last.
+    /// Begins a motion segment at the current instant, under the wrench from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         let input = ForcedInput { constant: wrench.hub[0], waveform: wrench.waveform.clone() };
         self.begin(&input);
     }
 
-    /// The same under a constant torque alone (N m).
+    /// Begins a motion segment at the current instant, under a constant torque alone (N m).
     pub fn depart_under(&mut self, constant: f64) {
         self.begin(&ForcedInput { constant, waveform: None });
     }
 
-    /// Puts the body into a state at an instant.
+    /// Sets the state at `now` by `change`.
     pub fn put(&mut self, now: Instant, change: impl FnOnce(&mut State)) {
         change(&mut self.state);
         let rate = self.mode_rates().fold(self.state.rigid_rate, |sum, rate| sum + rate);
         (self.seen, self.sight) = (now, Sensed { angle: self.state.angle(), rate, acceleration: 0.0 });
-        // What was found ahead was found on another motion.
+        // A crossing that was found in advance belongs to the previous motion.
         self.ahead.2 = Instant::START;
     }
 
@@ -209,7 +210,7 @@ impl PlanarPlant {
         self.departed = self.seen;
     }
 
-    /// The instant and index of the guard that trips first on this motion, within a span.
+    /// Returns the instant and index of the first guard crossing of this segment within `horizon`.
     #[inline]
     pub fn trip(
         &mut self,
@@ -224,7 +225,7 @@ impl PlanarPlant {
                 let trip = coupling.trip(guards, horizon, || record.poll())?;
                 return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
             }
-            // No law with guards acts on a body without a closed form.
+            // No law with guards acts on these bodies.
             Motion::Chain(_) | Motion::Lent(_) => return Ok(None),
         };
         let trip = match arc.guess(guards, horizon, &mut self.ahead.0) {
@@ -238,7 +239,8 @@ impl PlanarPlant {
         }))
     }
 
-    /// The motion at the instant seen last, as logged; `measured` is the held measurement of a sampled sensor.
+    /// Returns the rows of the motion at the current instant; `measured` is the held measurement of a sampled sensor
+    /// (rad).
     pub fn motion(&self, measured: Option<f64>) -> (Attitude, Rate, Modes) {
         let Self { state, sight, frequencies, .. } = self;
         let modes: Vec<_> = state
@@ -261,7 +263,7 @@ impl PlanarPlant {
         )
     }
 
-    /// The observed coordinates at the instant seen last, as logged; none if the body has none.
+    /// Returns the row of the observed coordinates at the current instant; `None` if the body has none.
     pub fn outputs(&self) -> Option<Outputs> {
         let motion = |(value, rate)| OutputMotion { value, rate };
         let outputs: Vec<_> = match &self.motion {

@@ -1,4 +1,4 @@
-//! A body with three axes on its way, from one change of what acts on it to the next.
+//! Plant of a three-axis body, advanced from one change of the loads to the next.
 
 use nalgebra::Quaternion;
 
@@ -20,50 +20,51 @@ mod fastest;
 mod logged;
 mod swinging;
 
-/// A mode is seen by a sensor that it turns by at least such a part of what the mode does that turns it most.
+/// A mode is visible to a sensor if it rotates the sensor by at least this fraction of the largest modal rotation
+/// there.
 const VISIBLE: f64 = 0.1;
 
-/// A motion under what is constant begins anew after so long (fs): looking at it is then soon done.
+/// Longest motion segment under constant loads (fs); then another begins, so that evaluating the motion stays cheap.
 const LONGEST: i64 = 20_000_000_000_000_000;
 
-/// The body, and what pushes it.
+/// Three-axis body with its loads.
 #[derive(Clone, Debug)]
 pub struct SpatialPlant {
     rigid: Rigid,
-    /// What is around it, and the disturbance of its own.
+    /// Environment, and (`disturbance`) the periodic disturbance torque of the body itself.
     around: Option<Around>,
     disturbance: Option<Periodic>,
     elastic: Elastic,
-    /// The modes, where their frequencies drift.
+    /// Modes with drifting frequencies, if they drift.
     drifting: Option<DriftingModes>,
-    /// Rotations of the modes at the first sensor, and where torques act.
+    /// Modal rotations at the first sensor, and (`hub`) at the point where torques act.
     sensed: Vec<Vector>,
     hub: Vec<Vector>,
-    /// By how much the rotations of the modes at all other sensors differ from those at the first.
+    /// Differences of the modal rotations at each other sensor from those at the first.
     elsewhere: Vec<Vec<Vector>>,
-    /// Whether the sensor sees each mode.
+    /// True for modes that are visible to the first sensor.
     visible: Vec<bool>,
-    /// The state when the motion began.
+    /// Start of the motion segment, and (`origin`) the state there.
     departed: Instant,
     origin: SpatialState,
-    /// Torque about the centre of mass (N m), and modal forces (N/sqrt(kg)).
+    /// Torque about the centre of mass (N m), and (`forces`) modal forces (N/sqrt(kg)).
     torque: Vector,
     forces: Vec<f64>,
-    /// Momentum of rotors (N m s), since when, and its rate (N m); none if there are none.
+    /// Instant, momentum of the rotors then (N m s) and its rate (N m); `None` without rotors.
     rotors: Option<(Instant, Vector, Vector)>,
-    /// The motion, where modes act back on the rotation: `state` then is what it looks like from the mean axes.
+    /// Motion with modes that act back on the rotation; `state` is then the motion seen from the mean axes.
     two_way: Option<Box<TwoWay>>,
-    /// The state at the instant seen last, and what there is to measure, once it was asked for.
+    /// Current instant, (`state`) the state there, and (`truth`) the true state at the last evaluation.
     seen: Instant,
     state: SpatialState,
     truth: Truth,
     is_viewed: bool,
-    /// Rigid rates, and their elastic part at the sensor (rad/s), of the same instant as `truth`.
+    /// Rigid rates, and elastic part of the rates at the first sensor (rad/s), of the same instant as `truth`.
     rates: (Vector, Vector),
 }
 
 impl SpatialPlant {
-    /// The body of a study at the start, which nothing pushes; if it is `flexible`, its modes act back on its rotation.
+    /// Creates the plant at the start, without loads; with `flexible`, the modes act back on the rotation.
     pub fn new(body: &crate::body::Spatial, flexible: Option<&Flexible>, study: &Study) -> Self {
         let rigid = Rigid::new(body);
         let origin = SpatialState::start(body, &rigid);
@@ -116,8 +117,8 @@ impl SpatialPlant {
         }
     }
 
-    /// Brings the body to an instant, as long as the record lets it, or to one before at which a wheel comes to rest or lets go,
-    /// which it tells. What is seen on the way does not change the motion.
+    /// Advances the body to `now`, unless the record fails, or to the earlier instant at which a wheel sticks or lets
+    /// go, which it returns. Intermediate evaluations do not change the motion.
     pub fn approach(
         &mut self,
         now: Instant,
@@ -171,23 +172,24 @@ impl SpatialPlant {
         Ok(met)
     }
 
-    /// How wheels in bearings slip.
+    /// Returns the slip states of the wheels in bearings.
     pub fn slips(&self) -> &[Slip] {
         self.two_way.as_deref().map_or(&[], TwoWay::slips)
     }
 
-    /// Heat of the friction of wheels since the start (J); not a number without bearings.
+    /// Returns the heat of the wheels' friction since the start (J); NaN without bearings.
     pub fn friction_heat(&self) -> f64 {
         self.two_way.as_deref().and_then(TwoWay::friction_heat).unwrap_or(f64::NAN)
     }
 
-    /// Wheels in bearings at the instant seen last; none without friction, imbalance and tachometer.
+    /// Returns the states of the wheels in bearings at the current instant; empty without friction, imbalance and
+    /// tachometer.
     pub fn borne(&self) -> Vec<SlippedRotor> {
         let began = self.departed.seconds();
         self.two_way.as_deref().map_or_else(Vec::new, |two_way| two_way.turned(began))
     }
 
-    /// What there is to measure at the instant reached; none if the state is no longer finite.
+    /// Evaluates the true state at the current instant; `None` if it is no longer finite.
     pub fn measurable(&mut self) -> Option<&Truth> {
         if !self.is_viewed {
             if !self.state.is_finite() {
@@ -207,12 +209,12 @@ impl SpatialPlant {
         Some(&self.truth)
     }
 
-    /// What there was to measure when that was asked last.
+    /// Returns the true state of the last evaluation.
     pub fn viewed(&self) -> &Truth {
         &self.truth
     }
 
-    /// What there was to measure then at another sensor than the first.
+    /// Returns the true state of the last evaluation at a sensor other than the first.
     pub fn at_sensor(&self, sensor: usize) -> Truth {
         let (first, shapes) = (&self.truth, &self.elsewhere[sensor - 1]);
         let (angle, rate) = (self.turned(shapes), self.elastic.rate_at(shapes, &self.state.modes));
@@ -224,13 +226,13 @@ impl SpatialPlant {
         }
     }
 
-    /// Rotation of a point by all modes (rad).
+    /// Returns the rotation of a point by all modes (rad).
     fn turned(&self, shapes: &[Vector]) -> Vector {
         let displacements = self.state.modes.iter().map(|phase| phase.displacement);
         displacements.zip(shapes).fold(Vector::zeros(), |sum, (q, shape)| sum + shape * q)
     }
 
-    /// Views a body whose modes do not act back.
+    /// Evaluates the true state of a body whose modes do not act back on the rotation.
     fn view_one_way(&mut self) {
         let (turn, modes) = (&self.state.turn, &self.state.modes);
         let (rigid, elastic) = (self.rigid.rate(turn), self.elastic.rate_at(&self.sensed, modes));
@@ -244,7 +246,7 @@ impl SpatialPlant {
         self.rates = (rigid, elastic);
     }
 
-    /// Begins a new motion at the instant seen last, under what acts from now on.
+    /// Begins a motion segment at the current instant, under the loads from now on.
     pub fn depart(&mut self, wrench: &Wrench) {
         self.departed = self.seen;
         if let Some(around) = &mut self.around {
@@ -261,7 +263,7 @@ impl SpatialPlant {
         };
         let (stored, change) = (sum(|rotor| rotor.momentum), sum(|rotor| rotor.torque));
         self.rotors = (!wrench.rotors.is_empty()).then_some((self.seen, stored, change));
-        // What turns rotors one way turns the body the other.
+        // The torque that accelerates the rotors acts on the body with the opposite sign.
         let hub = Vector::from(wrench.hub) - change;
         self.torque = wrench.torque + hub;
         self.forces.clear();
@@ -273,24 +275,26 @@ impl SpatialPlant {
         self.drift_on();
     }
 
-    /// Momentum of the rotors of a body whose modes do not act back (N m s), and its rate (N m).
+    /// Returns the momentum of the rotors (N m s) and its rate (N m), for a body whose modes do not act back on the
+    /// rotation.
     fn rotors(&self, now: Instant) -> Option<(Vector, Vector)> {
         self.rotors.map(|(since, momentum, rate)| (momentum + rate * now.since(since).seconds(), rate))
     }
 
-    /// The specific force at a place of a spacecraft at the instant seen last (m/s²), under what acts from then on.
+    /// Returns the specific force at an accelerometer of a spacecraft at the current instant (m/s²), under the loads
+    /// from then on.
     pub fn specific_force(&self, place: &Mount) -> Vector {
         let began = self.departed.seconds();
         self.two_way.as_deref().map_or_else(Vector::zeros, |two_way| two_way.specific_force(place, began))
     }
 
-    /// Whether the scenario has an environment.
+    /// Returns true if the scenario has an environment.
     pub fn is_surrounded(&self) -> bool {
         self.around.is_some()
     }
 
-    /// The torque of the surroundings at the instant seen last, in the body's axes (N m), without that of torquers; none if there
-    /// is nothing around.
+    /// Returns the torque of the environment and of the body's own disturbance at the current instant, in body axes (N
+    /// m), without that of magnetorquers; `None` if there is neither.
     pub fn surroundings(&self) -> Option<Vector> {
         let t = self.seen.seconds();
         if self.around.is_none() && self.disturbance.is_none() {
@@ -309,19 +313,19 @@ impl SpatialPlant {
         Some(all - self.magnetic())
     }
 
-    /// The torque of the moment that torquers hold at the instant seen last, in the body's axes (N m).
+    /// Returns the torque on the magnetic moment that magnetorquers hold at the current instant, in body axes (N m).
     pub fn magnetic(&self) -> Vector {
         let held = |around: &Around| around.held_torque(self.seen.seconds(), self.attitude());
         self.around.as_ref().map_or_else(Vector::zeros, held)
     }
 
-    /// The attitude of the hub at the instant seen last.
+    /// Returns the attitude of the hub at the current instant.
     pub fn attitude(&self) -> &Quaternion<f64> {
         self.two_way.as_deref().map_or(&self.state.turn.attitude, TwoWay::attitude)
     }
 
-    /// The motion about an axis beyond a target, as if that axis were alone: the modes by the angles that they make at the
-    /// sensor.
+    /// Returns the motion about an axis as if that axis were alone, with the angle counted from `target` and the modes
+    /// by their angles at the first sensor.
     pub fn about(&self, axis: usize, target: &Orientation) -> State {
         let Orientation::Attitude(goal) = target else { return State::default() };
         let phase = |(phase, shape): (&Phase, &Vector)| Phase {
@@ -335,23 +339,23 @@ impl SpatialPlant {
         }
     }
 
-    /// The state at the instant seen last, in axes that no mode turns.
+    /// Returns the state at the current instant, seen from the mean axes, which no mode rotates.
     pub fn state(&self) -> &SpatialState {
         &self.state
     }
 
-    /// Rigid rates, and their elastic part at the sensor (rad/s), at the instant viewed last.
+    /// Returns the rigid rates, and the elastic part of the rates at the first sensor (rad/s), of the last evaluation.
     pub fn rates(&self) -> (Vector, Vector) {
         self.rates
     }
 
-    /// Rates of the modes (m sqrt(kg)/s) at the instant seen last.
+    /// Returns the rates of the modes (m sqrt(kg)/s) at the current instant.
     pub fn mode_rates(&self) -> impl Iterator<Item = f64> {
         self.elastic.rates(&self.state.modes)
     }
 
-    /// Energy of the elastic modes at the instant seen last (J), and of those that the sensor sees: the slow ones that it
-    /// hardly sees keep theirs whatever the law does.
+    /// Returns the elastic energy (J) at the current instant: total, and of the modes visible to the first sensor. Slow
+    /// modes with little rotation there are excluded, because no law can damp them.
     pub fn elastic_energies(&self) -> (f64, f64) {
         let sum = |(all, visible): (f64, f64), (energy, seen): (f64, &bool)| {
             (all + energy, if *seen { visible + energy } else { visible })
@@ -363,7 +367,7 @@ impl SpatialPlant {
         self.energies().into_iter().zip(&self.visible).fold(none, sum)
     }
 
-    /// The energy of each mode at the instant seen last (J).
+    /// Returns the energy of each mode at the current instant (J).
     fn energies(&self) -> Vec<f64> {
         match self.two_way.as_deref() {
             Some(two_way) if two_way.modes().is_some() => two_way.modal_energies().collect(),

@@ -1,4 +1,4 @@
-//! A body with three axes whose modes act back on its rotation, on its way.
+//! Motion of a three-axis body whose modes act back on its rotation.
 
 use std::sync::Arc;
 
@@ -19,37 +19,37 @@ use crate::sensor::{Orientation, Truth};
 use crate::sine::Sine;
 use crate::wrench::Wrench;
 
-/// The motion, and what the plant needs to turn what acts and what is seen into its terms.
+/// Coupled motion, with the data that convert loads and true state between the plant and the integrator.
 #[derive(Clone, Debug)]
 pub struct TwoWay {
     turning: Turning,
     frequencies: Vec<f64>,
-    /// Rotations of the hub in each mode, and by how much those at the sensor and where torques act differ.
+    /// Modal rotations of the hub, and (`sensed`, `acts`) their differences at the first sensor and where torques act.
     hub: Vec<Vector>,
     sensed: Vec<Vector>,
     acts: Vec<Vector>,
     outside: Outside,
     acting: Acting,
-    /// What moves it, and where its first point was at the start, from the centre of mass (m).
+    /// Translation under forces, and the initial position of the first point from the centre of mass (m).
     moving: Option<(Moving, Vector)>,
-    /// How drives turn its appendages, if drives or hinges do, and which of their changes is next.
+    /// Drive angles of the appendages, if there are drives or hinges, and the index of their next change of modes.
     courses: Option<(Arc<Courses>, usize)>,
 }
 
-/// Where an accelerometer is.
+/// Mounting point of an accelerometer.
 #[derive(Clone, Debug)]
 pub struct Mount {
-    /// While nothing is bent, from the centre of mass (m).
+    /// Position in the undeformed body, from the centre of mass (m).
     at: Vector,
-    /// By how much it moves from there for a unit of each mode, in the hub's axes, and turns against the hub.
+    /// Displacement per unit of each mode, in hub axes, and (`turns`) rotation against the hub.
     shifts: Vec<Vector>,
     turns: Vec<Vector>,
-    /// Mass of the whole (kg).
+    /// Total mass (kg).
     mass: f64,
 }
 
 impl Mount {
-    /// A point of a body of this mass (kg).
+    /// Creates the mount at a point of a body with total mass `mass` (kg).
     pub fn new(body: &Spatial, mass: f64, point: &str) -> Self {
         let first = body.points.first().map_or("", |point| &point.name);
         let (here, hub) = (body.shapes(point), body.shapes(first));
@@ -62,17 +62,17 @@ impl Mount {
     }
 }
 
-/// The disturbance of the body, and what is around it.
+/// Torques from outside: the body's own disturbance, the environment, and sines.
 #[derive(Clone, Debug)]
 struct Outside {
     own: Option<Periodic>,
     around: Option<Around>,
-    /// Sines in the torque of actuators and disturbances, each with its axis.
+    /// Sinusoidal torques of actuators and disturbances, each with its axis.
     sines: Vec<(Vector, Sine)>,
 }
 
 impl Outside {
-    /// What acts after a departure so long after the start (s), if there is anything.
+    /// Returns the torques for a segment that begins `began` seconds after the start; `None` if nothing acts.
     fn since(&self, began: f64) -> Option<(&dyn Surroundings, f64)> {
         let acts = self.own.is_some() || self.around.is_some() || !self.sines.is_empty();
         acts.then_some((self as &dyn Surroundings, began))
@@ -80,7 +80,7 @@ impl Outside {
 }
 
 impl Outside {
-    /// The torque of the surroundings alone.
+    /// Returns the torque of the body's own disturbance and of the environment, without the sines (N m).
     fn surrounding(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
         let own = self.own.as_ref().map_or_else(Vector::zeros, |own| own.at(t));
         self.around.as_ref().map_or(own, |around| own + around.torque(t, attitude, inertia))
@@ -115,8 +115,8 @@ impl Surroundings for Outside {
 }
 
 impl TwoWay {
-    /// The body at the start, which nothing pushes but what is around it, with the rotations of each mode at the sensor and
-    /// where torques act, the bearings of its rotors, if they have any, and what it has in common with other runs.
+    /// Creates the motion at the start, under the environment alone, with the modal rotations at the first sensor and
+    /// where torques act, the bearings of the rotors, if any, and the steps that it shares with other runs.
     pub fn new(
         body: &Spatial,
         flexible: &Flexible,
@@ -152,7 +152,7 @@ impl TwoWay {
         }
     }
 
-    /// The same with drives that turn its appendages, and hinges on which they swing.
+    /// Returns the motion with drives that rotate the appendages, and hinges on which they swing.
     #[must_use]
     pub fn driven(mut self, drives: Option<&Drives>) -> Self {
         let Some(Drives { driven, courses }) = drives else { return self };
@@ -166,34 +166,36 @@ impl TwoWay {
         self
     }
 
-    /// Whether drives turn its appendages.
+    /// Returns true if drives rotate the appendages.
     pub fn has_drives(&self) -> bool {
         self.courses.as_ref().is_some_and(|(courses, _)| courses.count() > 0)
     }
 
-    /// Angle (rad) and rate (rad/s) of each hinge at the instant seen last.
+    /// Returns angle (rad) and rate (rad/s) of each hinge at the current instant.
     pub fn hinges(&self) -> &[[f64; 2]] {
         &self.turning.seen().hinges
     }
 
-    /// Angle (rad) and rate (rad/s) of each drive so many seconds after the start.
+    /// Returns angle (rad) and rate (rad/s) of each drive at `t` seconds after the start.
     pub fn drives(&self, t: f64) -> Vec<[f64; 2]> {
         let each = |courses: &Courses| (0..courses.count()).map(|drive| courses.at(drive, t)).collect();
         self.courses.as_ref().map_or_else(Vec::new, |(courses, _)| each(courses))
     }
 
-    /// Of a body with drives or hinges the frequencies of its modes (rad/s) at the instant seen last, and how they turn the hub.
+    /// Returns the modal frequencies (rad/s) and rotations of the hub at the current instant; `None` without drives and
+    /// hinges.
     pub fn modes(&self) -> Option<(&[f64], &[Vector])> {
         let seen = self.turning.seen();
         self.courses.as_ref().map(|_| (&seen.frequencies[..], &seen.rotations[..]))
     }
 
-    /// Energy of motion and deformation of each mode (J).
+    /// Returns the energy of motion and deformation of each mode (J).
     pub fn modal_energies(&self) -> impl Iterator<Item = f64> + '_ {
         self.turning.energies()
     }
 
-    /// Takes over the modes of another angle where that is due, so long after the start (s), before a departure.
+    /// Replaces the modes by those of the drive angles that are due at `began` seconds after the start, before a
+    /// segment begins.
     fn recast(&mut self, began: f64) {
         self.turning.begins(began);
         let Some((courses, next)) = &mut self.courses else { return };
@@ -206,8 +208,9 @@ impl TwoWay {
         }
     }
 
-    /// Brings the body to `h` seconds after its departure, which was so long after the start (s), as long as it may `go_on`, or to
-    /// where a rotor comes to rest or lets go before, which it tells (s after the departure).
+    /// Advances the body to `h` seconds after the segment's start, which was `began` seconds after the run's start,
+    /// while `go_on` succeeds. Returns the time after the segment's start (s) at which a rotor sticks or lets go, if
+    /// that comes earlier.
     pub fn advance<E>(
         &mut self,
         h: f64,
@@ -217,37 +220,39 @@ impl TwoWay {
         self.turning.advance(h, self.outside.since(began), go_on)
     }
 
-    /// Brings the body to the instant at which a rotor comes to rest or lets go.
+    /// Advances the body to `h` seconds after the segment's start, the instant at which a rotor sticks or lets go.
     pub fn reach(&mut self, h: f64, began: f64) {
         self.turning.reach(h, self.outside.since(began));
     }
 
-    /// No part of the motion changes faster at the instant seen last (rad/s).
+    /// Returns an upper bound on the frequencies in the motion at the current instant (rad/s).
     pub fn fastest(&self) -> f64 {
         self.turning.fastest(self.outside.since(0.0).map(|(outside, _)| outside))
     }
 
-    /// How rotors in bearings slip.
+    /// Returns the slip states of the rotors in bearings.
     pub fn slips(&self) -> &[Slip] {
         self.turning.slips()
     }
 
-    /// Heat of the friction of all rotors since the start (J), if they have bearings.
+    /// Returns the heat of all rotors' friction since the start (J); `None` without bearings.
     pub fn friction_heat(&self) -> Option<f64> {
         self.turning.friction_heat()
     }
 
-    /// Rotors in bearings at the instant seen last, after a departure so long after the start (s).
+    /// Returns the states of the rotors in bearings at the current instant, in a segment that began `began` seconds
+    /// after the start.
     pub fn turned(&self, began: f64) -> Vec<SlippedRotor> {
         self.turning.turned(self.outside.since(began))
     }
 
-    /// The torque of the surroundings at the instant seen last, which is so long after the start (s), in the hub's axes (N m).
+    /// Returns the torque of the environment and the body's own disturbance at the current instant `t` (s), in hub axes
+    /// (N m).
     pub fn exerted(&self, t: f64) -> Vector {
         self.outside.surrounding(t, self.attitude(), &self.turning.inertia())
     }
 
-    /// Begins a new motion at the instant seen last, so long after the start (s), under what acts from now on.
+    /// Begins a motion segment at the current instant, `began` seconds after the start, under the loads from now on.
     pub fn depart(&mut self, wrench: &Wrench, began: f64) {
         let (push, hub) = (wrench.torque, Vector::from(wrench.hub));
         if let Some(around) = &mut self.outside.around {
@@ -261,7 +266,8 @@ impl TwoWay {
         *torque = push + hub;
         rotors.clone_from(&wrench.rotors);
         gimbals.clone_from(&wrench.gimbals);
-        // The motion gives modes their part of the torque on the hub: what jets and torques elsewhere give differs from it.
+        // The integrator gives the modes their part of a torque on the hub; jets and torques at other points excite
+        // them differently.
         let given = wrench.forces.iter().copied().chain(std::iter::repeat(0.0));
         let beyond = self.hub.iter().zip(&self.acts).zip(given);
         forces.clear();
@@ -271,7 +277,7 @@ impl TwoWay {
         self.turning.settle(self.outside.since(began));
     }
 
-    /// Puts the state as seen from the mean axes into another.
+    /// Writes the motion as seen from the mean axes into `state`.
     pub fn show(&self, rigid: &Rigid, state: &mut SpatialState) {
         let seen = self.turning.seen();
         state.turn = rigid.start(seen.mean, seen.rigid);
@@ -281,8 +287,8 @@ impl TwoWay {
         }
     }
 
-    /// Fills in what there is to measure but for the sky, where the modes make these rotations: the attitude is that of the hub.
-    /// Tells the elastic part of the rates (rad/s).
+    /// Writes the true state, except for the sky, into `truth`, with the modal rotations `sensed` at the sensor; the
+    /// attitude is that of the hub. Returns the elastic part of the rates (rad/s).
     pub fn measure(&self, sensed: &[Vector], truth: &mut Truth) -> Vector {
         let seen = self.turning.seen();
         let sum = |shapes: &[Vector], of: &[f64]| -> Vector {
@@ -297,7 +303,7 @@ impl TwoWay {
         elastic
     }
 
-    /// Where the first point is that was at 0 at the start (m), and how fast it moves (m/s), if anything can push it.
+    /// Returns the displacement of the first point since the start (m), and its velocity (m/s), if any force can act.
     pub fn place(&self) -> Option<[Vector; 2]> {
         self.moving.as_ref().map(|(moving, began)| {
             let [position, velocity] = moving.place(self.turning.seen());
@@ -305,8 +311,8 @@ impl TwoWay {
         })
     }
 
-    /// The specific force at a place (m/s²), along axes that its mount turns, at the instant seen last of a motion that departed so long
-    /// after the start (s): what accelerates it beside free fall.
+    /// Returns the specific force at a mount (m/s²), in axes that rotate with it, at the current instant of a segment
+    /// that began `began` seconds after the start: the acceleration without that of free fall.
     pub fn specific_force(&self, place: &Mount, began: f64) -> Vector {
         let seen = self.turning.seen();
         let found = self.turning.accelerations(self.outside.since(began));
@@ -326,12 +332,12 @@ impl TwoWay {
         (turned.conjugate() * Quaternion::from_imag(force) * turned).vector().into_owned()
     }
 
-    /// The attitude of the hub.
+    /// Returns the attitude of the hub.
     pub fn attitude(&self) -> &Quaternion<f64> {
         &self.turning.seen().attitude
     }
 
-    /// Energy of the rotation (J), and angular momentum (N m s), rotors included.
+    /// Returns the energy of the rotation (J), and the angular momentum including rotors (N m s).
     pub fn energy(&self) -> (f64, f64) {
         let seen = self.turning.seen();
         (seen.rotational, seen.momentum.norm())

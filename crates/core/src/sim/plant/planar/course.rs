@@ -1,4 +1,4 @@
-//! The motion of one angle as records take it: stretch by stretch, in expansions that are exact to rounding.
+//! One-axis motion as records receive it: piece by piece, in series that are exact to rounding.
 
 use super::{Exerted, Motion, PlanarPlant};
 use crate::body::Output;
@@ -10,7 +10,7 @@ use crate::numerics::polynomial::{Polynomial, Series, TERMS};
 use crate::record::{Course, Record, RecordError};
 use crate::time::Instant;
 
-/// A motion that is taken apart from its departure on.
+/// Motion segment that is expanded in series from its start on.
 enum Unfolded<'a> {
     Planar(&'a Segment, State),
     Chain(Flown<'a>),
@@ -18,7 +18,7 @@ enum Unfolded<'a> {
 }
 
 impl PlanarPlant {
-    /// Tells the motion that ends now, stretch by stretch, where the record wants it.
+    /// Records the motion of the segment that ends at `now`, piece by piece, if the record wants it.
     pub fn tell_course(
         &self,
         now: Instant,
@@ -32,11 +32,11 @@ impl PlanarPlant {
         }
     }
 
-    /// Whether the angle is certain to stay within so much of 0 on this motion until an instant: as bounds tell, which cost
-    /// next to nothing, or the search for a crossing.
+    /// Returns true if the angle is certain to stay within `band` (rad) of 0 on this segment until `until`: by bounds,
+    /// which are cheap, or else by a search for a crossing.
     ///
     /// # Errors
-    /// The record ends the search.
+    /// Fails if the record ends the search.
     pub fn stays_within(
         &self,
         band: f64,
@@ -51,7 +51,7 @@ impl PlanarPlant {
                 && locate(arc, &guards, span, &mut self.state.clone(), || record.poll())?.is_none())
     }
 
-    /// Takes the motion apart, from its departure to an instant.
+    /// Expands the segment from its start to `until` and passes each piece to `take`.
     pub fn walk(
         &self,
         until: Instant,
@@ -61,7 +61,8 @@ impl PlanarPlant {
         self.pieces(until, |series, h, length| take(&self.observed(series, (h, length), exerted)))
     }
 
-    /// The series of the motion from its departure to an instant, each with when it begins after it and how long it is (s).
+    /// Passes the series of each piece from the segment's start to `until` to `take`, with its begin after that start
+    /// and its length (s).
     fn pieces(
         &self,
         until: Instant,
@@ -86,7 +87,7 @@ impl PlanarPlant {
                 Unfolded::Chain(flown) => flown.expand(h, 0.5 * span, &mut series),
                 Unfolded::Coupled(unfolding) => unfolding.expand(h, span, &mut series),
             };
-            // What does not move, or is no number, is one stretch.
+            // A motion at rest, or one that is not finite, is one piece.
             let next = if reach > 0.0 && h + reach > h { span.min(h + reach) } else { span };
             take(&series, h, next - h)?;
             h = next;
@@ -94,7 +95,7 @@ impl PlanarPlant {
         Ok(())
     }
 
-    /// What is observed over a stretch that begins so long after departure and is so long (s).
+    /// Returns the observed coordinates over a piece with begin `after` the segment's start and given length (s).
     fn observed(&self, series: &Expansion, (after, length): (f64, f64), exerted: &Exerted) -> Stretch {
         let Expansion { coordinates, command } = series;
         let add = |sum: &mut Series, weight: f64, of: &Series| {
@@ -121,7 +122,7 @@ impl PlanarPlant {
         let output = |index: usize, output: &Output| {
             let mut sum = [0.0; TERMS];
             if let Motion::Chain(_) = &self.motion {
-                // Of a chain, the angles of the sections relative to the hub.
+                // The outputs of a chain are the angles of its sections relative to the hub.
                 add(&mut sum, 1.0, &coordinates[index + 1]);
                 add(&mut sum, -1.0, &coordinates[0]);
             } else {
@@ -141,7 +142,8 @@ impl PlanarPlant {
         }
     }
 
-    /// Takes the motion apart from an instant to another, not before the first: what is observed, and the rigid angle.
+    /// Expands the motion between two instants of this segment: passes the observed coordinates and the rigid angle of
+    /// each piece to `take`.
     pub fn measure(
         &self,
         [since, until]: [Instant; 2],

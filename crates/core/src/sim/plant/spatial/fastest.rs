@@ -1,12 +1,12 @@
-//! How fast the motion of a body with three axes changes: for means over parts of it.
+//! Bound on the frequencies in the motion of a three-axis body, for means over parts of it.
 
 use super::SpatialPlant;
 use crate::body::spatial::Periodic;
 use crate::motion::turning::Surroundings;
 
 impl SpatialPlant {
-    /// No part of the motion changes faster at the instant seen last (rad/s): the fastest mode with all that turns or drives the
-    /// body, so that their products are counted too.
+    /// Returns an upper bound on the frequencies in the motion at the current instant (rad/s): the sum of the fastest
+    /// mode and of all rates that rotate or drive the body, so that their products are included.
     pub fn fastest(&self) -> f64 {
         if let Some(two_way) = self.two_way.as_deref() {
             return two_way.fastest();

@@ -1,4 +1,4 @@
-//! Attitude, energy, place, drives, hinges, modes and orbit of a body with three axes, as logged.
+//! Rows of a three-axis body: attitude, energy, position, drives, hinges, modes and orbit.
 
 use super::super::two_way::TwoWay;
 use super::SpatialPlant;
@@ -12,7 +12,7 @@ use crate::record::{
 };
 
 impl SpatialPlant {
-    /// The energies, as logged.
+    /// Returns the row of the energies.
     pub fn energy(&self) -> Energy {
         let one_way = || {
             let momentum = Rigid::momentum(&self.state.turn);
@@ -24,13 +24,13 @@ impl SpatialPlant {
         Energy { rotational_j, elastic_j, visible_j, momentum_nm_s }
     }
 
-    /// Where the first point is, as logged; none of a body that nothing pushes, or whose mass nobody knows.
+    /// Returns the row of the first point's position; `None` for a body without forces or with unknown mass.
     pub fn position(&self) -> Option<Position> {
         let [at, speed] = self.two_way.as_deref()?.place()?;
         Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
     }
 
-    /// The attitude, as logged, with the angles by which it is beyond its target (rad).
+    /// Returns the row of the attitude, with its errors (rad) against the target.
     pub fn pointing(&self, error: [f64; 3]) -> Pointing {
         let q = self.attitude();
         let [roll_rad, pitch_rad, yaw_rad] = crate::attitude::angles(q);
@@ -49,7 +49,8 @@ impl SpatialPlant {
         }
     }
 
-    /// The drives of appendages and the frequencies of the modes, which change with them, as logged; none without drives.
+    /// Returns the row of the appendages' drives and of the modal frequencies, which change with them; `None` without
+    /// drives.
     pub fn drives(&self) -> Option<DrivesMotion> {
         let two_way = self.two_way.as_deref()?;
         let (frequencies, _) = two_way.modes().filter(|_| two_way.has_drives())?;
@@ -61,7 +62,7 @@ impl SpatialPlant {
         })
     }
 
-    /// The hinges of appendages, as logged; none without hinges.
+    /// Returns the row of the appendages' hinges; `None` without hinges.
     pub fn hinges(&self) -> Option<Hinges> {
         let hinge = |[angle_rad, rate_rad_s]: &[f64; 2]| HingeMotion {
             angle_rad: *angle_rad,
@@ -71,7 +72,7 @@ impl SpatialPlant {
         (!hinges.is_empty()).then(|| Hinges { hinges: hinges.iter().map(hinge).collect() })
     }
 
-    /// Where it is on its orbit, as logged.
+    /// Returns the row of the orbit; `None` without one.
     pub fn orbit(&self) -> Option<Orbit> {
         let (sky, t) = (self.around.as_ref()?.sky(), self.seen.seconds());
         let place = sky.place(t)?;
@@ -89,7 +90,7 @@ impl SpatialPlant {
         Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
     }
 
-    /// The modes, as logged.
+    /// Returns the row of the modes.
     pub fn vibrations(&self) -> Vibrations {
         let modes = &self.state.modes;
         let rates = self.elastic.rates(modes).zip(self.energies());

@@ -1,4 +1,4 @@
-//! The free modes of a body with three axes: those that drift, and all as the monitor of the envelope takes them.
+//! Free modes of a three-axis body: drifting ones, and all modes in the form that the monitor of the envelope takes.
 
 use super::SpatialPlant;
 use crate::attitude::Vector;
@@ -9,21 +9,21 @@ use crate::motion::{Phase, State};
 use crate::wrench::Wrench;
 
 impl SpatialPlant {
-    /// The same with modes whose frequencies drift.
+    /// Returns the plant with drifting modal frequencies, if `drift` is given.
     #[must_use]
     pub fn drifting(mut self, body: &Spatial, drift: Option<&Drift>) -> Self {
         self.drifting = drift.map(|drift| DriftingModes::new(body, drift));
         self
     }
 
-    /// Begins the motion of modes that drift at the departure, under the forces that act from then on.
+    /// Begins a motion segment of drifting modes at the current start, under the modal forces from then on.
     pub(super) fn drift_on(&mut self) {
         if let Some(drifting) = &mut self.drifting {
             drifting.depart(self.departed.seconds(), &self.forces);
         }
     }
 
-    /// The free modes at the instant seen last by the size of the rotations that they give the first sensor (rad).
+    /// Returns the free modes at the current instant, scaled to the size of their rotations of the first sensor (rad).
     pub fn swings(&self) -> State {
         let phase = |(phase, shape): (&Phase, &Vector)| {
             let size = shape.norm();
@@ -33,7 +33,7 @@ impl SpatialPlant {
         State { modes, ..State::default() }
     }
 
-    /// The modal forces of what an actuator exerts (N/sqrt(kg)).
+    /// Returns the modal forces of an actuator's wrench (N/sqrt(kg)).
     pub fn modal_forces(&self, wrench: &Wrench) -> Vec<f64> {
         let change = wrench.rotors.iter().fold(Vector::zeros(), |sum, of| sum + of.axis * of.torque);
         let hub = Vector::from(wrench.hub) - change;

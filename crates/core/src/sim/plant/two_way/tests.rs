@@ -1,4 +1,4 @@
-//! Both motions of a body with three axes through the same plant.
+//! Motion of a three-axis body with and without coupling of the modes, through the same plant.
 
 use nalgebra::{Matrix3, Quaternion};
 
@@ -13,7 +13,7 @@ use crate::sim::plant::SpatialPlant;
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-/// Two modes, which turn the hub by these angles or not at all, and a bench a little further.
+/// Returns a body with two modes, which rotate the hub only if `coupled`, and a bench by a little more.
 fn body(disturbed: bool, coupled: bool) -> Spatial {
     let torque = "disturbance = { constant = [1e-3, 0, 0], amplitude = [0.02, -0.01, 0.03], period = 7.0 }";
     let hub = if coupled { ["[0.02, 1e-3, -0.01]", "[1e-3, 0.03, 2e-3]"] } else { ["[0, 0, 0]"; 2] };
@@ -77,7 +77,7 @@ fn wheel(momentum: f64, torque: f64) -> Vec<Rotor> {
     vec![Rotor { axis: Vector::new(0.6, 0.0, 0.8), momentum, torque }]
 }
 
-/// Where modes do not turn the hub, both motions are one: under the surroundings, torques, and rotors.
+/// Checks that both motions agree if modes do not rotate the hub: under the environment, torques, and rotors.
 #[test]
 fn without_coupling_both_are_one() {
     let body = body(true, false);
@@ -108,7 +108,7 @@ fn without_coupling_both_are_one() {
     }
 }
 
-/// A torque on the hub is the same as jets with its torque and what that gives the modes.
+/// Checks that a torque on the hub equals jets with its torque and its modal forces.
 #[test]
 fn what_acts_on_modes_is_told_from_what_turns_the_hub() {
     let body = body(false, true);
@@ -131,7 +131,7 @@ fn what_acts_on_modes_is_told_from_what_turns_the_hub() {
     }
 }
 
-/// What a gyro counts is the integral of the rate at it, on both motions.
+/// Checks that a gyro's angle is the integral of its rate, on both motions.
 #[test]
 fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
     let body = body(true, true);
@@ -141,7 +141,7 @@ fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
         let h = 1.0 / 16.0;
         let mut integral = Vector::zeros();
         let before = seen(&mut plant, 0.0).turned;
-        // Past the instant at which a one-way motion begins anew.
+        // Covers the instant at which a one-way motion begins another segment.
         for step in 0..400 {
             for (node, weight) in NODES.into_iter().zip(WEIGHTS) {
                 integral += Vector::from(seen(&mut plant, h * (f64::from(step) + node)).rate) * (weight * h);
@@ -153,7 +153,7 @@ fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
     }
 }
 
-/// The bench turns beyond the hub by its own part of each mode, and looking changes nothing.
+/// Checks that the bench rotates against the hub by its own part of each mode, and that evaluations change nothing.
 #[test]
 fn a_bench_is_seen_beside_the_hub() {
     let body = body(true, true);
@@ -175,7 +175,7 @@ fn a_bench_is_seen_beside_the_hub() {
     let beyond =
         Vector::new(0.0, 5e-4, 0.0) * displacements[0] - Vector::new(0.0, 0.0, 1e-3) * displacements[1];
     assert!((Vector::from(bench.elastic) - beyond).norm() < 1e-17);
-    // The mean axes and the modes' angles make the hub's attitude.
+    // The mean axes and the modal rotations give the attitude of the hub.
     let Orientation::Attitude(attitude) = hub.orientation else { panic!("three axes") };
     let angles =
         body.shapes("hub").iter().zip(&displacements).fold(Vector::zeros(), |sum, ((_, r), q)| sum + r * *q);
