@@ -3,6 +3,8 @@
 //! Modes are about the point that the file's participations are about, in its axes, normalised by mass.
 
 mod calculix;
+#[cfg(test)]
+mod damaged_tests;
 mod deck;
 mod element;
 mod f06;
