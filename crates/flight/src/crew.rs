@@ -93,6 +93,8 @@ pub struct LaneRest {
     pub from: LaneSight,
     /// When the last push began.
     pub pushed: (u64, u64),
+    /// How often it has switched since the last window of switchings ended, and when that was.
+    pub switched: (u64, (u64, u64)),
     /// Until when the envelope was followed.
     pub seen: (u64, u64),
     /// The integral of the envelope since the last window closed.
@@ -124,6 +126,8 @@ pub trait Crew {
     fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, found: &mut Searched) -> bool;
     /// A lane cannot go on here: its run has to be made alone.
     fn give_up(&mut self, lane: usize);
+    /// A lane has switched [`SWITCHINGS`](crate::SWITCHINGS) times in a span that is too short for a motion, up to here; its run ends.
+    fn chatters(&mut self, lane: usize, at: (u64, u64));
     /// The law has switched to a place.
     fn switched(&mut self, lane: usize, to: CyclePlace, now: &LaneSight);
     /// A window has closed, with this integral of the envelope; answers the braking gain from now on.

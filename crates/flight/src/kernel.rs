@@ -7,6 +7,7 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
+mod chatter;
 mod fill;
 mod look;
 mod mode;
@@ -73,6 +74,12 @@ pub struct Flight<R: Real, D> {
     window: Clock<R>,
     /// Which lanes have a run that goes on.
     active: [bool; MOST],
+    /// Cycles since the flight began, and the number of the one after which lanes are looked at for chatter.
+    cycles: u64,
+    looked_at: u64,
+    /// For each lane, after how many cycles its last window of switchings ended, and when.
+    marks: [u64; MOST],
+    marked: Clock<R>,
     /// All lanes as plain numbers, and one of them.
     rows: Vec<[f64; MOST]>,
     sight: LaneSight,
@@ -95,7 +102,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
                 CyclePlace::Coast if !Self::IS_ALONE || flight.active[0] => CyclePlace::Push,
                 CyclePlace::Push if !Self::IS_ALONE || flight.active[0] => CyclePlace::Brake,
                 _ => {
-                    if !flight.fill(crew) {
+                    if !flight.fill(crew) || !flight.cycle(crew) {
                         return;
                     }
                     CyclePlace::Coast

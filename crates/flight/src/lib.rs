@@ -5,6 +5,7 @@
 //! What a lane comes to is, to the bit, what the loops of `flexsc-core` come to. The kernels are in a crate of their own because
 //! they take as long to compile as the rest of the engine, and can do so beside it.
 
+mod chatter;
 mod clock;
 mod crew;
 #[cfg(feature = "damped")]
@@ -15,6 +16,7 @@ mod undamped;
 
 use flexsc_motion::lanes::Processor;
 
+pub use chatter::{SWITCHINGS, shortest_window};
 pub use crew::{Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup, Structure};
 pub use kernel::MOST;
 

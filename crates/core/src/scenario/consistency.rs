@@ -1,7 +1,7 @@
 //! What the single values of a scenario cannot show to be wrong: keys that do not fit each other.
 
-use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
+use super::{Scenario, meant};
 use crate::actuator::{Actuator, ActuatorMember, Wheel};
 use crate::attitude::vector;
 use crate::body::craft::Limit;
@@ -71,7 +71,7 @@ impl Scenario {
             table.remove("correlated");
             self.uncertain.iter().find_map(|(key, distribution)| {
                 let why = distribution.problem(key::get(&table, key))?;
-                let near = if key::get(&table, key).is_none() { nearest_number(&table, key) } else { None };
+                let near = if key::get(&table, key).is_none() { meant::number(&table, key) } else { None };
                 let why = near.map_or(why.clone(), |near| format!("{why}; did you mean `{near}`?"));
                 Some(Fault::new(format!("uncertain.\"{key}\""), why))
             })
@@ -319,32 +319,5 @@ impl Scenario {
             }
         }
         None
-    }
-}
-
-/// The key of a number that was probably meant by one that there is not.
-fn nearest_number(table: &Table, key: &str) -> Option<String> {
-    let mut paths = Vec::new();
-    for (name, value) in table {
-        numbers(value, key::bare_or_quoted(name), &mut paths);
-    }
-    let known: Vec<&str> = paths.iter().map(String::as_str).collect();
-    nearest(key, &known).map(str::to_owned)
-}
-
-fn numbers(value: &Value, path: String, paths: &mut Vec<String>) {
-    match value {
-        // Of the elements of a large matrix none is meant.
-        _ if paths.len() == MOST_PATHS => {}
-        Value::Integer(_) | Value::Float(_) => paths.push(path),
-        Value::Array(values) => {
-            values.iter().enumerate().for_each(|(index, value)| numbers(value, format!("{path}[{index}]"), paths));
-        }
-        Value::Table(table) => {
-            for (name, value) in table {
-                numbers(value, format!("{path}.{}", key::bare_or_quoted(name)), paths);
-            }
-        }
-        _ => {}
     }
 }

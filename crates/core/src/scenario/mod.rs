@@ -14,6 +14,7 @@ mod failing;
 mod known;
 mod learning;
 mod log;
+mod meant;
 mod own;
 mod parts;
 mod plain;

@@ -84,6 +84,9 @@ pub struct Simulation {
     /// The instant and index of the guard that trips next, as long as the hold lasts.
     trip: Option<(Instant, usize)>,
     decisions: u32,
+    /// How often the law has switched since the last window of switchings ended, and when that was; how long one lasts (s) at least.
+    switchings: (u64, Instant),
+    shortest_window: f64,
     /// Whether a wheel has come to rest or let go now, how often in the last nanosecond, and since when.
     met: bool,
     slips: (u32, Instant),
@@ -125,6 +128,8 @@ impl Simulation {
             exerted: Exerted::default(),
             trip: None,
             decisions: 0,
+            switchings: (0, Instant::START),
+            shortest_window: flight::shortest_window(scenario.model.frequencies().fold(0.0, f64::max)),
             met: false,
             slips: (0, Instant::START),
             read: None,

@@ -258,14 +258,13 @@ impl Document {
     }
 }
 
-/// A key that was set under a wrong name, and what was probably meant by it.
+/// A key that was set within a table of a wrong name, and what was probably meant by it.
 fn meant_of(wrong: &Wrong, changed: &[String]) -> Option<(String, String)> {
     let (path, name, meant) = (wrong.path(), bare_or_quoted(wrong.key()?), wrong.meant()?);
     let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
     let wrong = within(&name);
     let (key, rest) = changed.iter().find_map(|key| Some((key, key.strip_prefix(&wrong)?)))?;
-    (rest.is_empty() || rest.starts_with(['.', '[']))
-        .then(|| (shortened(key), shortened(&format!("{}{rest}", within(meant)))))
+    rest.starts_with(['.', '[']).then(|| (shortened(key), shortened(&format!("{}{rest}", within(meant)))))
 }
 
 fn too_long(length: u64) -> String {

@@ -77,7 +77,11 @@ impl<'de> Reader<'de> {
                 let mut entries = Entries::new(table);
                 let made = visitor.visit_map(&mut entries)?;
                 // A part that takes a kind from a map takes its first key, and would leave others unread.
-                if entries.entries.next().is_some() { Err(Wrong::several_kinds(table, &[])) } else { Ok(made) }
+                if entries.entries.next().is_some() {
+                    Err(Wrong::several_kinds(table, &[]))
+                } else {
+                    Ok(made)
+                }
             }
             _ => self.refused(&visitor),
         }

@@ -133,7 +133,10 @@ fn word_meant(word: &str) -> Option<String> {
     let symbol = |word: &str| {
         SYMBOLS.iter().map(|symbol| symbol.0).find(|symbol| symbol.to_lowercase() == word && symbol.len() > 1)
     };
-    [lower.as_str(), singular].into_iter().find_map(|word| alias(word).or_else(|| symbol(word))).map(str::to_owned)
+    [lower.as_str(), singular]
+        .into_iter()
+        .find_map(|word| alias(word).or_else(|| symbol(word)))
+        .map(str::to_owned)
 }
 
 impl Unit {
