@@ -14,6 +14,8 @@ use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation, SimulationError};
 
+use crate::util::SCENARIOS;
+
 const RELAY: &str =
     "[law.relay]\ndead_zone = 5e-4\nhysteresis = 1e-4\nstrong = 4e-5\nweak = 1e-6\nk_t = 0.31\n";
 

@@ -180,3 +180,14 @@ fn a_scenario_is_read_from_stdin() {
     assert_eq!(code, Some(2));
     assert!(told.contains("stdin:16:1: `law.relay`: unknown key `kt`"), "{told}");
 }
+
+#[test]
+fn what_is_probably_a_mistake_is_remarked() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let text = dir.text("relay-fixed.toml");
+    assert!(!dir.run("check relay-fixed.toml").exits(0).err.contains("remark"));
+    dir.write("d.toml", text.replacen("gain = 0.0213", "gain = 0.0213\ndamping = 5", 1));
+    dir.run("check d.toml").exits(0).says(&["remark: `body.planar.modes[0].damping`", "\"5 %\""]);
+    let json = dir.run("check d.toml --json").exits(0).out;
+    assert!(json.contains("\"remarks\":[{\"key\":\"body.planar.modes[0].damping\""), "{json}");
+}

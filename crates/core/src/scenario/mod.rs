@@ -19,6 +19,7 @@ mod own;
 mod parts;
 mod plain;
 mod reference;
+mod remarks;
 mod sensing;
 mod sky;
 mod study;
