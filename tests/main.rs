@@ -39,6 +39,7 @@ mod events;
 mod exact;
 mod exposure;
 mod extending;
+mod extremes;
 mod failures;
 mod filters;
 mod forces;

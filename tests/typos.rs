@@ -40,7 +40,7 @@ const TYPOS: &[(&str, &str, &str)] = &[
     ("[sensor.sampled]", "[sensor.lidar]", "there is no lidar"),
     ("[sensor.sampled]", "[sensors.sampled]", "did you mean `sensor`?"),
     ("[sensor.sampled]", "[actuator.reaction_wheels]\n[sensor.sampled]", "did you mean `wheels`?"),
-    ("[sensor.sampled]", "[actuator.cmg]\n[sensor.sampled]", "there are no control moment gyros"),
+    ("[sensor.sampled]", "[actuator.cmg]\n[sensor.sampled]", "did you mean `control_moment_gyros`?"),
     ("[sensor.sampled]", "[actuator.thruster]\n[sensor.sampled]", "did you mean `thrusters`?"),
     ("period = 0.1\n\n[log]", "sample_time = 0.1\n\n[log]", "did you mean `period`?"),
     ("frequency", "omega", "did you mean `frequency`?"),
@@ -84,6 +84,54 @@ fn all_mistakes_come_at_once() {
         "bad.toml:25:2:",
         "did you mean `sensor`?",
     ]);
+}
+
+/// What is written in the place of what: the error that there is, and how many errors there are.
+#[rustfmt::skip] // One case a line.
+const ALONE: &[(&str, &str, &str)] = &[
+    ("[law.relay]", "[law.lqr]", "did you mean `state_space`?"),
+    ("k_t = 0.31", "k_t = 0.31 // braking gain", "found `//`; a comment begins with `#`"),
+    ("body.planar.modes[0].frequency\" = { uniform = [0.4, 0.5] }", "body.planar.modes[0].frequency\" = { uniform = [0.4 0.5] }", "a comma is missing"),
+];
+
+#[test]
+fn one_mistake_is_one_error() {
+    let dir = Dir::new();
+    for (from, to, words) in ALONE {
+        if !GOOD.contains(from) {
+            continue;
+        }
+        dir.write("alone.toml", GOOD.replacen(from, to, 1));
+        let ran = dir.run("check alone.toml").exits(2);
+        assert!(ran.err.contains(words) && ran.err.matches("alone.toml:").count() == 1, "{to}: {}", ran.err);
+    }
+}
+
+#[test]
+fn a_table_that_is_set_under_a_wrong_name_gets_its_whole_path() {
+    let dir = Dir::with(&["earth-observer"]);
+    let ran = dir.run("simulate earth-observer.toml --log none --set law.atitude.bandwidth=0.3").exits(2);
+    assert!(ran.err.contains("did you mean `law.attitude.bandwidth`?"), "{}", ran.err);
+}
+
+#[test]
+fn keys_and_forms_of_distributions_are_suggested() {
+    let dir = Dir::with(&["earth-observer"]);
+    let text = dir.text("earth-observer.toml");
+    let wrong = |line: &str, words: &str| {
+        dir.write("u.toml", format!("{text}\n[uncertain]\n{line}\n"));
+        let ran = dir.run("check u.toml").exits(2);
+        assert!(ran.err.contains(words), "{line}: {}", ran.err);
+    };
+    wrong(
+        "\"spacecraft.inertia.xx\" = { relative_normal = 0.1 }",
+        "did you mean `spacecraft.inertia[0][0]`?",
+    );
+    wrong(
+        "\"law.attitude.bandwidth\" = { normal = [0.25, 0.01] }",
+        "{ normal = { mean = 0.25, sd = 0.01 } }",
+    );
+    wrong("\"law.attitude.bandwidth\" = 0.25", "{ relative_normal = 0.1 }");
 }
 
 #[test]
@@ -131,4 +179,15 @@ fn a_scenario_is_read_from_stdin() {
     let (code, told) = flexsc(&GOOD.replace("k_t", "kt"));
     assert_eq!(code, Some(2));
     assert!(told.contains("stdin:16:1: `law.relay`: unknown key `kt`"), "{told}");
+}
+
+#[test]
+fn what_is_probably_a_mistake_is_remarked() {
+    let dir = Dir::with(&["relay-fixed"]);
+    let text = dir.text("relay-fixed.toml");
+    assert!(!dir.run("check relay-fixed.toml").exits(0).err.contains("remark"));
+    dir.write("d.toml", text.replacen("gain = 0.0213", "gain = 0.0213\ndamping = 5", 1));
+    dir.run("check d.toml").exits(0).says(&["remark: `body.planar.modes[0].damping`", "\"5 %\""]);
+    let json = dir.run("check d.toml --json").exits(0).out;
+    assert!(json.contains("\"remarks\":[{\"key\":\"body.planar.modes[0].damping\""), "{json}");
 }

@@ -147,3 +147,70 @@ fn numbers(value: &Value, path: String, all: &mut Vec<(String, f64)>) {
         _ => {}
     }
 }
+
+#[test]
+fn units_of_others_are_suggested() {
+    for (from, to, meant) in [
+        ("120.0\n", "\"120 secs\"\n", "s"),
+        ("frequency = 3.141592653589793", "frequency = \"0.5 hz\"", "Hz"),
+        ("0.017453292519943295", "\"10 RPM\"", "rpm"),
+        ("0.017453292519943295", "\"10 deg/hr\"", "deg/h"),
+    ] {
+        let told = Scenario::parse("x", &PLAIN.replacen(from, to, 1)).expect_err("refused").to_string();
+        assert!(told.contains(&format!("did you mean `{meant}`?")), "{told}");
+    }
+    let told =
+        Scenario::parse("x", &PLAIN.replace("120.0\n", "'3 fortnights'\n")).expect_err("refused").to_string();
+    assert!(told.contains("known are m, g, s, A"), "{told}");
+}
+
+#[test]
+fn a_percent_is_a_hundredth_and_nothing_else() {
+    let plain = Scenario::parse("x", PLAIN).unwrap_or_else(|error| panic!("{error}"));
+    let read =
+        Scenario::parse("x", &PLAIN.replace("damping = 0.002", "damping = \"0.2 %\"")).expect("a scenario");
+    assert_eq!(read.to_toml(), plain.to_toml());
+    let told =
+        Scenario::parse("x", &PLAIN.replace("bandwidth = 0.1", "bandwidth = '10 %'")).expect_err("refused");
+    assert!(told.to_string().contains("expected a unit such as `rad/s`"), "{told}");
+}
+
+#[test]
+fn distributions_take_the_units_of_their_key() {
+    let with = |distribution: &str| {
+        let text = format!("{PLAIN}[uncertain]\n\"appendage[0].modes[0].frequency\" = {distribution}\n");
+        Scenario::parse("x", &text).map(|scenario| scenario.to_toml()).map_err(|error| error.to_string())
+    };
+    let turn = std::f64::consts::TAU;
+    for (units, plain) in [
+        (
+            "{ normal = { mean = \"1.5 Hz\", sd = \"0.25 Hz\" } }",
+            format!("{{ normal = {{ mean = {}, sd = {} }} }}", 1.5 * turn, 0.25 * turn),
+        ),
+        ("{ uniform = [\"0.5 Hz\", 4.0] }", format!("{{ uniform = [{}, 4.0] }}", 0.5 * turn)),
+        ("{ relative_normal = \"10 %\" }", "{ relative_normal = 0.1 }".to_owned()),
+    ] {
+        assert_eq!(with(units).expect("units"), with(&plain).expect("numbers"));
+    }
+    assert!(
+        with("{ uniform = [\"1 m\", \"2 m\"] }")
+            .expect_err("metres")
+            .contains("expected a unit such as `rad/s`")
+    );
+}
+
+#[test]
+fn degrees_and_impossible_bodies_are_refused() {
+    let target = "[[target]]\nfrom = 1.0\nyaw = 30\n";
+    let told = Scenario::parse("x", &format!("{PLAIN}{target}")).expect_err("degrees").to_string();
+    assert!(told.contains("in rad, or such as \"30 deg\", got 30"), "{told}");
+    Scenario::parse("x", &format!("{PLAIN}{}", target.replace("30", "\"30 deg\""))).expect("an angle");
+    // Principal moments 300, 40 and 35 of no body, in its axes and turned by 30 degrees about z.
+    for inertia in
+        ["[[300, 0, 0], [0, 40, 0], [0, 0, 35]]", "[[235.0, 112.5833, 0], [112.5833, 105.0, 0], [0, 0, 35]]"]
+    {
+        let text = PLAIN.replace("[[120.0, 0.0, 0.0], [0.0, 90.0, 0.0], [0.0, 0.0, 100.0]]", inertia);
+        let told = Scenario::parse("x", &text).expect_err("no body").to_string();
+        assert!(told.contains("no principal moment exceeds the sum of the other two"), "{told}");
+    }
+}

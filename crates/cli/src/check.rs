@@ -46,12 +46,16 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), Failure>
         let object = json!({
             "file": path.display().to_string(), "scenario": scenario.name, "duration_s": duration, "modes": modes,
             "accepted": true, "needs_yes": costly.is_some(),
+            "remarks": scenario.remarks().iter().map(|of| json!({"key": of.key, "message": of.to_string()})).collect::<Vec<_>>(),
         });
         return print(format!("{object}\n").as_bytes());
     }
     say!("{}: accepted: {duration} s, {}", path.display(), counted(modes, "mode"));
     if let Some(why) = costly {
         say!("  {why}");
+    }
+    for remark in scenario.remarks() {
+        say!("  remark: {remark}");
     }
     Ok(())
 }

@@ -111,7 +111,9 @@ impl Failure {
             return self.code();
         }
         // Colours go to terminals that have them only, and never where NO_COLOR is set.
-        let _ = anstream::stderr().lock().write_all(coloured(&shown(&self.to_string())).as_bytes());
+        let _ = anstream::stderr()
+            .lock()
+            .write_all(coloured(&shown(&without_zeros(&self.to_string()))).as_bytes());
         self.code()
     }
 
@@ -123,6 +125,31 @@ impl Failure {
             _ => 1,
         }
     }
+}
+
+/// No number has more zeros in a row.
+const MOST_ZEROS: usize = 18;
+
+/// A text in which numbers with many zeros have an exponent instead: those that somebody tried may be as large or small as doubles
+/// can be.
+pub fn without_zeros(text: &str) -> String {
+    let mut all = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(start) = rest.find(|c: char| c.is_ascii_digit()) {
+        let (before, number) = rest.split_at(start);
+        all.push_str(before);
+        let end = number.find(|c: char| !(c.is_ascii_digit() || c == '.')).unwrap_or(number.len());
+        let (number, after) = number.split_at(end);
+        let zeros = "0".repeat(MOST_ZEROS);
+        match number.parse::<f64>() {
+            Ok(value) if number.contains(&zeros) && !before.ends_with(|c: char| c.is_alphanumeric()) => {
+                all.push_str(&format!("{value:e}"));
+            }
+            _ => all.push_str(number),
+        }
+        rest = after;
+    }
+    all + rest
 }
 
 /// What helps where an address is taken.
@@ -180,6 +207,16 @@ fn coloured(text: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::{LONGEST_LINE, shown};
+
+    #[test]
+    fn numbers_of_many_zeros_have_an_exponent() {
+        let (large, small) = (1e300, 1e-300);
+        assert_eq!(
+            without_zeros(&format!("got {large}, {small}; 10 of 1000000")),
+            "got 1e300, 1e-300; 10 of 1000000"
+        );
+        assert_eq!(without_zeros("a0000000000000000000000.toml: 1.5"), "a0000000000000000000000.toml: 1.5");
+    }
 
     #[test]
     fn messages_can_be_shown() {

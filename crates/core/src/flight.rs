@@ -13,7 +13,8 @@ use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
 pub use flexsc_flight::{
-    Crew, CyclePlace, LaneRest, LaneSight, MOST, Searched, Setup, Structure, fly_alone, fly_beside,
+    Crew, CyclePlace, LaneRest, LaneSight, MOST, SWITCHINGS, Searched, Setup, Structure, fly_alone,
+    fly_beside, shortest_window,
 };
 
 /// Returns the body and the law of a scenario that the relay kernel can run; `None` otherwise.

@@ -93,6 +93,8 @@ pub struct LaneRest {
     pub from: LaneSight,
     /// Start time of the last push.
     pub pushed: (u64, u64),
+    /// How often it has switched since the last window of switchings ended, and when that was.
+    pub switched: (u64, (u64, u64)),
     /// Time up to which the envelope is integrated.
     pub seen: (u64, u64),
     /// Integral of the envelope since the end of the last window.
@@ -125,6 +127,8 @@ pub trait Crew {
     fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, found: &mut Searched) -> bool;
     /// Rejects a lane that the kernel cannot continue: its run must be computed singly.
     fn give_up(&mut self, lane: usize);
+    /// A lane has switched [`SWITCHINGS`](crate::SWITCHINGS) times in a span that is too short for a motion, up to here; its run ends.
+    fn chatters(&mut self, lane: usize, at: (u64, u64));
     /// Receives a switching of the law to a phase of the cycle.
     fn switched(&mut self, lane: usize, to: CyclePlace, now: &LaneSight);
     /// Receives the envelope integral of a window that has ended; returns the braking gain from then on.

@@ -8,6 +8,7 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
+mod chatter;
 mod fill;
 mod look;
 mod mode;
@@ -75,6 +76,12 @@ pub struct Flight<R: Real, D> {
     window: Clock<R>,
     /// True for the lanes with an active run.
     active: [bool; MOST],
+    /// Cycles since the flight began, and the number of the one after which lanes are looked at for chatter.
+    cycles: u64,
+    looked_at: u64,
+    /// For each lane, after how many cycles its last window of switchings ended, and when.
+    marks: [u64; MOST],
+    marked: Clock<R>,
     /// State of all lanes as plain numbers, and of one of them.
     rows: Vec<[f64; MOST]>,
     sight: LaneSight,
@@ -97,7 +104,7 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
                 CyclePlace::Coast if !Self::IS_ALONE || flight.active[0] => CyclePlace::Push,
                 CyclePlace::Push if !Self::IS_ALONE || flight.active[0] => CyclePlace::Brake,
                 _ => {
-                    if !flight.fill(crew) {
+                    if !flight.fill(crew) || !flight.cycle(crew) {
                         return;
                     }
                     CyclePlace::Coast

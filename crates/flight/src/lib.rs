@@ -6,6 +6,7 @@
 //! kernels are a separate crate because they take as long to compile as the rest of the engine, and compile in
 //! parallel with it.
 
+mod chatter;
 mod clock;
 mod crew;
 #[cfg(feature = "damped")]
@@ -16,6 +17,7 @@ mod undamped;
 
 use flexsc_motion::lanes::Processor;
 
+pub use chatter::{SWITCHINGS, shortest_window};
 pub use crew::{Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup, Structure};
 pub use kernel::MOST;
 

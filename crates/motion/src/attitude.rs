@@ -148,6 +148,22 @@ pub fn tensor(of: &[[Finite; 3]; 3]) -> Matrix3<f64> {
     Matrix3::from_fn(|row, column| of[row][column].get())
 }
 
+/// No principal moment of inertia is more than the sum of the others, but for rounding to this part.
+const ROUNDED_MOMENTS: f64 = 1e-3;
+
+/// Why no body has these moments of inertia, if none has: the largest principal moment exceeds the sum of the others.
+pub fn impossible_moments(tensor: &Matrix3<f64>) -> Option<String> {
+    let mut moments: [f64; 3] = tensor.symmetric_eigenvalues().into();
+    moments.sort_by(f64::total_cmp);
+    let [least, middle, most] = moments;
+    (most > (least + middle) * (1.0 + ROUNDED_MOMENTS)).then(|| {
+        format!(
+            "must be that of a body: no principal moment exceeds the sum of the other two, but {most:.4} kg m\u{b2} is more \
+             than {least:.4} + {middle:.4}"
+        )
+    })
+}
+
 /// Returns an error message if a tensor is not symmetric.
 pub fn asymmetry(tensor: &Matrix3<f64>) -> Option<String> {
     let mut below = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));

@@ -5,6 +5,16 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
+/// A number in the shortest form that tells all its digits: with an exponent where zeros would fill a line.
+pub fn shortest(value: f64) -> String {
+    let size = value.abs();
+    if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&size) {
+        format!("{value}")
+    } else {
+        format!("{value:e}")
+    }
+}
+
 /// Defines a number type with a range: its deserialiser rejects every other number and reports the value.
 macro_rules! quantity {
     ($(#[$doc:meta])* $name:ident, $accepts:expr, $words:literal, $schema:tt) => {
@@ -30,7 +40,8 @@ macro_rules! quantity {
             fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
                 let value = f64::deserialize(deserializer)?;
                 Self::new(value).ok_or_else(|| {
-                    serde::de::Error::custom(format!(concat!("must be ", $words, ", got {}"), value))
+                    let found = shortest(value);
+                    serde::de::Error::custom(format!(concat!("must be ", $words, ", got {}"), found))
                 })
             }
         }

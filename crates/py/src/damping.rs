@@ -29,6 +29,7 @@ fn convergence((weights, frequency, period, damping): Recurrence) -> PyResult<Co
 
 #[pyfunction]
 pub fn relay_damping_json(
+    py: Python<'_>,
     frequencies: Vec<f64>,
     relay: (f64, f64, f64),
     mode: (f64, f64),
@@ -40,7 +41,13 @@ pub fn relay_damping_json(
     let pulsed = PulsedDamping { timing, damping, acceleration, amplitude, threshold };
     refused(pulsed.inconsistency())?;
     all_positive("frequencies", &frequencies)?;
-    Ok(json!(pulsed.table(&frequencies)).to_string())
+    if let Some(why) = pulsed.beyond(&frequencies) {
+        return Err(PyValueError::new_err(format!("a push {why}; see frequencies, period and delay")));
+    }
+    let rows = aside(py, move |stop| {
+        frequencies.iter().map_while(|of| (!stop.asked()).then(|| pulsed.mode(*of))).collect::<Vec<_>>()
+    })?;
+    Ok(json!(rows).to_string())
 }
 
 #[pyfunction]

@@ -180,3 +180,56 @@ pub fn number(text: &mut String, chance: &mut Chance) {
         text.replace_range(range.clone(), nasty::number(chance));
     }
 }
+
+/// Changes the lines of a text in one place: repeats, removes, moves or swaps some, or changes a field of one.
+pub fn lines(text: &mut String, chance: &mut Chance) {
+    let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
+    if lines.is_empty() {
+        return;
+    }
+    let (place, other) = (chance.below(lines.len()), chance.below(lines.len()));
+    // A line, or a block of them.
+    let length = [1, 1, 1, 2, 5, 20, 100][chance.below(7)];
+    let block = place..lines.len().min(place + length);
+    match chance.below(8) {
+        0 | 1 => {
+            let again = lines[block.clone()].to_vec();
+            let to = if chance.percent(70) { block.end } else { other };
+            drop(lines.splice(to..to, again));
+        }
+        2 => drop(lines.drain(block)),
+        3 => {
+            let moved: Vec<_> = lines.drain(block).collect();
+            let to = other.min(lines.len());
+            drop(lines.splice(to..to, moved));
+        }
+        4 => lines.swap(place, other),
+        5 => {
+            let next = (place + 1) % lines.len();
+            lines.swap(place, next);
+        }
+        _ => {
+            let from = lines[other].clone();
+            field(&mut lines[place], &from, chance);
+        }
+    }
+    *text = lines.join("\n") + "\n";
+}
+
+/// Puts another field in the place of one, over the same columns if it fits: of the same line, of another, or a nasty number.
+fn field(line: &mut String, other: &str, chance: &mut Chance) {
+    let words = |text: &str| text.split_whitespace().map(str::to_owned).collect::<Vec<_>>();
+    let (own, others) = (words(line), words(other));
+    if own.is_empty() {
+        return;
+    }
+    let old = &own[chance.below(own.len())];
+    let new = match chance.below(4) {
+        0 => own[chance.below(own.len())].clone(),
+        1 if !others.is_empty() => others[chance.below(others.len())].clone(),
+        2 => String::new(),
+        _ => nasty::number(chance).to_owned(),
+    };
+    let new = format!("{new:>width$}", width = old.len());
+    *line = line.replacen(old.as_str(), &new, 1);
+}

@@ -78,6 +78,9 @@ impl Args {
             return Err(Failure::Arguments(format!("--{} {why}", name.replace('_', "-"))));
         }
         let Even(frequencies) = &self.frequency;
+        if let Some(why) = pulsed.beyond(frequencies) {
+            return Err(Failure::Arguments(format!("a push {why}; see --frequency, --period and --delay")));
+        }
         let mut rows = pulsed.table(frequencies);
         if self.amplitude.is_none() {
             for row in &mut rows {

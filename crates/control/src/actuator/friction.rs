@@ -5,7 +5,12 @@ use serde::{Deserialize, Serialize};
 
 use super::per_wheel::PerWheel;
 use crate::document::Fault;
-use crate::quantity::NonNegative;
+use crate::quantity::{NonNegative, shortest};
+
+/// Coulomb friction is at most so many times the torque of a motor, which is then stalled ...
+const STALLS: f64 = 10.0;
+/// ... and slows a wheel by no more (rad/s²), or it would stop within a step of the motion.
+const STOPS: f64 = 500.0;
 
 /// Bearing friction: c Omega + t sgn Omega for a turning wheel, and up to the breakaway torque for a wheel at rest.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,6 +49,30 @@ impl Friction {
                     return Err(Fault::new("breakaway", why));
                 }
             }
+        }
+        Ok(())
+    }
+
+    /// What it is to wheels of this inertia (kg m²) with motors of this torque (N m), if that is limited.
+    ///
+    /// # Errors
+    /// A key within the friction, and why.
+    pub fn check_of(&self, (inertia, torque): (f64, Option<f64>), wheels: usize) -> Result<(), Fault> {
+        for coulomb in (0..wheels).map(|wheel| self.coulomb.of(wheel).get()) {
+            let why = match torque {
+                Some(torque) if coulomb > STALLS * torque => {
+                    format!(
+                        "must be at most {STALLS} times the torque of the motor, {torque} N m, got {}",
+                        shortest(coulomb)
+                    )
+                }
+                _ if coulomb > STOPS * inertia => format!(
+                    "must slow a wheel of {inertia} kg m\u{b2} by at most {STOPS} rad/s\u{b2}, got {}: is it in N m?",
+                    shortest(coulomb)
+                ),
+                _ => continue,
+            };
+            return Err(Fault::new("coulomb", why));
         }
         Ok(())
     }

@@ -153,6 +153,9 @@ impl Wheels {
         }
         if let Some(friction) = &self.friction {
             friction.check(count).map_err(|fault| fault.within("friction"))?;
+            friction
+                .check_of((self.inertia.get(), self.torque.map(Positive::get)), count)
+                .map_err(|fault| fault.within("friction"))?;
         }
         if let Some(compensation) = &self.compensation {
             let Compensation { coulomb, viscous } = &**compensation;

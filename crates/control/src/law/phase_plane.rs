@@ -5,8 +5,11 @@
 //! the [`SwitchingLines`] at the angle error. If it exceeds their tolerance, the jets fire against s for |s|/m, or for
 //! the whole cycle if that is longer, until it is within `switch_off` and half of the tolerance.
 
+use std::f64::consts::TAU;
+
 use schemars::JsonSchema;
-use serde::{Deserialize, Serialize};
+use serde::de::Error as _;
+use serde::{Deserialize, Deserializer, Serialize};
 
 use super::damping::{ActiveDamping, DampingRelay, is_beyond};
 use super::{
@@ -67,13 +70,13 @@ pub struct Target {
     #[serde(default, skip_serializing_if = "is_inertial")]
     pub frame: Frame,
     /// Roll (rad).
-    #[serde(default)]
+    #[serde(default, deserialize_with = "within_a_turn")]
     pub roll: Finite,
     /// Pitch (rad).
-    #[serde(default)]
+    #[serde(default, deserialize_with = "within_a_turn")]
     pub pitch: Finite,
     /// Yaw (rad).
-    #[serde(default)]
+    #[serde(default, deserialize_with = "within_a_turn")]
     pub yaw: Finite,
     /// Largest acceleration of the slew about one axis to it (rad/s²); default: the reference jumps.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -96,6 +99,18 @@ pub struct Target {
     /// Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at rest at both ends.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub table: Vec<AttitudeAt>,
+}
+
+/// Reads an angle of at most a whole turn: what is more is in degrees.
+fn within_a_turn<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Finite, D::Error> {
+    let angle = Finite::deserialize(deserializer)?;
+    if angle.get().abs() <= TAU {
+        return Ok(angle);
+    }
+    let got = angle.get();
+    Err(D::Error::custom(format!(
+        "must be an angle of -2 pi to 2 pi, in rad, or such as \"30 deg\", got {got}"
+    )))
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]

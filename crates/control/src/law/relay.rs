@@ -53,6 +53,17 @@ pub enum Sides {
     One,
 }
 
+impl Relay {
+    /// Mean time between switchings on a rigid body (s), in a cycle that a push over the hysteresis keeps going: an estimate, for
+    /// what a run costs.
+    pub fn mean_switching(&self, inertia: f64) -> f64 {
+        let (push, back) = (self.strong.get() / inertia, self.hysteresis.get());
+        let pushed = f64::sqrt(2.0 * back / push);
+        let coasted = 2.0 * self.dead_zone.get() / f64::sqrt(2.0 * back * push);
+        ((1.0 + self.k_t.get()) * pushed + coasted) / 3.0
+    }
+}
+
 impl Rule for Relay {
     fn start(&self, _: &Authority) -> Box<dyn Control> {
         self.copy()

@@ -139,6 +139,9 @@ pub fn cycles(law: &Relay, body: &Planar, k_t: f64) -> Vec<RigidCycle> {
     candidates.iter().filter_map(|&sides| rigid.cycle(sides, k_t)).collect()
 }
 
+/// Harmonics above this one are too weak for a resonance: the n-th falls as 1/n² at least.
+const HIGHEST: u32 = 9_999;
+
 /// The gains from 0.02 to 1 at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The even
 /// harmonics vanish by symmetry.
 pub fn resonances(law: &Relay, body: &Planar) -> Vec<Resonance> {
@@ -153,7 +156,7 @@ pub fn resonances(law: &Relay, body: &Planar) -> Vec<Resonance> {
             let gain = |edge: u32| 0.02 + 0.98 * f64::from(edge) / f64::from(GRID);
             let (low, high) = (gain(cell), gain(cell + 1));
             let (Some(from), Some(to)) = (period(low).map(turns), period(high).map(turns)) else { continue };
-            let between = (libm::ceil(from.min(to)) as u32)..=(libm::floor(from.max(to)) as u32);
+            let between = (libm::ceil(from.min(to)) as u32)..=(libm::floor(from.max(to)) as u32).min(HIGHEST);
             for harmonic in between.filter(|harmonic| harmonic % 2 == 1) {
                 let rising = if to > from { 1.0 } else { -1.0 };
                 let short = |k_t| rising * (period(k_t).map_or(from, turns) - f64::from(harmonic));

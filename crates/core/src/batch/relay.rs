@@ -150,6 +150,11 @@ impl Crew for Runs<'_> {
         }
     }
 
+    fn chatters(&mut self, lane: usize, _: (u64, u64)) {
+        // Alone it ends as it does here, with an error.
+        self.give_up(lane);
+    }
+
     fn switched(&mut self, lane: usize, to: CyclePlace, now: &LaneSight) {
         let Some(lane) = &mut self.lanes[lane] else { return };
         let state = phase(to, now.side);

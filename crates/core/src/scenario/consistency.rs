@@ -1,7 +1,7 @@
 //! Consistency of the keys of a scenario with each other.
 
-use super::Scenario;
 use super::epoch::nanoseconds_since_1970;
+use super::{Scenario, meant};
 use crate::actuator::{Actuator, ActuatorMember, Wheel};
 use crate::attitude::vector;
 use crate::body::craft::Limit;
@@ -71,6 +71,8 @@ impl Scenario {
             table.remove("correlated");
             self.uncertain.iter().find_map(|(key, distribution)| {
                 let why = distribution.problem(key::get(&table, key))?;
+                let near = if key::get(&table, key).is_none() { meant::number(&table, key) } else { None };
+                let why = near.map_or(why.clone(), |near| format!("{why}; did you mean `{near}`?"));
                 Some(Fault::new(format!("uncertain.\"{key}\""), why))
             })
         })

@@ -41,6 +41,9 @@ const STEP_S: (f64, f64) = (3e-7, 4e-8);
 const RELAY_STRIDES: f64 = 0.1;
 /// Duration of a step of a three-axis rotation, with its iterations over the stages, relative to other steps.
 const PASSES: f64 = 20.0;
+/// What the switchings of a relay law are told by, and as how many steps each counts, whose instant is searched.
+const SWITCHES: &str = "law.relay.strong";
+const SEARCH: f64 = 6.0;
 /// Evaluations of the motion within an exposure: constant part, and part per radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
 /// Key to which the steps of a rotation are attributed.
@@ -140,6 +143,7 @@ impl Scenario {
         let step = STEP_S.0 + modes * STEP_S.1;
         let own = |(key, steps): &(String, f64)| match &self.estimator {
             _ if *key == TURNS && self.axis_count() == 3 => steps * PASSES * step,
+            _ if *key == SWITCHES => steps * SEARCH * step,
             // A filter processes every sample, with matrices of the order of its state.
             Some(filter) if key.starts_with("sensor") && filter.filters() => {
                 steps * (step + filter_work(filter, modes) * PRODUCT_S)
@@ -266,6 +270,9 @@ impl Scenario {
         let fastest = modes.map(|mode| mode.frequency.get()).fold(0.0, f64::max);
         if strides * fastest > 0.0 {
             steps.push(("duration".to_owned(), strides * duration * fastest));
+        }
+        if let (Law::Relay(law), Some(body)) = (&self.law, self.model.planar()) {
+            steps.push((SWITCHES.to_owned(), duration / law.mean_switching(body.commanded_inertia())));
         }
         if let Some(body) = self.model.spatial() {
             let rate = self.fastest_turn(body);

@@ -1,6 +1,7 @@
 //! Control step: the laws that an event concerns decide once, and the actuator executes their commands.
 
 use super::{MOST_DECISIONS, Simulation, SimulationError};
+use crate::flight::SWITCHINGS;
 use crate::law::{Cause, Event};
 use crate::record::Record;
 
@@ -19,6 +20,21 @@ impl Simulation {
         }
         let led = reference.led(*now, beliefs);
         laws.decide(*now, event, |axis, law| reference.aim(law, *now, led.map(|led| led[axis])), beliefs)
+    }
+
+    /// Counts a switching, and refuses to go on with a law that switches without end.
+    fn has_switched(&mut self) -> Result<(), SimulationError> {
+        let (count, since) = &mut self.switchings;
+        *count += 1;
+        if *count < SWITCHINGS {
+            return Ok(());
+        }
+        let lasted = self.now.since(*since).seconds();
+        (*count, *since) = (0, self.now);
+        if lasted >= self.shortest_window {
+            return Ok(());
+        }
+        Err(SimulationError::LawChatter { at: self.now, count: SWITCHINGS, span: self.shortest_window })
     }
 
     /// Lets the laws decide on `event`, and begins a motion segment under their commands.
@@ -45,6 +61,9 @@ impl Simulation {
         let states = self.states();
         let cause = self.ask(event);
         self.count_switchings(states);
+        if !matches!(cause, Some(Cause::Start) | None) && self.laws.about(0).state() != before {
+            self.has_switched()?;
+        }
         self.feel();
         let truth = self.plant.viewed();
         let sensed = [truth.seen()[0], truth.rate[0]];

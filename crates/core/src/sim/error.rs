@@ -23,6 +23,19 @@ pub enum SimulationError {
         /// Number of decisions.
         count: u32,
     },
+    /// The law switches faster than any mode of the body moves.
+    #[error(
+        "chatter: the law switched {count} times within {span:.1e} s, up to t = {at} s, which is less than a thousandth of the period \
+         of any mode: is its hysteresis too small, or its torque too large?"
+    )]
+    LawChatter {
+        /// Instant of the state.
+        at: Instant,
+        /// Number of decisions.
+        count: u64,
+        /// The span in which it would not be an error (s).
+        span: f64,
+    },
     /// Wheels slip and stick endlessly.
     #[error("chatter: wheels slipped and stuck {count} times within a nanosecond at t = {at} s")]
     WheelChatter {

@@ -6,7 +6,8 @@
 use super::plant::{Exerted, Plant};
 use super::{Simulation, SimulationError};
 use crate::flight::{
-    Crew, CyclePlace, LaneRest, LaneSight, Searched, Setup, fly_alone, guards, instant, phase, searched, see,
+    Crew, CyclePlace, LaneRest, LaneSight, SWITCHINGS, Searched, Setup, fly_alone, guards, instant, phase,
+    searched, see, shortest_window,
 };
 use crate::law::Command;
 use crate::record::{self, Course, Record, RecordError, Sample, Trigger};
@@ -68,6 +69,7 @@ impl Simulation {
             return Ok(());
         }
         (self.now, self.decisions) = (now, 1);
+        self.switchings = (rest.switched.0, instant(rest.switched.1));
         self.laws.begin(phase(place, rest.from.side), now, instant(rest.pushed));
         let Command::Torque(torque) = self.laws.commands()[0] else { return Ok(()) };
         self.set_off(&rest.from, torque);
@@ -157,6 +159,12 @@ impl Crew for Alone<'_> {
 
     fn give_up(&mut self, _: usize) {
         self.stopped = true;
+    }
+
+    fn chatters(&mut self, _: usize, at: (u64, u64)) {
+        let span =
+            shortest_window(self.setup.modes.iter().map(|[frequency, ..]| *frequency).fold(0.0, f64::max));
+        self.failed.get_or_insert(SimulationError::LawChatter { at: instant(at), count: SWITCHINGS, span });
     }
 
     fn switched(&mut self, _: usize, to: CyclePlace, now: &LaneSight) {

@@ -84,6 +84,9 @@ pub struct Simulation {
     /// Instant and index of the next guard crossing, as long as the inputs do not change before.
     trip: Option<(Instant, usize)>,
     decisions: u32,
+    /// How often the law has switched since the last window of switchings ended, and when that was; how long one lasts (s) at least.
+    switchings: (u64, Instant),
+    shortest_window: f64,
     /// True if a wheel in bearings has stuck or let go at the current instant; `slips`: number of such events within a
     /// nanosecond, and the first's instant.
     met: bool,
@@ -126,6 +129,8 @@ impl Simulation {
             exerted: Exerted::default(),
             trip: None,
             decisions: 0,
+            switchings: (0, Instant::START),
+            shortest_window: flight::shortest_window(scenario.model.frequencies().fold(0.0, f64::max)),
             met: false,
             slips: (0, Instant::START),
             read: None,

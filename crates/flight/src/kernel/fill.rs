@@ -5,6 +5,7 @@
 
 use super::mode::LaneMode;
 use super::{Flight, MOST, NEVER, ROWS};
+use crate::chatter::CYCLES;
 use crate::clock::Clock;
 use crate::crew::{Crew, LaneSight, Searched, Setup};
 use crate::track::{PhasorTrack, Turning};
@@ -54,6 +55,10 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             lasted: zero,
             tracks: Vec::with_capacity(tracks),
             four: Four::best(),
+            cycles: 0,
+            looked_at: u64::MAX,
+            marks: [0; MOST],
+            marked: start,
             watches: false,
             listens: false,
             looks: false,
@@ -98,6 +103,9 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
     fn begin(&mut self, lane: usize, setup: &Setup) {
         let put = |of: &mut R, value: f64| *of = of.with_lane(lane, value);
         self.active[lane] = true;
+        self.marks[lane] = self.cycles;
+        self.marked = self.marked.with_lane(lane, (0, 0));
+        self.looked_at = self.looked_at.min(self.cycles + CYCLES);
         self.now = self.now.with_lane(lane, (0, 0));
         self.seen = self.seen.with_lane(lane, (0, 0));
         self.end = self.end.with_lane(lane, setup.end);

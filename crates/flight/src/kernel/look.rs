@@ -81,6 +81,8 @@ impl<R: Real, D: Damping<R>> Flight<R, D> {
             place: Some(place),
             from: self.sight.clone(),
             pushed: self.pushed.lane(0),
+            // The cycle that this place is of has been counted.
+            switched: (3 * (self.cycles - 1 - self.marks[0]) + place as u64, self.marked.lane(0)),
             seen: self.seen.lane(0),
             integral: self.integral.lane(0),
             tracks,

@@ -3,7 +3,8 @@
 use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
-use super::key::{get, set};
+use super::key::{bare_or_quoted, get, set};
+use super::nearest::is_other_word;
 use super::reader::read;
 use super::wrong::Wrong;
 
@@ -39,6 +40,8 @@ fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
     if let Some(key) = wrong.key() {
         let mut inner = if path.is_empty() { table.clone() } else { get(table, &path)?.as_table()?.clone() };
         let value = inner.remove(key)?;
+        // A kind by another word may have other keys: what stands in it says nothing of what is wrong with it.
+        let other_kind = wrong.meant().filter(|_| value.is_table() && is_other_word(key)).map(bare_or_quoted);
         match wrong.meant() {
             Some(meant) if !inner.contains_key(meant) => {
                 inner.insert(meant.to_owned(), value);
@@ -53,7 +56,7 @@ fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
             set(table, &path, Value::Table(inner)).ok()?;
         }
         // The value of the renamed key is still to be read.
-        return Some(within("\n"));
+        return Some(within(other_kind.as_deref().unwrap_or("\n")));
     }
     let (place, value) = match (wrong.missing(), wrong.meant()) {
         (Some(key), _) => (within(key), Value::Float(FITS)),
@@ -129,5 +132,19 @@ mod tests {
         assert!(holds("law.relay: ", "missing key `k_t`"), "{told:#?}");
         assert!(holds("law.relay.strong: ", "must be"), "{told:#?}");
         assert_eq!(told.len(), 9, "{told:#?}");
+    }
+
+    #[test]
+    fn a_kind_by_another_word_is_one_mistake() {
+        #[derive(serde::Deserialize)]
+        #[allow(dead_code)]
+        struct Whole {
+            law: Law,
+        }
+        let table = "law.bangbang = { bandwidth = 1, q = 2 }".parse().expect("TOML");
+        let first = read::<Whole>(&table).map(|_| ()).expect_err("wrong");
+        let told: Vec<_> = all::<Whole>(&table, first).iter().map(ToString::to_string).collect();
+        assert_eq!(told.len(), 1, "{told:#?}");
+        assert!(told[0].contains("did you mean `relay`?"), "{told:#?}");
     }
 }

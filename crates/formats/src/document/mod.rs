@@ -220,7 +220,16 @@ impl Document {
         let message = match (&self.text, self.changed.as_slice()) {
             (Some(text), []) => return unfit(&self.origin, text, wrong),
             (_, []) => told(wrong),
-            (_, changed) => format!("{} (with {} set)", told(wrong), changed.join(", ")),
+            (_, changed) => match meant_of(wrong, changed) {
+                Some((key, meant)) => {
+                    return mistaken(
+                        &self.origin,
+                        wrong,
+                        format!("there is no key `{key}`; did you mean `{meant}`?"),
+                    );
+                }
+                None => format!("{} (with {} set)", told(wrong), changed.join(", ")),
+            },
         };
         mistaken(&self.origin, wrong, message)
     }
@@ -248,6 +257,15 @@ impl Document {
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
         ScenarioError::Key { origin: self.origin.clone(), key: shortened(key), why }
     }
+}
+
+/// A key that was set within a table of a wrong name, and what was probably meant by it.
+fn meant_of(wrong: &Wrong, changed: &[String]) -> Option<(String, String)> {
+    let (path, name, meant) = (wrong.path(), bare_or_quoted(wrong.key()?), wrong.meant()?);
+    let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
+    let wrong = within(&name);
+    let (key, rest) = changed.iter().find_map(|key| Some((key, key.strip_prefix(&wrong)?)))?;
+    rest.starts_with(['.', '[']).then(|| (shortened(key), shortened(&format!("{}{rest}", within(meant)))))
 }
 
 fn too_long(length: u64) -> String {

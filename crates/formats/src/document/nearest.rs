@@ -9,6 +9,8 @@ const ALIASES: &[(&str, &[&str])] = &[
     ("bangbang", &["relay", "bang_bang"]),
     ("biasinstability", &["rate_random_walk"]),
     ("cg", &["centre"]),
+    ("cmg", &["control_moment_gyros"]),
+    ("cmgs", &["control_moment_gyros"]),
     ("centerofmass", &["centre"]),
     ("centreofmass", &["centre"]),
     ("com", &["centre"]),
@@ -62,9 +64,6 @@ const ALIASES: &[(&str, &[&str])] = &[
 
 /// Features that do not exist, with the hint to give instead.
 const ABSENT: &[(&str, &str)] = &[
-    ("cmg", "there are no control moment gyros; `wheels` is the nearest"),
-    ("cmgs", "there are no control moment gyros; `wheels` is the nearest"),
-    ("controlmomentgyros", "there are no control moment gyros; `wheels` is the nearest"),
     ("mpc", "there is no predictive control; a linear one goes into `state_space`"),
     ("slidingmode", "there is no sliding mode; `relay` and `phase_plane` switch"),
     ("lidar", "there is no lidar"),
@@ -88,6 +87,12 @@ pub fn hint(name: &str, known: &[&str]) -> Option<String> {
 /// Returns the known name that an unknown one was probably meant to be.
 pub fn meant<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     nearest(&plain(name), known)
+}
+
+/// Whether a wrong name is another word for what there is, not a misspelling of it.
+pub fn is_other_word(name: &str) -> bool {
+    let given = plain(name);
+    ALIASES.iter().any(|(alias, _)| *alias == given)
 }
 
 fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
@@ -137,7 +142,7 @@ mod tests {
         assert_eq!(meant("kt", &["dead_zone", "k_t"]), Some("k_t"));
         assert_eq!(meant("deadzone", &["dead_zone", "k_t"]), Some("dead_zone"));
         assert_eq!(meant("traker", &["gyro", "star_tracker"]), None);
-        assert_eq!(hint("mpc", &laws).as_deref(), Some(ABSENT[3].1));
+        assert_eq!(hint("mpc", &laws).as_deref(), Some(ABSENT[0].1));
         for (alias, _) in ALIASES {
             assert_eq!(plain(alias), *alias);
         }

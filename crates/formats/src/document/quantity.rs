@@ -7,7 +7,10 @@ use toml::{Table, Value};
 
 use super::Fault;
 use super::key::bare_or_quoted;
-use super::units::Unit;
+use super::units::{KNOWN, Unit, meant};
+
+/// A hundredth, where a number has no unit.
+const PERCENT: &str = "%";
 
 /// Largest depth to which references of a schema are followed.
 const DEEPEST: usize = 32;
@@ -31,13 +34,67 @@ pub fn to_si(table: &mut Table, schema: &Json) -> Vec<Fault> {
     let mut faults = Vec::new();
     let root = [Node { schema, unit: None }];
     for (key, value) in table.iter_mut() {
+        if key == UNCERTAIN {
+            distributions(value, schema, &mut faults);
+            continue;
+        }
         convert(value, &bare_or_quoted(key), &within(schema, &root, Some(key)), schema, &mut faults);
     }
     faults
 }
 
+/// The table of distributions by the paths of keys: numbers in a distribution take the units of its key.
+const UNCERTAIN: &str = "uncertain";
+
+fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<Fault>) {
+    let Value::Table(uncertain) = uncertain else { return };
+    for (key, value) in uncertain.iter_mut() {
+        let (ends, Value::Table(kinds)) = (ends_at(schema, key), value) else { continue };
+        // Of a key that there is not, that is the mistake.
+        if !ends.iter().any(|node| of_type(node.schema, "number")) {
+            continue;
+        }
+        for (kind, numbers) in kinds.iter_mut() {
+            let path = format!("{UNCERTAIN}.{}.{}", bare_or_quoted(key), bare_or_quoted(kind));
+            // A relative one has factors.
+            let ends = if kind.starts_with("relative") { &[][..] } else { &ends[..] };
+            each_in_si(numbers, &path, ends, faults);
+        }
+    }
+}
+
+fn each_in_si(value: &mut Value, path: &str, ends: &[Node<'_>], faults: &mut Vec<Fault>) {
+    match value {
+        Value::Table(table) => {
+            for (key, value) in table.iter_mut() {
+                each_in_si(value, &format!("{path}.{}", bare_or_quoted(key)), ends, faults);
+            }
+        }
+        Value::Array(values) => {
+            for (index, value) in values.iter_mut().enumerate() {
+                each_in_si(value, &format!("{path}[{index}]"), ends, faults);
+            }
+        }
+        Value::String(text) => {
+            if let Some((number, unit)) = split(text) {
+                match in_si(number, unit, ends) {
+                    Ok(number) => *value = Value::Float(number),
+                    Err(why) => faults.push(Fault::new(path, why)),
+                }
+            }
+        }
+        _ => {}
+    }
+}
+
 /// Returns the unit of a key by its path, such as `body.planar.modes[0].frequency`.
 pub fn unit_at<'a>(schema: &'a Json, key: &str) -> Option<&'a str> {
+    let ends = ends_at(schema, key);
+    ends.iter().filter(|node| of_type(node.schema, "number")).find_map(|node| node.unit)
+}
+
+/// What a key may be, by its path.
+fn ends_at<'a>(schema: &'a Json, key: &str) -> Vec<Node<'a>> {
     let mut nodes = vec![Node { schema, unit: None }];
     for part in key.split('.') {
         let (name, places) =
@@ -47,8 +104,7 @@ pub fn unit_at<'a>(schema: &'a Json, key: &str) -> Option<&'a str> {
             nodes = within(schema, &nodes, None);
         }
     }
-    let ends = flat(schema, &nodes);
-    ends.iter().filter(|node| of_type(node.schema, "number")).find_map(|node| node.unit)
+    flat(schema, &nodes)
 }
 
 /// Node of the schema, with the unit given by the descriptions on the way to it.
@@ -92,10 +148,19 @@ fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, fau
 fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
     let wanted: Vec<&str> = ends.iter().filter_map(|node| node.unit).collect();
     let Some(first) = wanted.first() else {
+        if unit == PERCENT {
+            return Ok(number / 100.0);
+        }
         return Err(format!("has the unit `{unit}`, but takes a number without a unit"));
     };
     let Some(given) = Unit::parse(unit) else {
-        return Err(format!("has the unit `{unit}`, which is not known; expected a unit such as `{first}`"));
+        let hint = match meant(unit) {
+            Some(meant) => format!("; did you mean `{meant}`?"),
+            None => format!("; known are {KNOWN}"),
+        };
+        return Err(format!(
+            "has the unit `{unit}`, which is not known; expected a unit such as `{first}`{hint}"
+        ));
     };
     let factor = wanted.iter().find_map(|wanted| given.per(Unit::parse(wanted)?));
     factor
@@ -113,8 +178,7 @@ fn split(text: &str) -> Option<(f64, &str)> {
     let ends = text.char_indices().map(|(index, _)| index).filter(|index| *index > 0);
     let longest = ends.rev().find_map(|end| Some((text[..end].parse::<f64>().ok()?, end)))?;
     let unit = text[longest.1..].trim();
-    let named =
-        unit.starts_with(|c: char| c.is_alphabetic() || c == '\u{b0}' || c == '1' || c == '(' || c == '/');
+    let named = unit.starts_with(|c: char| c.is_alphabetic() || "%\u{b0}\u{221a}1(/".contains(c));
     (longest.0.is_finite() && named).then_some((longest.0, unit))
 }
 

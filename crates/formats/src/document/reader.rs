@@ -77,7 +77,11 @@ impl<'de> Reader<'de> {
                 let mut entries = Entries::new(table);
                 let made = visitor.visit_map(&mut entries)?;
                 // A part that reads a kind from a map uses its first key, and would leave others unread.
-                if entries.entries.next().is_some() { Err(Wrong::several_kinds(table)) } else { Ok(made) }
+                if entries.entries.next().is_some() {
+                    Err(Wrong::several_kinds(table, &[]))
+                } else {
+                    Ok(made)
+                }
             }
             _ => self.refused(&visitor),
         }
@@ -156,7 +160,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
     fn deserialize_enum<V: Visitor<'de>>(
         self,
         _: &'static str,
-        _: &'static [&'static str],
+        known: &'static [&'static str],
         visitor: V,
     ) -> Result<V::Value, Wrong> {
         match self.0 {
@@ -166,7 +170,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
                 match (given.next(), given.next()) {
                     (Some((name, value)), None) => visitor.visit_enum(Kind { name, value: Some(value) }),
                     (None, _) => Err(Wrong::custom("exactly one kind is needed here, and none is given")),
-                    _ => Err(Wrong::several_kinds(kinds)),
+                    _ => Err(Wrong::several_kinds(kinds, known)),
                 }
             }
             _ => Err(Wrong::no_kind(self.0)),

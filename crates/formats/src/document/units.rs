@@ -50,6 +50,96 @@ const PREFIXES: &[(&str, f64)] = &[
     ("G", 1e9),
 ];
 
+/// Units as others write them, in lower case without points: singular, what is meant.
+const ALIASES: &[(&str, &str)] = &[
+    ("amp", "A"),
+    ("ampere", "A"),
+    ("arcminute", "arcmin"),
+    ("arcsecond", "arcsec"),
+    ("as", "arcsec"),
+    ("asec", "arcsec"),
+    ("day", "d"),
+    ("degree", "deg"),
+    ("gram", "g"),
+    ("hertz", "Hz"),
+    ("hour", "h"),
+    ("hr", "h"),
+    ("kilogram", "kg"),
+    ("meter", "m"),
+    ("metre", "m"),
+    ("minute", "min"),
+    ("newton", "N"),
+    ("radian", "rad"),
+    ("rev", "rpm"),
+    ("rt", "sqrt"),
+    ("sec", "s"),
+    ("second", "s"),
+    ("tesla", "T"),
+];
+
+/// What is accepted in a unit, for errors.
+pub const KNOWN: &str = "m, g, s, A, rad, N, Nm, Nms, T and Hz with prefixes from n to G, min, h, d, deg, arcmin, arcsec, mas and \
+                         rpm, joined as in `N m s/rad` or `deg/sqrt(h)`";
+
+/// The unit that was probably meant by a text that is none.
+pub fn meant(text: &str) -> Option<String> {
+    let mut rest = text.trim();
+    let mut meant = String::new();
+    while let Some(first) = rest.chars().next() {
+        if !first.is_alphabetic() {
+            // A root without brackets is of the word behind it.
+            if first == '\u{221a}' {
+                meant.push_str("sqrt");
+            } else {
+                meant.push(first);
+            }
+            rest = &rest[first.len_utf8()..];
+            continue;
+        }
+        let end = rest.find(|c: char| !c.is_alphabetic()).unwrap_or(rest.len());
+        let (word, after) = rest.split_at(end);
+        rest = after;
+        match word.strip_prefix("rt").map(word_meant) {
+            // rtHz, rthr
+            Some(Some(of)) => meant.push_str(&format!("sqrt({of})")),
+            _ => meant.push_str(&word_meant(word)?),
+        }
+        // m2, s2
+        if rest.starts_with(|c: char| ('2'..='4').contains(&c)) {
+            meant.push('^');
+        }
+    }
+    for (written, here) in [("sqrt-", "sqrt "), ("rpm/min", "rpm"), ("rpm/s", "Hz")] {
+        meant = meant.replace(written, here);
+    }
+    if let Some((before, of)) = meant.split_once("sqrt ").or_else(|| split_root(&meant)) {
+        meant = format!("{before}sqrt({of})");
+    }
+    (meant != text.trim() && Unit::parse(&meant).is_some()).then_some(meant)
+}
+
+/// A root whose radicand stands behind it without brackets.
+fn split_root(text: &str) -> Option<(&str, &str)> {
+    let (before, of) = text.split_once("sqrt")?;
+    (!of.starts_with('(')).then_some((before, of))
+}
+
+fn word_meant(word: &str) -> Option<String> {
+    if word == "sqrt" || Unit::symbol(word).is_some() {
+        return Some(word.to_owned());
+    }
+    let lower = word.to_lowercase();
+    let singular = lower.strip_suffix('s').unwrap_or(&lower);
+    let alias = |word: &str| ALIASES.iter().find(|(alias, _)| *alias == word).map(|(_, symbol)| *symbol);
+    let symbol = |word: &str| {
+        SYMBOLS.iter().map(|symbol| symbol.0).find(|symbol| symbol.to_lowercase() == word && symbol.len() > 1)
+    };
+    [lower.as_str(), singular]
+        .into_iter()
+        .find_map(|word| alias(word).or_else(|| symbol(word)))
+        .map(str::to_owned)
+}
+
 impl Unit {
     /// Parses a unit, such as `N m s/rad`, `deg/sqrt(h)`, `kg m²` or `m/s^2`; a slash applies to the next factor only.
     pub fn parse(text: &str) -> Option<Self> {
@@ -174,6 +264,30 @@ mod tests {
 
     fn converted(from: &str, to: &str) -> Option<f64> {
         Unit::parse(from)?.per(Unit::parse(to).expect("a unit"))
+    }
+
+    #[test]
+    fn units_that_others_write_are_recognised() {
+        for (written, here) in [
+            ("degrees", "deg"),
+            ("hz", "Hz"),
+            ("RPM", "rpm"),
+            ("rev/min", "rpm"),
+            ("deg/hr", "deg/h"),
+            ("deg/rt-hr", "deg/sqrt(h)"),
+            ("deg/rthr", "deg/sqrt(h)"),
+            ("deg/\u{221a}h", "deg/sqrt(h)"),
+            ("rad/sec", "rad/s"),
+            ("rad/s/rtHz", "rad/s/sqrt(Hz)"),
+            ("kg m2", "kg m^2"),
+            ("seconds", "s"),
+            ("Newton meters", "N m"),
+        ] {
+            assert_eq!(meant(written).as_deref(), Some(here), "{written}");
+        }
+        for none in ["fortnights", "", "deg", "foo/s"] {
+            assert_eq!(meant(none), None, "{none}");
+        }
     }
 
     #[test]

@@ -13,6 +13,7 @@ pub fn unparsed(origin: &str, text: &str, error: &toml::de::Error) -> Mistake {
     }
     let message = explained(error.message());
     let Some(span) = error.span() else { return Mistake::new(origin, message) };
+    let message = of_another_language(text, span.start).unwrap_or(message);
     let table = DeTable::parse(text).ok();
     match table.and_then(|table| path_of(table.get_ref(), &span)) {
         None => Mistake::new(origin, message).at(text, &span),
@@ -60,8 +61,33 @@ pub fn told(wrong: &Wrong) -> String {
         path if path.starts_with("uncertain.") && !path.contains('"') => {
             format!("`{path}`: {wrong}; the path of an uncertain key must be in quotes")
         }
+        path if path.starts_with("uncertain.") => {
+            format!("`{}`: {wrong}{DISTRIBUTIONS}", shortened(&path))
+        }
         path => format!("`{}`: {wrong}", shortened(&path)),
     }
+}
+
+/// How a distribution is written.
+const DISTRIBUTIONS: &str = "; a distribution is a table such as `{ normal = { mean = 0.25, sd = 0.01 } }`, \
+                             `{ relative_normal = 0.1 }` or `{ uniform = [0.2, 0.3] }`";
+
+/// What is written as in other languages at a place that the parser does not understand.
+fn of_another_language(text: &str, place: usize) -> Option<String> {
+    let (before, after) = text.split_at_checked(place)?;
+    let line = before.rsplit('\n').next().unwrap_or(before);
+    let rest = after.lines().next().unwrap_or_default();
+    let comment = ["//", "%", "--", "/*"].into_iter().find(|begin| rest.trim_start().starts_with(begin));
+    if let Some(begin) = comment.filter(|_| !line.trim_end().ends_with('=')) {
+        return Some(format!("found `{begin}`; a comment begins with `#`"));
+    }
+    // A value behind a value, within brackets.
+    let value = |c: char| c.is_ascii_alphanumeric() || "\"'.]}".contains(c);
+    let next = |c: char| c.is_ascii_alphanumeric() || "\"'+-.[{".contains(c);
+    let open = before.matches('[').count() > before.matches(']').count()
+        || before.matches('{').count() > before.matches('}').count();
+    (open && line.trim_end().ends_with(value) && !line.contains('#') && rest.trim_start().starts_with(next))
+        .then(|| "found a value right behind another; a comma is missing between them".to_owned())
 }
 
 /// Translates messages of the parser that would puzzle a user.

@@ -41,8 +41,12 @@ impl Wrong {
         Self::because(format!("found {found}, expected the name of a kind or a table"))
     }
 
-    /// Returns the mismatch of several kinds in place of one.
-    pub fn several_kinds(kinds: &Table) -> Self {
+    /// Several kinds in the place of one, of those that are known: the first that is not is the mistake.
+    pub fn several_kinds(kinds: &Table, known: &'static [&'static str]) -> Self {
+        let unknown = kinds.keys().find(|kind| !known.is_empty() && !known.contains(&kind.as_str()));
+        if let Some(kind) = unknown.filter(|kind| meant(kind, known).is_some()) {
+            return Self::unknown_variant(kind, known).at_key(kind);
+        }
         let given: Vec<_> = kinds.keys().map(|kind| format!("`{kind}`")).collect();
         let given = given.join(", ");
         Self::because(format!("exactly one kind is accepted here, and more than one is given: {given}"))

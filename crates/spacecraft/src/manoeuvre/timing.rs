@@ -1,13 +1,18 @@
 //! Shortest time of a manoeuvre whose peak torque is limited, and the times to which a single harmonic is tuned.
 
+use std::f64::consts::TAU;
+
 use super::plan::Plan;
 use super::planner::Planner;
 use crate::document::Fault;
+use crate::quantity;
 
 /// Factor by which the search increases the time until the peak is low enough.
 const STRIDE: f64 = 1.02;
 /// Largest number of strides: a time ten thousand times that of the rigid body.
 const STRIDES: usize = 480;
+/// No command is searched that lasts longer, in periods of the fastest mode: its peak is sought among that many.
+const MOST_PERIODS: f64 = 2e4;
 
 /// Plans the shortest manoeuvre whose peak torque does not exceed `limit` (N m).
 pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Fault> {
@@ -26,6 +31,18 @@ pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Fault> {
     let excess = |time: f64| peak(time).unwrap_or(f64::INFINITY);
     if !low.is_finite() || low <= 0.0 {
         return Err(impossible(limit));
+    }
+    let fastest = planner.body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
+    let periods = low * fastest / TAU;
+    if periods > MOST_PERIODS {
+        return Err(Fault::new(
+            "peak_torque",
+            format!(
+                "must be enough for a command that lasts at most {MOST_PERIODS:e} periods of the fastest mode, got {} N m, with \
+                 which it lasts {periods:.1e}",
+                quantity::shortest(limit)
+            ),
+        ));
     }
     let mut above = excess(low);
     if above <= 1e-12 {

@@ -4,6 +4,7 @@ mod arguments;
 mod live;
 mod logs;
 mod records;
+mod results;
 mod scenarios;
 mod structures;
 mod wire;
@@ -23,7 +24,7 @@ pub use live::Server;
 pub enum Surface {
     /// Scenario files, to every command that takes one
     Scenarios,
-    /// Structures: CSV, MatrixMarket and NumPy files, matrices and panels
+    /// Structures: CSV, MatrixMarket and NumPy files, matrices, panels, and results of finite-element programs
     Structures,
     /// MCAP logs and campaigns' tables, to everything that reads them
     Logs,
@@ -49,12 +50,14 @@ pub struct Seeds {
     pub trees: Vec<Node>,
     /// Sparse and dense matrices as NumPy writes them.
     pub archives: Vec<(String, Vec<u8>)>,
+    /// Results of finite-element programs, and their decks.
+    pub results: Vec<(String, Vec<u8>)>,
 }
 
 impl Seeds {
     fn load() -> std::io::Result<Self> {
         let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
-        let (mut scenarios, mut archives) = (Vec::new(), Vec::new());
+        let (mut scenarios, mut archives, mut results) = (Vec::new(), Vec::new(), Vec::new());
         let mut files = Vec::new();
         crate::case::gather(&root.join("scenarios"), "", &mut files)?;
         crate::case::gather(&root.join("tests/golden"), "", &mut files)?;
@@ -65,10 +68,12 @@ impl Seeds {
                 scenarios.push((stem.to_owned(), text, Node::from(&toml::Value::Table(table))));
             } else if Path::new(&name).extension().is_some_and(|e| e == "npz") {
                 archives.push((name, bytes));
+            } else if results::is_one(&name) {
+                results.push((name, bytes));
             }
         }
         let trees = scenarios.iter().map(|(_, _, tree)| tree.clone()).collect();
-        Ok(Self { scenarios, trees, archives })
+        Ok(Self { scenarios, trees, archives, results })
     }
 }
 

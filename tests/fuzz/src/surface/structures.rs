@@ -5,7 +5,7 @@ use std::io::{Cursor, Read, Write};
 
 use zip::write::SimpleFileOptions;
 
-use super::Seeds;
+use super::{Seeds, results};
 use crate::case::Case;
 use crate::chance::Chance;
 use crate::mutate;
@@ -42,10 +42,11 @@ const KEYS: &[&str] = &[
 
 pub fn make(seeds: &Seeds, chance: &mut Chance) -> Case {
     let command = chance.one(COMMANDS);
-    let files = match chance.below(10) {
+    let files = match chance.below(16) {
         0 => vec![scenario(inline(chance))],
         1 => vec![scenario(panels(seeds, chance))],
         2 | 3 => modes(seeds, chance),
+        4..10 => results::make(seeds, chance),
         _ => matrices(seeds, chance),
     };
     Case::new(command, files)
@@ -118,14 +119,21 @@ fn matrices(seeds: &Seeds, chance: &mut Chance) -> Vec<(String, Vec<u8>)> {
     vec![scenario(text), (name.to_owned(), bytes)]
 }
 
-fn spoilt(text: &str, chance: &mut Chance) -> Vec<u8> {
-    if chance.percent(50) {
-        let mut text = text.to_owned();
-        for _ in 0..chance.times() {
-            mutate::number(&mut text, chance);
-        }
-        return text.into_bytes();
+/// A text with other lines, numbers or bytes.
+pub fn spoilt(text: &str, chance: &mut Chance) -> Vec<u8> {
+    let change = match chance.below(4) {
+        0 => mutate::number,
+        1 | 2 => mutate::lines,
+        _ => return spoilt_bytes(text, chance),
+    };
+    let mut text = text.to_owned();
+    for _ in 0..chance.times() {
+        change(&mut text, chance);
     }
+    text.into_bytes()
+}
+
+fn spoilt_bytes(text: &str, chance: &mut Chance) -> Vec<u8> {
     let mut bytes = text.as_bytes().to_vec();
     for _ in 0..chance.times() {
         mutate::bytes(&mut bytes, chance);

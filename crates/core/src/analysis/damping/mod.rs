@@ -13,11 +13,15 @@ use serde::Serialize;
 
 use crate::actuator::PulseTiming;
 use crate::numerics::delay_margin::delay_margin;
+use crate::quantity::shortest;
 
 pub use convergence::{Convergence, Edge};
 pub use decay::Decay;
 pub use excitation::{Excitation, persistence};
 pub use floquet::Margin;
+
+/// No mode turns further (rad) from a sample to its push.
+const FARTHEST: f64 = 1e5;
 
 /// A mode under a relay.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
@@ -69,13 +73,16 @@ impl PulsedDamping {
             ("threshold", threshold),
         ];
         if let Some((name, value)) = from_zero.into_iter().find(|(_, value)| !(0.0..1e100).contains(value)) {
-            return Some((name, format!("must be a number of 0 or more, got {value}")));
+            return Some((name, format!("must be a number of 0 or more, got {}", shortest(value))));
         }
         if !(0.0..1.0).contains(&damping) {
-            return Some(("damping", format!("must be 0 or more and below 1, got {damping}")));
+            return Some(("damping", format!("must be 0 or more and below 1, got {}", shortest(damping))));
         }
         if !(acceleration > 0.0 && acceleration < 1e100) {
-            return Some(("acceleration", format!("must be a positive number, got {acceleration}")));
+            return Some((
+                "acceleration",
+                format!("must be a positive number, got {}", shortest(acceleration)),
+            ));
         }
         let PulseTiming { period, on_time, .. } = timing;
         if period > 0.0 && !(on_time > 0.0 && on_time <= period) {
@@ -87,12 +94,26 @@ impl PulsedDamping {
         None
     }
 
+    /// What is wrong with natural frequencies (rad/s) under this relay, if anything is: the pushes come too many turns of a
+    /// mode after their samples. The work grows with these turns, of which nothing is left in a real loop.
+    pub fn beyond(&self, frequencies: &[f64]) -> Option<String> {
+        let (fastest, delay) = (frequencies.iter().copied().fold(0.0, f64::max), self.timing.mean_delay());
+        (fastest * delay > FARTHEST).then(|| {
+            format!(
+                "must be at most {FARTHEST:e} rad later than its sample for each mode: at {} rad/s a push comes {} s after it, on average",
+                shortest(fastest),
+                shortest(delay)
+            )
+        })
+    }
+
     /// What the relay does to a mode of each of these natural frequencies (rad/s).
     pub fn table(&self, frequencies: &[f64]) -> Vec<DampedMode> {
         frequencies.iter().map(|frequency| self.mode(*frequency)).collect()
     }
 
-    fn mode(&self, frequency: f64) -> DampedMode {
+    /// What the relay does to a mode of this natural frequency (rad/s).
+    pub fn mode(&self, frequency: f64) -> DampedMode {
         let Self { timing, damping, acceleration, amplitude, threshold } = *self;
         let factor = timing.phase_factor(frequency);
         let decay = Decay::new(acceleration * factor, damping * frequency);

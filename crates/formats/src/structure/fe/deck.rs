@@ -1,6 +1,6 @@
 //! Deck (.inp) of a CalculiX run: the data about masses that the results omit.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::BufRead;
 
 use nalgebra::Vector3;
@@ -29,6 +29,9 @@ const TYPES: [(&str, usize, Option<MassRule>); 17] = [
     ("B31R", 2, Some(MassRule::Reduced)),
     ("MASS", 1, None),
 ];
+
+/// Sets of point masses have no more members, counted each time that one is looked up: sets may hold each other.
+const MOST_MEMBERS: usize = 10_000_000;
 
 /// Point mass at a node.
 #[derive(Debug)]
@@ -83,6 +86,8 @@ struct Reader {
     points: BTreeMap<usize, (usize, usize)>,
     /// Masses of sets, with the line of each.
     given: Vec<(String, f64, usize)>,
+    /// How many members of sets were looked up.
+    members_read: usize,
 }
 
 #[derive(Clone)]
@@ -108,6 +113,7 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
         if text.starts_with('*') || keyword.ends_with(',') {
             keyword.push_str(&line.squeezed().to_ascii_uppercase());
             if !keyword.ends_with(',') {
+                at.is_whole(&line)?;
                 at = reader.open(&keyword, &line)?;
                 keyword.clear();
             }
@@ -116,6 +122,22 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
         reader.take(&line, &mut at)?;
     }
     reader.finish()
+}
+
+impl At {
+    /// Whether the last element has all its nodes before a keyword.
+    fn is_whole(&self, line: &TextLine) -> Result<(), String> {
+        match self {
+            Self::Elements { missing, kind, .. } if *missing > 0 => {
+                let (name, nodes, _) = TYPES[*kind];
+                Err(format!(
+                    "line {}: must follow the last {missing} of {nodes} nodes of a {name}",
+                    line.number
+                ))
+            }
+            _ => Ok(()),
+        }
+    }
 }
 
 /// Returns the value of a parameter of a keyword.
@@ -204,6 +226,11 @@ impl Reader {
                     ));
                 }
                 *missing = nodes + 1 - words.len();
+                if self.deck.rules.contains_key(&element) || self.points.contains_key(&element) {
+                    return Err(format!(
+                        "line {number}: must have each element once, got element {element} again"
+                    ));
+                }
                 if let Some(rule) = rule {
                     self.deck.rules.insert(element, rule);
                 } else {
@@ -216,8 +243,11 @@ impl Reader {
             At::Set { name, generate: true } => {
                 let (first, last) = (whole(0, "first")?, whole(1, "last")?);
                 let step = if words.len() > 2 { whole(2, "step")?.max(1) } else { 1 };
-                let own = self.points.range(first..=last.max(first)).map(|(element, _)| *element);
-                let own = own.filter(|element| (element - first) % step == 0).map(Member::Element);
+                let own: Vec<usize> =
+                    self.points.range(first..=last.max(first)).map(|(element, _)| *element).collect();
+                look_up(&mut self.members_read, own.len(), number)?;
+                let own =
+                    own.into_iter().filter(|element| (element - first) % step == 0).map(Member::Element);
                 self.members.entry(name.clone()).or_default().extend(own);
             }
             At::Set { name, .. } => {
@@ -254,22 +284,22 @@ impl Reader {
         let mut weighed: BTreeMap<usize, f64> = BTreeMap::new();
         for (set, mass, line) in &self.given {
             let mut open = vec![set.clone()];
-            let mut seen: Vec<String> = Vec::new();
+            let mut seen: BTreeSet<String> = BTreeSet::new();
             while let Some(name) = open.pop() {
-                if seen.contains(&name) {
+                if !seen.insert(name.clone()) {
                     continue;
                 }
                 let members = self
                     .members
                     .get(&name)
                     .ok_or_else(|| format!("line {line}: must have a set {name} of elements of type MASS"))?;
+                look_up(&mut self.members_read, members.len(), *line)?;
                 for member in members {
                     match member {
                         Member::Element(element) => drop(weighed.insert(*element, *mass)),
                         Member::Set(name) => open.push(name.clone()),
                     }
                 }
-                seen.push(name);
             }
         }
         for (element, (node, line)) in &self.points {
@@ -280,4 +310,13 @@ impl Reader {
         }
         Ok(self.deck)
     }
+}
+
+/// Counts members of sets that are looked up, up to the most.
+fn look_up(read: &mut usize, more: usize, line: usize) -> Result<(), String> {
+    *read = read.saturating_add(more);
+    if *read > MOST_MEMBERS {
+        return Err(format!("line {line}: must have at most {MOST_MEMBERS} members of sets of point masses"));
+    }
+    Ok(())
 }

@@ -2,6 +2,7 @@
 //!
 //! Headings begin with stars, values end where a `!` begins a comment, and missing elements are 0.
 
+use std::collections::BTreeSet;
 use std::io::BufRead;
 
 use nalgebra::DMatrix;
@@ -39,6 +40,8 @@ struct Section {
     /// Number of elements stated in the section.
     count: Option<usize>,
     taken: usize,
+    /// The indices of its elements.
+    indices: BTreeSet<[usize; 3]>,
 }
 
 struct Reader {
@@ -116,7 +119,12 @@ impl Reader {
         if squeezed.starts_with('*') || squeezed.starts_with("[EOF]") {
             self.close(&format!("before line {}", line.number))?;
             let count = |holds: Holds| if holds.is_full() { Some(self.modes) } else { None };
-            self.section = Holds::of(&squeezed).map(|holds| Section { holds, count: count(holds), taken: 0 });
+            self.section = Holds::of(&squeezed).map(|holds| Section {
+                holds,
+                count: count(holds),
+                taken: 0,
+                indices: BTreeSet::new(),
+            });
             return Ok(());
         }
         let Some(section) = &mut self.section else { return Ok(()) };
@@ -148,6 +156,7 @@ impl Reader {
                     within(fields.whole(0)?, self.modes, "Row")?,
                     within(fields.whole(1)?, self.modes, "Col")?,
                 );
+                self.is_new(line, [place.0, place.1, 0])?;
                 let matrix = match holds {
                     Holds::Mass => &mut self.mass,
                     Holds::Stiffness => &mut self.stiffness,
@@ -166,6 +175,7 @@ impl Reader {
                 let fields = line.fields(["i", "j", "Mode", "Value"])?;
                 let (i, j) = (within(fields.whole(0)?, 3, "i")?, within(fields.whole(1)?, 3, "j")?);
                 let mode = within(fields.whole(2)?, self.modes, "Mode")?;
+                self.is_new(line, [i, j, mode])?;
                 // The file has phi r', the result r phi'.
                 self.integrals[(mode, 6 + 3 * j + i)] = fields.real(3)?;
             }
@@ -173,9 +183,17 @@ impl Reader {
         Ok(())
     }
 
+    /// Whether an element is not in its section already.
+    fn is_new(&mut self, line: &TextLine, indices: [usize; 3]) -> Result<(), String> {
+        if self.section.as_mut().is_none_or(|section| section.indices.insert(indices)) {
+            return Ok(());
+        }
+        Err(format!("line {}: must have each element of its section once, got one again", line.number))
+    }
+
     /// Ends a section.
     fn close(&mut self, place: &str) -> Result<(), String> {
-        let Some(Section { holds, count, taken }) = self.section.take() else { return Ok(()) };
+        let Some(Section { holds, count, taken, .. }) = self.section.take() else { return Ok(()) };
         let Some(count) = count.filter(|count| *count == taken) else {
             let count = count.map_or_else(|| "a count".to_owned(), |count| format!("{count} elements"));
             return Err(format!("must have {count} in its section {holds:?}, got {taken} elements {place}"));

@@ -3,7 +3,7 @@
 //! Numbers stand in fixed columns and may touch. Sections that are not needed, such as forces and stresses, are
 //! skipped.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io::BufRead;
 use std::ops::Range;
 
@@ -52,6 +52,8 @@ pub struct Frd {
     pub positions: Vec<Vector3<f64>>,
     /// Elements of the structure.
     pub elements: Vec<Element>,
+    /// Their numbers.
+    numbers: BTreeSet<usize>,
     /// Modes with their shapes.
     pub shapes: Vec<NodalMode>,
 }
@@ -84,17 +86,17 @@ pub fn read(text: impl BufRead) -> Result<Frd, String> {
     while let Some(line) = lines.next()? {
         let start = line.text.get(..line.text.len().min(6)).unwrap_or_default();
         match start.trim_end() {
-            " -3" => {
-                frd.close(&at, &line)?;
-                at = At::Elsewhere;
-            }
+            " -3" => frd.begin(&mut at, At::Elsewhere, &line)?,
             " 9999" => {
+                frd.begin(&mut at, At::Elsewhere, &line)?;
                 ended = true;
                 break;
             }
             _ if start.starts_with(" -1") || start.starts_with(" -2") => frd.take(&line, &at)?,
             _ if start.starts_with(" -4") => {
                 let name = line.text.get(5..13).or_else(|| line.text.get(5..)).unwrap_or_default().trim();
+                // The block before ends first: its mode has to be whole when another follows.
+                frd.begin(&mut at, At::Elsewhere, &line)?;
                 at = if name == "DISP" { frd.open(&line, &mut head)? } else { At::Elsewhere };
             }
             "    2C" | "    3C" => {
@@ -105,11 +107,20 @@ pub fn read(text: impl BufRead) -> Result<Frd, String> {
                         "line {number}: must be text with wide columns (1), got form {form}"
                     ));
                 }
-                at = if start == "    2C" { At::Nodes } else { At::Elements };
+                let next = if start == "    2C" { At::Nodes } else { At::Elements };
+                frd.begin(&mut at, next, &line)?;
             }
             "    1U" if line.text.starts_with("    1UMAT") => {
                 let name = line.text.get(14..).unwrap_or_default().trim().to_ascii_uppercase();
-                frd.materials.insert(line.column(9..14, "material")?.whole()?, name);
+                let material = line.column(9..14, "material")?.whole()?;
+                if let Some(other) =
+                    frd.materials.insert(material, name.clone()).filter(|other| *other != name)
+                {
+                    return Err(format!(
+                        "line {}: must name material {material} once, got `{name}` after `{other}`",
+                        line.number
+                    ));
+                }
             }
             "    1P" => head.take(&line)?,
             "  100C" => head.cycles = Some((line.number, line.column(12..24, "frequency")?.real()?)),
@@ -214,6 +225,11 @@ impl Frd {
                 })?;
                 self.is_whole()?;
                 let element = line.column(NODE, "element")?.whole()?;
+                if !self.numbers.insert(element) {
+                    return Err(format!(
+                        "line {number}: must have each element once, got element {element} again"
+                    ));
+                }
                 let material = line.column(23..28, "material")?.whole()?;
                 self.elements.push(Element {
                     line: number,
@@ -238,19 +254,29 @@ impl Frd {
         Ok(())
     }
 
-    /// Ends a block.
-    fn close(&self, at: &At, line: &TextLine) -> Result<(), String> {
-        if *at == At::Elements {
-            self.is_whole()?;
-        }
+    /// Ends the block that the lines before are of, which has to be whole, and begins another.
+    fn begin(&self, at: &mut At, next: At, line: &TextLine) -> Result<(), String> {
         let (needed, number) = (self.positions.len(), line.number);
-        match self.shapes.last() {
-            Some(shape) if *at == At::Displacements && shape.displacements.len() != needed => Err(format!(
-                "line {number}: must have displacements of all {needed} nodes, got {}: ask for `U` of all, not of a set",
-                shape.displacements.len()
-            )),
-            _ => Ok(()),
+        match (&*at, self.shapes.last()) {
+            (At::Elements, _) => self.is_whole()?,
+            (At::Displacements, Some(NodalMode { natural, displacements }))
+                if displacements.len() != needed =>
+            {
+                return Err(format!(
+                    "line {number}: must follow displacements of all {needed} nodes in mode {}, got {}: ask for `U` of all, \
+                     not of a set",
+                    natural.mode,
+                    displacements.len()
+                ));
+            }
+            _ => {}
         }
+        // Shapes and elements refer to the nodes before them.
+        if next == At::Nodes && !(self.elements.is_empty() && self.shapes.is_empty()) {
+            return Err(format!("line {number}: must have its nodes before elements and displacements"));
+        }
+        *at = next;
+        Ok(())
     }
 
     /// Checks that the last element has all its nodes.

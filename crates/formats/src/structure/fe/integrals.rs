@@ -138,7 +138,8 @@ impl Sums {
         let positions = || element.nodes.iter().map(|node| frd.positions[*node]);
         for (values, weight) in rules.points(*kind, rule) {
             let volume = weight * values.slopes(positions()).determinant();
-            if volume <= 0.0 {
+            // What overflows is no volume either.
+            if volume.is_nan() || volume <= 0.0 {
                 return Err(format!(
                     "line {line}: element {number} must not be turned inside out: are its nodes in order?"
                 ));
@@ -210,7 +211,8 @@ impl Sums {
         for i in 0..self.products.nrows() {
             for j in 0..=i {
                 let (found, exact) = (self.products[(i, j)], f64::from(u8::from(i == j)));
-                if (found - exact).abs() > NORMALISED {
+                let off = (found - exact).abs();
+                if off.is_nan() || off > NORMALISED {
                     return Err(format!(
                         "must have shapes normalised by the mass of the deck, and the integral of mode {} times mode {} of \
                          the lowest is {found}, not {exact}: is it the deck of this run, with its densities and masses?",

@@ -7,7 +7,7 @@ use super::appendage::Appendage;
 use super::clamped::{ClampedMode, rotation_of};
 use super::mass::of_point;
 use super::spacecraft::Spacecraft;
-use crate::attitude::{Vector, asymmetry, tensor, vector};
+use crate::attitude::{Vector, asymmetry, impossible_moments, tensor, vector};
 use crate::body::spatial::NamedPoint;
 use crate::document::Fault;
 use crate::document::key::bare_or_quoted;
@@ -59,6 +59,9 @@ fn hub(spacecraft: &Spacecraft) -> Result<(), Fault> {
     if inertia.cholesky().is_none() {
         return Err(Fault::new("inertia", "must be positive definite"));
     }
+    if let Some(why) = impossible_moments(&inertia) {
+        return Err(Fault::new("inertia", why));
+    }
     in_metres("centre", vector(&spacecraft.centre).norm())?;
     extent(&inertia, spacecraft.mass.get())?;
     for (index, point) in spacecraft.points.iter().enumerate() {
@@ -76,6 +79,9 @@ fn appendage_itself(appendage: &Appendage) -> Result<(), Fault> {
     let (least, most) = (moments.min(), moments.max());
     if least < -1e-9 * most.abs() || most < 0.0 {
         return Err(Fault::new("inertia", format!("must have no negative moment, got one of {least} kg m²")));
+    }
+    if let Some(why) = impossible_moments(&inertia) {
+        return Err(Fault::new("inertia", why));
     }
     in_metres("at", vector(&appendage.at).norm())?;
     in_metres("centre", vector(&appendage.centre).norm())?;

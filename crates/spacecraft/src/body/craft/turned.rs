@@ -87,7 +87,7 @@ impl Turn {
             return Err(Fault::new("about", format!("must have a length of 1e-6 to 1e6, got {length}")));
         }
         if by.abs() > 2.0 * std::f64::consts::PI {
-            let why = format!("must be an angle of -2 pi to 2 pi, in rad, got {by}");
+            let why = format!("must be an angle of -2 pi to 2 pi, in rad, or such as \"30 deg\", got {by}");
             return Err(Fault::new("by", why));
         }
         Ok(())

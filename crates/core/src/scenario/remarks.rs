@@ -1,0 +1,72 @@
+//! What is accepted and probably a mistake.
+
+use toml::{Table, Value};
+
+use super::Scenario;
+use crate::document::Fault;
+use crate::document::key::bare_or_quoted;
+
+impl Scenario {
+    /// Values that are accepted and probably not meant, each with its key and why.
+    pub fn remarks(&self) -> Vec<Fault> {
+        let mut written = self.written.clone();
+        written.forget_files();
+        let mut remarks = Vec::new();
+        for (key, value) in &written.to_table() {
+            let look = match key.as_str() {
+                "body" | "appendage" => damping,
+                "sensor" => latency,
+                _ => continue,
+            };
+            each_table(key, value, look, &mut remarks);
+        }
+        remarks
+    }
+}
+
+/// Looks at a table and at all within it.
+fn each_table(path: &str, value: &Value, look: fn(&str, &Table, &mut Vec<Fault>), remarks: &mut Vec<Fault>) {
+    match value {
+        Value::Table(table) => {
+            look(path, table, remarks);
+            for (key, value) in table {
+                each_table(&format!("{path}.{}", bare_or_quoted(key)), value, look, remarks);
+            }
+        }
+        Value::Array(values) => {
+            for (index, value) in values.iter().enumerate() {
+                each_table(&format!("{path}[{index}]"), value, look, remarks);
+            }
+        }
+        _ => {}
+    }
+}
+
+fn number(value: &Value) -> Option<f64> {
+    value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
+}
+
+/// Modes that do not vibrate.
+fn damping(path: &str, table: &Table, remarks: &mut Vec<Fault>) {
+    let Some(damping) = table.get("damping") else { return };
+    let ratios = damping.as_array().map_or(std::slice::from_ref(damping), Vec::as_slice);
+    if let Some(ratio) = ratios.iter().filter_map(number).find(|ratio| *ratio > 1.0) {
+        let why = format!(
+            "is a ratio, and above 1 a mode does not vibrate: is {ratio} a percentage, which is written \"{ratio} %\"?"
+        );
+        remarks.push(Fault::new(format!("{path}.damping"), why));
+    }
+}
+
+/// Readings that are older than the next ones.
+fn latency(path: &str, table: &Table, remarks: &mut Vec<Fault>) {
+    let of = |key: &str| table.get(key).and_then(number);
+    if let (Some(latency), Some(period)) = (of("latency"), of("period"))
+        && latency > period
+    {
+        let why = format!(
+            "is longer than the period of {period} s: each reading comes after the next one was taken, {latency} s late"
+        );
+        remarks.push(Fault::new(format!("{path}.latency"), why));
+    }
+}

@@ -1,0 +1,16 @@
+//! Switching without end: more switchings than a motion can need, in a span in which no mode has moved.
+
+/// Switchings of a window: whole cycles of the relay law, so that a flight looks at the end of one.
+pub const SWITCHINGS: u64 = 3 * CYCLES;
+/// Cycles of a window.
+pub const CYCLES: u64 = 341;
+/// The part of the shortest period that a window lasts at least.
+const PART: f64 = 1e-3;
+/// A body without modes, or with slow ones, has no shorter windows than of such a period (s).
+const SLOWEST: f64 = 1.0;
+
+/// The shortest span (s) of so many switchings that is no chatter, of a body whose fastest mode has this frequency (rad/s), 0 without
+/// modes.
+pub fn shortest_window(fastest: f64) -> f64 {
+    PART * (std::f64::consts::TAU / fastest).min(SLOWEST)
+}

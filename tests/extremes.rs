@@ -1,0 +1,119 @@
+//! Every option of every verb at values that nobody means: each is refused or answered within seconds of the processor.
+
+use std::process::{Command, Stdio};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use std::thread;
+use std::time::{Duration, Instant};
+
+use crate::util::{Dir, FLEXSC, SCENARIOS, has_extension};
+
+/// Numbers, and grids of numbers.
+const VALUES: &[&str] = &["0", "-1", "nan", "1e-300", "1e9", "1e20", "1e300", "18446744073709551615"];
+const GRIDS: &[&str] = &["0.5:1e12:5", "1e-300:1e300:5", "1:2:4294967295", "1:1e9:100000"];
+/// Verbs that need minutes, or take no numbers.
+const WITHOUT: &[&str] = &["reproduce", "completions", "help"];
+/// Options that wait for others, that ask for long work, or whose values are keys of scenarios.
+const SKIPPED: &[&str] = &["live", "scheduler", "yes", "set", "vary", "help", "log"];
+/// Time of the processor for each (s), and of the clock where it waits.
+const CPU: u32 = 5;
+const PATIENCE: Duration = Duration::from_secs(120);
+
+/// The first example of a verb's help.
+fn example(dir: &Dir, verb: &str) -> Vec<Vec<String>> {
+    let ran = dir.run(&format!("{verb} --help")).exits(0);
+    let (_, examples) = ran.out.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb}: {}", ran.out));
+    let lines = examples.lines().filter_map(|line| line.trim().strip_prefix("flexsc "));
+    let words = |line: &str| {
+        let line = line.split(" > ").next().unwrap_or(line);
+        line.split_whitespace().map(|word| word.trim_matches('\'').to_owned()).collect()
+    };
+    lines.map(words).collect()
+}
+
+/// Arguments with a value of an option, in place of the one that they have.
+fn with(arguments: &[String], option: &str, value: &str) -> Vec<String> {
+    let flag = format!("--{option}");
+    let mut all: Vec<String> = Vec::new();
+    let mut drops = false;
+    for word in arguments {
+        if std::mem::take(&mut drops) && !word.starts_with('-') {
+            continue;
+        }
+        if *word == flag {
+            drops = true;
+        } else if !word.starts_with(&format!("{flag}=")) {
+            all.push(word.clone());
+        }
+    }
+    all.push(format!("{flag}={value}"));
+    all
+}
+
+/// Runs a command, and tells how it ended if that is not by itself in time.
+fn ends(dir: &Dir, arguments: &[String]) -> Option<String> {
+    let mut command = Command::new("sh");
+    command.args(["-c", &format!("ulimit -t {CPU}; exec \"$0\" \"$@\""), FLEXSC]).args(arguments);
+    command.env("RAYON_NUM_THREADS", "2").current_dir(dir.path(""));
+    command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null());
+    let mut child = command.spawn().expect("started");
+    let begun = Instant::now();
+    loop {
+        if let Some(status) = child.try_wait().expect("a child") {
+            let code = status.code();
+            return (!matches!(code, Some(0..=2))).then(|| format!("{}: {status}", arguments.join(" ")));
+        }
+        if begun.elapsed() > PATIENCE {
+            child.kill().expect("killed");
+            child.wait().expect("ended");
+            return Some(format!("{}: still there after {PATIENCE:?}", arguments.join(" ")));
+        }
+        thread::sleep(Duration::from_millis(5));
+    }
+}
+
+#[test]
+#[cfg(unix)]
+#[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
+fn every_option_ends_in_seconds_whatever_its_value() {
+    let dir = Dir::new();
+    for entry in std::fs::read_dir(SCENARIOS).expect("shipped").flatten() {
+        if has_extension(&entry.file_name().to_string_lossy(), "toml") {
+            std::fs::copy(entry.path(), dir.path(&entry.file_name().to_string_lossy())).expect("copied");
+        }
+    }
+    let mut cases: Vec<Vec<String>> = Vec::new();
+    for verb in flexsc_cli::command().get_subcommands() {
+        if WITHOUT.contains(&verb.get_name()) {
+            continue;
+        }
+        let examples = example(&dir, verb.get_name());
+        // Later examples read what earlier ones write.
+        for line in &examples {
+            dir.run(&line.join(" "));
+        }
+        let Some(base) = examples.first() else { continue };
+        for option in verb.get_arguments().filter(|option| option.get_action().takes_values()) {
+            let Some(name) = option.get_long().filter(|name| !SKIPPED.contains(name)) else { continue };
+            let of = option.get_value_names().unwrap_or_default();
+            let is_grid = of.iter().any(|name| name.contains("LO:HI"));
+            let values = if is_grid { GRIDS } else { VALUES };
+            cases.extend(values.iter().map(|value| with(base, name, value)));
+        }
+    }
+    assert!(cases.len() > 200, "{}", cases.len());
+    let (next, wrong) = (AtomicUsize::new(0), Mutex::new(Vec::new()));
+    thread::scope(|scope| {
+        for _ in 0..4 {
+            scope.spawn(|| {
+                while let Some(case) = cases.get(next.fetch_add(1, Ordering::Relaxed)) {
+                    if let Some(told) = ends(&dir, case) {
+                        wrong.lock().expect("whole").push(told);
+                    }
+                }
+            });
+        }
+    });
+    let wrong = wrong.into_inner().expect("whole");
+    assert!(wrong.is_empty(), "{} of {}:\n{}", wrong.len(), cases.len(), wrong.join("\n"));
+}
