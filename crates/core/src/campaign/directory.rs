@@ -16,8 +16,8 @@
 //! }
 //! ```
 //!
-//! Where parts go to a bucket, [`Work::part`] gives a part's name and bytes. [`Directory::create`] makes or continues a directory,
-//! and holds its lock; workers need none.
+//! Where parts go to a bucket, [`Work::part`] gives a part's name and bytes. [`Directory::create`] makes or continues a
+//! directory, and holds its lock; workers need none.
 
 use std::fs::{self, File, TryLockError};
 use std::io;

@@ -1,7 +1,8 @@
 //! Three-dimensional scene of a run for viewers.
 //!
-//! The geometry is schematic. A scenario describes how a body moves, not its appearance: a hub with panels, or a boom to
-//! each point and two wings, stand for it. Bending and turning are magnified, by factors that the scene itself shows.
+//! The geometry is schematic. A scenario describes how a body moves, not its appearance: a hub with panels, or a boom
+//! to each point and two wings, stand for it. Bending and turning are magnified, by factors that the scene itself
+//! shows.
 
 mod magnification;
 mod panels;

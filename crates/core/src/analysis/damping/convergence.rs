@@ -1,8 +1,8 @@
 //! Convergence of the recurrence observer with a frozen regressor: \[Timakov14\], pages 44 to 46.
 //!
-//! A constant elastic rate cannot be distinguished from a rigid one: one eigenvalue is 1 whatever the weights. The others are
-//! the roots of z³ + a2 z² + a1 z + a0 with, by A = 2 exp(-zeta w T) cos(w_d T), B = exp(-2 zeta w T) and kappa = W4 |g|,
-//! a2 = kappa - A - 1 + W1 - (W3 - A W2), a1 = B + A - W1 A + (W3 - A W2) - B W2, a0 = B (W1 + W2 - 1).
+//! A constant elastic rate cannot be distinguished from a rigid one: one eigenvalue is 1 whatever the weights. The
+//! others are the roots of z³ + a2 z² + a1 z + a0 with, by A = 2 exp(-zeta w T) cos(w_d T), B = exp(-2 zeta w T) and
+//! kappa = W4 |g|, a2 = kappa - A - 1 + W1 - (W3 - A W2), a1 = B + A - W1 A + (W3 - A W2) - B W2, a0 = B (W1 + W2 - 1).
 
 use serde::Serialize;
 

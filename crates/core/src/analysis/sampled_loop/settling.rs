@@ -22,8 +22,8 @@ pub struct Settling {
     /// Time at which a straight line from the last sample outside to the next enters the band (s): free of the samples'
     /// steps.
     pub crossing_s: Option<f64>,
-    /// Integral of time times |angle| over the horizon (rad s²): smooth in the parameters, where the settling time jumps
-    /// by half a period whenever a swing touches the band.
+    /// Integral of time times |angle| over the horizon (rad s²): smooth in the parameters, where the settling time
+    /// jumps by half a period whenever a swing touches the band.
     pub itae_rad_s2: f64,
 }
 
