@@ -1,4 +1,5 @@
-//! Accelerometers at points of a spacecraft: against an oracle of whole kinematics, and against the place that the motion comes to.
+//! Accelerometers at points of a spacecraft: against an oracle of the whole kinematics, and against the displacement of
+//! the point.
 
 use flexsc_core::Scenario;
 use flexsc_core::metrics::Value;
@@ -40,7 +41,7 @@ fn run(text: &str) -> Trace {
     traced(&Scenario::parse("accelerometers.toml", text).unwrap_or_else(|error| panic!("{error}")))
 }
 
-/// What the accelerometer at this place among the sensors measured at each of its samples.
+/// Returns the samples of the accelerometer with this index among the sensors.
 fn measured(trace: &Trace, sensor: u64) -> Vec<Vec<f64>> {
     let rows = trace.topic("/accelerations").expect("accelerations");
     let (Some(Column::Counts(sensors)), Some(Column::Rows(counts, axes))) =
@@ -60,8 +61,8 @@ fn measured(trace: &Trace, sensor: u64) -> Vec<Vec<f64>> {
     found
 }
 
-/// A hub that spins, and a mass that slides in it: specific forces of 1e-3 to 2e-2 m/s². The model leaves out what is of second order in
-/// the slider's millimetres: 5e-7 m/s² after 12 s.
+/// A hub that spins, and a mass that slides in it: specific forces of 1e-3 to 2e-2 m/s². The model leaves out what is
+/// of second order in the slider's millimetres: 5e-7 m/s² after 12 s.
 #[test]
 fn a_pushed_hub_with_a_slider_is_felt_as_by_newton() {
     let trace = run(HUB_AND_MASS);
@@ -81,7 +82,7 @@ fn a_pushed_hub_with_a_slider_is_felt_as_by_newton() {
     }
 }
 
-/// The second derivative of where the motion brings the first point, by differences: with rotation, Coriolis and all modes.
+/// The second derivative of the first point's position, by differences: with rotation, Coriolis and all modes.
 #[test]
 fn what_is_felt_is_how_the_place_accelerates() {
     let text = HUB_AND_MASS
@@ -97,7 +98,7 @@ fn what_is_felt_is_how_the_place_accelerates() {
     let of = |topic: &str, name: &str| column(&trace, topic, name);
     let place = ["x_m", "y_m", "z_m"].map(|name| of("/position", name));
     let q = ["q_w", "q_x", "q_y", "q_z"].map(|name| of("/pointing", name));
-    // The force begins and ends at 1 and 2 s: no difference reaches across.
+    // The force begins and ends at 1 and 2 s: no difference extends across these instants.
     for row in [10, 26, 40, 58, 80, 200, 400] {
         let second = |x: &[f64]| {
             let [a, b, c] = [1, 2, 3].map(|k| x[row - k] + x[row + k]);
@@ -117,7 +118,7 @@ fn what_is_felt_is_how_the_place_accelerates() {
     }
 }
 
-/// The imbalance of the run-up is felt on the bench, most where it passes the mode.
+/// The accelerometer on the bench measures the imbalance of the run-up, most where it passes the mode.
 #[test]
 fn a_run_up_is_felt_on_the_bench() {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/wheel-run-up.toml")).expect("a file");
@@ -140,7 +141,7 @@ fn a_run_up_is_felt_on_the_bench() {
     let rms = (squares / felt.len() as f64).sqrt();
     let Some(Value::Numbers(told)) = metrics.get("acceleration_rms_m_s2") else { panic!("a metric") };
     assert!((told[0] / rms - 1.0).abs() < 1e-12, "{told:?} {rms}");
-    // Nothing that watches changes the motion.
+    // Recording does not change the motion.
     let alone = text.replace(
         &text[text.find("sensor = [").expect("sensors")..text.find("[spacecraft]").expect("a body")],
         "",

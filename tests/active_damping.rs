@@ -1,6 +1,7 @@
 //! Active damping of a spatial body in the loop: adaptive observers, the relay on their elastic rates, and its guards.
 //!
-//! The limits are trends of many seeds: a run of relays beyond its first pulses hangs on each draw of the gyro's noise.
+//! The limits are trends of many seeds: a run of relays depends, after its first pulses, on each draw of the gyro's
+//! noise.
 
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
@@ -10,7 +11,7 @@ use flexsc_core::{Scenario, Simulation};
 use crate::study::{close, metrics, numbers, scenario};
 use crate::util::{Dir, table};
 
-/// The metrics of runs 0 to 11.
+/// Returns the metrics of runs 0 to 11.
 fn twelve(name: &str, set: &[(&str, &str)]) -> Vec<Metrics> {
     let scenario = scenario(name, set);
     let run = |number| {
@@ -20,7 +21,7 @@ fn twelve(name: &str, set: &[(&str, &str)]) -> Vec<Metrics> {
     (0..12).map(run).collect()
 }
 
-/// A metric of some runs, sorted.
+/// Returns the values of a metric of some runs, sorted.
 fn sorted(runs: &[Metrics], name: &str) -> Vec<f64> {
     let mut values: Vec<f64> = runs.iter().map(|run| run.number(name).expect("a number")).collect();
     values.sort_by(f64::total_cmp);
@@ -37,14 +38,14 @@ fn within(found: f64, [low, high]: [f64; 2]) {
     assert!((low..=high).contains(&found), "{found:e} is not within [{low:e}, {high:e}]");
 }
 
-/// The rows of `/tracking` of a run.
+/// Returns the rows of `/tracking` of a run.
 fn tracking(scenario: &Scenario) -> Columns {
     let mut trace = Trace::new(Detail::Full);
     Simulation::new(scenario, 0).run(&mut trace).expect("a run");
     trace.topic("/tracking").expect("the topic").clone()
 }
 
-/// A column of the rows within the rows: those at an index of so many.
+/// Returns a column of the nested rows with the given index, out of `count` in each row.
 fn of(columns: &Columns, rows: &str, [index, count]: [usize; 2], name: &str) -> Vec<f64> {
     let Some(Column::Rows(_, rows)) = columns.get(rows) else { panic!("{rows}") };
     let values: Vec<f64> = match rows.get(name) {
@@ -80,7 +81,7 @@ fn what_is_off_is_identified_on_the_way() {
         let keys = [
             ("estimator.adaptive.frequency_error", errors[0]),
             ("estimator.adaptive.influence_error", errors[1]),
-            // Later yaw comes to the edge of its dead zone, and burns there move its first frequency by up to 4.2 %.
+            // Later, yaw reaches the edge of its dead zone, and burns there change its first frequency by up to 4.2 %.
             ("duration", "200"),
         ];
         let runs = twelve("iss-ringdown", &keys);
@@ -95,9 +96,9 @@ fn what_is_off_is_identified_on_the_way() {
     }
 }
 
-/// The same draws of noise with and without damping. After 400 s yaw comes to the other edge of its dead zone, before 500 s
-/// without damping and in ten runs later with it: pulses that stop it there leave 5e-6 to 1.4e-5 rad/s, below the thresholds,
-/// and the last 200 s of 700 s would compare when they come.
+/// Runs with and without damping have equal draws of noise. After 400 s yaw reaches the other edge of its dead zone,
+/// before 500 s without damping and in ten runs later with it: pulses that stop it there leave 5e-6 to 1.4e-5 rad/s,
+/// below the thresholds, and the last 200 s of 700 s would compare the times of these pulses.
 #[test]
 fn a_turn_ends_quieter_and_excites_a_third_for_a_few_percent_of_propellant() {
     let until = ("duration", "400");
@@ -110,7 +111,7 @@ fn a_turn_ends_quieter_and_excites_a_third_for_a_few_percent_of_propellant() {
     assert!(sorted(&off, "damping_cycles")[11] == 0.0);
 }
 
-/// The same where each run is wrong in its own way, by up to 30 % of the frequencies and 40 % of the influences.
+/// Turns excite less also if each run has its own errors, of up to 30 % of the frequencies and 40 % of the influences.
 #[test]
 fn whatever_is_wrong_at_the_start_a_turn_excites_less() {
     let dir = Dir::with(&["iss-manoeuvre"]);
@@ -125,7 +126,7 @@ fn whatever_is_wrong_at_the_start_a_turn_excites_less() {
         values
     };
     assert!(sorted("estimator.adaptive.frequency_error")[0] < -0.15);
-    // Off, the same turn takes 5.6 kg, 0.83 J and 7.3e-6 rad/s.
+    // Without damping, this turn takes 5.6 kg, 0.83 J and 7.3e-6 rad/s.
     let (fuel, peak, rate) =
         (sorted("fuel_kg"), sorted("elastic_energy_peak_j"), sorted("elastic_rate_rms_rad_s"));
     within(0.5 * (fuel[5] + fuel[6]), [5.5, 6.2]);
@@ -158,7 +159,7 @@ fn a_delay_without_a_predictor_needs_the_modes_that_it_can_damp() {
     within(eligible.number("energy_below_1pct_at_s").expect("a time"), [10.0, 90.0]);
 }
 
-/// Without the predictor the watchdog pauses what does not help.
+/// Without the predictor the watchdog pauses pulses that do not help.
 #[test]
 fn the_watchdog_limits_what_a_wrong_relay_burns() {
     let only = |guards| [("law.phase_plane.damping.guards", guards)];
@@ -171,7 +172,7 @@ fn the_watchdog_limits_what_a_wrong_relay_burns() {
     assert_eq!(free.number("damping_pauses"), Some(0.0));
 }
 
-/// Nothing is identified where that is not wanted, and everything logged is what the observer has.
+/// No frequency or influence is identified if that is off, and the log has the values of the observer.
 #[test]
 fn frozen_estimates_stay_what_they_were() {
     let keys = [WRONG[0], WRONG[1], ("estimator.adaptive.adapt", "false"), ("duration", "60")];
@@ -184,7 +185,7 @@ fn frozen_estimates_stay_what_they_were() {
         }
         let errors = numbers(&run, "frequency_estimate_errors");
         assert_eq!(errors.len(), if form.contains("gradient") { 6 } else { 3 });
-        // The first mode of yaw; near ones are held apart by their bounds.
+        // First mode of yaw; neighbouring modes are kept apart by their bounds.
         let yaw = if errors.len() == 6 { errors[4] } else { errors[2] };
         assert!((yaw - 0.2).abs() < 1e-4, "{errors:?}");
     }
@@ -207,9 +208,9 @@ fn turns_tell_frequencies_and_influences() {
     }
 }
 
-/// Jets of yaw excite the pair at 0.605 Hz and the modes at 0.682 and 0.773 Hz, which the gyro's roll sees. Without noise the
-/// estimates of frequencies begin where they are, and any change of them is taken for motion that roll's jets did not make. The
-/// mode at 0.682 Hz, roll's second, the pulses of these turns excite too little for any change.
+/// Jets of yaw excite the pair at 0.605 Hz and the modes at 0.682 and 0.773 Hz, which the gyro's roll sees. Without
+/// noise the estimates of frequencies begin where they are, and any change of them is taken for motion that roll's jets
+/// did not make. The mode at 0.682 Hz, roll's second, the pulses of these turns excite too little for any change.
 #[test]
 fn an_axis_that_knows_the_jets_of_the_others_sees_no_motion_that_is_not() {
     let turns = "[{ from = 10.0, yaw = 0.02 }, { from = 70.0 }, { from = 130.0, yaw = 0.02 }]";
@@ -251,7 +252,7 @@ fn what_is_logged_agrees_with_itself() {
     let yaw = |name| of(&rows, "channels", [2, 3], name);
     let mode = |name| of(&rows, "trackers", [4, 6], name);
     assert_eq!(mode("axis")[0], 2.0);
-    // 0.2368 Hz, of which yaw sees next to nothing, is one with 0.2476 Hz.
+    // The mode of 0.2368 Hz, hardly observable in yaw, is tracked together with that of 0.2476 Hz.
     close(mode("true_frequency_rad_s")[0], 1.555_716_68, 1e-4);
     close(mode("true_influence")[0], 2.886 + 0.005, 1e-3);
     close(mode("true_rate_rad_s")[0], 5e-4, 1e-3);
@@ -266,7 +267,7 @@ fn what_is_logged_agrees_with_itself() {
     }
 }
 
-/// Whatever the gyro tells, and however wrong the keys are: numbers, and an end.
+/// Any samples of the gyro, and any wrong keys, give finite numbers and an end.
 #[test]
 fn nonsense_stays_finite() {
     for keys in [
@@ -310,7 +311,7 @@ fn jets_at_once_and_the_recurrence_damp_as_well() {
     }
 }
 
-/// Modes that are given track what is nearest to them.
+/// Given modes track the nearest true ones.
 #[test]
 fn modes_can_be_given() {
     let given = "{ yaw = [{ frequency = 1.7, influence = [3.5], bounds = [1.0, 2.4] }] }";

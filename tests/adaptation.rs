@@ -7,7 +7,7 @@ use flexsc_core::time::{Instant, Span};
 
 use crate::study::{close, scenario};
 
-/// The generator of the numbers below: splitmix64.
+/// Generator of the numbers below: splitmix64.
 struct SplitMix(u64);
 
 impl SplitMix {

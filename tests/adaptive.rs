@@ -1,4 +1,4 @@
-//! The adaptive observers over many runs: how often and how fast they find the modes of a channel.
+//! The adaptive observers over many runs: success rate and speed of the identification of a channel's modes.
 //!
 //! `flexsc identify` prints the whole table, 100 runs a row.
 
@@ -28,7 +28,7 @@ fn mode(at: f64, influence: &[f64], bounds: Option<[f64; 2]>) -> Tracker {
     Tracker { frequency: hertz(at), influence, bounds: bounds.map(|bounds| bounds.map(hertz)) }
 }
 
-/// A channel of a spacecraft: exact modes, of which each input excites every one.
+/// Channel of a spacecraft: exactly simulated modes, each of which every input excites.
 struct Channel {
     modes: Vec<(ModelOscillator, Vec<f64>)>,
     rigid: Vec<f64>,
@@ -69,7 +69,7 @@ impl Channel {
     }
 }
 
-/// Bursts of one to ten cycles under a random sign, with random pauses.
+/// Random bursts of one to ten cycles, with a random sign and random pauses.
 struct Bursts {
     draws: Stream,
     left: usize,
@@ -83,7 +83,7 @@ impl Bursts {
         Self { draws, left: 0, wait: 0, acceleration: 0.0 }
     }
 
-    /// The pulse of the next cycle, if there is one.
+    /// Returns the pulse of the next cycle; `None` within a pause.
     fn next(&mut self, input: usize, acceleration: f64, pause: usize) -> Option<Pulse> {
         if self.left == 0 && self.wait > 0 {
             self.wait -= 1;
@@ -110,7 +110,8 @@ fn median(mut values: Vec<f64>) -> f64 {
 
 #[test]
 fn modes_are_found_over_random_runs() {
-    // Of each set in hertz, the fewest of 12 runs that converge, and limits of the median time, frequency and influence error.
+    // Of each set in hertz, the fewest of 12 runs that converge, and limits of the median time, frequency and influence
+    // error.
     let sets = [
         (vec![(0.2476, 2.89)], 0.02, 12, [12.0, 14.0, 18.0, 24.0], 4e-4, 0.02),
         (vec![(0.2476, 2.89), (0.6, 3.0)], 0.02, 12, [22.0, 22.0, 30.0, 45.0], 5e-4, 0.03),
@@ -140,7 +141,7 @@ fn the_command_tells_how_often_modes_are_found() {
     let rows = told["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), 2);
     let trial = Trial::of(vec![(1.556, 2.89)], 0.3);
-    // Through text, whose numbers are read to the last place but one.
+    // Passed through JSON text, whose numbers are exact to the last place but one.
     let exact = serde_json::json!(trial.table(12)).to_string();
     let exact: serde_json::Value = serde_json::from_str(&exact).expect("JSON");
     assert_eq!(rows[1]["found"], exact);
@@ -149,7 +150,7 @@ fn the_command_tells_how_often_modes_are_found() {
         .says(&["0.2476", "12/12"]);
     let drawn = dir.text("drawn/identification.svg");
     assert!(drawn.contains("0.2476 Hz, 10 % off") && drawn.contains("found (%)"));
-    // Two modes that no run of 300 s tells apart.
+    // Two modes that no run of 300 s distinguishes.
     let near = Trial::of(vec![(TAU * 0.6049, 1.5), (TAU * 0.6096, 1.6)], 0.05).table(4);
     let apart = Trial::of(vec![(TAU * 0.2476, 2.89), (TAU * 0.6, 3.0)], 0.05).table(4);
     assert!(near.persistence.expect("excited") < 0.05 && apart.persistence.expect("excited") > 0.7);
@@ -165,7 +166,7 @@ fn the_command_tells_how_often_modes_are_found() {
     }
 }
 
-/// Ten cycles of every 65 under one sign, then under the other.
+/// Returns bursts of ten cycles in every 65, with alternating signs.
 fn regular(cycle: usize) -> Vec<Pulse> {
     let acceleration = if (cycle / 65).is_multiple_of(2) { ACCELERATION } else { -ACCELERATION };
     let pulse = Pulse { input: 0, acceleration, start: 0.0, duration: CYCLE };
@@ -231,8 +232,8 @@ fn one_tracker_follows_a_near_pair() {
     assert!(median(found.clone()) < 0.08, "{found:?}");
 }
 
-/// A roll channel beside yaw thrusters that excite what it sees: how far the observer is off, in parts of what there is, and
-/// the largest error of a frequency, without and with the yaw thrusters as an input.
+/// Returns the observer's relative errors, and the largest error of a frequency, of a roll channel whose modes yaw
+/// thrusters excite too, without and with these thrusters as an input.
 fn beside_yaw(run: u64) -> [(f64, f64); 2] {
     // The station's modes of 0.605 and 0.773 Hz: influence of the roll and of the yaw thrusters.
     let modes = [(0.605, vec![0.90, 1.08]), (0.7733, vec![7.55, -1.34])];

@@ -1,4 +1,4 @@
-//! The filter in the loop: gyro, star tracker, law and wheels on a body with three axes.
+//! The attitude filter in the loop: gyro, star tracker, law and wheels on a three-axis body.
 
 use flexsc_core::analysis::loop_parts::LoopParts;
 use flexsc_core::metrics::Gather;
@@ -66,14 +66,16 @@ fn the_filter_is_as_good_as_it_says() {
         sums.iter_mut().zip(found).for_each(|(sum, found)| *sum += found / runs as f64);
     }
     let [nees, nis, pointing] = sums;
-    // 299 innovations a run, three numbers each: 4 standard errors of a chi-square over its freedom are 4 sqrt(2/(40 897)).
+    // 299 innovations a run, three numbers each: 4 standard errors of a chi-square over its freedom are 4 sqrt(2/(40
+    // 897)).
     assert!((nis - 1.0).abs() < 0.03, "{nis}");
     // Errors of one run are correlated: a few independent ones of six numbers a run, 4 sqrt(2/(40 6)).
     assert!((nees - 1.0).abs() < 0.37, "{nees}");
     assert!(pointing < 2e-4, "{pointing:e}");
 }
 
-/// A tracker that gathers light tells the mean attitude, which is that of the middle but for 5e-6 rad while the turn accelerates.
+/// A tracker with an exposure measures the mean attitude, which is that of its middle to 5e-6 rad while the turn
+/// accelerates.
 #[test]
 fn a_mean_over_an_exposure_is_an_attitude_of_its_middle() {
     let exposed = scenario(&[("latency = 0.6", "latency = 0.6, exposure = 0.8")]).expect("valid");
@@ -84,7 +86,7 @@ fn a_mean_over_an_exposure_is_an_attitude_of_its_middle() {
     assert!((error / instant - 1.0).abs() < 0.05 && error != instant, "{error:e} {instant:e}");
 }
 
-/// Means over runs of these metrics.
+/// Returns the means of these metrics over runs.
 fn means<const N: usize>(scenario: &Scenario, runs: u64, names: [&str; N]) -> [f64; N] {
     let mut sums = [0.0; N];
     for run in 0..runs {
@@ -102,7 +104,7 @@ fn a_bias_that_wanders_is_tracked() {
     let names = ["nees_mean", "nis_mean", "bias_estimate_error_rms_rad_s"];
     let [nees, nis, bias] = means(&wandering, 40, names);
     assert!((nis - 1.0).abs() < 0.03 && (nees - 1.0).abs() < 0.37, "{nis} {nees}");
-    // A filter that does not know of it trusts its bias too long.
+    // A filter that does not model the wander trusts its bias too long.
     let deaf = scenario(&[
         ("rate_random_walk = 1e-8", keys),
         ("[estimator.attitude]\n", "[estimator.attitude]\nrate_random_walk = 1e-8\n"),
@@ -111,8 +113,8 @@ fn a_bias_that_wanders_is_tracked() {
     assert!(nees > 1.5 && worse > bias, "{nees} {worse:e} {bias:e}");
 }
 
-/// The filter knows of when late rates are, and predicts from there. At rest a late gyro costs nothing but its noise; a filter that
-/// took the rates for those of now would show it in NIS during the turn.
+/// The filter uses the time stamps of late rates, and predicts from there. At rest a late gyro costs only its noise; a
+/// filter that took the rates for current ones would show it in NIS during the turn.
 #[test]
 fn rates_of_a_late_gyro_are_of_when_they_were_measured() {
     let late = |periods: f64, assess: &str| {
@@ -125,7 +127,7 @@ fn rates_of_a_late_gyro_are_of_when_they_were_measured() {
     let [[_, prompt, _], [_, delayed, _]] =
         [0.0, 3.0].map(|periods| means(&late(periods, "assess = [220.0, 300.0]"), 20, names));
     assert!(delayed < 1.1 * prompt, "{prompt:e} {delayed:e}");
-    // What is not late is told at once.
+    // Samples without latency are reported at once.
     let error = ["attitude_estimate_error_rms_rad"];
     assert_eq!(metric(&late(0.0, ""), 3, &error), metric(&scenario(&[]).expect("valid"), 3, &error));
 }

@@ -1,4 +1,4 @@
-//! Three axes that small rates leave alone: each moves as a body with one angle.
+//! Three axes that small rates do not couple: each moves as a one-axis body.
 //!
 //! Golden numbers: tests/golden/axes_oracle.py, NumPy and SciPy.
 
@@ -39,7 +39,7 @@ const LOOPS: [&str; 3] = [
     "[sensor.sampled]\nperiod = 0.5\n[actuator.wheel]\ngain = 1.0\nlimit = 1e-7\n",
 ];
 
-/// All three axes in one body, at rates that are scaled.
+/// Returns one body with all three axes, at scaled rates.
 pub fn together(rest: &str, scale: f64) -> Scenario {
     let half: Vec<f64> = STARTS.iter().map(|[angle, _]| 0.5 * scale * angle).collect();
     let rates: Vec<f64> = STARTS.iter().map(|[_, rate]| scale * rate).collect();
@@ -69,7 +69,7 @@ pub fn together(rest: &str, scale: f64) -> Scenario {
     Scenario::parse("axes.toml", &text).expect("valid")
 }
 
-/// One of them as a body with one angle, in which the modes of the others do not show.
+/// Returns one of the axes as a one-axis body, in which the modes of the others have no rotation.
 fn alone(axis: usize, rest: &str, scale: f64) -> Scenario {
     let [angle, rate] = STARTS[axis].map(|start| scale * start);
     let mut text = format!(
@@ -97,7 +97,7 @@ fn after(time: f64) -> Instant {
     Instant::START + Span::from_seconds(time)
 }
 
-/// Angles of the three axes, elastic parts included, and their rigid rates, at some times.
+/// Returns the angles of the three axes, elastic parts included, and their rigid rates, at some times.
 fn of_three(scenario: &Scenario, times: &[f64]) -> Vec<([f64; 3], [f64; 3])> {
     let mut simulation = Simulation::new(scenario, 0);
     let at = |time: &f64| {
@@ -113,7 +113,7 @@ fn of_three(scenario: &Scenario, times: &[f64]) -> Vec<([f64; 3], [f64; 3])> {
     times.iter().map(at).collect()
 }
 
-/// The same of one.
+/// Returns the angle, elastic part included, and the rigid rate of a one-axis body, at some times.
 fn of_one(scenario: &Scenario, times: &[f64]) -> Vec<(f64, f64)> {
     let mut simulation = Simulation::new(scenario, 0);
     let at = |time: &f64| {
@@ -126,7 +126,7 @@ fn of_one(scenario: &Scenario, times: &[f64]) -> Vec<(f64, f64)> {
 
 const TIMES: [f64; 6] = [0.0, 7.3, 10.0, 25.0, 40.2, 60.0];
 
-/// The largest difference of angles (rad) and of rates (rad/s) between three axes and one by one.
+/// Returns the largest difference of angles (rad) and of rates (rad/s) between three axes and one by one.
 fn difference(rest: &str, scale: f64) -> [f64; 2] {
     let three = of_three(&together(rest, scale), &TIMES);
     let mut worst = [0.0_f64; 2];
@@ -145,7 +145,7 @@ fn each_axis_moves_as_a_body_with_one_angle() {
         let [angle, rate] = difference(rest, 1e-7);
         assert!(angle < 2e-14 && rate < 2e-14, "{rest}: {angle:e} rad, {rate:e} rad/s");
     }
-    // What is left is the coupling of rotations, of second order.
+    // The remaining difference is the coupling of rotations, of second order.
     for rest in ["", LOOPS[1], FILTERED] {
         let [small, large] = [1e-5, 1e-4].map(|scale| difference(rest, scale)[0]);
         assert!((large / small - 100.0).abs() < 5.0, "{rest}: {small:e} {large:e}");

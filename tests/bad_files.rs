@@ -1,4 +1,4 @@
-//! Bad scenario files of which no line is to blame: unreadable, hostile, or beside good ones.
+//! Bad scenario files without a line at fault: unreadable, hostile, or together with good ones.
 
 use crate::bad_scenarios::GOOD;
 use crate::util::Dir;

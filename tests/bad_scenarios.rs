@@ -40,17 +40,17 @@ envelope = 2e-5
 "law.relay.k_t" = { uniform = [0.3, 0.32] }
 "#;
 
-/// What is done to the good scenario.
+/// Change of the good scenario.
 enum Edit {
-    /// A line reads differently.
+    /// One line is replaced.
     Line(usize, &'static str),
-    /// Lines read differently.
+    /// Lines are replaced.
     Lines(&'static [(usize, &'static str)]),
-    /// Lines are left out, from the first up to and with the second.
+    /// Lines are removed, from the first to the second inclusive.
     Cut(usize, usize, &'static str),
-    /// Text follows.
+    /// Text is appended.
     More(&'static str),
-    /// All is different.
+    /// All of the text is replaced.
     All(&'static str),
 }
 use Edit::{All, Cut, Line, Lines, More};
@@ -72,8 +72,8 @@ impl Edit {
     }
 }
 
-/// What is wrong, how the text comes about, the line and the text that the carets mark there, and words that the
-/// error holds.
+/// Fault of a case: its name, the change of the text, the line and the text that the carets mark, and words of the
+/// error.
 type Case = (&'static str, Edit, usize, &'static str, &'static [&'static str]);
 
 #[rustfmt::skip] // One case a line.
@@ -280,7 +280,7 @@ const SYNTAX: &[Case] = &[
     ("DOS line ends", All("duration = 1\r\nname = 5\r\n"), 2, "5", &["`name`", "found integer `5`"]),
 ];
 
-/// Words of the parser's trade that tell an engineer nothing.
+/// Words of the parser's trade that mean nothing to an engineer.
 const JARGON: &[&str] = &[
     "u32",
     "u64",
@@ -298,7 +298,7 @@ const JARGON: &[&str] = &[
     "literal",
 ];
 
-/// Runs the cases, and says of all at once what is wrong with their errors.
+/// Runs the cases, and reports all faults of their errors together.
 fn check(cases: &[Case]) {
     let dir = Dir::new();
     let mut wrong = Vec::new();
@@ -307,7 +307,7 @@ fn check(cases: &[Case]) {
         dir.write("bad.toml", &text);
         if let Err(why) = judge(&dir, &text, *line, marked, words) {
             wrong.push(format!("\n--- {name}: {why}"));
-            // What it wrote is not to be counted twice.
+            // The output of one case must not count for the next.
             let _ = std::fs::remove_dir_all(dir.path("out"));
         }
     }

@@ -1,9 +1,10 @@
-//! Bad scenarios of spatial bodies: each is refused with one error that names the key, what was found, what is accepted.
+//! Bad scenarios of spatial bodies: each is refused with one error that names the key, what was found, what is
+//! accepted.
 
 use crate::spatial::FREE;
 use crate::util::Dir;
 
-/// What is replaced by what, the line of the file that the error points at, and words of the error.
+/// Case: text that is replaced, its replacement, the line of the file that the error points at, and words of the error.
 type Case = (&'static str, &'static str, usize, &'static [&'static str]);
 
 #[rustfmt::skip] // One case a line.
@@ -64,7 +65,7 @@ fn bad_spatial_scenarios_are_refused() {
     }
 }
 
-/// What has no place beside a body with one angle, and what a law needs of its actuator.
+/// Parts that a one-axis body does not support, and requirements of laws on their actuators.
 #[test]
 fn parts_of_a_loop_fit_each_other() {
     let planar = "duration = 1\n[body.planar]\nangle = 1e-3\n";
@@ -100,7 +101,7 @@ fn parts_of_a_loop_fit_each_other() {
     }
 }
 
-/// A file of modes, and words of the error.
+/// Cases: content of a file of modes, and words of the error.
 #[rustfmt::skip] // One case a line.
 const FILES: &[(&str, &[&str])] = &[
     ("", &["must have a header"]),

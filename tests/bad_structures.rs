@@ -5,8 +5,8 @@ use std::fmt::Write as _;
 use crate::structure::RELAY;
 use crate::util::Dir;
 
-/// What is wrong, the line of `[body.matrices]` that reads differently (1 is its header), the text that the carets mark,
-/// and words that the error holds.
+/// Case: name of the fault, replaced lines of `[body.matrices]` (1 is its header), the text that the carets mark, and
+/// words of the error.
 type Case = (&'static str, &'static [(usize, &'static str)], &'static str, &'static [&'static str]);
 
 /// The lines after the law's seven.

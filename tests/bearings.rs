@@ -1,4 +1,5 @@
-//! Wheels as they are: the scenarios that ship do what their comments say, tachometers are read, and what cannot be is refused.
+//! Real wheels: the shipped scenarios do what their comments say, tachometers are read, and impossible settings are
+//! refused.
 
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::{Column, Detail, Trace};
@@ -11,7 +12,7 @@ fn text(name: &str) -> String {
     std::fs::read_to_string(format!("{SCENARIOS}/{name}.toml")).expect("a file")
 }
 
-/// A scenario with some of its words changed.
+/// Returns a shipped scenario with some of its words changed.
 fn changed(name: &str, change: &[(&str, &str)]) -> Scenario {
     let mut text = text(name);
     for (from, to) in change {
@@ -21,19 +22,19 @@ fn changed(name: &str, change: &[(&str, &str)]) -> Scenario {
     Scenario::parse("wheels.toml", &text).expect("a scenario")
 }
 
-/// A count in each of the wheels' events.
+/// Returns a count of each of the wheels' events.
 fn counts(trace: &Trace, name: &str) -> Vec<u64> {
     let rows = trace.topic("/wheel_events").expect("events");
     let Some(Column::Counts(counts)) = rows.get(name) else { panic!("{name}") };
     counts.clone()
 }
 
-/// A number of each wheel in each row, wheel by wheel in a row.
+/// Returns a number of each wheel in each row, wheel by wheel within a row.
 fn of_wheels<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
     within(trace, topic, "wheels", name)
 }
 
-/// The largest pointing error about any axis from a time on (rad).
+/// Returns the largest pointing error about any axis from a time on (rad).
 fn worst(trace: &Trace, from: f64) -> f64 {
     let period = 0.25;
     let errors =
@@ -58,7 +59,7 @@ fn wheels_pass_through_zero_and_compensation_helps() {
         first.len() == 2 && (40.0..50.0).contains(&first[0]) && (170.0..190.0).contains(&first[1]),
         "{times:?}"
     );
-    // Heat is what friction took from the speeds: t |Omega| and c Omega² over the run.
+    // The heat is the work of friction: t |Omega| and c Omega² over the run.
     let (speeds, heat) =
         (of_wheels(&trace, "/wheels", "speed_rad_s"), of_wheels(&trace, "/bearings", "heat_j"));
     let lost: f64 = speeds.iter().map(|speed| 0.25 * (4e-3 * speed.abs() + 5e-5 * speed * speed)).sum();
@@ -115,7 +116,8 @@ fn drives_know_what_tachometers_read() {
     assert_eq!(known[4 * 44..4 * 45], known[4 * 79..4 * 80], "kept while it fails");
 }
 
-/// The elastic rates are largest where a line passes the mode at 92.9 rad/s: twice the speed at 46 rad/s, then the speed itself.
+/// The elastic rates are largest where a line passes the mode at 92.9 rad/s: twice the speed at 46 rad/s, then the
+/// speed itself.
 #[test]
 fn a_run_up_shakes_the_modes_that_it_passes() {
     let (metrics, trace) = flown(&changed("wheel-run-up", &[]), 0, Detail::Full);

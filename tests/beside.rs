@@ -1,4 +1,5 @@
-//! Runs side by side come to what each comes to alone, to the bit, whatever the processor, the width and the threads.
+//! Runs in batches have the results of single runs, to the bit, on every processor, at every width and with any number
+//! of threads.
 
 #![allow(clippy::large_stack_arrays, reason = "scenarios side by side")]
 
@@ -13,7 +14,7 @@ use flexsc_core::metrics::Selection;
 
 use crate::study::scenario;
 
-/// So many runs: some groups, and what is left.
+/// Number of runs: some full batches and a remainder.
 const RUNS: u64 = 19;
 /// Five modes with damping.
 const DAMPED: &str = "[{ frequency = 0.44, gain = 0.0213, damping = 0.002, displacement = 2.75e-6 }, \
@@ -21,7 +22,7 @@ const DAMPED: &str = "[{ frequency = 0.44, gain = 0.0213, damping = 0.002, displ
                       { frequency = 1.3, gain = 0.01, damping = 0.003 }, \
                       { frequency = 2.1, gain = 0.01, damping = 0.004 }, \
                       { frequency = 3.4, gain = 0.01, damping = 0.005 }]";
-/// After the kink of the ramps.
+/// Duration beyond the kink of the ramps (s).
 const SHORT: (&str, &str) = ("duration", "260.0");
 
 fn runs(scenario: &Scenario) -> Vec<CampaignRun> {
@@ -29,7 +30,7 @@ fn runs(scenario: &Scenario) -> Vec<CampaignRun> {
     (0..RUNS).map(|number| study.run(number).expect("a run")).collect()
 }
 
-/// Holds runs side by side against each alone; tells how many were not declined, with the widest lanes.
+/// Compares runs in a batch with single runs; returns the number of runs that the widest lanes did not decline.
 fn taken(what: &str, scenario: &Scenario) -> usize {
     let runs = runs(scenario);
     let alone: Vec<String> =
@@ -153,7 +154,7 @@ fn rows_depend_on_no_thread_and_no_neighbour() {
             let mut rows = Vec::new();
             let work = |run: &CampaignRun| Ok(Campaign::simulate(run, ())?);
             let tell = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
-                // All but how long it took.
+                // All fields but the duration of the computation.
                 rows.extend(outcome.map(|RunOutcome { number, drawn, metrics, .. }| {
                     format!("{number} {drawn:?} {metrics:?}")
                 }));

@@ -5,7 +5,7 @@ use serde_json::Value as Json;
 use crate::drawing::{BLACK, BLUE, Drawing, VERMILLION, near};
 use crate::util::{Dir, UNCERTAIN, has_extension, table};
 
-/// Quantile of some values as NumPy has it.
+/// Returns the quantile of some values as NumPy defines it.
 fn quantile(values: &[f64], q: f64) -> f64 {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -14,12 +14,12 @@ fn quantile(values: &[f64], q: f64) -> f64 {
     sorted[low] + part * (sorted[(low + 1).min(sorted.len() - 1)] - sorted[low])
 }
 
-/// The numbers of a column.
+/// Returns the numbers of a column.
 fn column(dir: &Dir, file: &str, name: &str) -> Vec<f64> {
     table(dir, file).iter().map(|row| row[name].parse().expect("a number")).collect()
 }
 
-/// The worst runs, as `plot --json` tells of them.
+/// Returns the worst runs, as `plot --json` prints them.
 fn worst(dir: &Dir, arguments: &str) -> Vec<Json> {
     let out = dir.run(&format!("plot {arguments} --json")).exits(0).out;
     let lines = out.lines().map(|line| serde_json::from_str::<Json>(line).expect("an object"));

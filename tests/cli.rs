@@ -1,4 +1,4 @@
-//! The command: its verbs, its words and its exit codes.
+//! The command: its verbs, its messages and its exit codes.
 
 use std::collections::BTreeMap;
 
@@ -49,7 +49,7 @@ fn check_accepts_the_good_and_refuses_the_bad() {
     dir.run("check relay-fixed.toml").exits(0).says(&["relay-fixed.toml: accepted", "20000 s", "2 modes"]);
     dir.write("bad.toml", UNCERTAIN.replace("k_t = 0.31", "k_t = 31"));
     dir.run("check relay-fixed.toml bad.toml").exits(2).says(&["bad.toml:18:7", "got 31"]);
-    // Every file is checked, whatever is wrong with those before.
+    // Every file is checked, also after a bad one.
     dir.run("check bad.toml relay-fixed.toml")
         .exits(2)
         .says(&["bad.toml:18:7", "relay-fixed.toml: accepted"]);
@@ -139,7 +139,7 @@ fn references(schema: &Json) -> Vec<String> {
     }
 }
 
-/// Whether a schema knows all keys of a value, and accepts the types of its numbers and strings.
+/// Checks that a schema has all keys of a value, and accepts the types of its numbers and strings.
 fn knows(root: &Json, schema: &Json, value: &toml::Value, path: &str) -> Result<(), String> {
     if let Some(reference) = schema["$ref"].as_str() {
         let target = root.pointer(reference.trim_start_matches('#')).expect("checked before");

@@ -1,13 +1,14 @@
-//! Which parts go together: every combination of law, sensor, estimator and actuator is tried, on one angle and on three axes.
+//! Combinations of parts: every combination of law, sensor, estimator and actuator is tried, on one axis and on three.
 //!
-//! What is accepted runs for 50 s, and what is refused names a key and a reason. The table in docs/combinations.md is made here.
+//! Accepted combinations run for 50 s, refused ones name a key and a reason. The table in docs/combinations.md is made
+//! here.
 
 use std::fmt::Write as _;
 
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::{Scenario, ScenarioError, Simulation};
 
-/// A kind: its name, its letter in the table, and its text.
+/// Kind of a part: its name, its letter in the table, and its text.
 type Kind = (&'static str, &'static str, &'static str);
 
 const LAWS: [Kind; 10] = [
@@ -164,7 +165,7 @@ modes = [
 ]
 ";
 
-/// What is around a body with three axes: nothing that pushes.
+/// Environment of a three-axis body without disturbing torques.
 const AROUND: &str = "[environment]
 orbit = { semi_major_axis = 7e6, inclination = 1.0 }
 magnetic_field = {}
@@ -198,7 +199,7 @@ at = [0.5, 0.0, 0.0]
 hinge = { about = [0, 1, 0], stiffness = 15.0, damping = 0.3, angle = 2e-3 }
 ";
 
-/// A combination as a scenario.
+/// Returns a combination as a scenario.
 fn combined(
     body: &str,
     law: Kind,
@@ -226,7 +227,7 @@ fn combined(
     Scenario::parse("combination.toml", &text)
 }
 
-/// The table of what is accepted on a body, and how many combinations that are; each is run.
+/// Returns the table of accepted combinations on a body, and their number; each is run.
 fn table(body: &str) -> (String, usize) {
     let mut accepted = 0;
     let mut table = format!("| law |{}\n|---|", ACTUATORS.map(|kind| format!(" {} |", kind.0)).concat());

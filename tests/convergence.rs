@@ -1,4 +1,4 @@
-//! When the recurrence observer converges, and which modes an observer can tell apart.
+//! Convergence of the recurrence observer, and modes that an observer can distinguish.
 //!
 //! Golden numbers: tests/golden/damping_oracle.py, NumPy and SciPy.
 
@@ -34,7 +34,7 @@ fn the_frozen_observer_converges_in_a_region() {
     {
         close(observer([w1, 0.0, 0.0]).area(kappa), area, 0.01);
     }
-    // Nothing converges beyond kappa = 8, and the edges are where it begins to.
+    // The observer converges with no kappa beyond 8, and the edges are those of its convergence.
     assert_eq!(of.area(8.1), 0.0);
     for edge in of.region(1.5, &[0.6, 1.2, 1.8]) {
         let (low, high) = edge.next.expect("a region");
@@ -66,7 +66,7 @@ fn the_turning_regressor_allows_far_less() {
     close(near.spectral_radius(0.01), observer([0.05, 0.2, 0.15]).spectral_radius(0.01), 5e-3);
 }
 
-/// Persistence of excitation of two modes (Hz) over random bursts of a time (s).
+/// Returns the persistence of excitation of two modes (Hz) over random bursts of a time (s).
 fn told_apart(modes: [f64; 2], time: f64, run: u64) -> f64 {
     let frequency = |hertz: f64| Frequency::new(TURN * hertz).expect("a frequency");
     let tracker = |hertz: f64| Tracker {
@@ -79,7 +79,7 @@ fn told_apart(modes: [f64; 2], time: f64, run: u64) -> f64 {
     let (mut rows, mut left, mut wait, mut sign) = (Vec::new(), 0, 0, 1.0);
     for _ in 0..(time / CYCLE) as usize {
         rows.push(observer.sensitivities());
-        // What it expects, so that the parameters stay.
+        // The predicted rate, so that the parameters stay.
         observer.update(observer.rate() + observer.modes().iter().map(|mode| mode.phase[0]).sum::<f64>());
         if left == 0 && wait == 0 {
             (left, wait) = (1 + draws.index(10), draws.index(20));

@@ -1,4 +1,4 @@
-//! What is asked for has bounds that are checked before anything is done: sizes of runs, campaigns, grids and files.
+//! Limits of requests, checked before any work: sizes of runs, campaigns, grids and files.
 
 use std::process::Command;
 
@@ -36,7 +36,7 @@ fn refused(ran: Ran, words: &[&str]) {
     assert!(ran.err.len() < 2000 && ran.out.is_empty());
 }
 
-/// A key that asks for more steps than any machine does, or for more memory than any has.
+/// A key that requires more steps or more memory than any machine has.
 #[test]
 fn no_key_asks_for_what_cannot_be_done() {
     let thrusters = "[actuator.thrusters]\ntorque = 1.0\nperiod = 1e-11";
@@ -99,7 +99,7 @@ fn no_key_asks_for_what_cannot_be_done() {
     }
 }
 
-/// Periods and delays beyond a run's duration are no size: nothing happens after its end.
+/// Periods and delays beyond a run's duration do not count: no event follows its end.
 #[test]
 fn times_beyond_the_end_are_harmless() {
     for (line, other) in [
@@ -122,7 +122,7 @@ fn times_beyond_the_end_are_harmless() {
     }
 }
 
-/// What takes long says how long, and is done with a yes.
+/// Long work prints its duration, and is done with a yes.
 #[test]
 fn long_work_needs_a_yes() {
     let dir = Dir::holding(
@@ -141,7 +141,7 @@ fn long_work_needs_a_yes() {
     assert_eq!(dir.run_bounded("check a.toml --json").exits(0).json()["needs_yes"], true);
     let running = dir.start("simulate a.toml --log none --yes");
     std::thread::sleep(std::time::Duration::from_millis(500));
-    // It was at work, and not refused.
+    // The run had begun, and was not refused.
     assert_eq!(running.signal("KILL").code, None);
 
     dir.write("b.toml", LOOP.replace("[log]\nperiod = 0.1", "[log]\nperiod = 1e-7"));
@@ -149,7 +149,7 @@ fn long_work_needs_a_yes() {
         dir.run_bounded("simulate b.toml --log full"),
         &["`log.period` makes 1.0e11 steps", "TB for logs"],
     );
-    // An exposure is looked at several times.
+    // Each exposure costs several evaluations.
     dir.write(
         "d.toml",
         "duration = 1e5
@@ -186,7 +186,7 @@ fn campaigns_and_grids_have_bounds() {
         let ran = dir.run_bounded(&format!("simulate b.toml --yes --runs {runs}")).exits(2);
         assert!(ran.err.contains("a campaign has at most 100000000 runs"), "{}", ran.err);
     }
-    // The last numbers there are.
+    // The last numbers of the range.
     let ran =
         dir.run_bounded("simulate b.toml --json --runs 18446744073709551612:18446744073709551615").exits(0);
     assert_eq!(ran.out.lines().count(), 3);
@@ -352,7 +352,7 @@ fn archives_have_bounds() {
     }
 }
 
-/// What is shipped, and ordinary large studies, need no yes.
+/// Shipped scenarios, and ordinary large studies, need no yes.
 #[test]
 fn ordinary_work_needs_no_yes() {
     let dir = Dir::new();

@@ -37,7 +37,7 @@ fn trace(text: &str) -> Trace {
     traced(&scenario)
 }
 
-/// The switchings that a log tells, against a file.
+/// Compares the switchings in a log with a file.
 fn switches_as(text: &str, name: &str) {
     let trace = trace(text);
     let commands = trace.topic("/command").expect("switchings");
@@ -73,13 +73,14 @@ fn a_scenario_with_a_relay_through_a_wheel() {
 fn a_scenario_whose_damping_couples_the_modes() {
     let text = format!("duration = 900.0\n{}k_t = 0.3389\n", RELAY.replace("MORE", DASHPOT));
     switches_as(&text, "b_damping_3389_events");
-    // A log holds what repeats it.
+    // A log contains the scenario that repeats it.
     let scenario = Scenario::parse("linear.toml", &text).expect("a valid scenario");
     let again = Scenario::parse("again.toml", &scenario.self_contained().to_toml()).expect("valid");
     assert_eq!(again.model, scenario.model);
 }
 
-/// A wheel that opposes the rigid rate alone: x_r' decays on its own, by exp(-a t), and the modes feel all of it.
+/// A wheel that opposes the rigid rate alone: x_r' decays on its own, by exp(-a t), and drives the modes with all of
+/// it.
 #[test]
 fn back_emf_of_the_rigid_rate() {
     let text = RELAY.replace("MORE", "").replace("2e-4", "2e-4\nopposes = \"rigid_rate\"");
@@ -94,8 +95,8 @@ fn back_emf_of_the_rigid_rate() {
     assert_eq!(rates.len(), 5);
 }
 
-/// A structure by its matrices, with dashpots between its parts: 1 N m turns the hub as mpmath's matrix exponential of the
-/// coordinates themselves has it (40 digits).
+/// A structure by its matrices, with dashpots between its parts: 1 N m turns the hub as mpmath's matrix exponential of
+/// the coordinates themselves has it (40 digits).
 #[test]
 fn a_damping_matrix_of_a_structure() {
     let body = "[body.matrices]
@@ -121,7 +122,7 @@ outputs = [{ name = \"tip\", weights = { q1 = 1 } }]";
     }
 }
 
-/// What does not know the coupling is refused by the key that couples.
+/// Parts that do not support the coupling are refused, by the key that couples.
 #[test]
 fn what_does_not_go_with_coupled_damping_is_refused() {
     let dir = Dir::with(&["relay-fixed", "relay-wheel", "rotation-sine", "wheel-ekf"]);
@@ -144,7 +145,7 @@ fn what_does_not_go_with_coupled_damping_is_refused() {
     dir.run("cycle relay-wheel.toml").exits(2).says(&["not for a wheel"]);
 }
 
-/// Damping that is proportional, written as a matrix, is what ratios are.
+/// Proportional damping, written as a matrix, is equal to damping ratios.
 #[test]
 fn a_diagonal_damping_matrix_is_ratios() {
     let modes = |damping: &str| RELAY.replace("MORE", damping).replace("2e-4", "0.0");

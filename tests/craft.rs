@@ -140,7 +140,7 @@ fn increasing(matrix: &DMatrix<f64>) -> Vec<f64> {
     values
 }
 
-/// What the parts come to on the way, with wheels that turn freely; the numbers are of two other programs.
+/// Intermediate results of the assembly, with freely rotating wheels; the numbers are those of two other programs.
 #[test]
 fn the_parts_come_to_the_right_sums() {
     let craft = open();
@@ -235,7 +235,7 @@ fn one_mode_is_solved_by_hand() {
     near(mode.moments[(1, 2)], -(1.0 - centre) * 3.5 / s.sqrt(), 1e-14);
 }
 
-/// A mass on a spring, along whose way lies the centre of mass: two bodies on a spring.
+/// A mass on a spring that moves along the line through the centre of mass: two bodies on a spring.
 #[test]
 fn a_sloshing_mass_is_an_appendage() {
     let text = "duration = 1.0\n[spacecraft]\nmass = 400.0\ninertia = [[90, 0, 0], [0, 80, 0], [0, 0, 70]]\n[[appendage]]\n\
@@ -260,7 +260,7 @@ fn a_sloshing_mass_is_an_appendage() {
     near(share.abs(), along / 3.0, 1e-13);
 }
 
-/// What does not change the spacecraft changes no number but by rounding: order of the appendages, point O, axes.
+/// Changes that leave the spacecraft the same change numbers by rounding only: order of the appendages, point O, axes.
 #[test]
 fn order_origin_and_axes_do_not_matter() {
     let scenario = reference(&[]).expect("valid");

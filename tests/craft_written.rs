@@ -1,4 +1,4 @@
-//! Spacecraft from parts as they are written: files, tables and texts, `flexsc modes`, and what is refused.
+//! Written forms of spacecraft from parts: files, tables and texts, `flexsc modes`, and refused ones.
 
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
@@ -9,7 +9,8 @@ use flexsc_core::body::craft::{Craft, HubRotor};
 use crate::craft::{CRAFT, ONE, craft, golden, near, reference, three};
 use crate::util::Dir;
 
-/// Modes of a file are those of the scenario, a scenario that is written again is the same spacecraft, keys can be drawn.
+/// Modes in a file equal those in the scenario, a scenario that is written again is the same spacecraft, keys can be
+/// drawn.
 #[test]
 fn files_tables_and_texts_are_the_same_spacecraft() {
     let dir = Dir::new();
@@ -79,7 +80,7 @@ fn appendages_may_be_rigid() {
     );
 }
 
-/// What is replaced by what, the line of the file that the error points at, and words of the error.
+/// Case: text that is replaced, its replacement, the line of the file that the error points at, and words of the error.
 type Case = (&'static str, &'static str, usize, &'static [&'static str]);
 
 #[rustfmt::skip] // One case a line.

@@ -119,7 +119,7 @@ fn delayed_feedback_is_stable_up_to_a_gain() {
     // Without damping a delay of more than a quarter of a period makes every gain unstable.
     assert!(delay_margin(TURN, 0.3, 0.0).expect("a border").gain < 1e-12);
     close(delay_margin(TURN, 0.2, 0.0).expect("a border").gain, 2.5 * PI - TURN * TURN / (2.5 * PI), 1e-12);
-    // Far intervals and long delays end, too.
+    // The search ends also for far intervals and long delays.
     assert!(delay_margin(1e3, 1e3, 0.3).expect("a border").gain >= 600.0 * (1.0 - 1e-12));
 }
 
@@ -178,7 +178,7 @@ fn a_relay_brings_a_mode_to_rest() {
         close(time(&barely, 5e-4, 1e-4).expect("there"), time(&free, 5e-4, 1e-4).expect("there"), 1e-7);
     }
     assert_eq!(damped.threshold_time(1e-5, 1e-4), Some(0.0));
-    // One that is fed never gets there.
+    // An amplitude that the relay drives never falls to the threshold.
     let fed = Decay::new(-1e-6, 0.0);
     assert_eq!((fed.threshold_time(1e-4, 1e-5), fed.thrust_time(1e-4, 1e-5)), (None, None));
     close(fed.amplitude(1e-4, 10.0), 1e-4 + 2e-5 / PI, 1e-12);

@@ -1,4 +1,4 @@
-//! The relay of active damping by itself, its guards, and bad keys of it and of adaptive observers.
+//! The relay of active damping alone, its guards, and bad keys of the relay and of adaptive observers.
 
 use flexsc_core::belief::{Belief, ElasticRate};
 use flexsc_core::law::{ActiveDamping, Authority, DampingGuards, DampingRelay};
@@ -15,13 +15,13 @@ fn relay(spec: &ActiveDamping) -> DampingRelay {
     DampingRelay::new(spec, 0.2, &authority)
 }
 
-/// What is believed of a mode that may be acted on or not.
+/// Returns the estimate of a mode, trusted or not.
 fn believed(mode: ElasticRate, trusted: bool) -> Belief {
     Belief { elastic: vec![mode], trusted, ..Belief::default() }
 }
 
-/// What it does about one mode of 0.2 Hz with this elastic rate, where the rigid rate is 9e-5 rad/s from where it should be
-/// and 1e-4 rad/s are allowed.
+/// Returns the on-time for one mode of 0.2 Hz with this elastic rate, if the rigid rate is off by 9e-5 rad/s and 1e-4
+/// rad/s are allowed.
 fn fired(relay: &mut DampingRelay, rate: f64, influence: f64, gates: [bool; 2]) -> f64 {
     let [free, trusted] = gates;
     let belief = believed(ElasticRate { rate, frequency: 1.256_637, influence }, trusted);
@@ -67,7 +67,8 @@ fn the_relay_keeps_its_rules() {
     close(relay(&ActiveDamping::default()).ahead(), 0.3, 1e-12);
 }
 
-/// 75 cycles at one rate, then 75 at another: the pause comes if that is more than 0.9 of the first, and lasts 300 cycles.
+/// 75 cycles at one rate, then 75 at another: the pause comes if that is more than 0.9 of the first, and lasts 300
+/// cycles.
 #[test]
 fn the_watchdog_rests_where_nothing_falls() {
     let guards = |watchdog| DampingGuards { dead_zone: false, watchdog, ..DampingGuards::default() };
@@ -81,7 +82,7 @@ fn the_watchdog_rests_where_nothing_falls() {
     }
 }
 
-/// Where the delay is long for the cycle, the limit cycle sets the threshold: 9.95e-6 rad/s of the yaw mode.
+/// If the delay is long for the cycle, the limit cycle sets the threshold: 9.95e-6 rad/s of the yaw mode.
 #[test]
 fn the_threshold_stays_off_the_limit_cycle() {
     let yaw = [1.555_716_68, 5.908_320e-5];

@@ -1,20 +1,21 @@
-//! The same numbers on every machine: fingerprints of runs that use all of the engine's arithmetic.
+//! Equal numbers on every machine: fingerprints of runs that use all of the engine's arithmetic.
 //!
-//! They say that a run repeats to the last bit, not that it is right; `relay.rs`, `cycles.rs` and `events.rs` say that. A change of
-//! the engine's arithmetic, or of what a seed draws, changes them: put the new ones here, and say so in the changelog.
+//! They say that a run repeats to the last bit, not that it is right; `relay.rs`, `cycles.rs` and `events.rs` say that.
+//! A change of the engine's arithmetic, or of what a seed draws, changes them: put the new ones here, and say so in the
+//! changelog.
 
 use flexsc_core::record::{Column, Log};
 
 use crate::util::Dir;
 
-/// FNV-1a.
+/// Returns the FNV-1a hash of a text.
 fn fingerprint(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |hash, byte| {
         (hash ^ u64::from(byte)).wrapping_mul(0x0000_0100_0000_01b3)
     })
 }
 
-/// The metrics in one row, each with all of its fields and every digit.
+/// Returns the metrics in one row, each with all of its fields and every digit.
 fn metrics(dir: &Dir, log: &str) -> String {
     let columns = Log::open(&dir.path(log)).and_then(|log| log.columns("/metrics")).expect("metrics");
     let Some(Column::Rows(counts, fields)) = columns.get("metrics") else { panic!("no metrics") };
@@ -38,9 +39,10 @@ fn metrics(dir: &Dir, log: &str) -> String {
 
 #[test]
 fn runs_repeat_to_the_last_bit() {
-    // (scenario, topic, fingerprint): undamped with adaptation; coupled modes; damped with noise, quadrature and drawn numbers;
-    // wheels with friction, tachometers and an attitude filter; a filter with modes; panels that turn; actuators of several kinds;
-    // three axes, whose metrics hold energies and angles to the last bit; with adaptive observers and active damping.
+    // (scenario, topic, fingerprint): undamped with adaptation; coupled modes; damped with noise, quadrature and drawn
+    // numbers; wheels with friction, tachometers and an attitude filter; a filter with modes; panels that turn;
+    // actuators of several kinds; three axes, whose metrics hold energies and angles to the last bit; with adaptive
+    // observers and active damping.
     let runs = [
         ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
         ("relay-adaptive", "", "/adaptation", 0xc5d3_fe5a_3b03_bb60),

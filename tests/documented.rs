@@ -7,18 +7,18 @@ use serde_json::Value as Json;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/scenario.md");
 
-/// A section: the tables of a scenario that its heading names, and the words that its code has.
+/// Section of a page: the tables of a scenario that its heading names, and the words in its code.
 struct Section {
     names: Vec<String>,
     words: BTreeSet<String>,
 }
 
-/// The words of a code.
+/// Returns the words in a code.
 fn words(code: &str) -> impl Iterator<Item = String> + '_ {
     code.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').map(str::to_owned)
 }
 
-/// The sections of a page.
+/// Returns the sections of a page.
 fn sections(page: &str) -> Vec<Section> {
     let mut sections: Vec<Section> = Vec::new();
     let mut fenced = false;
@@ -38,7 +38,7 @@ fn sections(page: &str) -> Vec<Section> {
     sections
 }
 
-/// Whether the page has a key: the sections that name the nearest table above it have the rest of its path.
+/// Returns true if the page has a key: the sections that name the nearest table above it contain the rest of its path.
 fn has(sections: &[Section], path: &str) -> bool {
     let above = |name: &str| path == name || path.starts_with(&format!("{name}."));
     let within = |name: &str| name.starts_with(&format!("{path}."));
@@ -56,7 +56,7 @@ fn has(sections: &[Section], path: &str) -> bool {
     words(rest).all(|word| word.is_empty() || known.contains(&word))
 }
 
-/// Goes through a schema: each key of each type, and whether the page has it in one of its places.
+/// Checks for each key of each type of a schema that the page has it in one of its places.
 fn walk(
     (schema, node): (&Json, &Json),
     (path, owner): (&str, &str),
@@ -89,7 +89,7 @@ fn every_key_is_documented() {
     walk((&schema, &schema), ("", "Scenario"), &[], &sections(&page), &mut keys);
     let missing: Vec<&String> = keys.values().filter(|(known, _)| !known).map(|(_, path)| path).collect();
     assert!(missing.is_empty(), "docs/scenario.md does not have {missing:?}");
-    // A key that is taken out of the page is missed.
+    // A key that is removed from the page is reported.
     let without = page.replace("`noise`", "`noises`");
     assert!(without != page && !has(&sections(&without), "sensor.sampled.noise"));
     assert!(keys.len() > 250 && has(&sections(&page), "sensor.sampled.noise"), "{}", keys.len());

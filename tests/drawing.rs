@@ -1,4 +1,4 @@
-//! Reading figures: their words, shapes and numbers.
+//! Reader of figures: their texts, shapes and numbers.
 
 use roxmltree::{Document, Node};
 
@@ -20,12 +20,12 @@ impl Drawing {
         Self(dir.text(&format!("figures/{name}.svg")))
     }
 
-    /// A file anywhere.
+    /// Reads a figure from any path.
     pub fn at(dir: &Dir, path: &str) -> Self {
         Self(dir.text(path))
     }
 
-    /// Something of each element that has it.
+    /// Returns a value of each element that has one.
     pub fn each<T>(&self, of: impl Fn(&Node<'_, '_>) -> Option<T>) -> Vec<T> {
         let document = Document::parse(&self.0).expect("well-formed XML");
         document.descendants().filter_map(|node| of(&node)).collect()
@@ -43,7 +43,7 @@ impl Drawing {
         }
     }
 
-    /// The points of all elements of a kind whose paint has a colour.
+    /// Returns the points of all elements of a kind with a paint of a colour.
     pub fn shapes(&self, kind: &str, paint: &str, colour: &str) -> Vec<Vec<Point>> {
         self.each(|node| {
             let is = node.has_tag_name(kind) && node.attribute(paint) == Some(colour);
@@ -51,13 +51,13 @@ impl Drawing {
         })
     }
 
-    /// The line of a colour with the most points, the first of such.
+    /// Returns the line of a colour with the most points, the first of such.
     pub fn line(&self, colour: &str) -> Vec<Point> {
         let lines = self.shapes("polyline", "stroke", colour);
         lines.into_iter().rev().max_by_key(Vec::len).expect("a line")
     }
 
-    /// Where a number stands beside an axis.
+    /// Returns the position of a number at an axis.
     pub fn number(&self, text: &str) -> Point {
         let place = |node: &Node<'_, '_>| {
             let is = node.has_tag_name("text") && node.text().map(str::trim) == Some(text);
@@ -67,7 +67,7 @@ impl Drawing {
         self.each(place).first().copied().unwrap_or_else(|| panic!("no number {text}"))
     }
 
-    /// The value across, by the numbers below the last panel, in the unit of the axis.
+    /// Returns the horizontal value at `x`, by the numbers below the last panel, in the unit of the axis.
     pub fn along(&self, x: f64) -> f64 {
         let number = |node: &Node<'_, '_>| {
             let text = node.text().filter(|_| node.has_tag_name("text"))?.trim().replace('−', "-");
@@ -81,13 +81,13 @@ impl Drawing {
         first.0 + (last.0 - first.0) * (x - first.1) / (last.1 - first.1)
     }
 
-    /// The value at a height, by two numbers of the axis upwards of the first panel.
+    /// Returns the vertical value at `y`, by two numbers of the vertical axis of the first panel.
     pub fn up(&self, y: f64, [low, high]: [&str; 2]) -> f64 {
         let ([a, b], [from, to]) = ([low, high].map(|text| self.number(text).1), [low, high].map(value));
         from + (to - from) * (y - a) / (b - a)
     }
 
-    /// The value across, by two numbers of the axis to the right.
+    /// Returns the horizontal value at `x`, by two numbers of the horizontal axis.
     pub fn across(&self, x: f64, [low, high]: [&str; 2]) -> f64 {
         let ([a, b], [from, to]) = ([low, high].map(|text| self.number(text).0), [low, high].map(value));
         from + (to - from) * (x - a) / (b - a)

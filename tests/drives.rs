@@ -1,4 +1,4 @@
-//! Appendages that turn: against an oracle of point masses, balances, what is refused, and the scenario that ships.
+//! Driven appendages: against an oracle of point masses, balances, refused settings, and the shipped scenario.
 
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::Detail;
@@ -17,7 +17,8 @@ fn parsed(text: &str) -> Scenario {
     Scenario::parse("driven.toml", text).expect("a scenario")
 }
 
-/// The kinetic energy of point masses, derived by nobody, moves the same way: `golden/driven_oracle.py`.
+/// Point masses, whose equations follow from their kinetic energy without a derivation by hand, move the same way:
+/// `golden/driven_oracle.py`.
 #[test]
 fn panels_of_point_masses_turn_as_the_oracle_says() {
     let trace = traced(&parsed(&golden()));
@@ -49,7 +50,7 @@ fn panels_of_point_masses_turn_as_the_oracle_says() {
     }
 }
 
-/// A drive that rests is a body without one, but for rounding.
+/// A body with a drive at rest equals one without a drive, but for rounding.
 #[test]
 fn a_drive_at_rest_changes_nothing() {
     let text = golden();
@@ -71,7 +72,7 @@ fn a_drive_at_rest_changes_nothing() {
     }
 }
 
-/// Nothing acts from outside: the momentum stays whatever drives and wheels do, and looking changes nothing.
+/// Without external torques the momentum is constant whatever drives and wheels do, and recording changes no number.
 #[test]
 fn momentum_stays_while_drives_turn() {
     let text = golden();

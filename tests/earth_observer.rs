@@ -1,4 +1,5 @@
-//! The Earth observer that ships: a spacecraft from parts, wheels, gyro, star tracker, attitude filter, law and turn together.
+//! The shipped Earth observer: spacecraft from parts, wheels, gyro, star tracker, attitude filter, law and turn
+//! together.
 
 use flexsc_core::metrics::Value;
 use flexsc_core::record::{Column, Detail, Trace};
@@ -7,7 +8,7 @@ use flexsc_core::scenario::Scenario;
 use crate::traces::{column, flown, traced};
 use crate::util::SCENARIOS;
 
-/// The scenario with some of its words changed.
+/// Returns the scenario with some of its words changed.
 fn observer(change: &[(&str, &str)]) -> Scenario {
     let mut text = std::fs::read_to_string(format!("{SCENARIOS}/earth-observer.toml")).expect("a file");
     for (from, to) in change {
@@ -17,9 +18,9 @@ fn observer(change: &[(&str, &str)]) -> Scenario {
     Scenario::parse("observer.toml", &text).expect("a scenario")
 }
 
-/// The largest error of an axis between two times (rad).
+/// Returns the largest error of an axis between two times (rad).
 fn worst(trace: &Trace, from: f64, to: f64) -> f64 {
-    // Rows come with the period of the log.
+    // Rows have the period of the log.
     let times: Vec<f64> = (0..=1200).map(|row| 0.25 * f64::from(row)).collect();
     let errors =
         ["roll", "pitch", "yaw"].map(|axis| column(trace, "/pointing", &format!("{axis}_error_rad")));
@@ -57,7 +58,7 @@ fn it_does_what_its_comment_says() {
     assert!(turning < 3e-4 && pointing < 1e-6, "{turning} {pointing}");
 }
 
-/// The innovations of a filter that knows its noise have the variance that it expects, over many runs.
+/// The innovations of a filter with the true noise have the variance that it predicts, over many runs.
 #[test]
 fn its_filter_is_as_good_as_it_says() {
     let scenario = observer(&[]);
@@ -75,7 +76,7 @@ fn its_filter_is_as_good_as_it_says() {
     assert!((0.6..1.4).contains(&nees), "NEES {nees}");
 }
 
-/// Nothing outside acts: the momentum of body, panels and wheels together stays as it is, whatever the wheels do.
+/// Without external torques the momentum of body, panels and wheels together is constant, whatever the wheels do.
 #[test]
 fn wheels_and_panels_change_no_momentum() {
     let trace = traced(&observer(&[("speeds = [200, -200, 200, -200]", "speeds = [200, -150, 120, -90]")]));

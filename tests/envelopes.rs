@@ -1,4 +1,5 @@
-//! The envelope on three axes: against closed forms, the true motion and the log, and the adaptation that learns from it.
+//! The envelope on three axes: against closed forms, the true motion and the log, and the adaptation that learns from
+//! it.
 
 use flexsc_core::Scenario;
 use flexsc_core::record::Trace;
@@ -36,7 +37,7 @@ fn run(body: &str, law: &str, rest: &str) -> Trace {
     traced(&scenario)
 }
 
-/// The means over windows of 7 s.
+/// Returns the means over windows of 7 s.
 fn means(body: &str, law: &str, form: &str) -> Vec<f64> {
     let rest = format!("estimator = {{ envelope = {{ window = 7.0, form = \"{form}\" }} }}");
     column(&run(body, law, &rest), "/envelope_mean", "mean_rad").to_vec()
@@ -58,14 +59,14 @@ fn a_mode_that_rings_down_has_the_envelope_of_its_closed_form() {
 
 #[test]
 fn the_monitor_knows_what_the_commanded_torque_does_to_modes() {
-    // Its own model, and the true motion: the same where the modes do not act back on the rotation.
+    // Envelopes from the model and from the true motion are equal if the modes do not act back on the rotation.
     let [dynamic, trigonometric, truth] =
         ["dynamic", "trigonometric", "truth"].map(|form| means(BODY, PD, form));
     for ((dynamic, trigonometric), truth) in dynamic.iter().zip(&trigonometric).zip(&truth) {
         close(*dynamic, *truth, 1e-9);
         close(*trigonometric, *truth, 1e-9);
     }
-    // And on a spacecraft nearly so.
+    // On a spacecraft they are nearly equal.
     let wheels = format!("{CRAFT}[actuator.wheels]\narrangement = \"pyramid\"\ninertia = 0.01\n");
     let [dynamic, truth] = ["dynamic", "truth"].map(|form| means(&wheels, PD, form));
     for (dynamic, truth) in dynamic.iter().zip(&truth) {

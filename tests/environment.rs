@@ -1,11 +1,11 @@
-//! What surrounds a body with three axes, through whole scenarios.
+//! The environment of a three-axis body, in whole scenarios.
 
 use flexsc_core::record::Trace;
 use flexsc_core::{Scenario, ScenarioError};
 
 use crate::traces::{column, traced, within};
 
-/// Everything at once.
+/// All parts of the environment together.
 const AROUND: &str = "[environment]\ntorque = [2e-4, 0.0, -1e-4]\n\
     gravity_gradient = { orbit_rate = 1.1e-3, local = [0.6, 0.0, 0.8, 0.0] }\n\
     solar_pressure = { force = [1e-4, -2e-4, 5e-5], at = [0.2, 0.4, -0.3], shadow = [[33.3, 61.7], [90.05, 1000.0]] }\n\
@@ -28,14 +28,15 @@ fn run(body: &str, around: &str, period: f64) -> Trace {
     traced(&scenario)
 }
 
-/// The disturbing torques, three a row.
+/// Returns the disturbing torques, three a row.
 fn torques(trace: &Trace) -> &[f64] {
     within(trace, "/torques", "axes", "disturbance_nm")
 }
 
 const POINTING: [&str; 4] = ["q_w", "q_x", "q_y", "q_z"];
 
-/// A rigid spacecraft moves in the flow of spacecraft as a spatial body does in its own, the torque of its surroundings included.
+/// A rigid spacecraft in the flow of spacecraft has the motion of a three-axis body in its own flow, environment
+/// torques included.
 #[test]
 fn both_motions_of_a_rigid_body_agree() {
     let spacecraft = run(&format!("[spacecraft]\n{HUB}"), AROUND, 1.0);
@@ -78,7 +79,7 @@ fn looking_more_often_changes_no_bit() {
                 "{topic} {name}"
             );
         }
-        // The surroundings act, and their shadow too.
+        // The environment acts, and so does its shadow.
         let without = run(&body, "", 0.5);
         let bright = run(&body, &AROUND.replace(", shadow = [[33.3, 61.7], [90.05, 1000.0]]", ""), 0.5);
         for other in [without, bright] {
@@ -125,7 +126,7 @@ fn what_does_not_fit_is_refused() {
     refused(&rigid, &around("gravity_gradient = { orbit_rate = 1e15 }"), &["`duration` makes", "steps"]);
 }
 
-/// Faster than its modes can tell a spacecraft is refused, and sooner where first moments are not known.
+/// A spacecraft that rotates faster than its modes allow is refused, and sooner if first moments are not known.
 #[test]
 fn a_spacecraft_that_turns_too_fast_is_refused() {
     let panel = |rate: &str, panel: &str, rest: &str| {
@@ -170,7 +171,7 @@ fn a_spacecraft_that_turns_too_fast_is_refused() {
     }
 }
 
-/// What nothing can integrate is refused before it begins, and what takes long needs a yes.
+/// Rotations that cannot be integrated are refused before the run, and long ones need a yes.
 #[test]
 fn steps_of_a_rotation_are_counted() {
     let long = |duration: f64, panel: &str| {
@@ -187,7 +188,7 @@ fn steps_of_a_rotation_are_counted() {
     assert!(years.excess().is_some_and(|why| why.starts_with("`duration` makes")), "{years:?}");
 }
 
-/// The Sun of the date is where the same direction, given, has it; without a date there is none.
+/// The Sun of the date acts like a given direction; without a date it is refused.
 #[test]
 fn the_sun_of_the_date_is_a_direction() {
     let text = |sun: &str, epoch: &str| {

@@ -1,4 +1,4 @@
-//! The rules of time: no crossing is missed, and nothing that watches a run changes it.
+//! Rules of time: no crossing is missed, and recording does not change a run.
 
 use std::convert::Infallible;
 
@@ -57,7 +57,7 @@ fn no_crossing_is_missed() {
         let start = state.angle();
         let mut away = || 3e-4 * stream.uniform();
         let mut guards = [Guard::at_least(start + away()), Guard::at_most(start - away())];
-        // Every other time both face one way, and the second one may be the nearer.
+        // In every other trial both guards face one way, and the second one may be the nearer.
         if trial % 2 == 0 {
             guards[1] = Guard::at_least(start + away());
         }
@@ -66,7 +66,7 @@ fn no_crossing_is_missed() {
         let trip =
             locate(&segment, &guards, horizon, &mut there, || Ok::<_, Infallible>(())).expect("not stopped");
         let until = trip.map_or(5.0, |trip| trip.after.seconds());
-        // Nothing was crossed before, seen at 20 000 instants, within the rounding of the angle.
+        // No level is crossed before, at 20 000 instants, within the rounding of the angle.
         let mut probe = state.clone();
         for index in 0..20_000 {
             let sensed = segment.at(until * f64::from(index) / 20_000.0, &mut probe);

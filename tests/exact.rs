@@ -1,4 +1,5 @@
-//! Metrics are those of the motion, not of a log: the same bits whatever looks on, and the numbers of independent computations.
+//! Metrics are those of the motion, not of a log: equal bits with any record, and the numbers of independent
+//! computations.
 
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, CampaignRun};
@@ -42,7 +43,7 @@ fn no_log_has_a_part_in_the_metrics() {
             let scenario = at(period);
             for detail in [Detail::Events, Detail::Full] {
                 let logged = beside(&scenario, Trace::new(detail));
-                // As text, whose digits are those of all bits, and no number equal to none.
+                // Compared as text, with digits for all bits, because NaN does not equal NaN.
                 assert_eq!(alone.to_json().to_string(), logged.to_json().to_string(), "{name}, {period} s");
             }
         }
@@ -138,7 +139,7 @@ band = 4e-4
     assert_eq!(word(&told, "goal"), "missed");
 }
 
-/// The largest value that a full log holds; of observed coordinates, of each.
+/// Returns the largest value in a full log, for observed coordinates that of each.
 fn largest_logged(scenario: &Scenario, topic: &str) -> Vec<f64> {
     let mut trace = Trace::new(Detail::Full);
     beside(scenario, &mut trace);

@@ -1,4 +1,4 @@
-//! Star trackers that gather light: their readings against the motion itself, looked at instant by instant.
+//! Star trackers with an exposure: their samples against the motion itself, evaluated instant by instant.
 
 use nalgebra::Quaternion;
 
@@ -10,7 +10,7 @@ use crate::spatial::FREE;
 use crate::traces::{column, traced};
 use crate::util::SCENARIOS;
 
-/// A scenario that ships, with some of its words changed.
+/// Returns a shipped scenario with some of its words changed.
 fn shipped(name: &str, change: &[(&str, &str)]) -> Scenario {
     let path = format!("{SCENARIOS}/{name}.toml");
     changed(std::fs::read_to_string(&path).expect("a file"), change)
@@ -24,12 +24,12 @@ fn changed(mut text: String, change: &[(&str, &str)]) -> Scenario {
     Scenario::parse("exposure.toml", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// A run that is looked at.
+/// Run whose motion is evaluated at chosen instants.
 struct Looked {
     run: Simulation,
     row: Vec<f64>,
     places: [usize; 3],
-    /// By how much each mode turns the tracker beyond the axes that the attitude is of.
+    /// Rotation of the tracker by each mode, relative to the axes of the attitude.
     turns: Vec<Vector>,
 }
 
@@ -64,14 +64,14 @@ impl Looked {
         Quaternion::new(at[0], at[1], at[2], at[3])
     }
 
-    /// The attitude of the tracker.
+    /// Returns the true attitude of the tracker.
     fn attitude(&self) -> Quaternion<f64> {
         let modes = &self.run.spatial_state().expect("three axes").modes;
         let moved = modes.iter().zip(&self.turns).map(|(phase, turns)| turns * phase.displacement);
         self.hub() * rotation(&moved.sum())
     }
 
-    /// The attitude that was told last.
+    /// Returns the attitude that was reported last.
     fn told(&self) -> Quaternion<f64> {
         // Errors are twice the vectors of quaternions from the origin.
         let error = |place: usize| {
@@ -82,8 +82,8 @@ impl Looked {
     }
 }
 
-/// The attitude told of an exposure in the middle of which a tracker at a point is at a time (s), by how much it is off the mean
-/// over so many short parts, and off the attitude of the middle (rad).
+/// Returns the errors (rad) of the attitude from an exposure whose middle is at `at` (s), of a tracker at a point:
+/// against the mean over `parts` short intervals, and against the attitude of the middle.
 fn off(scenario: &Scenario, point: &str, [at, exposure, latency]: [f64; 3], parts: u32) -> [f64; 2] {
     let instant = |t: f64| Instant::START + Span::from_seconds(t);
     let mut looked = Looked::new(scenario, point);
@@ -97,7 +97,7 @@ fn off(scenario: &Scenario, point: &str, [at, exposure, latency]: [f64; 3], part
             seen.push((looked.attitude(), weight / f64::from(parts)));
         }
     }
-    // Another run, which nobody looks at on the way.
+    // Another run, without evaluations in between.
     let mut run = Looked::new(scenario, point);
     run.go(instant(at));
     let middle = run.attitude();
@@ -107,7 +107,7 @@ fn off(scenario: &Scenario, point: &str, [at, exposure, latency]: [f64; 3], part
     [(told - mean).norm(), told.norm()]
 }
 
-/// Exposures with departures in them, of every kind of body.
+/// Exposures that contain starts of segments, on every kind of body.
 #[test]
 fn a_reading_is_the_mean_of_the_motion_over_its_exposure() {
     // Without noise: readings are compared to 1e-12 rad.
@@ -115,7 +115,7 @@ fn a_reading_is_the_mean_of_the_motion_over_its_exposure() {
     let given = format!("[estimator.attitude]\nattitude_{noise}");
     let known = ("[estimator.attitude]", &given[..]);
     let silent = (noise, "exposure = 0.4");
-    // Of a slew of a boom, under a law that decides four times a second.
+    // A slew of a boom, under a law that decides four times a second.
     let boom = shipped("flexible-boom", &[silent, known]);
     // Wheels that pass through zero, and shake the body.
     let friction = shipped(
@@ -131,9 +131,9 @@ fn a_reading_is_the_mean_of_the_motion_over_its_exposure() {
     let crossed = column(&traced(&friction), "/wheel_events", "time_s").to_vec();
     let near = |middle: &f64| crossed.iter().any(|t| (t - middle).abs() < 0.15 && (t - middle).abs() > 0.02);
     let crossing = (2..600).map(|k| 0.5 * f64::from(k)).find(near).expect("a wheel that passes through zero");
-    // Panels that turn.
+    // Panels on drives.
     let drives = shipped("sun-tracking", &[(noise, "exposure = 1.0"), known]);
-    // Gimbals at work, and panels on hinges.
+    // Control moment gyros, and panels on hinges.
     let gathers = ("exposure = 0.2, noise = [2.4e-5, 2.4e-5, 1.5e-4]", "exposure = 0.4");
     let gimbals = shipped("agile-observer", &[gathers, known]);
     let hinges = shipped("panel-deployment", &[silent, known]);
@@ -171,7 +171,7 @@ from = 19.5
 to = 20.25
 ";
 
-/// Of bodies whose modes do not act back: they tumble, their motion begins anew after 20 s, and modes drift.
+/// Bodies whose modes do not act back: they tumble, their motion begins anew after 20 s, and modes drift.
 #[test]
 fn what_nothing_turns_back_is_averaged_too() {
     let (body, _) = FREE.split_once("[sensor.gyro]").expect("a body");
@@ -192,7 +192,7 @@ fn what_nothing_turns_back_is_averaged_too() {
     }
 }
 
-/// A motion that no law changes is that of a run without exposures, to the last bit, wherever the tracker is.
+/// A motion without a law equals that of a run without exposures, to the last bit, wherever the tracker is mounted.
 #[test]
 fn what_a_tracker_gathers_changes_nothing() {
     let craft = CRAFT.split_once("[law.pd]").expect("a law").0;

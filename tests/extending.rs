@@ -1,4 +1,5 @@
-//! docs/extending.md: which files a new kind of a role appears in, counted in the code for kinds that there are.
+//! Files in which a new kind of a role appears, as docs/extending.md lists them, counted in the code for existing
+//! kinds.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -8,7 +9,8 @@ use crate::rooms::{ENGINE, sources};
 
 const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 
-/// The row of the document, the folder of the role, how code names a kind of it, and in how many files elsewhere it may.
+/// Row of the document, folder of the role, name of a kind in code, and the largest number of files elsewhere that name
+/// it.
 const KINDS: [(&str, &str, &str, usize); 9] = [
     ("| a law |", "law", "Law::Attitude", 3),
     ("| a sensor |", "sensor", "Sensor::StarTracker", 2),
@@ -21,7 +23,7 @@ const KINDS: [(&str, &str, &str, usize); 9] = [
     ("| an actuator about each axis |", "actuator", "Actuator::Hold", 3),
 ];
 
-/// A path in a crate of the engine from its `src` on; others whole.
+/// Returns the path from `src` on for a crate of the engine, and other paths whole.
 fn within_the_engine(name: &str) -> &str {
     let part = name.split('/').nth(1).unwrap_or_default();
     if ENGINE.contains(&part) { name.split_once("/src/").map_or(name, |(_, short)| short) } else { name }

@@ -1,4 +1,5 @@
-//! Failures of actuators and sensors: each changes what is given as it says, from the instant that it names, and nobody knows.
+//! Failures of actuators and sensors: each has its effect from its own instant on, and laws and estimators are not
+//! informed.
 
 use flexsc_core::Scenario;
 use flexsc_core::record::{Column, Trace};
@@ -19,7 +20,7 @@ fn refused(text: &str) -> String {
 
 const RIGID: &str = "duration = 20.0\nlog = { period = 1.0 }\n[body.planar]\ninertia = 100.0\n";
 
-/// What is added turns a body by its integrals, and a mode as an oscillator that it drives.
+/// Added torques turn a body by their integrals, and drive a mode as an oscillator.
 #[test]
 fn a_constant_and_a_sine_are_added_to_nothing() {
     let text = format!(
@@ -59,7 +60,7 @@ fn a_constant_and_a_sine_are_added_to_nothing() {
     }
 }
 
-/// Of each actuator of an axis: half, the other way, stuck and dead, against a rigid body that is pushed so.
+/// Failures of each axis' actuator: half, reversed, stuck and dead, against a rigid body under such torques.
 #[test]
 fn torques_are_scaled_stuck_and_dead() {
     let faults = "faults = [{ scaled = { from = 2.0, to = 8.0, factor = -0.5 } }, { stuck = { from = 8.0, to = 10.0 } }, \
@@ -120,7 +121,7 @@ fn a_wheel_fails_alone() {
     }
     let norms = column(&trace, "/energy", "momentum_nm_s");
     assert!(norms.iter().all(|norm| (norm / norms[0] - 1.0).abs() < 1e-12));
-    // What three wheels are asked for about each axis, and what one of them adds.
+    // Demand on three wheels about each axis, and the addition of one of them.
     let asked = within(&trace, "/torques", "axes", "feedback_nm");
     let given = within(&trace, "/torques", "axes", "applied_nm");
     for row in [12, 25, 35] {
@@ -197,7 +198,7 @@ fn magnetorquers_fail_by_axes() {
     }
 }
 
-/// Failures of sensors are told as those of actuators are, with their exact instants; a gyro has them too.
+/// Failures of sensors are logged like those of actuators, with their exact instants; a gyro has them too.
 #[test]
 fn failures_are_told() {
     let text = format!(

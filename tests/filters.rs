@@ -1,6 +1,6 @@
-//! Kalman filters in the loop, over many runs, and what they make of nonsense.
+//! Kalman filters in the loop, over many runs, and their reaction to nonsense.
 //!
-//! The numbers that runs are held against come from another implementation of the same filter, in Python, over 200 runs.
+//! The reference numbers come from another implementation of the filter, in Python, over 200 runs.
 
 use flexsc_core::campaign::Campaign;
 use flexsc_core::metrics::Metrics;
@@ -14,10 +14,10 @@ use crate::util::Dir;
 const PERIOD: f64 = 0.3;
 const BODY: &str = "modes = [{ frequency = 0.3, gain = 1.44 }, { frequency = 0.8, gain = 0.21 }, \
                     { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
-/// The run of the tests with the base law alone: the filter watches.
+/// Base law alone, which does not read the filter.
 const WATCHING: (&str, &str) = ("law.pd.extra", "{ gain = 0.0 }");
 
-/// The spacecraft whose frequencies fall to a third in 200 s, with these keys of its filter set.
+/// Returns the spacecraft whose frequencies fall to a third in 200 s, with these keys of its filter set.
 fn ekf(set: &[(&str, &str)]) -> Scenario {
     let full = |key: &str| key.replace("filter.", "estimator.extended_kalman.");
     let keys: Vec<(String, &str)> = set.iter().map(|(key, value)| (full(key), *value)).collect();
@@ -25,20 +25,20 @@ fn ekf(set: &[(&str, &str)]) -> Scenario {
     scenario("wheel-ekf", &keys)
 }
 
-/// The same with an unscented filter.
+/// Returns this spacecraft with an unscented filter.
 fn unscented(set: &[(&str, &str)]) -> Scenario {
     let text = ekf(set).to_toml().replace("estimator.extended_kalman", "estimator.unscented_kalman");
     Scenario::parse("unscented", &text).expect("valid")
 }
 
-/// The metrics of so many runs.
+/// Returns the metrics of `count` runs.
 fn runs(scenario: &Scenario, count: u64) -> Vec<Metrics> {
     let study = Campaign::new(scenario.clone(), "filters", None).expect("a campaign");
     let run = |number| Campaign::simulate(&study.run(number).expect("a run"), ()).expect("metrics");
     (0..count).into_par_iter().map(run).collect()
 }
 
-/// A metric of all runs, the smallest first.
+/// Returns a metric of all runs, the smallest first.
 fn sorted(runs: &[Metrics], name: &str) -> Vec<f64> {
     let mut values: Vec<f64> = runs.iter().map(|run| run.number(name).expect("a metric")).collect();
     values.sort_by(f64::total_cmp);
@@ -49,7 +49,7 @@ fn mean(values: &[f64]) -> f64 {
     values.iter().sum::<f64>() / values.len() as f64
 }
 
-/// Root mean square over all samples of all runs.
+/// Returns the root mean square over all samples of all runs.
 fn rms(runs: &[Metrics]) -> f64 {
     let squares: Vec<f64> = sorted(runs, "frequency_error_rms_rad_s").iter().map(|rms| rms * rms).collect();
     mean(&squares).sqrt()
@@ -58,8 +58,8 @@ fn rms(runs: &[Metrics]) -> f64 {
 #[test]
 fn extended_filter_follows_the_drift() {
     // Over 200 runs: rms 0.00111, largest error 0.0034 in the median and 0.0068 at most, NEES over the number of states
-    // 1.01, NIS 1.012, no loss. A run's rms scatters by a fifth, and over 1200 runs 0.7 % begin so far off that theirs
-    // is above 0.003.
+    // 1.01, NIS 1.012, no loss. A run's rms scatters by a fifth, and over 1200 runs 0.7 % begin with errors so large
+    // that their rms is above 0.003.
     let runs = runs(&ekf(&[WATCHING, ("duration", "200")]), 200);
     let follows = |run: &Metrics| run.number("frequency_error_rms_rad_s").expect("a metric") < 3e-3;
     let (runs, astray): (Vec<_>, Vec<_>) = runs.into_iter().partition(follows);
@@ -87,8 +87,8 @@ fn unscented_filter_follows_it_and_is_less_sure() {
 
 #[test]
 fn scheduled_gain_follows_the_filter() {
-    // The Python implementation: median 171.9 s, all between 138 s, where a swing just stays within the band, and 174 s.
-    // The page that this study comes from says 173.4 s. With the mode known the loop settles in 172.0 s.
+    // The Python implementation: median 171.9 s, all between 138 s, where a swing just stays within the band, and 174
+    // s. The page that this study comes from says 173.4 s. With the mode known the loop settles in 172.0 s.
     let runs = runs(&ekf(&[]), 60);
     let settling = sorted(&runs, "settling_time_s");
     assert!((settling[30] - 172.0).abs() < 0.8, "{settling:?}");
@@ -130,7 +130,7 @@ fn bad_priors_lose_the_body_and_the_filter_says_so() {
     let runs = runs(&ekf(&[WATCHING, ("duration", "200"), ("filter.ratio_sd", "0.1")]), 200);
     let lost = sorted(&runs, "lock_lost").iter().sum::<f64>();
     assert!((1.0..=14.0).contains(&lost), "{lost}");
-    // Those that kept the body are as good as with a good prior.
+    // Runs without a loss of lock are as good as with a good prior.
     let kept: Vec<Metrics> = runs.into_iter().filter(|run| run.number("lock_lost") == Some(0.0)).collect();
     let median = sorted(&kept, "frequency_error_rms_rad_s")[kept.len() / 2];
     assert!(median < 1.5e-3, "{median}");
@@ -166,8 +166,8 @@ fn quiet_body_teaches_nothing() {
 
 #[test]
 fn a_drifting_body_is_followed_where_its_vibration_is_ten_times_the_noise() {
-    // A gate of ten standard deviations shuts the filter off from a body that it could follow: over 200 runs it is 0.0179 rad/s
-    // off, without a gate 0.0035.
+    // A gate of ten standard deviations shuts the filter off from a body that it could follow: over 200 runs it is
+    // 0.0179 rad/s off, without a gate 0.0035.
     let noisy = |gate: &[(&str, &str)]| {
         runs(&ekf(&[&[("duration", "200"), ("sensor.sampled.noise", "1e-4")], gate].concat()), 100)
     };
@@ -176,7 +176,7 @@ fn a_drifting_body_is_followed_where_its_vibration_is_ten_times_the_noise() {
     assert!(mean(&sorted(&with, "nees_mean")) < 3.0);
 }
 
-/// The spacecraft without a law.
+/// Returns the spacecraft without a law.
 fn open(set: &[(&str, &str)]) -> Scenario {
     let text = ekf(set).to_toml();
     let mut table: toml::Table = text.parse().expect("TOML");
@@ -186,7 +186,7 @@ fn open(set: &[(&str, &str)]) -> Scenario {
     Scenario::parse("open", &table.to_string()).expect("valid")
 }
 
-/// Whether every number in these columns is finite.
+/// Returns true if every number in these columns is finite.
 fn finite(columns: &Columns) -> bool {
     columns.columns.iter().all(|(_, column)| match column {
         Column::Numbers(numbers) => numbers.iter().all(|number| number.is_finite()),
@@ -208,7 +208,7 @@ fn nonsense_is_reported_as_a_lost_lock() {
         ("frequencies wrong by a half downwards", ratio("0.5"), true),
     ];
     for (what, key, lost) in cases {
-        // A wrong ratio is drawn around, but by 3 % only.
+        // A wrong ratio with a narrow prior of 3 %.
         let set = &[key];
         for scenario in [ekf(set), unscented(set)] {
             let mut trace = Trace::new(Detail::Full);
@@ -236,7 +236,7 @@ fn looped(estimator: &str) -> Scenario {
 
 #[test]
 fn filters_in_the_loop_are_honest() {
-    // No noise in the moment: the filter that knows that, and the frequencies, is optimal.
+    // Without noise in the moment: a filter with this knowledge, and with the frequencies, is optimal.
     let linear = metrics(looped("kalman]\nprior = 'drawn'\nmoment_noise = 0.0"));
     let number = |name: &str| linear.number(name).expect("a metric");
     assert!((number("nis_mean") - 1.0).abs() < 0.2, "{linear:?}");
@@ -267,7 +267,7 @@ fn a_filter_that_is_read_does_not_watch_only() {
         error.contains("estimator.extended_kalman.watch_only") && error.contains("law.pd.extra"),
         "{error}"
     );
-    // What watches changes nothing, and the summary says so.
+    // An estimator that no law reads does not change the run, and the summary says so.
     let dir = Dir::new();
     dir.write("loop.toml", looped("extended_kalman]").to_toml());
     dir.run("simulate loop.toml --log none --set duration=3").exits(0).says(&["not used by the law"]);

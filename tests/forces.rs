@@ -1,4 +1,4 @@
-//! Forces at points of a spacecraft, steady and in pulses: where they move it, and what is refused.
+//! Forces at points of a spacecraft, steady and in pulses: the motion under them, and refused ones.
 
 use flexsc_core::metrics::Gather;
 use flexsc_core::record::{Columns, Trace};
@@ -58,12 +58,13 @@ fn pulses_give_their_impulse_and_a_swinging_mass_takes_its_part() {
     let pulsed = flown(&format!(
         "{body}[[disturbance]]\nforce = [0.0, 3.0, 0.0]\npulse = {{ period = 7.0, on = 0.3 }}\nfrom = 1.0\nto = 60.0\n"
     ));
-    // Nine pulses, the last at 57 s. What swings about the centre of mass dies out as exp(-zeta W t), and turns the body a little.
+    // Nine pulses, the last at 57 s. Oscillations about the centre of mass decay as exp(-zeta W t), and turn the body a
+    // little.
     let delta = 9.0 * 0.3 * 3.0 / 290.0;
     let v_y = column(&pulsed, "/position", "y_m_s");
     assert!(v_y[..6].iter().any(|v| (v - delta).abs() > 1e-2 * delta));
     near(v_y[10], delta, 0.1 * delta);
-    // The same pulses written one by one move it to the same place, to what other steps lose.
+    // Pulses written one by one give this position too, to the errors of other steps.
     let one = |index: i32| {
         let from = 1.0 + 7.0 * f64::from(index);
         format!("[[disturbance]]\nforce = [0.0, 3.0, 0.0]\nfrom = {from}\nto = {}\n", from + 0.3)
@@ -76,7 +77,7 @@ fn pulses_give_their_impulse_and_a_swinging_mass_takes_its_part() {
     }
 }
 
-/// Pulses of a torque on a body with one angle: a rigid body's rate is their impulse.
+/// Pulses of a torque on a one-axis body: a rigid body's rate is their impulse.
 #[test]
 fn pulses_act_on_one_angle_too() {
     let text = "duration = 10.0\n[body.planar]\ninertia = 2.0\n[law.open]\n\
@@ -122,7 +123,7 @@ fn what_is_no_force_is_refused() {
     assert!(error.contains("`reference.pointing.window` must be [from, to]"), "{error}");
 }
 
-/// A force on a body of given modes, which do not act back, turns it as it turns a rigid spacecraft.
+/// A force on a body with given modes, which do not act back, turns it as it turns a rigid spacecraft.
 #[test]
 fn a_force_turns_every_body_with_three_axes() {
     let force = "[[disturbance]]\nforce = [1.0, -2.0, 0.5]\npoint = \"jet\"\nfrom = 3.0\nto = 8.5\n";

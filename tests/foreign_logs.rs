@@ -1,11 +1,11 @@
-//! Logs of other programs, and of nobody: each gives a table or one clear error, within bounds of memory and time.
+//! Logs of other programs, and malformed ones: each gives a table or one clear error, within bounds of memory and time.
 
 use std::fmt::Write as _;
 
 use crate::foreign::*;
 use crate::util::{Dir, Ran};
 
-/// What every reader of logs must refuse with one error.
+/// Checks that every reader of logs refuses a file with one error.
 #[track_caller]
 fn refused(ran: Ran, words: &[&str]) {
     let ran = ran.exits(2).says(words);
@@ -16,7 +16,7 @@ fn refused(ran: Ran, words: &[&str]) {
 const READERS: [&str; 4] =
     ["export a.mcap --topic /a", "plot a.mcap", "layout a.mcap", "log scenario a.mcap"];
 
-/// What another program logs is a table, type by type.
+/// Logs of other programs become tables, type by type.
 #[test]
 fn every_type_of_a_foreign_schema_is_read() {
     let inner = message("Point", &[field("x", 1, DOUBLE, "", false), field("y", 2, DOUBLE, "", false)]);
@@ -220,7 +220,7 @@ fn offsets_and_lengths_that_lie_are_harmless() {
     let chunk_index = record(8, &[&[0; 16], &far, &far, &text(""), &far, &text("zstd"), &far, &far]);
     let start = (body.len() as u64 + 13).to_le_bytes();
     let summary = [&start[..], &[0; 12]].concat();
-    // What the summary tells is not asked.
+    // The summary's contents are not read.
     for index in [metadata_index, attachment_index, chunk_index] {
         let dir = Dir::holding("a.mcap", with(&index, &summary));
         assert_eq!(dir.run_bounded("export a.mcap --topic /a").exits(0).out, "time_s,x\n0e0,0e0\n");
@@ -268,7 +268,7 @@ fn chunks_that_unpack_to_gigabytes_are_refused() {
     let of = schema(&[message("M", &[field("x", 1, DOUBLE, "", false)])]);
     let good = log("a.M", &of, &[]);
     let body = &good[..good.len() - end(&[0; 20]).len()];
-    // A frame of zstd whose blocks say: so many times this byte.
+    // Creates a frame of zstd with run-length blocks, each of which repeats one byte.
     let frame = |blocks: usize| {
         let block = |last: u32| [&(last | 1 << 1 | (128 << 10) << 3).to_le_bytes()[..3], &[0]].concat();
         let more = block(0).repeat(blocks - 1);
@@ -299,7 +299,7 @@ fn chunks_that_unpack_to_gigabytes_are_refused() {
     }
 }
 
-/// What is no file is not read: it may never end.
+/// A path that is no regular file is not read: it may never end.
 #[test]
 #[cfg(target_os = "linux")]
 fn pipes_and_devices_are_no_logs() {

@@ -1,4 +1,4 @@
-//! What the fuzzer found once: none of it crashes, hangs, eats memory or leaves half a file any more.
+//! Former findings of the fuzzer: none of them crashes, hangs, exhausts memory or leaves half a file any more.
 
 use std::collections::BTreeSet;
 use std::fs;
@@ -12,14 +12,14 @@ use std::time::{Duration, Instant};
 use crate::util::{Dir, FLEXSC};
 use crate::viewer::connect;
 
-/// The inputs, by surface: the command's arguments, and the files that lie where it runs.
+/// Inputs by surface: the command's arguments, and the files in its directory.
 const CORPUS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/fuzz/corpus");
-/// What a command may have: memory (kB), and time, where others run beside it.
+/// Limits of a command: memory (kB), and time while other tests run.
 const MEMORY: u64 = 1_000_000;
 const TIME: Duration = Duration::from_secs(15);
-/// Messages that are longer help nobody (bytes).
+/// Length above which a message is of no use (bytes).
 const LONGEST_MESSAGE: usize = 64 << 10;
-/// When a run is stopped that may take as long as its scenario asks for.
+/// Time after which a run is stopped that may take as long as its scenario requires.
 const ENOUGH: Duration = Duration::from_secs(1);
 
 struct Input {

@@ -1,5 +1,5 @@
-//! Control moment gyros: against an oracle of point masses and Euler's equations, with other parts, what is refused, and the
-//! scenario that ships.
+//! Control moment gyros: against an oracle of point masses and Euler's equations, with other parts, refused settings,
+//! and the shipped scenario.
 
 use flexsc_core::Simulation;
 use flexsc_core::metrics::Value;
@@ -21,7 +21,7 @@ fn parsed(text: &str) -> Scenario {
     Scenario::parse("gimbals.toml", text).expect("a scenario")
 }
 
-/// The shipped scenario with some of its words changed.
+/// Returns the shipped scenario with some of its words changed.
 fn changed(change: &[(&str, &str)]) -> String {
     change.iter().fold(text(&format!("{SCENARIOS}/agile-observer.toml")), |text, (from, to)| {
         assert!(text.contains(from), "{from}");
@@ -34,7 +34,7 @@ fn golden(name: &str) -> Vec<Vec<f64>> {
     text(&format!("{GOLDEN}/{name}.csv")).lines().map(cells).collect()
 }
 
-/// The largest differences from rows of t, Q, w and |H|.
+/// Returns the largest differences from rows of t, Q, w and |H|.
 fn off(trace: &Trace, rows: &[Vec<f64>]) -> [f64; 3] {
     let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| column(trace, "/pointing", name));
     let rates = within(trace, "/rates", "axes", "rate_rad_s");
@@ -52,8 +52,8 @@ fn off(trace: &Trace, rows: &[Vec<f64>]) -> [f64; 3] {
     worst
 }
 
-/// The kinetic energy of point masses moves the same way as gimbals turn: `golden/gimbals_oracle.py`. What the body gains of energy
-/// is the work of the gimbals' motors.
+/// The kinetic energy of point masses gives the same motion as gimbals turn: `golden/gimbals_oracle.py`. The energy
+/// gained by the body is the work of the gimbals' motors.
 #[test]
 fn a_flexible_body_turns_as_the_oracle_says() {
     let trace = traced(&parsed(&text(&format!("{GOLDEN}/gimbals.toml"))));
@@ -79,7 +79,8 @@ fn a_rigid_body_turns_as_the_oracle_says() {
     assert!(worst[0] < 1e-11 && worst[1] < 1e-11 && worst[2] < 1e-12, "{worst:?}");
 }
 
-/// A step turns body and gimbals by at most 1/16 rad: at (0.0269 + 0.5) rad/s the longest power of two is 1/16 s, and 40 s have 640.
+/// A step turns body and gimbals by at most 1/16 rad: at (0.0269 + 0.5) rad/s the longest power of two is 1/16 s, and
+/// 40 s have 640.
 #[test]
 fn the_steps_of_fast_gimbals_are_counted() {
     let text = text(&format!("{GOLDEN}/gimbals.toml"));

@@ -1,10 +1,11 @@
-//! The command's habits: options are called the same in every verb, files and directories are told apart, and nothing is lost.
+//! Habits of the command: options have the same names in every verb, files and directories are distinguished, and no
+//! file is lost.
 
 use std::collections::BTreeSet;
 
 use crate::util::{Dir, UNCERTAIN, has_extension};
 
-/// A run without anything random, and short.
+/// Returns a directory with a short run without anything random.
 fn quiet() -> Dir {
     let dir = Dir::with(&["relay-fixed"]);
     dir.run("simulate relay-fixed.toml --set duration=400").exits(0);
@@ -83,7 +84,7 @@ fn runs_without_anything_random_are_told_of() {
         dir.write("u.toml", UNCERTAIN);
         assert!(!dir.run(random).exits(0).err.contains("warning"), "{random}");
     }
-    // A sweep says itself what differs.
+    // A sweep prints its differences itself.
     let swept = dir.run("sweep relay-fixed.toml --set duration=400 --vary seed=1:3:3").exits(0);
     assert!(!swept.err.contains("warning"), "{}", swept.err);
 }
@@ -158,7 +159,7 @@ fn metrics_are_exported_as_a_table_for_people() {
         (of("envelope_mean_rad")[2].as_str(), of("goal")[1].as_str()),
         ("rad", metrics["goal"].as_str().expect("a word"))
     );
-    // What there is none of is empty, and a list has a row for each element.
+    // Missing values are empty, and a list has a row for each element.
     assert_eq!((of("gain_frozen_at_s")[1].as_str(), of("gain_frozen_at_s")[2].as_str()), ("", "s"));
     let means = metrics["envelope_window_means_rad"].as_array().expect("a list");
     for (index, mean) in means.iter().enumerate() {

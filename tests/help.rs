@@ -1,8 +1,8 @@
-//! What `--help` promises: verbs in groups, and examples that work as they stand, one after another in one directory.
+//! Promises of `--help`: verbs in groups, and examples that work as they stand, one after another in one directory.
 
 use crate::util::{Dir, SCENARIOS, has_extension};
 
-/// The examples at the end of a verb's help, without what is redirected.
+/// Returns the examples at the end of a verb's help, without redirections.
 fn examples(dir: &Dir, verb: &str) -> Vec<String> {
     let ran = dir.run(&format!("{verb} --help")).exits(0);
     let (_, examples) = ran.out.split_once("Examples:\n").unwrap_or_else(|| panic!("{verb}: {}", ran.out));

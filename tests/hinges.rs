@@ -1,4 +1,5 @@
-//! Appendages on hinges: against an oracle of rigid bodies, balances, shipped satellites on them, and what is refused.
+//! Appendages on hinges: against an oracle of rigid bodies, balances, shipped satellites with hinges, and refused
+//! settings.
 
 use flexsc_core::metrics::Value;
 use flexsc_core::record::{Detail, Trace};
@@ -18,7 +19,7 @@ fn parsed(text: &str) -> Scenario {
     Scenario::parse("hinged.toml", text).expect("a scenario")
 }
 
-/// Rigid bodies by Newton and Euler move the same way, at angles of half a radian: `golden/hinged_oracle.py`.
+/// Rigid bodies by Newton and Euler have the same motion, at angles of half a radian: `golden/hinged_oracle.py`.
 #[test]
 fn panels_swing_as_rigid_bodies_do() {
     let trace = traced(&parsed(&golden()));
@@ -41,7 +42,7 @@ fn panels_swing_as_rigid_bodies_do() {
     }
 }
 
-/// The golden spacecraft with nothing that acts, and modes of the usual kind on the antenna, which stands still.
+/// Returns the golden spacecraft without torques, and with modes of the usual kind on the antenna, which is fixed.
 fn alone(damping: &str) -> String {
     let modes = "modes = [{ frequency = 1.7, translation = [0.0, 0.4, 2.1], moments = [[0.1, 0.3, 2.5], [0.0, 0.1, 0.4], \
                  [0.0, 0.0, 0.2]], displacement = 0.1 }, { frequency = 4.1, translation = [0.3, 0.9, -0.2], moments = \
@@ -53,7 +54,7 @@ fn alone(damping: &str) -> String {
         + &text[text.find("[law.open]").expect("one")..]
 }
 
-/// Nothing acts: momentum and energy stay while panels swing by half a radian and modes couple with them.
+/// Without torques momentum and energy are constant while panels swing by half a radian and modes couple with them.
 #[test]
 fn momentum_and_energy_stay_while_hinges_and_modes_swing() {
     let text = alone("damping = 0.0").replace("duration = 40.0", "duration = 1000.0");
@@ -69,7 +70,7 @@ fn momentum_and_energy_stay_while_hinges_and_modes_swing() {
     }
 }
 
-/// A hinge turns by its mode where it hardly moves: the modes of that are those of a panel written by its mode.
+/// At small angles a hinge moves as its mode: the free modes are those of a panel given by its mode.
 #[test]
 fn small_swings_are_those_of_the_mode() {
     let of = |name: &str| -> Vec<f64> {
@@ -81,7 +82,7 @@ fn small_swings_are_those_of_the_mode() {
     }
 }
 
-/// A shipped scenario whose panels swing on hinges in place of their modes, for 50 s.
+/// Returns a shipped scenario whose panels swing on hinges in place of their modes, for 50 s.
 fn hinged(name: &str) -> Scenario {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/{name}.toml")).expect("a file");
     let (mut kept, mut within) = (String::new(), false);

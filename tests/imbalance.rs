@@ -1,4 +1,5 @@
-//! Imbalance on the reference spacecraft: steady motion through a mode's line, and a run-up through it, against two oracles.
+//! Imbalance on the reference spacecraft: steady motion through a mode's line, and a run-up through it, against two
+//! oracles.
 
 use nalgebra::{Complex, DMatrix, DVector, Matrix3, Quaternion};
 
@@ -34,15 +35,15 @@ fn wheels(imbalance: &str) -> Wheels {
     .expect("valid")
 }
 
-/// Of craft.json: the first wheel alone is out of balance.
+/// Imbalance of craft.json: the first wheel alone is out of balance.
 const FIRST: &str = "static = [7.2e-6, 0, 0, 0], dynamic = [3e-7, 0, 0, 0], \
                      positions = [[0.3, 0.3, -0.4], [-0.3, 0.3, -0.4], [-0.3, -0.3, -0.4], [0.3, -0.3, -0.4]]";
 
-/// The same, but a thousandth: a body that moves so little is linear to 1e-11.
+/// A thousandth of this imbalance: such a small motion is linear to 1e-11.
 const SLIGHT: &str = "static = [7.2e-9, 0, 0, 0], dynamic = [3e-10, 0, 0, 0], \
                       positions = [[0.3, 0.3, -0.4], [-0.3, 0.3, -0.4], [-0.3, -0.3, -0.4], [0.3, -0.3, -0.4]]";
 
-/// The reference spacecraft with its damping matrix whole, and the bearings and axes of its wheels.
+/// Returns the reference spacecraft with its full damping matrix, and the bearings and axes of its wheels.
 fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
     let text = format!(
         "{CRAFT}\n[actuator.wheels]\narrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\n"
@@ -64,7 +65,7 @@ fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
     (flexible, bearings, wheels.rotors().expect("valid").iter().map(|rotor| rotor.axis).collect())
 }
 
-/// The complex amplitudes of the modes and of the rate, rigid and whole, at a steady speed (rad/s).
+/// Returns the complex amplitudes of the modes and of the rate, rigid and total, at a steady speed (rad/s).
 fn steady(flexible: &Flexible, bearing: &Bearing, speed: f64) -> (DVector<C>, [nalgebra::Vector3<C>; 2]) {
     let line = &bearing.lines[0];
     let square = speed * speed;
@@ -88,7 +89,8 @@ fn steady(flexible: &Flexible, bearing: &Bearing, speed: f64) -> (DVector<C>, [n
     (q, [rigid, whole])
 }
 
-/// Wheels of no momentum together, the first of which turns at this speed (rad/s), with torques that cancel (N m).
+/// Returns wheels without total momentum, the first of which rotates at this speed (rad/s), with torques that cancel (N
+/// m).
 fn rotors(axes: &[Vector], speed: f64, torque: f64, rate: &Vector) -> Vec<Rotor> {
     let rotor = |(axis, sign): (&Vector, f64)| Rotor {
         axis: *axis,
@@ -181,7 +183,8 @@ fn harmonics_are_followed() {
     }
 }
 
-/// The same amplitudes of a line of this order: a wheel of so many times the speed with a coefficient that is smaller by its square.
+/// Returns the steady amplitudes for a line of this order: those of a wheel at `order` times the speed with a
+/// coefficient smaller by the square of the order.
 fn steady_at(
     flexible: &Flexible,
     bearings: &[Bearing],

@@ -1,5 +1,5 @@
-//! Jets that act by themselves: the least propellant for what laws demand. The programme itself is compared with SciPy's in
-//! `numerics/simplex.rs`; here it is what comes of it.
+//! Jets with individual allocation: the least propellant for the demand of the laws. The linear programme itself is
+//! compared with SciPy's in `numerics/simplex.rs`; here its effects are tested.
 
 use flexsc_core::Scenario;
 use flexsc_core::metrics::{Metrics, Value};
@@ -16,7 +16,7 @@ fn flown(text: &str) -> (Metrics, Trace) {
     crate::traces::flown(&scenario, 0, Detail::Full)
 }
 
-/// The on-times of each cycle in which any thruster fires.
+/// Returns the on-times of each cycle in which any thruster fires.
 fn pulses(trace: &Trace) -> Vec<Vec<f64>> {
     match trace.topic("/thrusters").and_then(|rows| rows.get("thrusters")) {
         Some(Column::Rows(counts, columns)) => {
@@ -52,7 +52,8 @@ fn canted_thrusters_turn_a_body_by_what_is_cheapest() {
     assert!(speed(&calm) < 0.02 * speed(&trace), "{} {}", speed(&calm), speed(&trace));
 }
 
-/// The pulses of a cycle turn a rigid body by the impulse that was demanded: J w' = torque over the cycle, but for the gyroscopic torque.
+/// The pulses of a cycle turn a rigid body by the impulse that was demanded: J w' = torque over the cycle, but for the
+/// gyroscopic torque.
 #[test]
 fn pulses_give_what_is_demanded() {
     let rigid = "duration = 4.0\n[spacecraft]\nmass = 100.0\ninertia = [[30, 0, 0], [0, 40, 0], [0, 0, 35]]\npoints = [{ name = \"bus\" }]\n\

@@ -1,4 +1,4 @@
-//! Viewer layouts: one source for those that are shipped, attached and written, and every path of them in a log.
+//! Viewer layouts: one source for shipped, attached and written ones, and every path of them in a log.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -16,7 +16,7 @@ const SHIPPED: [(&str, &str); 5] = [
     ("spacecraft", "earth-observer"),
 ];
 
-/// Runs that have what the others have not: other estimators, actuators and bodies.
+/// Runs with the estimators, actuators and bodies that the others lack.
 const OTHERS: [(&str, &str); 14] = [
     ("relay-sampled", "--set duration=1000"),
     ("rotation-thrusters", ""),
@@ -34,7 +34,7 @@ const OTHERS: [(&str, &str); 14] = [
     ("wheel-run-up", "--set duration=10"),
 ];
 
-/// What a layout's panels show: paths and topics.
+/// Collects the contents of a layout's panels: paths and topics.
 fn paths(value: &Value, found: &mut BTreeSet<String>) {
     match value {
         Value::Object(object) => {
@@ -66,7 +66,7 @@ fn named(value: &Value, found: &mut Vec<String>) {
     }
 }
 
-/// Whether columns have a field such as `modes[0].displacement_rad`.
+/// Returns true if columns have a field such as `modes[0].displacement_rad`.
 fn has(columns: &Columns, field: &str) -> bool {
     match field.split_once('[') {
         None => columns.get(field).is_some_and(|column| !column.is_empty()),
@@ -189,7 +189,7 @@ fn without_limits(layout: &str) -> Value {
     layout
 }
 
-/// What is attached to a log, and what the command writes for it, shows what the log has.
+/// The layout attached to a log, and the one that the command writes for it, show the topics of the log.
 fn run(scenario: &str, options: &str) {
     let dir = Dir::with(&[scenario]);
     for detail in ["events", "full", "scene"] {
@@ -202,7 +202,7 @@ fn run(scenario: &str, options: &str) {
         assert!(same, "{scenario} {detail}: attached and written differ");
         assert_eq!(layout.contains("\"3D!scene\""), detail == "scene");
         if detail == "scene" {
-            // Whoever looks at a live run has no log of it yet.
+            // A viewer of a live run has no log of it yet.
             dir.run(&format!("layout {scenario}.toml {options} -o before.json")).exits(0);
             assert!(dir.text("before.json") == written, "{scenario}: of the scenario and of its log differ");
             dir.run(&format!("layout {name} --set duration=1.0")).exits(2).says(&["is a log"]);
@@ -252,7 +252,7 @@ fn small_values_have_axes_of_their_own() {
     assert_eq!(plots("rotation-robust")["Plot!angle"], None);
 }
 
-/// What is shipped is what `flexsc layout SCENARIO` writes.
+/// Shipped layouts are those that `flexsc layout SCENARIO` writes.
 #[test]
 fn shipped_layouts_are_those_of_their_scenarios() {
     for (name, scenario) in SHIPPED {
@@ -290,7 +290,7 @@ fn a_long_log_has_some_ten_thousand_instants() {
     }
     assert_eq!(counts["/tf"], 10_001);
     assert!(statistics.message_count < 100_000, "{}", statistics.message_count);
-    // Who asks for more gets it.
+    // A larger log is written on request.
     dir.run("simulate relay-adaptive.toml --log scene --set duration=2000 --set log.period=0.1 --force")
         .exits(0);
     let log = Log::open(&dir.path("relay-adaptive.mcap")).expect("a log");

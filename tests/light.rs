@@ -1,4 +1,4 @@
-//! What a light build leaves out it says, with the feature and the command that has it.
+//! A light build names the missing feature, and the command that has it.
 
 use std::fmt::Write as _;
 

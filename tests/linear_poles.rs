@@ -1,4 +1,5 @@
-//! The linear flow at its limits: poles that nearly coalesce, levels that are just touched, bounds, inputs as more states.
+//! The linear flow at its limits: poles that nearly coalesce, levels that are just touched, bounds, inputs as more
+//! states.
 
 use std::cell::Cell;
 use std::convert::Infallible;
@@ -12,14 +13,14 @@ use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 
 use crate::plants::{Counted, dashpot, filters, forced, golden, off, three_axes, wheel, wheel_start};
 
-/// An angle at a time (s) after rest under a constant input, from a state.
+/// Returns an angle at a time (s) after a start from a state, under a constant input.
 fn value(system: &System, start: &DVector<f64>, input: f64, at: f64) -> f64 {
     let flow = Arc::new(LinearFlow::new(system.form()).expect("a flow"));
     let mut segment = LinearSegment::new(Arc::clone(&flow));
     segment.depart(&flow.modal(start), &[input]);
     let mut seen = LinearSight::default();
     segment.at(at, &mut seen);
-    // The state that arrives tells the same.
+    // The final state gives the same value.
     let mut state = flow.modal(start);
     segment.arrive(at, &mut state);
     let again = (&system.output * flow.vector(&state))[0];
@@ -41,7 +42,7 @@ fn oscillators(apart: f64) -> System {
     }
 }
 
-/// An oscillator of 2 rad/s with a damping ratio of 1 and so much more.
+/// Creates an oscillator of 2 rad/s with a damping ratio of 1 + `beyond`.
 fn critical(beyond: f64) -> System {
     let matrix = dmatrix![0.0, 1.0; -4.0, -4.0 * (1.0 + beyond)];
     System { matrix, input: dmatrix![0.0; 4.0], output: dmatrix![1.0, 0.0] }
@@ -164,7 +165,7 @@ fn bounds_are_never_exceeded() {
                 segment.at(from + span * f64::from(step) / 400.0, &mut then);
                 for (j, sensed) in then.outputs.iter().enumerate() {
                     let (m, jerk) = (now.curvature[j], now.jerk[j]);
-                    // Squares of what has long died away underflow.
+                    // Squares of decayed values underflow.
                     let room = 1e-12 * m + 1e-100;
                     assert!(
                         sensed.acceleration.abs() <= m + room,

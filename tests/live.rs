@@ -1,4 +1,4 @@
-//! `flexsc simulate --live`: a viewer sees what the log holds, when it is told to see it.
+//! `flexsc simulate --live`: a viewer receives the rows of the log, as it requests them.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -130,7 +130,7 @@ fn a_run_pauses_steps_and_goes_on() {
         assert_eq!(rows.last(), Some(&at(step)), "one period");
     }
 
-    // Who comes late sees where the run stands, and what it is.
+    // A late viewer receives the current state of the run.
     let mut late = Viewer::connect(&address);
     late.subscribe(&["/params", "/attitude"]);
     let mut rows = late.rest();

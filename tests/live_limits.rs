@@ -1,4 +1,4 @@
-//! What a live run grants to those who connect, and what it does not.
+//! Rights and limits of viewers of a live run.
 
 use std::io::{Read, Write};
 use std::net::TcpStream;
@@ -11,10 +11,10 @@ use crate::util::{Dir, Started};
 use crate::viewer::{PATIENCE, Said, Viewer, connect_with};
 
 const PROTOCOL: (&str, &str) = ("Sec-WebSocket-Protocol", "foxglove.sdk.v1");
-/// For how long at most a viewer that takes nothing holds a run, as `docs/live.md` has it.
+/// Longest time for which a viewer that reads nothing holds a run, as in `docs/live.md`.
 const HELD: Duration = Duration::from_secs(10);
 
-/// A run that goes on for as long as a test takes, and the address where it is served.
+/// Starts a run that lasts as long as a test, and returns the address where it is served.
 fn endless(dir: &Dir, options: &str) -> (Started, String) {
     let set = "--log none --set duration=1e7 --set log.period=0.01 --live=127.0.0.1:0";
     let mut run = dir.start(&format!("simulate relay-fixed.toml {set} {options}"));
@@ -56,7 +56,7 @@ fn pages_connect_from_known_origins_and_to_this_host_only() {
         assert_eq!(status, 403, "{origin}");
         assert!(why.contains(origin) && why.contains("--allow-origin"), "{why}");
     }
-    // A name that somebody led here, whatever the page says that it is.
+    // A host name that another party has pointed here, whatever origin the page claims.
     for origin in [&[][..], &[("Origin", "https://app.foxglove.dev")]] {
         let headers: Vec<_> =
             [("Host", "evil.example:8765")].into_iter().chain(origin.iter().copied()).collect();
@@ -78,7 +78,7 @@ fn a_silent_viewer_holds_the_run_for_ten_seconds_at_most() {
     viewer.subscribe(&["/attitude"]);
     viewer.row("/attitude");
     silent.subscribe(&[]);
-    // The other viewer sees for how long the run stands still.
+    // The other viewer measures how long the run stands still.
     let (began, mut last, mut longest) = (Instant::now(), Instant::now(), Duration::ZERO);
     while longest < HELD / 2 {
         assert!(began.elapsed() < 6 * HELD, "the run was never held");
@@ -91,7 +91,7 @@ fn a_silent_viewer_holds_the_run_for_ten_seconds_at_most() {
         }
     }
     assert!(longest > Duration::from_secs(9) && longest < HELD + Duration::from_secs(2), "{longest:?}");
-    // It was sent away, and what it had not read is all that it gets.
+    // The viewer was disconnected, and the rest of what it had not read is all that it gets.
     silent.socket.get_ref().set_read_timeout(Some(PATIENCE)).expect("set");
     let gone = std::iter::from_fn(|| Some(silent.socket.read())).find_map(Result::err).expect("an end");
     assert!(

@@ -100,7 +100,7 @@ fn settling_times() {
         (0.1, 0.0, 2000.0, 351.0, None),
         (0.1, -0.5, 2000.0, 207.3, None),
         (0.05, 0.0, 2000.0, 1521.6, Some(1521.795)),
-        // Watched for less, what is outside later is not seen.
+        // Samples after a shorter horizon do not count.
         (0.05, 0.0, 1500.0, 1421.4, Some(1421.67)),
         (0.1, 1.2, 600.0, 586.8, None),
         (0.1, 1.2, 2000.0, 807.0, None),
@@ -111,7 +111,7 @@ fn settling_times() {
         assert!((0.0..0.3).contains(&(crossing - time)), "{time} {crossing}");
         assert!(entry.is_none_or(|entry| (crossing - entry).abs() < 0.02), "{crossing}");
     }
-    // What is not settled at the horizon is not settled.
+    // A loop that is outside the band at the horizon has not settled.
     let closed = at(&of, 0.05).closed(0.0);
     assert_eq!(closed.settle(SettlingWindow { horizon: 1521.6, ..WINDOW }).time_s, None);
     assert!(closed.settle(SettlingWindow { horizon: 1521.9, ..WINDOW }).time_s.is_some());
@@ -142,7 +142,7 @@ fn the_integral_and_the_shaped_command() {
     let x = at(&of, 0.2).closed(1.2).angles(6667);
     let itae: f64 = x.iter().enumerate().map(|(k, x)| 0.09 * k as f64 * x.abs()).sum();
     close(at(&of, 0.2).closed(1.2).settle(WINDOW).itae_rad_s2, itae, 1e-12);
-    // A command that is never shaped, by the other way of computing.
+    // A command that is never shaped, computed by the nonlinear path.
     let scenario = |set: &str| {
         let text = FITTED.replace("[law.pd]", &format!("{set}\n[law.pd]"));
         Loop::of(&Scenario::parse("shaped.toml", &text).expect("valid")).expect("a loop").0
@@ -198,7 +198,8 @@ fn delays() {
 
 #[test]
 fn the_lower_edge_of_stability() {
-    // y keeps the sign of the dominant mode's displacement down to 1 + gain = 0: on a grid of 0.1, -1 from 0.08 to 0.5 rad/s.
+    // y keeps the sign of the dominant mode's displacement down to 1 + gain = 0: on a grid of 0.1, -1 from 0.08 to 0.5
+    // rad/s.
     let of = fitted();
     for (frequency, edge) in [(0.05, -0.9), (0.08, -1.0), (0.2, -1.0), (0.5, -1.0)] {
         let held = at(&of, frequency);

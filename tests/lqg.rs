@@ -1,5 +1,5 @@
-//! Control on what a Kalman filter believes: a PD law that holds the body, or follows a slew, through a hold and through
-//! wheels.
+//! Control with the estimate of a Kalman filter: a PD law that holds the body, or follows a slew, through a hold and
+//! through wheels.
 //!
 //! Golden numbers: tests/golden/lqg_oracle.py, NumPy and SciPy.
 
@@ -116,7 +116,7 @@ fn a_wheel_gives_a_slew_whole() {
     }
 }
 
-/// What the body gains its wheel loses, whatever body the slew is planned for.
+/// The momentum that the body gains its wheel loses, whatever body the slew is planned for.
 #[test]
 fn wheel_and_body_keep_their_momentum() {
     let rotor = "rotor = { inertia = 0.1, speed = 3.0 }\nopposes = \"rigid_rate\"\n[manoeuvre]";

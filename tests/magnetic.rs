@@ -104,8 +104,8 @@ fn wheels_lose_their_momentum_at_the_mean_rate_across_the_field() {
     }
 }
 
-/// What torquers alone do to a tumbling body: they never add energy under the B-dot law, but for its samples, and the rate that
-/// is left is about that of the field.
+/// Magnetorquers alone on a tumbling body: under the B-dot law they never add energy, but for its samples, and the
+/// remaining rate is about that of the field.
 #[test]
 fn the_b_dot_law_takes_the_rotation_away() {
     let text = "duration = 12000.0\nsensor = { magnetometer = { period = 1.0 } }\n\
@@ -161,7 +161,7 @@ fn the_small_satellite_does_what_its_comment_says() {
     }
 }
 
-/// The filter of a gyro, a magnetometer and a Sun sensor knows how well it knows: over many runs.
+/// The estimated covariance of a filter of a gyro, a magnetometer and a Sun sensor is correct, over many runs.
 #[test]
 fn a_filter_of_vectors_is_as_good_as_it_says() {
     let scenario = shipped(
@@ -261,8 +261,8 @@ fn an_appendage_snaps_as_its_closed_form_does() {
     assert!(error.contains("appendage[0].thermal.deflection") && error.contains("1 mode, got 2"), "{error}");
 }
 
-/// A table in the axes of an orbit that is no circle: what is left of rate and acceleration fed forward is the hold of a sample,
-/// and falls with its period.
+/// A table in the axes of an orbit that is no circle: what is left of rate and acceleration fed forward is the hold of
+/// a sample, and falls with its period.
 #[test]
 fn a_table_on_an_orbit_is_followed_to_the_hold_of_a_sample() {
     let worst = |period: f64| {

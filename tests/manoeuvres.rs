@@ -12,9 +12,9 @@ use crate::spacecraft::{
 };
 use crate::study::close;
 
-/// A row of the paper's example: coefficients, peak, root mean square, integral of the square, peak of the last
-/// section's angle and when, what is left in it by each mode and in all, in the hub's angle, and the largest angle
-/// between hub and rigid body.
+/// Row of the paper's example: coefficients, peak, root mean square, integral of the square, peak of the last section's
+/// angle and its time, the residual in it by each mode and in total, in the hub's angle, and the largest angle between
+/// hub and rigid body.
 type Row = (&'static str, usize, &'static [f64], f64, f64, f64, (f64, f64), [f64; 4], f64, f64, f64);
 
 #[rustfmt::skip] // One row a case.
@@ -31,7 +31,8 @@ const EXAMPLE: &[Row] = &[
     ("cosine", 4, &[298.636237046, -559.713423653, 347.989469242, -96.189057028, 9.27685489842], 992.901644569, 516.1868770741, 3197386.704762, (0.4369172801, 7.315352), [0.0; 4], 0.0, 0.0, 0.264426850),
 ];
 
-/// What is left must be this, by 1e-6 of it or 1e-4 where only digits of the reference are left, or nothing.
+/// Checks a residual to 1e-6 of it, or to 1e-4 where the reference has few digits; it must be zero for suppressed
+/// modes.
 #[track_caller]
 fn left(value: f64, exact: f64, suppressed: usize) {
     match (exact, suppressed) {
@@ -69,7 +70,7 @@ fn the_paper_s_example() {
     }
 }
 
-/// What a mode leaves in the last section's angle: the body with that mode alone.
+/// Returns the residual of a mode in the last section's angle, from the body with that mode alone.
 fn amplitude(scenario: &flexsc_core::Scenario, mode: usize) -> f64 {
     let mut body = body(scenario).clone();
     body.modes = vec![body.modes[mode]];
@@ -228,7 +229,7 @@ fn the_hub_s_own_motion() {
         let report = report(&scenario);
         close(report.deflections[1].value, phi4[p], 5e-10);
         close(report.torque.peak.value, torque[p], 1e-9);
-        // The hub turns as it is told.
+        // The hub follows the command exactly.
         assert!(report.angle_error.abs() < 1e-14 && report.residuals[0].nominal == 0.0);
         if p == 2 {
             let ours = &plan(&scenario).coefficients.as_ref().expect("a series").odd;

@@ -23,7 +23,7 @@ fn kind(model: &Model) -> &'static str {
     }
 }
 
-/// Whether two models are one in memory.
+/// Returns true if two models are one in memory.
 fn are_one(a: &Model, b: &Model) -> bool {
     match (a, b) {
         (Model::Planar(a), Model::Planar(b)) => Arc::ptr_eq(a, b),

@@ -1,4 +1,4 @@
-//! Objectives of adaptations: against quadrature made apart, against logs, and of every law that has a number to tune.
+//! Objectives of adaptations: against independent quadrature, against logs, and for every law with a gain to tune.
 
 use std::fmt::Write as _;
 use std::sync::Arc;
@@ -14,7 +14,7 @@ use flexsc_core::{Scenario, Simulation};
 use crate::study::{metrics, scenario};
 use crate::traces::{column, nested, traced};
 
-/// It adds the same after each window.
+/// Adaptation that adds a constant after each window.
 #[derive(Clone, Debug)]
 struct Stairs {
     tunes: &'static str,
@@ -23,7 +23,7 @@ struct Stairs {
     step: f64,
 }
 
-/// Stairs at work, with the value.
+/// Run-time state of the stairs, with the value.
 #[derive(Clone, Debug)]
 struct Climbing(Stairs, f64);
 
@@ -56,7 +56,7 @@ impl Learn for Climbing {
     }
 }
 
-/// The objective over each window, of a scenario whose number climbs so.
+/// Returns the objective over each window, for a scenario whose gain climbs by these stairs.
 fn measured(plain: &Scenario, stairs: Stairs) -> (Vec<f64>, Trace) {
     let own: Own<dyn Adapt> = Own::new(Arc::new(stairs));
     let study = plain.bringing(OwnParts { adaptation: Some(own), ..OwnParts::default() }).expect("it fits");
@@ -263,8 +263,8 @@ fn every_number_of_every_law_is_tuned_by_every_objective_or_refused_with_a_reaso
             }
         }
     }
-    // Numbers: PD 3, attitude 6, state-space 1 and stages 4, each by 7 objectives; relay 5, phase-plane 6 and, on three axes,
-    // per axis 10, by their switchings too.
+    // Numbers: PD 3, attitude 6, state-space 1 and stages 4, each by 7 objectives; relay 5, phase-plane 6 and, on three
+    // axes, per axis 10, by their switchings too.
     assert_eq!(accepted, [186, 186, 266], "accepted combinations");
 }
 

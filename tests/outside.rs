@@ -1,4 +1,5 @@
-//! Problems that others set, against an oracle that shares nothing with the engine: tests/golden/outside_oracle.py, SciPy.
+//! Problems from the literature, against an oracle that shares nothing with the engine: tests/golden/outside_oracle.py,
+//! SciPy.
 
 use std::collections::BTreeMap;
 
@@ -11,7 +12,7 @@ use crate::util::SCENARIOS;
 
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden");
 
-/// What the oracle tells of a problem at a time (s), by name.
+/// Returns the oracle's numbers for a problem at a time (s), by name.
 fn oracle(problem: &str, time: f64) -> BTreeMap<String, f64> {
     let mut rows = csv::Reader::from_path(format!("{GOLDEN}/outside.csv")).expect("golden");
     let rows = rows.deserialize().map(|row| row.expect("a whole row"));
@@ -29,7 +30,7 @@ fn number(trace: &Trace, topic: &str, name: &str, row: usize) -> f64 {
     column(trace, topic, name)[row]
 }
 
-/// A column of the rows within a row, of which each has as many.
+/// Returns a column of the nested rows of a row; all rows have the same number of them.
 fn each(trace: &Trace, topic: &str, rows: &str, name: &str, row: usize) -> Vec<f64> {
     let Some(Column::Rows(counts, columns)) = trace.topic(topic).and_then(|topic| topic.get(rows)) else {
         panic!("{topic} {rows}")
@@ -89,7 +90,7 @@ fn a_hub_with_four_clamped_modes_moves_as_in_its_own_equations() {
 /// Rows and times (s) at which the problem `panels` is compared.
 const PUSHED: [(usize, f64); 3] = [(1, 2.5), (3, 7.5), (5, 12.5)];
 
-/// Place and angle of the hub with two panels, to these parts of them.
+/// Checks place and angle of the hub with two panels, to these relative errors.
 #[track_caller]
 fn hub_is_near(trace: &Trace, row: usize, exact: &BTreeMap<String, f64>, [place, angle]: [f64; 2]) {
     near(number(trace, "/position", "x_m", row), exact["x"], place);
@@ -97,7 +98,8 @@ fn hub_is_near(trace: &Trace, row: usize, exact: &BTreeMap<String, f64>, [place,
     near(number(trace, "/pointing", "yaw_rad", row), exact["theta"], angle);
 }
 
-/// A hub that two forces push, and two panels on hinges, in the plane: against the whole kinematics of three rigid bodies.
+/// A hub that two forces push, and two panels on hinges, in the plane: against the whole kinematics of three rigid
+/// bodies.
 #[test]
 fn a_hub_with_two_hinged_panels_is_pushed_as_three_rigid_bodies_are() {
     let trace = traced(&scenario("two-panels"));
@@ -111,7 +113,7 @@ fn a_hub_with_two_hinged_panels_is_pushed_as_three_rigid_bodies_are() {
     }
 }
 
-/// The same panels by their modes: hinges stiffen by what accelerates them, by 1e-5 here, and modes do not.
+/// The panels of this problem by their modes: accelerations stiffen hinges, by 1e-5 here, and do not change modes.
 #[test]
 fn modes_of_hinges_differ_by_their_own_angle() {
     let scenario = scenario("two-modes");
@@ -145,7 +147,8 @@ fn a_pulse_pushes_a_mode_by_translation_and_rotation() {
     }
 }
 
-/// A beam that is pinned at one end and has a heavy tip: the roots of its frequency equation, and those that its paper prints.
+/// A beam that is pinned at one end and has a heavy tip: the roots of its frequency equation, and those that its paper
+/// prints.
 #[test]
 fn a_boom_has_the_frequencies_of_its_equation() {
     let (scenario, exact) = (scenario("boom"), oracle("boom", 0.0));
@@ -226,7 +229,8 @@ fn pulses_of_the_period_of_the_slosh_drive_it() {
     assert!((0.2..0.25).contains(&swing), "{swing}");
 }
 
-/// Two masses and a spring, a force on the first and the place of the second measured: Wie and Bernstein's benchmark of 1990.
+/// Two masses and a spring, a force on the first and the place of the second measured: Wie and Bernstein's benchmark of
+/// 1990.
 #[test]
 fn two_masses_and_a_spring_settle_as_their_compensator_was_published() {
     let scenario = scenario("two-masses");
@@ -242,14 +246,14 @@ fn two_masses_and_a_spring_settle_as_their_compensator_was_published() {
         }
         torque = torque.max(1e4 * each(&trace, "/torques", "axes", "applied_nm", row)[0].abs());
     }
-    // Published: 14.09 s, at most 0.886. Sampled by Tustin's rule at 200 Hz, by SciPy's matrix exponentials: 14.08 s, 0.8865033, and
-    // the second is at most 1.624 away.
+    // Published: 14.09 s, at most 0.886. Sampled by Tustin's rule at 200 Hz, by SciPy's matrix exponentials: 14.08 s,
+    // 0.8865033, and the second is at most 1.624 away.
     assert!((settled - 14.09).abs() < 0.02, "{settled}");
     near(torque, 0.886_503_297_573_470_8, 1e-6);
     near(largest, 1.624, 1e-3);
 }
 
-/// The same with another spring: published stable for 0.46 to 2.28.
+/// The two masses with another spring: published stable for 0.46 to 2.28.
 #[test]
 fn two_masses_are_stable_for_the_springs_that_were_published() {
     for (spring, stable) in [(0.44_f64, false), (0.47, true), (2.2, true), (2.35, false)] {
@@ -276,8 +280,8 @@ fn two_masses_are_stable_for_the_springs_that_were_published() {
     }
 }
 
-/// The second case of the four clamped modes: another body, disturbances with sines, actuators that give half and then add something.
-/// Without its noise against the oracle to rounding, with it against the oracle's spread.
+/// The second case of the four clamped modes: another body, disturbances with sines, actuators that give half and then
+/// add something. Without its noise against the oracle to rounding, with it against the oracle's spread.
 #[test]
 fn four_clamped_modes_move_on_with_actuators_that_fail() {
     let text =

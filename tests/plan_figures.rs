@@ -1,4 +1,4 @@
-//! The figures of a plan: there, in both forms, with a curve for each command and the right values on them.
+//! Figures of a plan: present in both formats, with a curve for each command and the right values.
 
 use roxmltree::Document;
 
@@ -69,7 +69,8 @@ fn a_series_is_drawn_with_each_number_of_modes() {
     for (colour, peak) in [("#E69F00", 316.4216), ("#56B4E9", 521.0808), ("#009E73", 718.2752)] {
         assert!((height(colour) / highest - peak / 904.8103).abs() < 1e-3, "{colour}");
     }
-    // p = 1 leaves 2.1747e-5 rad, and 1.189e-3 rad at worst, of whose logarithms a decade is an eighth of the plot or more.
+    // p = 1 leaves 2.1747e-5 rad, and 1.189e-3 rad at worst, of whose logarithms a decade is an eighth of the plot or
+    // more.
     let robustness = svg(&dir, "rotation-sine", "robustness");
     let (low, high) = low_and_high(&curve(&robustness, "#56B4E9"));
     let (floor, top) = low_and_high(&curve(&robustness, "#E69F00"));

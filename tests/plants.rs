@@ -68,7 +68,7 @@ impl Relay {
     }
 }
 
-/// A segment that counts how often it is evaluated.
+/// Segment that counts its evaluations.
 pub struct Counted<'a>(pub &'a LinearSegment, pub &'a Cell<u32>);
 
 impl Approach for Counted<'_> {
@@ -104,7 +104,7 @@ impl Approach for Counted<'_> {
     }
 }
 
-/// A run: switchings (axis, state, instant), evaluations of each guarded arc, and states at some times.
+/// Result of a run: switchings (axis, state, instant), evaluations of each guarded arc, and states at some times.
 pub struct Flight {
     pub switchings: Vec<(usize, &'static str, Instant)>,
     pub evaluations: f64,

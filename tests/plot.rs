@@ -1,4 +1,4 @@
-//! The figures of a log: there, in both forms, readable, and with every switching.
+//! Figures of a log: present in both formats, readable, and with every switching.
 
 use flexsc_core::record::Log;
 use roxmltree::{Document, Node};
@@ -7,7 +7,7 @@ use crate::util::Dir;
 
 const FIGURES: [&str; 6] = ["phase-plane", "torque", "angle", "envelope", "gain", "modes"];
 
-/// A directory with the log of a run.
+/// Returns a directory with the log of a run.
 fn simulated(options: &str) -> Dir {
     let dir = Dir::with(&["relay-adaptive"]);
     dir.run(&format!("simulate relay-adaptive.toml {options}")).exits(0);
@@ -18,7 +18,7 @@ fn svg(dir: &Dir, figure: &str) -> String {
     dir.text(&format!("figures/relay-adaptive-{figure}.svg"))
 }
 
-/// How many elements of this name are filled in a colour.
+/// Returns the number of elements of this name that are filled in a colour.
 fn filled(document: &Document<'_>, name: &str, colour: &str) -> usize {
     let is = |node: &Node<'_, '_>| node.has_tag_name(name) && node.attribute("fill") == Some(colour);
     document.descendants().filter(|node| is(node)).count()
@@ -190,7 +190,7 @@ fn torn_and_interrupted_logs() {
     dir.write("torn.mcap", &whole[..whole.len() / 2]);
     dir.run("plot torn.mcap -o torn.svg").exits(2).says(&["torn.mcap", "flexsc log recover"]);
     assert!(!dir.has("torn.svg"));
-    // What was saved of it can be drawn.
+    // The recovered part can be drawn.
     dir.run("log recover torn.mcap --json").exits(0);
     dir.run("plot torn-recovered.mcap -o saved.svg").exits(0);
     assert!(dir.has("saved.svg"));

@@ -13,7 +13,8 @@ fn section(text: &str, number: u32) -> String {
     own.join("\n").trim_end().to_owned()
 }
 
-/// Reproduces a paper, and compares the documentation with what comes out. The others take long: `tests/all.py` does it.
+/// Reproduces a paper, and compares the documentation with what comes out. The others take long: `tests/all.py` does
+/// it.
 fn reproduced(paper: &str, number: u32) -> String {
     let dir = Dir::new();
     dir.run(&format!("reproduce {paper} -o page --docs docs")).exits(0).says(&["papers.html", "verdicts in"]);
@@ -50,7 +51,7 @@ fn the_station_is_as_the_documentation_says() {
     stands_alone(&reproduced("station", 4));
 }
 
-/// Nothing of a page is elsewhere: no address but names of XML's, no script, no style or image beside it.
+/// Checks that a page contains everything it needs: no address but XML names, no external script, style or image.
 fn stands_alone(page: &str) {
     for mark in ["src=", "url(", "@import", "<script", "<link", "<iframe", "<!--", "{{", "{%"] {
         assert!(!page.contains(mark), "{mark}");

@@ -1,4 +1,4 @@
-//! What results of finite-element programs come to, and what is refused of them.
+//! Results of finite-element programs: what is read from them, and what is refused.
 
 use flexsc_core::body::craft::ClampedMode;
 use flexsc_core::{Document, Scenario, attitude};

@@ -14,8 +14,8 @@ use crate::spacecraft::{INERTIA, body, plan, quarter_turn, report, scenario, tex
 use crate::study::close;
 use crate::util::Dir;
 
-/// Name, peak, root mean square, torque at the start, what is left in the last section's angle and at worst with
-/// frequencies off by 5 % and by 10 %, what is left in the hub's angle and at worst with 10 %.
+/// Line of the comparison: name, peak, root mean square, torque at the start, residual in the last section's angle,
+/// nominal and worst with frequencies off by 5 % and by 10 %, residual in the hub's angle, nominal and worst with 10 %.
 type Line = (&'static str, f64, f64, f64, f64, f64, f64, f64, f64);
 
 #[rustfmt::skip] // One row a command.
@@ -69,7 +69,7 @@ const FIELD: &[Line] = &[
     ("polynomial of degree 13", 663.58, 384.22, 0.00, 2.807e-03, 4.696e-03, 4.704e-03, 1.323e-03, 2.218e-03),
 ];
 
-/// Name, time, root mean square, what is left in the last section's angle and at worst with 5 % and 10 %.
+/// Lines: name, time, root mean square, residual in the last section's angle, nominal and worst with 5 % and 10 %.
 #[rustfmt::skip] // One row a command.
 const AT_521_NM: &[(&str, f64, f64, f64, f64, f64)] = &[
     ("sine p=0", 9.3511, 368.46, 1.206e-02, 8.121e-02, 1.186e-01),
@@ -89,7 +89,7 @@ const AT_521_NM: &[(&str, f64, f64, f64, f64, f64)] = &[
     ("polynomial of degree 7", 10.2255, 349.92, 4.263e-03, 3.283e-02, 6.124e-02),
 ];
 
-/// A value must have these four digits; nothing stays nothing.
+/// Checks four digits of a value; a zero must be zero.
 #[track_caller]
 fn digits(name: &str, value: f64, exact: f64) {
     let unit = 10.0_f64.powf(exact.abs().log10().floor() - 3.0);

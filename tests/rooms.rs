@@ -1,4 +1,5 @@
-//! The house: no circle of imports between the rooms of the engine, no file above 400 lines, each says its job first.
+//! Structure of the sources: no circle of imports between the rooms of the engine, no file above 400 lines, each with a
+//! module comment first.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
@@ -78,7 +79,7 @@ fn no_arrow_runs_in_a_circle() {
     let rooms: BTreeSet<String> = files.iter().map(|(name, _)| room(name).to_owned()).collect();
     let mut arrows: BTreeMap<String, BTreeMap<String, String>> = BTreeMap::new();
     for (name, text) in &files {
-        // Tests may look from anywhere.
+        // Tests may import from anywhere.
         if name.ends_with("tests.rs") || name.ends_with("src/lib.rs") {
             continue;
         }
@@ -118,9 +119,9 @@ fn no_two_files_of_a_folder_import_each_other() {
     assert!(circle.is_empty(), "files in circles: {circle:#?}");
 }
 
-/// The arrows that run in circles, each with where it begins.
+/// Returns the imports that form circles, each with the file where it is.
 fn circles(arrows: &BTreeMap<String, BTreeMap<String, String>>) -> Vec<String> {
-    // What no arrow leaves or reaches is taken away, until none is left or all are in circles.
+    // Rooms without an import in or out are removed, until none is left or all are in circles.
     let mut left: BTreeSet<&String> = arrows.keys().collect();
     let is_free = |left: &BTreeSet<&String>, room: &String| {
         arrows[room].keys().all(|to| !left.contains(to))

@@ -1,7 +1,7 @@
-//! Rotations as simulated: what the planned torque, the law after it, disturbances, actuators and large angles do.
+//! Simulated rotations: effects of the planned torque, the law after it, disturbances, actuators and large angles.
 //!
-//! The exact numbers come from an independent integration of the generalised coordinates (SciPy's DOP853, rtol 1e-12) and,
-//! for the PD law and the exact chain, of the closed loop and of Lagrange's equations in absolute angles.
+//! The exact numbers come from an independent integration of the generalised coordinates (SciPy's DOP853, rtol 1e-12)
+//! and, for the PD law and the exact chain, of the closed loop and of Lagrange's equations in absolute angles.
 
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, CampaignRun};
@@ -15,7 +15,7 @@ fn number(metrics: &Metrics, name: &str) -> f64 {
     metrics.number(name).unwrap_or_else(|| panic!("no metric {name}"))
 }
 
-/// A rotation that suppresses so many modes.
+/// Returns a rotation that suppresses `modes` modes.
 fn suppressing(name: &str, kind: &str, modes: usize, more: &[(&str, &str)]) -> Scenario {
     let key = format!("manoeuvre.command.{kind}.suppress");
     let modes = modes.to_string();
@@ -45,7 +45,7 @@ fn rotations_end_where_they_should() {
             close(number(&metrics, "residual_energy_j"), energy, tolerance);
             let residuals = numbers(&metrics, "output_residuals");
             close(residuals[3], residual, if modes < 3 { 1e-6 } else { 1e-4 });
-            // What is left rings on: the largest value seen is that of the modes' amplitudes, or a little less.
+            // The residual oscillates on: its largest value is that of the modes' amplitudes, or a little less.
             let swings = numbers(&metrics, "output_swings");
             assert!(
                 swings[3] <= residual * 1.0001 && swings[3] > 0.9 * residual,
@@ -146,7 +146,7 @@ fn a_zero_order_hold_of_a_short_period_is_ideal() {
     let (ideal, rate) = residual("ideal");
     let (fine, fine_rate) = residual("{ hold = { period = 0.001 } }");
     close(fine, ideal, 1e-3);
-    // The impulse of each period is that of the plan: the rigid rate at the end does not feel the hold.
+    // The impulse of each period is that of the plan: the hold does not change the rigid rate at the end.
     assert!((fine_rate - rate).abs() < 1e-7);
     let (coarse, _) = residual("{ hold = { period = 0.5 } }");
     assert!(coarse > 3.0 * ideal, "{coarse:e} {ideal:e}");

@@ -1,4 +1,5 @@
-//! The scene in a log: frames that follow the engine's numbers, plumes that follow its torques, and nothing else changed.
+//! The scene in a log: frames that follow the engine's numbers, plumes that follow its torques, and nothing else
+//! changed.
 
 use flexsc_core::record::{Column, Columns, Log};
 
@@ -103,7 +104,7 @@ fn sections_are_drawn_at_their_angles() {
     }
 }
 
-/// Where only modes are known, the panels lag: their slopes are minus the modes' displacements, magnified.
+/// With modes only, the panels lag: their slopes are minus the modes' displacements, magnified.
 #[test]
 fn modes_bend_panels_against_the_hub() {
     let dir = Dir::with(&["relay-fixed"]);
@@ -170,7 +171,7 @@ fn points_move_as_the_shapes_say() {
     assert!(largest > 0.05, "the boom bends by {largest}");
 }
 
-/// Whoever draws changes nothing: the switchings are those of a run without a scene.
+/// Drawing changes no number: the switchings are those of a run without a scene.
 #[test]
 fn a_scene_changes_no_motion() {
     for (scenario, options, topic) in [
@@ -243,8 +244,8 @@ fn panels_visibly_bend() {
     let names =
         shipped.filter_map(|entry| entry.file_name().to_str()?.strip_suffix(".toml").map(str::to_owned));
     for name in names {
-        // A rigid body has nothing to bend, drives and hinges turn the wings by far more than they bend, and disturbances of
-        // 1e-4 N m bend nothing beside what its wheels could.
+        // A rigid body has nothing to bend, drives and hinges turn the wings by far more than they bend, and
+        // disturbances of 1e-4 N m bend nothing beside what its wheels could.
         if ["detumble-and-point", "sun-tracking", "panel-deployment", "adaptive-bandwidth"]
             .contains(&name.as_str())
         {

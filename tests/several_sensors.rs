@@ -1,4 +1,4 @@
-//! Several sensors: each at its own period; what they measure comes together, and what does not is refused.
+//! Several sensors: each has its own period, their measurements are combined, and incompatible ones are refused.
 
 use flexsc_core::Scenario;
 
@@ -27,8 +27,8 @@ fn a_list_of_one_is_that_one() {
     }
 }
 
-/// The camera alone differentiates angles once a second; with a gyro the rates are the gyro's, four times a second, whatever
-/// the order.
+/// The camera alone differentiates angles once a second; with a gyro the rates are the gyro's, four times a second,
+/// whatever the order.
 #[test]
 fn each_is_read_at_its_own_period() {
     let changes = |values: &[f64]| values.windows(2).filter(|pair| pair[0] != pair[1]).count();

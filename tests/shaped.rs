@@ -1,11 +1,11 @@
-//! Turns on three axes that are shaped for modes: what is left of these after the turn.
+//! Three-axis turns that are shaped for modes: residual of these after the turn.
 
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Document, Scenario, Simulation};
 
 use crate::util::SCENARIOS;
 
-/// The largest energy of a mode over the last part of a run (J).
+/// Returns the largest energy of a mode over the last part of a run (J).
 fn left(changes: &[(&str, &str)], mode: usize) -> Result<f64, String> {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/shaped-slew.toml")).expect("there");
     let text = changes.iter().filter(|(key, _)| key.is_empty()).fold(text, |text, (_, lines)| {

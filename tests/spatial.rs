@@ -1,4 +1,4 @@
-//! The spatial body: rigid motion and elastic modes.
+//! The three-axis body: rigid motion and elastic modes.
 //!
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
@@ -45,7 +45,7 @@ pitch = { plus = ["y"], minus = ["-y"] }
 yaw = { plus = ["z"], minus = ["-z"] }
 "#;
 
-/// That body with some keys set.
+/// Returns the small free body with some keys set.
 pub fn free(set: &[(&str, &str)]) -> Scenario {
     let mut document = Document::parse("free.toml", FREE.to_owned()).expect("TOML");
     for (key, value) in set {
@@ -54,12 +54,12 @@ pub fn free(set: &[(&str, &str)]) -> Scenario {
     Scenario::from_document(&document).expect("valid")
 }
 
-/// The body of a scenario.
+/// Returns the body of a scenario.
 pub fn body(scenario: &Scenario) -> &Spatial {
     scenario.model.spatial().expect("three axes")
 }
 
-/// Nothing stops these motions.
+/// Callback that never stops these motions.
 #[expect(clippy::unnecessary_wraps, reason = "the motion wants a result")]
 fn go_on() -> Result<(), std::convert::Infallible> {
     Ok(())
@@ -162,7 +162,7 @@ fn modes_follow_the_matrix_exponential() {
     assert_moves(&free(&moving), w, &pieces, [0.343_354_755_413_247, 0.177_055_131_174_376]);
 }
 
-/// The mode of a body, pushed by these accelerations for these times (m sqrt(kg)/s², s), must come to this (q', w q).
+/// Checks the state (q', w q) of a body's mode after these accelerations for these times (m sqrt(kg)/s², s).
 #[track_caller]
 fn assert_moves(scenario: &Scenario, w: f64, pieces: &[(f64, f64)], exact: [f64; 2]) {
     // One of the pieces may be the cycle, whose transition is known beforehand.

@@ -1,4 +1,4 @@
-//! The loop of a spatial body: gyro, estimator, phase-plane law and jets, and what the command makes of it.
+//! The loop of a three-axis body: gyro, estimator, phase-plane law and jets, and the command's output.
 //!
 //! Golden numbers: tests/golden/station_oracle.py, a loop of its own by Runge-Kutta steps.
 
@@ -13,18 +13,18 @@ use crate::study::{close, metrics, scenario};
 use crate::traces::{column, traced, within};
 use crate::util::{Dir, SCENARIOS, table};
 
-/// A column of the rows about one axis.
+/// Returns a column of the rows about one axis.
 fn about(columns: &Columns, axis: usize, name: &str) -> Vec<f64> {
     let Some(Column::Rows(_, rows)) = columns.get("axes") else { panic!("axes") };
     rows.numbers(name).expect("a column").iter().skip(axis).step_by(3).copied().collect()
 }
 
-/// A column's last value.
+/// Returns the last value of a column.
 fn last(trace: &Trace, topic: &str, name: &str) -> f64 {
     *column(trace, topic, name).last().expect("a row")
 }
 
-/// The slow modes, which hardly turn the gyro, keep their energy; what is told without them is theirs alone.
+/// The slow modes, which hardly turn the gyro, keep their energy; the visible energy is that of the other modes.
 #[test]
 fn the_energy_that_the_gyro_sees_is_told_apart() {
     let study = scenario("iss-manoeuvre", &[("duration", "120"), ("log.period", "10")]);
@@ -104,14 +104,14 @@ fn the_manoeuvre_uses_the_propellant_that_it_should() {
     assert!((5e-6..9e-6).contains(&number("elastic_rate_rms_rad_s")));
 }
 
-/// Looking at a run does not change it, not even between the ends of its pulses.
+/// Recording a run does not change it, not even between the ends of its pulses.
 #[test]
 fn dense_records_change_nothing() {
     let study = scenario("iss-manoeuvre-off", &[("log.period", "0.073"), ("duration", "60")]);
     let mut dense = (Trace::new(Detail::Full), Gather::new(&study));
     Simulation::new(&study, 0).run(&mut dense).expect("a run");
     assert_eq!(dense.1.finish(&study).to_json(), metrics(study.clone()).to_json());
-    // Stops on the way neither.
+    // Stops on the way do not change it either.
     let mut stopped = Gather::new(&study);
     let mut run = Simulation::new(&study, 0);
     for k in 1..=700 {
@@ -219,7 +219,7 @@ fn pulses_act_where_and_as_long_as_they_are_told() {
     }
 }
 
-/// Nothing of a pulse that is too short, whole quanta of a longer one, and never more than the cycle.
+/// Too short a pulse gives zero, a longer one whole quanta, and none more than the cycle.
 #[test]
 fn pulses_have_a_least_length_and_a_quantum() {
     let study = scenario("iss-manoeuvre-off", &[]);
@@ -281,8 +281,8 @@ fn the_command_knows_spatial_bodies() {
     }
 }
 
-/// Weak and strong jets, at once and a cycle late, narrow and wide zones, with and without a steady torque of up to a tenth of
-/// what the weakest jets give: the attitude comes to each target and stays within what the law promises.
+/// Weak and strong jets, at once and a cycle late, narrow and wide zones, with and without a steady torque of up to a
+/// tenth of the weakest jets': the attitude reaches each target and stays within the tolerance of the law.
 #[test]
 fn every_target_is_reached_and_held() {
     let mut draw = 1_u64;
@@ -291,8 +291,8 @@ fn every_target_is_reached_and_held() {
         low + (high - low) * (draw >> 11) as f64 / (1_u64 << 53) as f64
     };
     for case in 0..400 {
-        // Thrust sets the accelerations, 2.6e-7 to 4.8e-3 rad/s²; the weakest axis has 8.4e-6 rad/s² at 130 N. The smallest
-        // pulse changes up to 2.4e-4 rad/s, more than many a `switch_on`.
+        // Thrust sets the accelerations, 2.6e-7 to 4.8e-3 rad/s²; the weakest axis has 8.4e-6 rad/s² at 130 N. The
+        // smallest pulse changes up to 2.4e-4 rad/s, more than many a `switch_on`.
         let scale = 10_f64.powf(uniform(-1.5, 2.0));
         let zone = 10_f64.powf(uniform(-3.0, -2.0));
         let limit = 10_f64.powf(uniform(-3.5, -2.5));

@@ -1,4 +1,4 @@
-//! Runs in pieces: they come to what whole runs come to, copies go their own ways, and commands come from outside.
+//! Runs in pieces: they have the results of whole runs, copies are independent, and commands come from outside.
 
 use std::collections::BTreeMap;
 
@@ -9,7 +9,7 @@ use flexsc_core::{LookField, Occasion, Scenario, Simulation};
 
 use crate::util::SCENARIOS;
 
-/// Shipped scenarios of every kind of motion, law, sensor and actuator, and how much of each is flown (s).
+/// Shipped scenarios of every kind of motion, law, sensor and actuator, and their simulated times (s).
 const FLOWN: [(&str, f64); 14] = [
     ("attitude-hold", 60.0),
     ("canted-jets", 60.0),
@@ -38,7 +38,7 @@ fn flown(name: &str, seconds: f64) -> Scenario {
     scenario.with(|scenario| scenario.duration = duration).expect("a shorter one")
 }
 
-/// The row of a simulation, to the bit.
+/// Returns the row of a simulation, to the bit.
 fn row(simulation: &mut Simulation, scenario: &Scenario) -> Vec<u64> {
     let mut row = vec![0.0; simulation.fields(scenario).iter().map(LookField::width).sum()];
     simulation.look(&mut row).expect("finite numbers");

@@ -1,4 +1,4 @@
-//! What is left when a run cannot go on: no directory, a full disk, Ctrl-C, a kill.
+//! Files that are left when a run cannot continue: no directory, a full disk, Ctrl-C, a kill.
 
 use std::path::Path;
 
@@ -76,7 +76,7 @@ fn an_interrupted_run_has_a_whole_log() {
         assert_eq!(end["end"], "interrupted");
         let rows = command_rows(&dir, "out/relay-fixed.mcap");
         assert!(rows.len() > 2000);
-        // The log ends with what was told last, a switching or the mean of a window.
+        // The log ends with its last event, a switching or the mean of a window.
         let (last, end) = (seconds(rows.last().expect("rows")), seconds(&end["time_s"]));
         assert!((0.0..100.0).contains(&(end - last)), "{last} {end}");
         std::fs::remove_dir_all(dir.path("out")).expect("removed");
@@ -153,10 +153,10 @@ fn a_killed_run_is_recovered() {
     dir.run("log scenario out/relay-fixed-recovered.mcap").exits(0).prints(&["duration = 500000000.0"]);
 }
 
-/// Looks now and then at what a run's log would be if the run were killed there.
+/// Observer of the log that a run would leave if it were killed at some instants.
 struct Killer<'a> {
     dir: &'a Dir,
-    /// Messages written so far, that of `/params` among them.
+    /// Number of written messages, that of `/params` among them.
     written: u64,
     looks: u64,
 }
@@ -252,7 +252,7 @@ fn tables_and_figures_on_a_full_disk_fail() {
     dir.run(plot).exits(1).says(&["relay-fixed-torque.svg", "No space left"]);
 }
 
-/// What was there stays until the new file is whole, and a file that is read-only stays as it is.
+/// An existing file stays until the new one is complete, and a read-only file stays unchanged.
 #[test]
 fn a_file_that_cannot_be_replaced_stays() {
     let dir = Dir::with(&["relay-fixed"]);
@@ -271,7 +271,7 @@ fn a_file_that_cannot_be_replaced_stays() {
     assert_eq!(dir.names("."), ["layout.json", "relay-fixed.toml"]);
 }
 
-/// What is in the way of a temporary name is neither followed, nor waited for, nor removed.
+/// A file at a temporary name is neither followed, nor waited for, nor removed.
 #[cfg(unix)]
 #[test]
 fn links_and_pipes_in_the_way_are_left_alone() {
@@ -313,7 +313,7 @@ fn links_and_pipes_in_the_way_are_left_alone() {
     }
 }
 
-/// What a killed run left does not hinder the next one.
+/// The remains of a killed run do not hinder the next one.
 #[cfg(unix)]
 #[test]
 fn a_killed_run_leaves_no_lock() {

@@ -1,4 +1,4 @@
-//! How soon a run ends that is asked to, wherever it is slow.
+//! Time from a request to stop to the end of a run, wherever it is slow.
 
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 
 use crate::util::Dir;
 
-/// What they run.
+/// Shipped scenarios that the commands use.
 const SHIPPED: &[&str] = &[
     "relay-fixed",
     "relay-adaptive",
@@ -63,9 +63,9 @@ const SLOW: &[&str] = &[
     "log recover p/relay-adaptive.mcap -o p/saved.mcap",
 ];
 
-/// How long it takes from a signal to the end of a run (s).
+/// Returns the time from a signal to the end of a run (s).
 fn stopped(dir: &Dir, arguments: &str, signal: &str) -> f64 {
-    // They take long: that is what they are for.
+    // They ask for a yes, because they take long on purpose.
     let asks =
         ["simulate", "sweep", "identify", "tune", "map"].iter().any(|verb| arguments.starts_with(verb));
     let mut run = dir.start(&format!("{arguments}{}", if asks { " --yes" } else { "" }));
@@ -115,7 +115,7 @@ fn slow_runs_stop_soon() {
     }
 }
 
-/// What a run tells fills a pipe that nobody reads: it ends all the same.
+/// The output of a run fills a pipe without a reader: the run ends all the same.
 #[test]
 fn a_run_that_nobody_listens_to_stops_too() {
     let dir = Dir::new();

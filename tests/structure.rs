@@ -1,4 +1,4 @@
-//! Structures: matrices and panels become the planar body with modes (\[Rotation\], the example of two panels).
+//! Structures: matrices and panels become the one-axis body with modes (\[Rotation\], the example of two panels).
 
 use std::f64::consts::PI;
 use std::fmt::Write as _;
@@ -11,7 +11,7 @@ use flexsc_core::{Document, Scenario};
 use crate::study::close;
 use crate::util::Dir;
 
-/// A law for a body that is looked at, not controlled.
+/// Law for a body that is analysed, not controlled.
 pub const RELAY: &str = "duration = 10.0\n[law.relay]\ndead_zone = 2e-3\nhysteresis = 2e-4\nstrong = 1.0\n\
                      weak = 0.02\nk_t = 0.33\n";
 const PANELS: &str = "[body.panels]\nhub_inertia = 166.67\nroot = 0.5\nSET\n\
@@ -33,14 +33,14 @@ const STIFFNESS: [[f64; 5]; 5] = [
     [0.0, 640.0, -2560.0, 3200.0, -1280.0],
     [0.0, 0.0, 640.0, -1280.0, 640.0],
 ];
-/// By tests/golden/structure_oracle.py, 40 digits: frequency, |X_n[theta]|, X_n[theta] P_4n of the free structure.
+/// Free structure by tests/golden/structure_oracle.py, 40 digits: frequency, |X_n[theta]|, X_n[theta] P_4n.
 const FREE: [[f64; 3]; 4] = [
     [3.330_081_535_753_227, 0.045_157_626_359_876_61, -0.004_348_115_795_801_667],
     [7.398_419_278_191_803_4, 0.055_779_672_084_264_57, 0.000_588_937_792_420_223_5],
     [14.165_312_469_319_566, 0.023_059_210_848_757_356, -0.002_719_332_646_332_006_2],
     [22.348_647_095_581_693, 0.007_688_751_164_334_697_5, 0.000_523_340_628_034_430_7],
 ];
-/// The same of the structure clamped at the hub: frequency, |m_n|, m_n P_4n.
+/// Structure clamped at the hub, by this oracle: frequency, |m_n|, m_n P_4n.
 const CLAMPED: [[f64; 3]; 4] = [
     [0.913_857_391_138_065_3, 65.811_053_324_514_89, 1.539_638_335_597_998_8],
     [5.362_331_803_393_391, 10.289_266_343_715_62, -0.773_538_355_102_115_4],
@@ -254,7 +254,7 @@ fn coordinates_may_turn_with_the_hub() {
     }
 }
 
-/// What a table of free modes says of the clamped hub, and the other way round.
+/// A table of free modes gives the modes with the hub clamped, and conversely.
 #[test]
 fn modes_with_the_hub_free_tell_those_with_the_hub_held() {
     let dir = Dir::new();
@@ -273,8 +273,8 @@ fn modes_with_the_hub_free_tell_those_with_the_hub_held() {
     assert_eq!(model(&dir, &much).free_frequencies(), None);
 }
 
-/// A chain of equal masses m between walls that turn with the hub: w_n = 2 sqrt(k/m) sin(n pi/(2 N + 2)). Of order 60 it is
-/// solved by nalgebra, of order 400 by faer.
+/// A chain of equal masses m between walls that turn with the hub: w_n = 2 sqrt(k/m) sin(n pi/(2 N + 2)). Of order 60
+/// it is solved by nalgebra, of order 400 by faer.
 #[test]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
 fn large_structures_have_the_modes_of_a_uniform_chain() {
@@ -352,7 +352,7 @@ fn modes_are_solved_once_and_kept_in_the_log() {
     assert_eq!(panels.self_contained(), panels.written);
 }
 
-/// The command and its JSON tell of the example with the hub free and held.
+/// The command and its JSON list the modes of the example with the hub free and held.
 #[test]
 fn the_command_tells_of_modes() {
     let dir = Dir::holding("free.toml", format!("{RELAY}{}", PANELS.replace("SET", "")));

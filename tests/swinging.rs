@@ -1,4 +1,5 @@
-//! Elastic modes in an attitude filter: against an oracle with the same readings, what is refused, and the scenario that ships.
+//! Elastic modes in an attitude filter: against an oracle with equal readings, refused settings, and the shipped
+//! scenario.
 
 use std::sync::Arc;
 
@@ -16,7 +17,7 @@ use nalgebra::{Matrix3, Quaternion};
 use crate::traces::{flown, within};
 use crate::util::SCENARIOS;
 
-/// Readings of a made-up run, and what a filter that shares nothing with this one makes of them: `golden/swinging_oracle.py`.
+/// Readings of an artificial run, and the results of an independent filter for them: `golden/swinging_oracle.py`.
 const READ: &str = include_str!("golden/swinging-in.csv");
 const GIVEN: &str = include_str!("golden/swinging-out.csv");
 const IDENTIFIED: &str = include_str!("golden/swinging-identified.csv");
@@ -49,7 +50,7 @@ fn modes_in_the_filter_are_those_of_the_oracle() {
     follows_the_oracle(known(), GIVEN, 1e-12);
 }
 
-/// From 20 % above and 10 % below.
+/// Initial frequencies 20 % too high and 10 % too low.
 #[test]
 fn identified_frequencies_are_those_of_the_oracle() {
     let mut known = known();
@@ -60,7 +61,8 @@ fn identified_frequencies_are_those_of_the_oracle() {
     follows_the_oracle(known, IDENTIFIED, 1e-11);
 }
 
-/// A filter that knows or identifies these modes has the states of the oracle within a tolerance, and its deviations.
+/// Checks that a filter that knows or identifies these modes has the states of the oracle within a tolerance, and its
+/// deviations.
 fn follows_the_oracle(known: KnownModes, given: &str, tolerance: f64) {
     let (read, noise) = (rows(READ), GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 });
     let off = Vector::new(1e-3, -5e-4, 8e-4);
@@ -126,7 +128,7 @@ fn changed(change: &[(&str, &str)]) -> Result<Scenario, String> {
 const NONE: (&str, &str) =
     ("elastic = { modes = [0], noise = 1e-5, displacement = 1e-3, feeds = \"hub\" }\n", "");
 
-/// The largest angle beyond the reference about any axis while the body turns and settles (rad).
+/// Returns the largest error from the reference about any axis while the body turns and settles (rad).
 fn worst(trace: &Trace) -> f64 {
     let errors = ["roll", "pitch", "yaw"].map(|axis| {
         let rows = trace.topic("/pointing").and_then(|rows| rows.numbers(&format!("{axis}_error_rad")));
@@ -166,7 +168,8 @@ fn column<'a>(trace: &'a Trace, field: &str) -> &'a [f64] {
     within(trace, "/attitude_filter_modes", "modes", field)
 }
 
-/// From 15 % below to 15 % above, in runs with other noise: the slew tells the frequency, and the deviations are honest.
+/// With errors from -15 % to 15 % and different noise, the slew identifies the frequency, and the deviations are
+/// consistent.
 #[test]
 fn frequencies_are_identified_from_the_slew() {
     let mut squares = 0.0;

@@ -4,21 +4,21 @@ use flexsc_core::metrics::{Gather, Metrics};
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
-/// The metrics and the trace of a run.
+/// Returns the metrics and the trace of a run.
 pub fn flown(scenario: &Scenario, run: u64, detail: Detail) -> (Metrics, Trace) {
     let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
     Simulation::new(scenario, run).run(&mut (&mut gather, &mut trace)).expect("a run");
     (gather.finish(scenario), trace)
 }
 
-/// The full trace of the first run.
+/// Returns the full trace of the first run.
 pub fn traced(scenario: &Scenario) -> Trace {
     let mut trace = Trace::new(Detail::Full);
     Simulation::new(scenario, 0).run(&mut trace).expect("a run");
     trace
 }
 
-/// The lines of a table of numbers among the golden values.
+/// Returns the lines of a table of numbers among the golden values.
 pub fn golden_rows(name: &str) -> Vec<Vec<f64>> {
     let path = format!("{}/../../tests/golden/{name}", env!("CARGO_MANIFEST_DIR"));
     let text = std::fs::read_to_string(&path).expect("a file");
@@ -26,13 +26,13 @@ pub fn golden_rows(name: &str) -> Vec<Vec<f64>> {
     text.lines().map(cells).collect()
 }
 
-/// A column of numbers of a topic.
+/// Returns a column of numbers of a topic.
 pub fn column<'a>(trace: &'a Trace, topic: &str, name: &str) -> &'a [f64] {
     let numbers = trace.topic(topic).and_then(|rows| rows.numbers(name));
     numbers.unwrap_or_else(|| panic!("no {name} in {topic}"))
 }
 
-/// A column of numbers of the rows within the rows of a topic.
+/// Returns a column of numbers of the nested rows of a topic.
 pub fn within<'a>(trace: &'a Trace, topic: &str, rows: &str, name: &str) -> &'a [f64] {
     match trace.topic(topic).and_then(|all| all.get(rows)) {
         Some(Column::Rows(_, inner)) => inner.numbers(name),
@@ -41,7 +41,7 @@ pub fn within<'a>(trace: &'a Trace, topic: &str, rows: &str, name: &str) -> &'a 
     .unwrap_or_else(|| panic!("no {rows}.{name} in {topic}"))
 }
 
-/// The numbers of one of the rows within each row of a topic, of which there are so many.
+/// Returns the numbers of the nested row `index` in each row of a topic, which has `of` nested rows.
 pub fn nested(trace: &Trace, topic: &str, [rows, name]: [&str; 2], (index, of): (usize, usize)) -> Vec<f64> {
     within(trace, topic, rows, name).iter().skip(index).step_by(of).copied().collect()
 }

@@ -1,4 +1,4 @@
-//! Gains of the extra loop: their region, the robust ones, and what the command tells of them.
+//! Gains of the extra loop: their region, the robust ones, and the command's report on them.
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{

@@ -6,7 +6,7 @@ use std::process::{Command, Stdio};
 use crate::bad_scenarios::GOOD;
 use crate::util::{Dir, FLEXSC, SCENARIOS};
 
-/// What is written in the place of what, and what the error suggests or says.
+/// Cases: text that is replaced, its replacement, and the suggestion or reason in the error.
 #[rustfmt::skip] // One case a line.
 const TYPOS: &[(&str, &str, &str)] = &[
     ("k_t = 0.31", "kt = 0.31", "did you mean `k_t`?"),

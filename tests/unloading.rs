@@ -1,4 +1,4 @@
-//! Jets that unload wheels: the scenario that ships does what its comment says, and what cannot be is refused.
+//! Jets that unload wheels: the shipped scenario does what its comment says, and impossible settings are refused.
 
 use flexsc_core::metrics::{Metrics, Value};
 use flexsc_core::record::Detail;
@@ -11,7 +11,7 @@ fn text() -> String {
     std::fs::read_to_string(format!("{SCENARIOS}/momentum-unloading.toml")).expect("a file")
 }
 
-/// Metrics, times (s) and momenta of the three wheels (N m s).
+/// Returns metrics, times (s) and momenta of the three wheels (N m s).
 fn flown(text: &str) -> (Metrics, Vec<f64>, Vec<[f64; 3]>) {
     let scenario = Scenario::parse("unloading.toml", text).expect("a scenario");
     let (metrics, trace) = crate::traces::flown(&scenario, 0, Detail::Full);

@@ -1,4 +1,4 @@
-//! Nothing that watches a run changes it, and a copy of a run goes on as the run itself, whatever parts it is made of.
+//! Records do not change a run, and a copy of a run continues as the run itself, with every kind of parts.
 
 use flexsc_core::flow::SpatialState;
 use flexsc_core::motion::{State, Stretch};
@@ -10,7 +10,7 @@ use crate::axes::{FILTERED, together};
 use crate::lqg::lqg;
 use crate::study::scenario;
 
-/// A spatial body whose modes are not damped, and which turns fast.
+/// Three-axis body whose modes are not damped, and which rotates fast.
 const TURNING: &str = r#"duration = 40.0
 [body.spatial]
 inertia = [[5.0, 0.4, -0.2], [0.4, 3.0, 0.1], [-0.2, 0.1, 2.0]]
@@ -27,16 +27,16 @@ displacement = -0.1
 shapes.hub = { rotation = [0.0, 0.2, -0.3] }
 "#;
 
-/// Three laws that differ, on noisy samples.
+/// Three different laws, on noisy samples.
 const MIXED: &str = "[sensor.sampled]\nperiod = 0.2\nnoise = 1e-4\nrate_noise = 1e-4\n\
     [law.per_axis]\nroll = { relay = { dead_zone = 1e-2, hysteresis = 2e-3, strong = 0.1, weak = 1e-3, k_t = 0.3 } }\n\
     pitch = { pd = { k_p = 0.3, k_d = 1.0, period = 0.6 } }\nyaw = { open = {} }\n\
     [[disturbance]]\nabout = \"yaw\"\nnoise = 1e-6\nperiod = 0.7\n";
 
-/// Over the whole of its latency: an exposure is open most of the time.
+/// Exposure over the whole latency: one is open most of the time.
 const EXPOSED: (&str, &str) = ("sensor[1].star_tracker.exposure", "0.4");
 
-/// Without decisions, beyond 20 s.
+/// Loop without decisions, beyond 20 s.
 const TRACKED: &str = "[law.open]\n[sensor.star_tracker]\nperiod = 0.7\nlatency = 0.5\nexposure = 0.7\nnoise = [1e-5, 1e-5, 1e-5]\n\
     [[disturbance]]\nabout = \"yaw\"\nnoise = 1e-3\nperiod = 11.0\n";
 
@@ -60,7 +60,7 @@ fn runs() -> Vec<(&'static str, Scenario)> {
     ]
 }
 
-/// Where a run has come to.
+/// State that a run has reached.
 type Reached = (Option<State>, Option<SpatialState>);
 
 fn reached(simulation: &Simulation) -> Reached {
@@ -91,7 +91,7 @@ fn a_copy_goes_on_as_the_run_itself() {
     }
 }
 
-/// A record that wants all there is.
+/// Record that needs everything.
 struct Everything(u64);
 
 impl Record for Everything {

@@ -1,4 +1,4 @@
-//! A tiny language for tests of the command: a directory of its own, the command run in it, what came out.
+//! Helpers for tests of the command: a directory of its own, the command run in it, and its output.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -88,12 +88,12 @@ impl Dir {
         self.path(name).symlink_metadata().is_ok()
     }
 
-    /// The length of a file in bytes.
+    /// Returns the length of a file in bytes.
     pub fn size(&self, name: &str) -> u64 {
         fs::metadata(self.path(name)).map_or(0, |file| file.len())
     }
 
-    /// The names in a directory within, sorted; none if it is not there.
+    /// Returns the names in a subdirectory, sorted; empty if it does not exist.
     pub fn names(&self, within: &str) -> Vec<String> {
         let entries = fs::read_dir(self.path(within)).into_iter().flatten().flatten();
         let mut names: Vec<_> = entries.map(|e| e.file_name().to_string_lossy().into_owned()).collect();
@@ -106,7 +106,7 @@ impl Dir {
         Ran::new(arguments, self.command(arguments).output().expect("the command starts"))
     }
 
-    /// Runs the command with 1.5 GB of memory and 10 s of time: what it cannot do within is killed.
+    /// Runs the command with 1.5 GB of memory and 10 s of time, beyond which it is killed.
     #[cfg(target_os = "linux")]
     pub fn run_bounded(&self, arguments: &str) -> Ran {
         let mut command = Command::new("sh");
@@ -120,13 +120,13 @@ impl Dir {
         Self::started(self.command(arguments), arguments)
     }
 
-    /// The same where signals such as `INT HUP` are ignored.
+    /// Starts the command while signals such as `INT HUP` are ignored.
     #[cfg(unix)]
     pub fn start_ignoring(&self, signals: &str, arguments: &str) -> Started {
         self.start_by(&format!("trap '' {signals}"), arguments)
     }
 
-    /// The same after another command of a shell, such as a limit.
+    /// Starts the command after another command of a shell, such as a limit.
     #[cfg(unix)]
     pub fn start_by(&self, before: &str, arguments: &str) -> Started {
         let mut command = Command::new("sh");
@@ -135,7 +135,7 @@ impl Dir {
         Self::started(command, arguments)
     }
 
-    /// Runs the command where no file can be larger than so many blocks of 512 or 1024 bytes: like a full disk.
+    /// Runs the command with a limit of `blocks` blocks of 512 or 1024 bytes for every file: like a full disk.
     #[cfg(unix)]
     pub fn run_within(&self, blocks: u32, arguments: &str) -> Ran {
         let mut command = Command::new("sh");
@@ -149,7 +149,7 @@ impl Dir {
         Started { child: Some(child.expect("the command starts")), arguments: arguments.to_owned() }
     }
 
-    /// Waits until a file has so many bytes.
+    /// Waits until a file has `bytes` bytes.
     pub fn wait_for(&self, name: &str, bytes: u64) {
         let began = Instant::now();
         while self.size(name) < bytes {
@@ -165,14 +165,14 @@ impl Dir {
     }
 }
 
-/// The command at work. It does not outlive its test.
+/// Running command. It is killed at the end of its test.
 pub struct Started {
     child: Option<Child>,
     arguments: String,
 }
 
 impl Started {
-    /// The next line of stderr that holds a word.
+    /// Returns the next line of stderr that contains a word.
     #[cfg(feature = "live")]
     pub fn line(&mut self, word: &str) -> String {
         use std::io::Read;
@@ -205,7 +205,7 @@ impl Started {
         self.wait()
     }
 
-    /// Whether it has not ended.
+    /// Returns true if the command has not ended.
     #[cfg(unix)]
     pub fn is_alive(&mut self) -> bool {
         let child = self.child.as_mut().expect("not yet waited for");
@@ -230,7 +230,7 @@ impl Drop for Started {
     }
 }
 
-/// The command after its end.
+/// Result of a command that has ended.
 pub struct Ran {
     /// The exit code; none after a signal.
     pub code: Option<i32>,
@@ -250,14 +250,14 @@ impl Ran {
         }
     }
 
-    /// The exit code must be this.
+    /// Checks the exit code.
     #[track_caller]
     pub fn exits(self, code: i32) -> Self {
         assert_eq!(self.code, Some(code), "flexsc {}\n{}", self.arguments, self.err);
         self
     }
 
-    /// Stderr must hold these words.
+    /// Checks that stderr contains these words.
     #[track_caller]
     pub fn says(self, words: &[&str]) -> Self {
         for words in words {
@@ -266,7 +266,7 @@ impl Ran {
         self
     }
 
-    /// Stdout, which must hold these words.
+    /// Checks that stdout contains these words, and returns it.
     #[track_caller]
     pub fn prints(self, words: &[&str]) -> String {
         for words in words {
@@ -275,14 +275,14 @@ impl Ran {
         self.out
     }
 
-    /// Stdout as JSON.
+    /// Returns stdout as JSON.
     #[track_caller]
     pub fn json(self) -> Json {
         serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error} in\n{}", self.out))
     }
 }
 
-/// What the file's summary says of how the run ended.
+/// Returns the end of the run as the file's summary has it.
 pub fn end(dir: &Dir, log: &str) -> BTreeMap<String, String> {
     let bytes = dir.read(log);
     let summary = mcap::Summary::read(&bytes).expect("whole").expect("a summary");
@@ -290,13 +290,13 @@ pub fn end(dir: &Dir, log: &str) -> BTreeMap<String, String> {
     mcap::read::metadata(&bytes, index).expect("whole").metadata
 }
 
-/// The rows of a table, each by the names of its columns.
+/// Returns the rows of a table, each by the names of its columns.
 pub fn table(dir: &Dir, name: &str) -> Vec<BTreeMap<String, String>> {
     let bytes = dir.read(name);
     csv::Reader::from_reader(&*bytes).deserialize().map(|row| row.expect("a whole row")).collect()
 }
 
-/// Whether a file's name ends so.
+/// Returns true if a file's name has this extension.
 pub fn has_extension(name: &str, extension: &str) -> bool {
     Path::new(name).extension().is_some_and(|e| e == extension)
 }

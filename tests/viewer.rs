@@ -11,9 +11,9 @@ use tungstenite::{HandshakeError, Message, WebSocket};
 
 use crate::util::Started;
 
-/// Nothing of these tests takes longer.
+/// Time limit of every step of these tests.
 pub const PATIENCE: Duration = Duration::from_secs(30);
-/// A held run says nothing for so long.
+/// Time of silence after which a run counts as held.
 const QUIET: Duration = Duration::from_millis(600);
 
 /// A viewer: a client of the Foxglove WebSocket protocol.
@@ -22,7 +22,7 @@ pub struct Viewer {
     pub info: Json,
     /// Topic and schema of each channel.
     pub channels: BTreeMap<u64, (String, Schema)>,
-    /// The time that was told last (ns).
+    /// Last time that was received (ns).
     pub time: u64,
     calls: u32,
 }
@@ -30,7 +30,7 @@ pub struct Viewer {
 /// Name and serialised descriptors.
 pub type Schema = (String, Vec<u8>);
 
-/// What a viewer is told of a run.
+/// Row that a viewer receives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Row {
     pub topic: String,
@@ -38,7 +38,7 @@ pub struct Row {
     pub data: Vec<u8>,
 }
 
-/// What the server says.
+/// Message of the server.
 #[derive(Debug)]
 pub enum Said {
     Row(Row),
@@ -65,7 +65,7 @@ impl Viewer {
         viewer
     }
 
-    /// What is said next; nothing if it does not come in this time.
+    /// Returns the next message; `Said::Nothing` if none comes within this time.
     pub fn next(&mut self, within: Duration) -> Said {
         let began = Instant::now();
         while began.elapsed() < within {
@@ -115,7 +115,7 @@ impl Viewer {
         self.channels.insert(channel["id"].as_u64().expect("a number"), of);
     }
 
-    /// The next text of a kind.
+    /// Returns the next text of a kind.
     pub fn text(&mut self, op: &str) -> Json {
         loop {
             match self.next(PATIENCE) {
@@ -126,7 +126,7 @@ impl Viewer {
         }
     }
 
-    /// The next row of a topic.
+    /// Returns the next row of a topic.
     pub fn row(&mut self, topic: &str) -> Row {
         loop {
             match self.next(PATIENCE) {
@@ -137,7 +137,7 @@ impl Viewer {
         }
     }
 
-    /// The rows that come until there are no more for a while.
+    /// Returns the rows until there are no more for a while.
     pub fn rest(&mut self) -> Vec<Row> {
         let mut rows = Vec::new();
         loop {
@@ -149,7 +149,7 @@ impl Viewer {
         }
     }
 
-    /// The time of the row that comes after so many others.
+    /// Returns the time of the row that comes after `count` others.
     pub fn time_after(&mut self, count: usize) -> u64 {
         (0..count).map(|_| self.row("/attitude").time).last().expect("a row")
     }
@@ -201,12 +201,12 @@ impl Viewer {
     }
 }
 
-/// Connects to a server by this name of the protocol; nothing if it refuses.
+/// Connects to a server by this subprotocol; returns `None` if it refuses.
 pub fn connect(address: &str, subprotocol: &'static str) -> Option<WebSocket<TcpStream>> {
     connect_with(address, &[("Sec-WebSocket-Protocol", subprotocol)]).ok()
 }
 
-/// Connects to a server with these headers, or tells the status and the words with which it refuses.
+/// Connects to a server with these headers, or returns the status and the words with which it refuses.
 pub fn connect_with(
     address: &str,
     headers: &[(&'static str, &str)],

@@ -1,4 +1,4 @@
-//! The figures of wheels, filters and sampled loops: the right curves at the right places.
+//! Figures of wheels, filters and sampled loops: the right curves at the right places.
 
 use flexsc_core::record::Log;
 
@@ -162,7 +162,7 @@ fn tuned_gains_are_drawn() {
     let without = settling.shapes("polyline", "stroke", BLACK);
     near(settling.up(without[1][0].1, ["20", "160"]), 180.3, 0.5);
 
-    // A region that ends at the highest gain tells so, and without --robust there is no such gain.
+    // A region that ends at the highest gain is reported as such, and without --robust there is no such gain.
     dir.run("tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures")
         .exits(0)
         .says(&["wheel-scheduled-gain-tune-region.png", "0.3000"]);

@@ -1,17 +1,17 @@
-//! An actuator from outside: a servo that gives torques in whole steps up to a limit, about each axis.
+//! Custom actuator: a servo that gives torques in whole steps up to a limit, about each axis.
 
 use flexsc_core::actuator::{Actuate, Demand, Effector, TorquerSetting};
 use flexsc_core::time::Instant;
 use flexsc_core::wrench::Wrench;
 
-/// The servo: its largest torque and its step (N m).
+/// Servo with its largest torque and its step (N m).
 #[derive(Copy, Clone, Debug)]
 pub struct Servo {
     pub most: f64,
     pub step: f64,
 }
 
-/// The servo at work: what is asked for and what it gives about each axis (N m), and the inertias (kg m²).
+/// Run-time state of the servo: demanded and executed torque about each axis (N m), and the inertias (kg m²).
 #[derive(Clone, Debug)]
 struct Turning(Servo, [[f64; 2]; 3], Vec<f64>);
 

@@ -1,4 +1,4 @@
-//! An adaptation from outside: it moves a number of the law on after each window, and ends the run where it has gone too far.
+//! Custom adaptation: it adds a step to a gain of the law after each window, and ends the run beyond a limit.
 
 use std::io;
 
@@ -7,14 +7,14 @@ use flexsc_core::own::Halt;
 use flexsc_core::random::Seed;
 use flexsc_core::time::Instant;
 
-/// The climber: its step, and the value that it may not pass.
+/// Climber with its step, and its largest value.
 #[derive(Copy, Clone, Debug)]
 pub struct Climber {
     pub step: f64,
     pub most: f64,
 }
 
-/// The climber at work, with the value.
+/// Run-time state of the climber, with the value.
 #[derive(Clone, Debug)]
 struct Climbing(Climber, f64);
 

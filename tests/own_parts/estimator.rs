@@ -1,18 +1,18 @@
-//! An estimator from outside: an alpha-beta filter of angle and rate about each axis.
+//! Custom estimator: an alpha-beta filter of angle and rate about each axis.
 
 use flexsc_core::belief::Belief;
 use flexsc_core::estimator::{Estimate, Known, Observe, Taken};
 use flexsc_core::random::Seed;
 use flexsc_core::time::Instant;
 
-/// The parts of an innovation by which angle and rate are corrected.
+/// Gains by which an innovation corrects angle and rate.
 #[derive(Copy, Clone, Debug)]
 pub struct AlphaBeta {
     pub alpha: f64,
     pub beta: f64,
 }
 
-/// The filter at work: angle (rad) and rate (rad/s) about each axis after the last sample.
+/// Run-time state of the filter: angle (rad) and rate (rad/s) about each axis after the last sample.
 #[derive(Clone, Debug)]
 struct Filtering(AlphaBeta, Vec<[f64; 2]>, Option<Instant>);
 

@@ -1,4 +1,4 @@
-//! A law from outside: proportional, integral and derivative feedback.
+//! Custom law: proportional, integral and derivative feedback.
 
 use flexsc_core::belief::Belief;
 use flexsc_core::law::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Rule};
@@ -13,7 +13,7 @@ pub struct Pid {
     pub period: f64,
 }
 
-/// The law at work, with the integral of the error (rad s).
+/// Run-time state of the law, with the integral of the error (rad s).
 #[derive(Copy, Clone, Debug)]
 struct Integrating(Pid, f64);
 

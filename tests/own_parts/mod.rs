@@ -1,4 +1,4 @@
-//! Parts from outside the engine's crate: a kind of each role, in a file each, and a loop that they close together.
+//! Custom parts outside the engine's crate: a kind of each role, in a file each, and a loop that they close together.
 
 mod actuator;
 mod adaptation;
@@ -30,12 +30,12 @@ const THREE_AXES: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.spatial]
                           modes = [{ frequency = 1.3, damping = 0.02, shapes.hub = { rotation = [0.02, 0.01, 0.03] } }]\n\
                           [log]\nperiod = 1.0";
 
-/// A servo from outside (N m).
+/// Creates a custom servo (N m).
 pub fn servo(most: f64, step: f64) -> Arc<dyn Effector> {
     Arc::new(actuator::Servo { most, step })
 }
 
-/// A scenario whose control system is all from outside.
+/// Returns a scenario whose control system is all custom.
 fn of_own_parts(text: &str) -> Scenario {
     let scenario = Scenario::parse("own.toml", text).expect("a scenario");
     let whole = scenario.with(|scenario| {
@@ -126,7 +126,7 @@ fn own_parts_stay_where_keys_change_and_stand_beside_a_text() {
     document.set_text("law", "{ pd = { k_p = 4.0, k_d = 30.0, period = 0.25 } }").expect("a law");
     let built_in = Scenario::from_document_like(&document, &study).expect("a scenario");
     assert!(built_in.own_parts().law.is_none() && built_in.own_parts().estimator.is_some());
-    // A place that is not there.
+    // An index without a sensor.
     let elsewhere = parts.sensors.iter().map(|(_, sensor)| (3, sensor.clone())).collect();
     let fault =
         built_in.bringing(OwnParts { sensors: elsewhere, ..OwnParts::default() }).expect_err("no place");

@@ -1,10 +1,10 @@
-//! A sensor from outside: an encoder that tells angles in whole steps, and no rates.
+//! Custom sensor: an encoder that measures angles in whole steps, and no rates.
 
 use flexsc_core::random::Seed;
 use flexsc_core::sensor::{Instrument, Reading, Sense, Truth};
 use flexsc_core::time::{Instant, Span};
 
-/// The encoder: its step (rad) and its period (s).
+/// Encoder with its step (rad) and its period (s).
 #[derive(Copy, Clone, Debug)]
 pub struct Encoder {
     pub step: f64,

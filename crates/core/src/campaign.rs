@@ -39,18 +39,18 @@ pub use sampling::Sampling;
 pub use summary::Summary;
 pub use work::Work;
 
-/// A run that failed.
+/// Error of a run.
 #[derive(Debug, Error)]
 pub enum RunError {
-    /// The keys drawn for it make no valid scenario.
+    /// Drawn values that make no valid scenario.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// Its simulation could not go on.
+    /// Simulation that could not continue.
     #[error(transparent)]
     Simulation(#[from] SimulationError),
 }
 
-/// Many runs of one scenario.
+/// Campaign: many runs of one scenario.
 #[derive(Clone, Debug)]
 pub struct Campaign {
     scenario: Scenario,
@@ -59,49 +59,49 @@ pub struct Campaign {
     design: PointDesign,
 }
 
-/// One key that takes these values. Run i of a campaign over one grid has value i; over several, their combinations are
-/// counted as numbers are, the last grid's values from run to run.
+/// Key with a list of values. Run i of a campaign over one grid has value i; over several, the combinations are counted
+/// as numbers are, with the last grid's values changing from run to run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Grid {
-    /// The key.
+    /// Name of the key.
     pub key: String,
-    /// Its values.
+    /// Values of the key.
     pub values: Vec<f64>,
 }
 
 impl Grid {
-    /// So many values from the first to the last, evenly apart.
+    /// Returns the grid of `count` equidistant values from the first to the last.
     pub fn even(key: String, first: f64, last: f64, count: u32) -> Self {
         Self { key, values: (0..count).map(|index| design::even(first, last, count, index)).collect() }
     }
 }
 
-/// One run of a campaign: its scenario with the drawn keys set.
+/// Run of a campaign: its scenario with the drawn keys set.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CampaignRun {
-    /// The number of the run.
+    /// Number of the run.
     pub number: u64,
-    /// What is simulated.
+    /// Scenario of the run.
     pub scenario: Scenario,
-    /// The value of each key that varies.
+    /// Value of each key that varies.
     pub drawn: Vec<Value>,
 }
 
-/// What a run came to.
+/// Outcome of a run.
 #[derive(Debug)]
 pub struct RunOutcome {
-    /// The number of the run.
+    /// Number of the run.
     pub number: u64,
-    /// The value of each key that varies.
+    /// Value of each key that varies.
     pub drawn: Vec<Value>,
-    /// Its metrics, or why it failed.
+    /// Metrics of the run, or the reason why it failed.
     pub metrics: Result<Metrics, RunError>,
-    /// How long it took (s).
+    /// Duration of the computation (s).
     pub seconds: f64,
 }
 
 impl Campaign {
-    /// The campaign of a scenario over its `[uncertain]` keys and, with grids, over their keys too.
+    /// Returns the campaign of a scenario over its `[uncertain]` keys and, with grids, over their keys too.
     pub fn new(
         scenario: Scenario,
         origin: &str,
@@ -110,12 +110,12 @@ impl Campaign {
         Self::of(scenario, origin, PointDesign::of(grids.into_iter().map(DesignBlock::from)))
     }
 
-    /// The campaign of a scenario over its `[uncertain]` keys and the points of a design.
+    /// Returns the campaign of a scenario over its `[uncertain]` keys and the points of a design.
     pub fn of(mut scenario: Scenario, origin: &str, design: PointDesign) -> Result<Self, ScenarioError> {
         scenario.written.forget_files();
-        // Parts of a program's own have no text: runs take them over.
+        // Custom parts of a program have no text: runs inherit them.
         let mut table = scenario.table_beside_own_parts();
-        // What was drawn is said by the keys themselves.
+        // The drawn keys replace the `[uncertain]` table.
         table.remove("uncertain");
         table.remove("correlated");
         if let Some(why) = design.problem(scenario.uncertain.len()) {
@@ -129,10 +129,11 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// What so many runs ask for, each with a log of this detail: as much as the costliest of the ends of the design.
+    /// Returns the cost of `runs` runs, each with a log of this detail (`None`: without): at most that of the costliest
+    /// end of the design.
     ///
     /// # Errors
-    /// More runs than there can be.
+    /// More runs than are supported.
     pub fn cost(&self, runs: u64, log: Option<Detail>) -> Result<Cost, String> {
         if runs > MOST_RUNS {
             return Err(format!("must be at most {MOST_RUNS} runs, got {runs}"));
@@ -145,8 +146,8 @@ impl Campaign {
         Ok(cost.times(runs))
     }
 
-    /// The scenario that the runs are drawn from, as TOML: the same campaign can be made from it. It needs no file, unless
-    /// the matrices of a structure vary.
+    /// Returns the scenario from which the runs are drawn as TOML; the same campaign can be created from it. It refers
+    /// to no file, unless the matrices of a structure vary.
     pub fn to_toml(&self) -> String {
         if self.keys().any(|key| key.starts_with("body.matrices")) {
             self.scenario.to_toml()
@@ -155,18 +156,18 @@ impl Campaign {
         }
     }
 
-    /// The scenario that the runs are drawn from.
+    /// Returns the scenario from which the runs are drawn.
     pub fn scenario(&self) -> &Scenario {
         &self.scenario
     }
 
-    /// The keys that vary from run to run, in the order of [`CampaignRun::drawn`].
+    /// Returns the keys that vary from run to run, in the order of [`CampaignRun::drawn`].
     pub fn keys(&self) -> impl Iterator<Item = &str> {
         let designed = self.design.keys().into_iter();
         designed.chain(self.scenario.uncertain.keys().map(String::as_str))
     }
 
-    /// A run, with its keys drawn. It is the same whichever runs are made beside it.
+    /// Returns a run with its keys drawn. The result does not depend on other runs.
     pub fn run(&self, number: u64) -> Result<CampaignRun, ScenarioError> {
         let drawn = self.draw(number);
         if drawn.is_empty() {
@@ -178,16 +179,16 @@ impl Campaign {
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();
         if self.plans_first() {
             let written = self.scenario_with(&keys[..self.design.keys().len()])?;
-            // A body holds nothing that TOML cannot express.
+            // A body contains nothing that TOML cannot express.
             let model = Value::try_from(written.one_angle()?).unwrap_or_else(|_| Value::Table(Table::new()));
             keys.push(("manoeuvre.model", model));
         }
-        // A plan's body is more than numbers.
+        // The body of a plan is more than numbers.
         let scenario = if self.plans_first() { self.scenario_with(&keys)? } else { self.drawn_with(&keys)? };
         Ok(CampaignRun { number, scenario, drawn })
     }
 
-    /// A run of which nothing but some metrics is wanted: without a monitor of the envelope that only others need.
+    /// Returns a run for the selected metrics, without a monitor of the envelope that only other metrics need.
     fn run_for(&self, number: u64, selection: &Selection) -> Result<CampaignRun, ScenarioError> {
         let mut run = self.run(number)?;
         let monitored =
@@ -198,18 +199,18 @@ impl Campaign {
         Ok(run)
     }
 
-    /// Whether the manoeuvre is planned for the body before its keys are drawn.
+    /// Returns true if the manoeuvre is planned for the body before its keys are drawn.
     fn plans_first(&self) -> bool {
         let itself = self.scenario.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.model.is_none());
         itself && self.scenario.uncertain.keys().any(|key| key.starts_with("body."))
     }
 
-    /// Simulates a run and gathers its metrics, beside another record.
+    /// Simulates a run with a record, and returns its metrics.
     pub fn simulate(run: &CampaignRun, record: impl Record) -> Result<Metrics, SimulationError> {
         Self::simulate_for(run, &Selection::ALL, record)
     }
 
-    /// The same, for some of the metrics.
+    /// Simulates a run with a record, and returns the selected metrics.
     pub fn simulate_for(
         run: &CampaignRun,
         selection: &Selection,
@@ -224,7 +225,7 @@ impl Campaign {
         Ok(selection.of_run(both.0.finish(&run.scenario)))
     }
 
-    /// What a run comes to; `work` simulates it.
+    /// Returns the outcome of a run; `work` simulates it.
     pub(crate) fn outcome(
         &self,
         number: u64,
@@ -242,12 +243,12 @@ impl Campaign {
         RunOutcome { number, drawn, metrics, seconds: began.elapsed().as_secs_f64() }
     }
 
-    /// The points of the campaign.
+    /// Returns the points of the campaign.
     pub fn design(&self) -> &PointDesign {
         &self.design
     }
 
-    /// The provenance in the log of a run in this detail, with a layout for viewers.
+    /// Returns the provenance in the log of a run in this detail, with a layout for viewers.
     pub fn provenance(run: &CampaignRun, detail: Detail) -> Provenance {
         let layout = Layout::of(&run.scenario).of_detail(detail).to_json();
         Provenance {
@@ -272,12 +273,12 @@ impl Campaign {
         }
     }
 
-    /// Whether a key has an integer in the scenario.
+    /// Returns true if a key has an integer in the scenario.
     fn is_integer(&self, key: &str) -> bool {
         matches!(key::get(&self.table, key), Some(Value::Integer(_)))
     }
 
-    /// A number as the type that a key has in the scenario.
+    /// Converts a number to the type of a key's value in the scenario.
     fn like(&self, key: &str, value: f64) -> Value {
         if self.is_integer(key) { Value::Integer(libm::round(value) as i64) } else { Value::Float(value) }
     }
@@ -286,7 +287,7 @@ impl Campaign {
         Scenario::from_document_like(&self.document_with(keys)?, &self.scenario)
     }
 
-    /// The same where the keys hold numbers already.
+    /// Returns the scenario with drawn values of keys that hold numbers already.
     fn drawn_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
         Scenario::from_numbers_like(&self.document_with(keys)?, &self.scenario)
     }

@@ -2,29 +2,29 @@
 
 use crate::metrics::{Meaning, MetricValue, Metrics, Value, goal};
 
-/// The quantiles that are reported.
+/// Quantiles that are reported.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
 
-/// The statistics of one metric over the runs that have a value of it.
+/// Statistics of one metric over the runs that have a value of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Statistics {
     /// Name of the metric.
     pub name: &'static str,
     /// Unit of the metric.
     pub unit: &'static str,
-    /// Runs that have a finite value: the others are left out.
+    /// Number of runs with a finite value; all others are left out.
     pub runs: usize,
-    /// Runs whose value is infinite: it was too large for a double.
+    /// Number of runs with an infinite value, too large for a double.
     pub infinite: usize,
     /// Mean; NaN without a run.
     pub mean: f64,
-    /// Standard deviation, with runs - 1 in the denominator; NaN for a single run, and where it is too large for a double.
+    /// Standard deviation, with runs - 1 in the denominator; NaN for a single run, or if it is too large for a double.
     pub sd: f64,
-    /// The [`QUANTILES`], interpolated linearly between order statistics; NaN without a run.
+    /// Values of the [`QUANTILES`], interpolated linearly between order statistics; NaN without a run.
     pub quantiles: [f64; 5],
 }
 
-/// The metrics of runs that are numbers, as columns: all that statistics need.
+/// Numeric metrics of runs, as columns for the statistics.
 #[derive(Clone, Debug, Default)]
 pub struct Gathered {
     runs: usize,
@@ -54,20 +54,20 @@ impl Gathered {
         }
     }
 
-    /// How many runs there are.
+    /// Returns the number of runs.
     pub fn runs(&self) -> usize {
         self.runs
     }
 
-    /// The statistics of each metric. A goal or a requirement counts as 1 where it is met and as 0 where it is missed: its mean
-    /// is the fraction of runs that meet it.
+    /// Returns the statistics of each metric. A goal or a requirement counts as 1 if it is met and as 0 if it is
+    /// missed: the mean is the fraction of runs that meet it.
     pub fn finish(self) -> Vec<Statistics> {
         self.columns.into_iter().map(|(meaning, values)| Statistics::of(meaning, values)).collect()
     }
 }
 
 impl Statistics {
-    /// The statistics of a metric with these values, NaN where a run has none.
+    /// Computes the statistics of a metric from its values, which are NaN for runs without one.
     pub fn of(meaning: &Meaning, mut values: Vec<f64>) -> Self {
         values.retain(|v| !v.is_nan());
         let told = values.len();
@@ -86,9 +86,9 @@ impl Statistics {
     }
 }
 
-/// Mean and standard deviation of finite values. Sums and squares that are too large for a double are made of smaller values:
-/// the mean always fits, and the standard deviation is NaN where it does not. Equal values have their value as the mean and no
-/// deviation, free of rounding.
+/// Returns mean and standard deviation of finite values. If sums or squares are too large for a double, the values are
+/// scaled: the mean always fits, and the standard deviation is NaN if it does not. Equal values have exactly their
+/// value as the mean and no deviation.
 fn mean_and_sd(values: &[f64]) -> (f64, f64) {
     if let [first, _, ..] = values
         && values.iter().all(|value| value == first)
@@ -103,7 +103,7 @@ fn mean_and_sd(values: &[f64]) -> (f64, f64) {
     };
     let (mut mean, mut sd) = of(1.0);
     if mean.is_infinite() || !sd.is_finite() {
-        // A power of two: no digit is lost but of values that are next to nothing here.
+        // Scaling by a power of two loses no digits, except of values that are negligible here.
         let scale = libm::exp2(-600.0);
         (mean, sd) = of(scale);
         (mean, sd) = (mean / scale, sd / scale);
@@ -111,7 +111,7 @@ fn mean_and_sd(values: &[f64]) -> (f64, f64) {
     (mean, if values.len() > 1 && sd.is_finite() { sd } else { f64::NAN })
 }
 
-/// The quantile of sorted values, interpolated linearly between order statistics; NaN without any.
+/// Returns the quantile of sorted values, interpolated linearly between order statistics; NaN without values.
 pub fn quantile(sorted: &[f64], q: f64) -> f64 {
     let Some(last) = sorted.len().checked_sub(1) else { return f64::NAN };
     let place = q * last as f64;
@@ -143,7 +143,7 @@ mod tests {
 
     #[test]
     fn equal_values_do_not_deviate() {
-        // Their sum divided by their number is another double.
+        // Rounded, the sum divided by the number is another double.
         for value in [0.1, 0.1_f64 + 0.2, -1e308, 0.0] {
             assert_eq!(mean_and_sd(&[value; 7]), (value, 0.0));
         }
@@ -151,7 +151,7 @@ mod tests {
 
     #[test]
     fn large_values_have_finite_statistics() {
-        // Python: statistics.fmean and statistics.stdev of the fractions, exact.
+        // Reference: Python's statistics.fmean and statistics.stdev of the fractions, exact.
         let (mean, sd) = mean_and_sd(&[1e200, 3e200, 5e200]);
         assert!((mean / 3e200 - 1.0).abs() < 1e-15 && (sd / 2e200 - 1.0).abs() < 1e-15, "{mean} {sd}");
         let (mean, sd) = mean_and_sd(&[1.5e308, 1.7e308]);
@@ -165,7 +165,7 @@ mod tests {
 
     #[test]
     fn quantiles_interpolate_as_numpy_does() {
-        // numpy.quantile([1, 2, 4, 8], [0.05, 0.25, 0.5, 0.75, 0.95])
+        // Reference: numpy.quantile([1, 2, 4, 8], [0.05, 0.25, 0.5, 0.75, 0.95])
         let exact = [1.15, 1.75, 3.0, 5.0, 7.4];
         for (q, exact) in QUANTILES.into_iter().zip(exact) {
             assert!((quantile(&[1.0, 2.0, 4.0, 8.0], q) - exact).abs() < 1e-14);

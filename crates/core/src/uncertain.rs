@@ -1,4 +1,4 @@
-//! Uncertain keys: what a Monte Carlo campaign draws anew for each run.
+//! Uncertain keys: the values that a Monte Carlo campaign draws anew for each run.
 
 mod correlation;
 
@@ -41,7 +41,7 @@ pub struct Normal {
 }
 
 impl Distribution {
-    /// What is wrong with the distribution of a key that has this value, if anything is.
+    /// Returns the first inconsistency of the distribution for a key with the value `nominal`.
     pub fn problem(&self, nominal: Option<&Value>) -> Option<String> {
         match self {
             Self::Uniform([low, high]) if low >= high => {
@@ -68,7 +68,7 @@ impl Distribution {
         matches!(self, Self::RelativeUniform(_) | Self::RelativeNormal(_))
     }
 
-    /// Draws a value for a key that has this one in the scenario.
+    /// Draws a value for a key whose value in the scenario is `nominal`.
     pub fn draw(&self, nominal: &Value, stream: &mut Stream) -> Value {
         let own = nominal.as_float().or(nominal.as_integer().map(|i| i as f64)).unwrap_or(f64::NAN);
         let between = |low: f64, high: f64, stream: &mut Stream| low + (high - low) * stream.uniform();
@@ -85,8 +85,8 @@ impl Distribution {
         like(nominal, drawn)
     }
 
-    /// The value with this probability below it, in (0, 1), for a key that has this one in the scenario. Of a choice each value
-    /// has an equal part of the probabilities.
+    /// Returns the value below which a draw lies with `probability`, in (0, 1), for a key whose value in the scenario
+    /// is `nominal`. The values of a choice divide the probabilities equally.
     pub fn quantile(&self, nominal: &Value, probability: f64) -> Value {
         let own = nominal.as_float().or(nominal.as_integer().map(|i| i as f64)).unwrap_or(f64::NAN);
         let between = |low: f64, high: f64| low + (high - low) * probability;
@@ -104,7 +104,7 @@ impl Distribution {
         like(nominal, value)
     }
 
-    /// The value that stands where this number does in a standard normal distribution.
+    /// Returns the value with the same cumulative probability as `z` has in a standard normal distribution.
     pub fn of_normal(&self, nominal: &Value, z: f64) -> Value {
         let own = nominal.as_float().or(nominal.as_integer().map(|i| i as f64)).unwrap_or(f64::NAN);
         match self {
@@ -114,13 +114,13 @@ impl Distribution {
         }
     }
 
-    /// Whether it can be drawn together with others: its values have an order.
+    /// Returns true if the distribution can be drawn together with others: its values have an order.
     pub(crate) fn is_continuous(&self) -> bool {
         !matches!(self, Self::Choice(_))
     }
 }
 
-/// A number as the type of the key's own value.
+/// Converts a number to the type of the key's nominal value.
 fn like(nominal: &Value, value: f64) -> Value {
     match nominal {
         Value::Integer(_) => Value::Integer(libm::round(value) as i64),

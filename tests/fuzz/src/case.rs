@@ -1,26 +1,26 @@
-//! An input: the command's arguments, and the files that lie where it runs.
+//! Input of the fuzzer: the command's arguments, and the files in its directory.
 
 use std::fs;
 use std::io;
 use std::path::Path;
 
-/// The file that holds what a viewer sends to a live run.
+/// Name of the file with the messages that a viewer sends to a live run.
 pub const SENT: &str = "sent";
 const ARGUMENTS: &str = "arguments.json";
 const FILES: &str = "files";
 
-/// How a command may be stopped.
+/// Method by which a command may be stopped.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub enum Stop {
-    /// It reads and answers: it has no need to be stopped.
+    /// A command that reads and answers needs no stop.
     Never,
-    /// It may work for long, and finishes its files when it is asked to stop.
+    /// A command that may take long, and finishes its files when it is asked to stop.
     Asked,
-    /// It may work for long, and simply ends.
+    /// A command that may take long, and simply ends.
     Ended,
 }
 
-/// An input.
+/// Input of the fuzzer.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Case {
     pub arguments: Vec<String>,
@@ -28,17 +28,17 @@ pub struct Case {
 }
 
 impl Case {
-    /// An input of these arguments, parted by blanks.
+    /// Creates an input of these arguments, separated by blanks.
     pub fn new(arguments: &str, files: Vec<(String, Vec<u8>)>) -> Self {
         Self { arguments: arguments.split_whitespace().map(str::to_owned).collect(), files }
     }
 
-    /// How its command may be stopped.
+    /// Returns the method by which the command may be stopped.
     pub fn stop(&self) -> Stop {
         match self.arguments.first().map_or("", |verb| verb) {
             "simulate" | "sweep" | "reproduce" if !self.is_live() => Stop::Asked,
             "plan" | "tune" | "map" | "damping" | "identify" | "observer" | "cycle" => Stop::Ended,
-            // Of a scenario it is a run.
+            // For a scenario the command makes a run.
             "layout" if self.arguments.iter().any(|a| a.to_ascii_lowercase().contains(".toml")) => {
                 Stop::Ended
             }
@@ -46,17 +46,17 @@ impl Case {
         }
     }
 
-    /// Whether it is what a viewer sends.
+    /// Returns true if the input is a viewer's messages.
     pub fn is_live(&self) -> bool {
         self.file(SENT).is_some()
     }
 
-    /// What a file holds.
+    /// Returns the content of a file.
     pub fn file(&self, name: &str) -> Option<&[u8]> {
         self.files.iter().find(|(n, _)| n == name).map(|(_, bytes)| &bytes[..])
     }
 
-    /// Writes the files to where the command runs.
+    /// Writes the files to the directory where the command runs.
     pub fn lay_out(&self, directory: &Path) -> io::Result<()> {
         for (name, bytes) in &self.files {
             let path = directory.join(name);
@@ -68,7 +68,7 @@ impl Case {
         Ok(())
     }
 
-    /// Keeps the input.
+    /// Saves the input.
     pub fn save(&self, directory: &Path) -> io::Result<()> {
         fs::create_dir_all(directory.join(FILES))?;
         self.lay_out(&directory.join(FILES))?;
@@ -76,7 +76,7 @@ impl Case {
         fs::write(directory.join(ARGUMENTS), arguments + "\n")
     }
 
-    /// Reads an input that was kept.
+    /// Loads a saved input.
     pub fn load(directory: &Path) -> io::Result<Self> {
         let arguments =
             serde_json::from_slice(&fs::read(directory.join(ARGUMENTS))?).map_err(io::Error::other)?;
@@ -86,7 +86,7 @@ impl Case {
     }
 }
 
-/// All files in a directory, by their names within, sorted.
+/// Appends all files in a directory, by their relative names, sorted.
 pub fn gather(directory: &Path, within: &str, files: &mut Vec<(String, Vec<u8>)>) -> io::Result<()> {
     let mut entries = fs::read_dir(directory)?.collect::<io::Result<Vec<_>>>()?;
     entries.sort_by_key(fs::DirEntry::file_name);

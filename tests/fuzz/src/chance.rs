@@ -1,10 +1,10 @@
-//! Chance: numbers that follow from a seed (SplitMix64).
+//! Random numbers from a seed (SplitMix64).
 
-/// A stream of numbers.
+/// Stream of random numbers.
 pub struct Chance(u64);
 
 impl Chance {
-    /// The stream of an input: of this seed, surface and number.
+    /// Creates the stream of an input by its seed, surface and number.
     pub fn new(seed: u64, surface: usize, number: u64) -> Self {
         let mut chance = Self(seed);
         chance.0 = chance.number() ^ surface as u64;
@@ -12,7 +12,7 @@ impl Chance {
         chance
     }
 
-    /// Any number.
+    /// Returns any number.
     pub fn number(&mut self) -> u64 {
         self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
         let z = (self.0 ^ (self.0 >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
@@ -20,22 +20,22 @@ impl Chance {
         z ^ (z >> 31)
     }
 
-    /// A number below a limit; 0 if there is none.
+    /// Returns a number below a limit; 0 if there is none.
     pub fn below(&mut self, limit: usize) -> usize {
         if limit == 0 { 0 } else { (self.number() % limit as u64) as usize }
     }
 
-    /// True so many times of a hundred.
+    /// Returns true with a probability of `often` percent.
     pub fn percent(&mut self, often: usize) -> bool {
         self.below(100) < often
     }
 
-    /// One of several.
+    /// Returns one of several values.
     pub fn one<'a, T: ?Sized>(&mut self, of: &[&'a T]) -> &'a T {
         of[self.below(of.len())]
     }
 
-    /// How many times to do something: 1, seldom up to 6.
+    /// Returns a number of repetitions: 1, seldom up to 6.
     pub fn times(&mut self) -> usize {
         let mut times = 1;
         while times < 6 && self.percent(40) {

@@ -1,4 +1,4 @@
-//! Findings: each kind is told and kept once, and then counted.
+//! Findings: each kind is printed and saved once, and then counted.
 
 use std::collections::BTreeMap;
 use std::fmt;
@@ -9,18 +9,18 @@ use crate::case::Case;
 use crate::say;
 use crate::surface::Surface;
 
-/// What an input did.
+/// Finding of an input.
 pub struct Found {
     pub surface: Surface,
     pub seed: u64,
     pub number: u64,
-    /// The first input of its process.
+    /// First input of the process.
     pub since: u64,
     pub why: String,
 }
 
 impl Found {
-    /// What findings of one kind have in common: where a panic is, and words without numbers.
+    /// Returns the common part of findings of one kind: the place of a panic, and words without numbers.
     pub fn kind(why: &str) -> String {
         let place = why.split_once("panicked at ").and_then(|(_, rest)| rest.split_once(": "));
         let text = place.map_or(why, |(place, _)| place.rsplit("/src/").next().unwrap_or(place));
@@ -36,7 +36,7 @@ impl Found {
     }
 }
 
-/// The findings of a surface.
+/// Findings of a surface.
 pub struct Findings {
     directory: PathBuf,
     kinds: BTreeMap<String, u64>,
@@ -51,14 +51,14 @@ impl Findings {
         self.kinds.is_empty()
     }
 
-    /// Counts a finding, and tells whether one of its kind was found before.
+    /// Counts a finding, and returns true if one of its kind was found before.
     pub fn is_known(&mut self, found: &Found) -> bool {
         let count = self.kinds.entry(Found::kind(&found.why)).or_default();
         *count += 1;
         *count > 1
     }
 
-    /// Tells a finding, and keeps its input.
+    /// Prints a finding, and saves its input.
     pub fn tell(&self, found: &Found, case: &Case, alone: bool) -> io::Result<()> {
         let kept = self.keep(case, &Found::kind(&found.why))?;
         let surface = crate::name(found.surface);
@@ -74,7 +74,7 @@ impl Findings {
         Ok(())
     }
 
-    /// Keeps an input; where.
+    /// Saves an input, and returns its path.
     pub fn keep(&self, case: &Case, name: &str) -> io::Result<PathBuf> {
         let place = self.directory.join(name);
         if place.exists() {

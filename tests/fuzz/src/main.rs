@@ -4,8 +4,9 @@
 //!     cargo run --release -p flexsc-fuzz -- --seconds 3600       an hour on each
 //!     cargo run --release -p flexsc-fuzz -- --surface logs --inputs 900       the same 900 inputs on any machine
 //!
-//! Inputs follow from a seed, a surface and a number. Each runs in a process of its own kind under limits of memory and time;
-//! what panics, aborts, hangs or leaves half a file is kept, made small, and told with the command that repeats it.
+//! Inputs follow from a seed, a surface and a number. Each runs in a separate process under limits of memory and time;
+//! inputs that panic, abort, hang or leave half a file are saved, reduced, and printed with the command that repeats
+//! them.
 #![cfg(unix)]
 
 mod case;
@@ -36,10 +37,10 @@ use tally::Tally;
 use watch::News;
 use worker::Work;
 
-/// A worker runs so many inputs: what one leaves behind in its process does not reach far.
+/// Number of inputs of a worker, which limits the effects that an input leaves in its process.
 const BATCH: u64 = 250;
 
-/// Longer than a number of inputs takes.
+/// Time limit that no number of inputs reaches.
 const A_DAY: Duration = Duration::from_secs(86_400);
 
 /// A mutation fuzzer of flexsc: exits with 1 if it finds anything
@@ -111,7 +112,7 @@ fn main() -> ExitCode {
     }
 }
 
-/// Does what is asked, and tells whether nothing was found.
+/// Fuzzes all surfaces as requested, and returns true if there are no findings.
 fn fuzz(args: &Args) -> io::Result<bool> {
     let scratch = tempfile::tempdir()?;
     if let Some(directory) = &args.replay {
@@ -136,12 +137,12 @@ fn fuzz(args: &Args) -> io::Result<bool> {
     Ok(clean)
 }
 
-/// The name of a surface.
+/// Returns the name of a surface.
 pub fn name(surface: Surface) -> String {
     surface.to_possible_value().map_or_else(String::new, |value| value.get_name().to_owned())
 }
 
-/// Fuzzes one surface, and tells whether nothing was found.
+/// Fuzzes one surface, and returns true if there are no findings.
 fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io::Result<bool> {
     let began = Instant::now();
     let deadline = began + args.inputs.map_or(Duration::from_secs_f64(args.seconds), |_| A_DAY);
@@ -149,7 +150,7 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
     let maker = Maker::new(surface, args.seed)?;
     let (tally, findings) = (Mutex::new(Tally::default()), Mutex::new(findings));
     let next = AtomicU64::new(args.first);
-    // Where one job fails, the others do not go on for an hour.
+    // If one job fails, the others stop early too.
     let failed = AtomicBool::new(false);
     let goes_on = || Instant::now() < deadline && !failed.load(Ordering::Relaxed);
     let job = |job: usize| -> io::Result<()> {
@@ -211,7 +212,7 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
     Ok(findings.none())
 }
 
-/// Runs an input that was kept, and tells what is wrong.
+/// Runs a saved input, and returns its fault.
 pub fn again(case: &Path, scratch: &Path) -> io::Result<Option<String>> {
     let mut wrong = None;
     let arguments = ["again".to_owned(), case.display().to_string()];

@@ -4,7 +4,7 @@ use crate::chance::Chance;
 use crate::nasty;
 use crate::node::Node;
 
-/// What is grown stays smaller than this (nodes): what is grown again and again would fill the memory.
+/// Largest size of a grown tree (nodes): repeated growth would fill the memory.
 const MOST_GROWN: usize = 100_000;
 
 /// Changes a tree in one place; `others` are trees to take parts from.
@@ -37,7 +37,7 @@ fn put(node: &mut Node, path: &[usize], value: Node) {
     }
 }
 
-/// A number times a power of ten, or another sign.
+/// Multiplies a number by a power of ten, or changes its sign.
 fn scale(node: &mut Node, path: &[usize], chance: &mut Chance) {
     let Some(Node::Leaf(text)) = node.at(path) else { return };
     let Ok(number) = text.parse::<f64>() else { return };
@@ -69,7 +69,7 @@ fn rename(node: &mut Node, path: &[usize], chance: &mut Chance) {
     };
 }
 
-/// What stands in an array stands there many times.
+/// Repeats the elements of an array many times.
 fn grow(node: &mut Node, path: &[usize], chance: &mut Chance) {
     if let Some(Node::Array(of)) = node.at(path)
         && let Some(last) = of.last().cloned()
@@ -95,12 +95,12 @@ fn nest(node: &mut Node, path: &[usize], chance: &mut Chance) {
     }
 }
 
-/// A part of another tree, under the key that it has there.
+/// Copies a part of another tree to the key that it has there.
 fn graft(node: &mut Node, others: &[Node], chance: &mut Chance) {
     let Some(other) = others.get(chance.below(others.len())) else { return };
     let mut other = other.clone();
     let mut here = node;
-    // Down by the same keys in both, for as long as chance will have it.
+    // Descends by equal keys in both trees, for a random depth.
     while let Node::Table(of) = &mut other {
         if of.is_empty() {
             return;
@@ -159,7 +159,7 @@ pub fn bytes(data: &mut Vec<u8>, chance: &mut Chance) {
     }
 }
 
-/// Puts another number in the place of one in a text.
+/// Replaces a number in a text by another one.
 pub fn number(text: &mut String, chance: &mut Chance) {
     let is_part = |c: char| c.is_ascii_digit() || matches!(c, '.' | '-' | '+' | 'e' | 'E');
     let mut numbers = Vec::new();

@@ -1,4 +1,4 @@
-//! Values that programs are known to stumble over.
+//! Values on which programs are known to fail.
 
 use crate::chance::Chance;
 
@@ -73,7 +73,7 @@ const NUMBERS: &[&str] = &[
     "1e-400",
 ];
 
-/// What is no number.
+/// Values other than numbers.
 const OTHERS: &[&str] = &[
     "true",
     "false",

@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 /// A part of a document.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Node {
-    /// What stands for itself: a number, a word, a string with its quotes.
+    /// Text of a leaf: a number, a word, a string with its quotes.
     Leaf(String),
     Array(Vec<Node>),
     /// Keys, which may stand twice.
@@ -36,12 +36,12 @@ impl From<&serde_json::Value> for Node {
 }
 
 impl Node {
-    /// How many nodes there are: itself, and all within.
+    /// Returns the number of nodes: this one, and all within.
     pub fn count(&self) -> usize {
         1 + self.children().map(Self::count).sum::<usize>()
     }
 
-    /// The path of places to one of them, counted with each before what is within it.
+    /// Returns the path of places to a node, each counted before the nodes within it.
     pub fn path(&self, mut index: usize) -> Vec<usize> {
         let mut path = Vec::new();
         self.seek(&mut index, &mut path);
@@ -71,7 +71,7 @@ impl Node {
         }
     }
 
-    /// The node at a path.
+    /// Returns the node at a path.
     pub fn at(&mut self, path: &[usize]) -> Option<&mut Self> {
         let Some((place, rest)) = path.split_first() else { return Some(self) };
         match self {
@@ -81,7 +81,7 @@ impl Node {
         }
     }
 
-    /// The node of a key, made if it is not there.
+    /// Returns the node of a key, created if it does not exist.
     pub fn key(&mut self, key: &str) -> &mut Self {
         if !matches!(self, Self::Table(_)) {
             *self = Self::Table(Vec::new());
@@ -94,7 +94,7 @@ impl Node {
         &mut of[place].1
     }
 
-    /// As TOML.
+    /// Writes the document as TOML.
     pub fn toml(&self) -> String {
         let mut text = String::new();
         self.sections("", &mut text);
@@ -125,7 +125,7 @@ impl Node {
         }
     }
 
-    /// As JSON.
+    /// Writes the document as JSON.
     pub fn json(&self) -> String {
         let mut text = String::new();
         self.inline(": ", &mut text);

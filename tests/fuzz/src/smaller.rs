@@ -1,4 +1,4 @@
-//! Making an input smaller that still does the same.
+//! Reduction of an input to a smaller one with an equal finding.
 
 use std::io;
 use std::path::Path;
@@ -7,17 +7,17 @@ use std::time::{Duration, Instant};
 use crate::case::Case;
 use crate::findings::Found;
 
-/// No more effort than this for one input.
+/// Time limit for the reduction of one input.
 const EFFORT: Duration = Duration::from_secs(20);
 
-/// A smaller input that does the same, and whether it does so in a process of its own.
+/// Returns a smaller input with an equal finding, and true if it has this finding in a process of its own.
 pub fn smaller(case: &Case, found: &Found, scratch: &Path) -> io::Result<(Case, bool)> {
     let (began, kept) = (Instant::now(), scratch.with_extension("case"));
     let kind = Found::kind(&found.why);
     let same = |case: &Case| -> io::Result<bool> {
         let _ = std::fs::remove_dir_all(&kept);
         case.save(&kept)?;
-        // Without one of its files, an input may be none that can run.
+        // Without one of its files, an input may no longer run.
         let why = crate::again(&kept, scratch).unwrap_or(None);
         Ok(why.is_some_and(|why| Found::kind(&why) == kind))
     };
@@ -25,7 +25,7 @@ pub fn smaller(case: &Case, found: &Found, scratch: &Path) -> io::Result<(Case, 
     if !same(&best)? {
         return Ok((best, false));
     }
-    // What takes seconds each time is kept as it is.
+    // An input that takes seconds each time is not reduced.
     let patient = || began.elapsed() < EFFORT;
     for index in (0..best.files.len()).rev() {
         let mut fewer = best.clone();

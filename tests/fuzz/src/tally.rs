@@ -1,4 +1,4 @@
-//! What became of the inputs of a surface.
+//! Statistics of the inputs of a surface.
 
 use std::collections::BTreeMap;
 use std::time::Duration;
@@ -11,23 +11,23 @@ use crate::watch::News;
 #[derive(Default)]
 pub struct Tally {
     inputs: u64,
-    /// By exit code; those that were ended have none.
+    /// Counts by exit code; inputs that were stopped have none.
     codes: BTreeMap<Option<u8>, u64>,
-    /// The largest memory (kB), and whose.
+    /// Largest memory (kB), and its input.
     memory: (u64, u64),
-    /// The longest time, and whose.
+    /// Longest time, and its input.
     time: (Duration, u64),
 }
 
 impl Tally {
-    /// Takes in what became of an input: its number, and what is wrong.
+    /// Counts the result of an input; returns its number and its fault.
     pub fn take(&mut self, news: News) -> (u64, Option<String>) {
         self.inputs += 1;
         match news {
             News::Done { number, code, memory, time, wrong } => {
                 *self.codes.entry(Some(code)).or_default() += 1;
                 self.memory = self.memory.max((memory, number));
-                // What is stopped takes as long as it is given.
+                // A stopped command takes as long as it is given.
                 if code != 130 {
                     self.time = self.time.max((time, number));
                 }
@@ -41,7 +41,7 @@ impl Tally {
         }
     }
 
-    /// The tally in words.
+    /// Returns the statistics as text.
     pub fn summary(&self, surface: Surface, seed: u64, took: Duration, findings: &Findings) -> String {
         let code = |(code, count): (&Option<u8>, &u64)| match code {
             Some(code) => format!("{count} exit {code}"),

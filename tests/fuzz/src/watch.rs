@@ -13,18 +13,18 @@ use std::time::{Duration, Instant};
 
 use crate::worker::MESSAGES;
 
-/// What a process may have (kB): memory as `ulimit -v` counts it, and the size of a file.
+/// Limits of a process (kB): memory as `ulimit -v` counts it, and the size of a file.
 const MEMORY: u64 = 1_000_000;
 const FILE: u64 = 4_000_000;
-/// How long an input may take: of the processor's time, and where the processor is busy with others.
+/// Time limits of an input: of the processor's time, and of elapsed time if the processor is busy.
 const TIME: Duration = Duration::from_secs(5);
 const WALL: Duration = Duration::from_secs(120);
-/// When a command that may work for long is stopped, and how soon it must be gone then.
+/// Time after which a command that may take long is stopped, and the time limit of its end.
 const ENOUGH: Duration = Duration::from_millis(200);
 const GONE: Duration = Duration::from_secs(3);
 const LOOK: Duration = Duration::from_millis(20);
 
-/// What a worker tells.
+/// Message of a worker.
 pub enum News {
     /// An input is done: its number, exit code, memory (kB), time, and what is wrong.
     Done { number: u64, code: u8, memory: u64, time: Duration, wrong: Option<String> },
@@ -34,9 +34,9 @@ pub enum News {
     Broken { number: u64, why: String },
 }
 
-/// What is wrong with an input that is not there yet begins so: the fuzzer itself, or what goes on between inputs.
+/// Beginning of the fault of an input that has not begun: in the fuzzer itself, or between inputs.
 pub const BETWEEN: &str = "before it ran: ";
-/// How an input is stopped that is being made: not at all.
+/// Stop method of an input that is being made: none.
 const MAKING: &str = "make";
 
 /// The input that runs.
@@ -44,14 +44,14 @@ struct Running {
     number: u64,
     stop: String,
     began: Instant,
-    /// The processor's time of the process as it began.
+    /// Processor time of the process at the start of the input.
     used: Duration,
-    /// When it was asked to stop, and the processor's time then.
+    /// Instant of the request to stop, and the processor time then.
     asked: Option<(Instant, Duration)>,
 }
 
 impl Running {
-    /// One of this number that begins now, in a process.
+    /// Creates the state of an input that begins now, in a process.
     fn new(number: &str, stop: &str, id: u32) -> Self {
         Self {
             number: number.parse().unwrap_or(0),
@@ -62,14 +62,14 @@ impl Running {
         }
     }
 
-    /// Why it is broken.
+    /// Returns the message of a broken input.
     fn broken(&self, why: String) -> News {
         let why = if self.stop == MAKING { format!("{BETWEEN}{why}") } else { why };
         News::Broken { number: self.number, why }
     }
 }
 
-/// Runs a worker with these arguments in a directory until it ends or the deadline comes, and tells the news.
+/// Runs a worker with these arguments in a directory until it ends or the deadline comes, and passes on its messages.
 pub fn watch(
     arguments: &[String],
     directory: &Path,
@@ -145,7 +145,7 @@ pub fn watch(
     }
 }
 
-/// Whether an input takes too long.
+/// Limit that an input has exceeded.
 enum Late {
     No,
     Ended,
@@ -177,7 +177,7 @@ fn late(now: &mut Running, id: u32) -> Late {
     }
 }
 
-/// The lines that a worker tells.
+/// Returns the lines that a worker writes.
 fn lines(from: UnixStream) -> Receiver<String> {
     let (sender, receiver) = channel();
     thread::spawn(move || {
@@ -195,7 +195,7 @@ fn kill(child: &mut Child) -> io::Result<()> {
     child.wait().map(drop)
 }
 
-/// A worker has ended.
+/// Handles the end of a worker.
 fn end(
     status: ExitStatus,
     running: Option<&Running>,
@@ -212,7 +212,7 @@ fn end(
         };
     };
     if running.stop == MAKING && status.code().is_some() {
-        // It said what it lacks.
+        // The worker's message has the reason.
         return Err(io::Error::other(format!("a worker failed, {status}: {said}")));
     }
     if running.asked.is_some() && (status.signal() == Some(15) || status.code() == Some(130)) {
@@ -227,7 +227,7 @@ fn end(
     Ok(())
 }
 
-/// The processor's time of a process, where the system tells.
+/// Returns the processor time of a process, where the system provides it.
 pub fn processor(id: u32) -> Duration {
     let stat = fs::read_to_string(format!("/proc/{id}/stat")).unwrap_or_default();
     // After the name, which may hold anything, in parentheses.

@@ -1,4 +1,4 @@
-//! The process in which inputs run, one after another. It tells its parent, line by line, what it is about to do.
+//! Process in which inputs run, one after another. It announces each step to its parent, line by line.
 
 use std::ffi::OsString;
 use std::fs::{self, File, OpenOptions};
@@ -11,28 +11,28 @@ use crate::case::{self, Case, Stop};
 use crate::surface::{Maker, Server, Surface};
 use crate::watch::processor;
 
-/// Where a worker's messages go; the parent makes it.
+/// Name of the file of a worker's messages, which the parent creates.
 pub const MESSAGES: &str = "messages";
-/// Messages that are longer help nobody (bytes).
+/// Length above which a message is of no use (bytes).
 const LONGEST_MESSAGE: usize = 64 << 10;
 
 /// The processor's time is counted in these.
 const TICK: Duration = Duration::from_millis(10);
 
-/// After every so many inputs of viewers, it is checked that the run serves others; after one that was kept, always.
+/// Number of viewers' inputs after which the run is checked to serve others; after a saved input it always is.
 const CHECK: u64 = 5;
 
-/// Which inputs a worker runs.
+/// Inputs that a worker runs.
 pub enum Work<'a> {
-    /// Those of these numbers.
+    /// Inputs by their numbers.
     Numbers(Surface, u64, std::ops::Range<u64>),
-    /// One that was kept.
+    /// Saved input.
     Kept(&'a Path),
 }
 
-/// What runs the inputs.
+/// Runner of the inputs.
 struct Worker {
-    /// What was standard input: the line to the parent.
+    /// Line to the parent, which was standard input.
     parent: File,
     server: Option<Server>,
 }
@@ -40,7 +40,7 @@ struct Worker {
 /// Runs inputs in the present directory.
 pub fn work(work: &Work<'_>) -> io::Result<()> {
     let parent = File::from(io::stdin().as_fd().try_clone_to_owned()?);
-    // A command that reads standard input finds nothing there, and not that line.
+    // A command that reads standard input gets an empty file instead of that line.
     rustix::stdio::dup2_stdin(File::open("/dev/null")?)?;
     let told = parent.try_clone()?;
     std::panic::set_hook(Box::new(move |panic| {
@@ -69,7 +69,7 @@ pub fn work(work: &Work<'_>) -> io::Result<()> {
 }
 
 impl Worker {
-    /// Runs an input, and tells whether others can follow in this process.
+    /// Runs an input, and returns true if others can follow in this process.
     fn run(&mut self, number: u64, case: &Case) -> io::Result<bool> {
         let stop = match case.stop() {
             Stop::Never => "never",
@@ -100,7 +100,7 @@ impl Worker {
     }
 }
 
-/// Runs the command in a directory of its own; its exit code, and what is wrong with what it did.
+/// Runs the command in a directory of its own, and returns its exit code and the fault of its outcome.
 fn run(case: &Case) -> io::Result<(u8, Option<String>)> {
     let directory = Path::new("run");
     fs::create_dir(directory)?;
@@ -110,7 +110,7 @@ fn run(case: &Case) -> io::Result<(u8, Option<String>)> {
     let code = flexsc_cli::main(arguments.map(OsString::from));
     std::env::set_current_dir("..")?;
     if code == 130 {
-        // Work that could not be stopped may still go on; it ends with this process.
+        // Work that could not be stopped may continue; it ends with this process.
         return Ok((code, None));
     }
     let wrong = wrong(case, code, directory)?;
@@ -118,13 +118,13 @@ fn run(case: &Case) -> io::Result<(u8, Option<String>)> {
     Ok((code, wrong))
 }
 
-/// What a command must not do, whatever it is given.
+/// Returns the first violation of the rules for every command.
 fn wrong(case: &Case, code: u8, directory: &Path) -> io::Result<Option<String>> {
     if ![0, 1, 2].contains(&code) {
         return Ok(Some(format!("exit code {code}")));
     }
     let said = fs::read(MESSAGES)?;
-    // With `--json`, `check` tells the mistakes where programs read them.
+    // With `--json`, `check` prints the mistakes where programs read them.
     let has = |word: &str| case.arguments.iter().any(|argument| argument == word);
     if code != 0 && said.is_empty() && !(has("check") && has("--json")) {
         return Ok(Some(format!("exit code {code} without a word")));
@@ -156,7 +156,7 @@ fn wrong(case: &Case, code: u8, directory: &Path) -> io::Result<Option<String>> 
     Ok(None)
 }
 
-/// The largest memory of this process since it was asked last (kB), where the system tells.
+/// Returns the largest memory of this process since the last call (kB), where the system provides it.
 fn memory() -> u64 {
     let status = fs::read_to_string("/proc/self/status").unwrap_or_default();
     let line = status.lines().find_map(|line| line.strip_prefix("VmHWM:"));

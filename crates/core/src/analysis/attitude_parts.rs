@@ -1,4 +1,5 @@
-//! An attitude filter whose gains have settled, as part of a linear loop: its gain, its sensors, and how modes turn their mounts.
+//! Attitude filter with settled gains, as part of a linear loop: gain, sensors, and rotation of the sensor mounts by
+//! the modes.
 
 use serde::Serialize;
 
@@ -8,35 +9,35 @@ use crate::estimator::attitude::{Form, Role};
 use crate::scenario::Scenario;
 use crate::time::Span;
 
-/// The filter: beyond the angle a that it expects, an attitude z corrects by k (z - a).
+/// Settled attitude filter: from the predicted angle a, a measured attitude z corrects the state by k (z - a).
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AttitudeParts {
-    /// The gyro.
+    /// Gyro of the filter.
     pub gyro: MountedSensor,
-    /// The sensor of the attitude.
+    /// Sensor that measures the attitude.
     pub sensor: MountedSensor,
-    /// k: three rows for the attitude (rad/rad), and three for the bias of the gyro (1/s).
+    /// Gain k: three rows for the attitude (rad/rad), and three for the bias of the gyro (1/s).
     pub gain: Vec<[f64; 3]>,
 }
 
-/// A sensor of an attitude filter.
+/// Sensor of an attitude filter, and its mount on the flexible body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MountedSensor {
-    /// Period of its samples (s).
+    /// Sampling period (s).
     pub period: f64,
-    /// How late it reports them (s).
+    /// Latency of the samples (s).
     pub latency: f64,
-    /// Whether it reports the mean rate of its periods.
+    /// True if the sensor reports the mean rate over each sampling period.
     pub integrates: bool,
-    /// By how much a unit of each mode turns its mount about each axis (rad/(m sqrt(kg))).
+    /// Rotation of the mount about each axis for a unit displacement of each mode (rad/(m sqrt(kg))).
     pub turned: Vec<[f64; 3]>,
 }
 
 impl AttitudeParts {
-    /// The filter of a scenario.
+    /// Returns the settled form of a scenario's attitude filter.
     ///
     /// # Errors
-    /// A filter whose gains do not settle to one gain, or that knows modes: the key within the filter, and why.
+    /// A filter whose gains do not settle to one gain, or that models modes: the key within the filter, and the reason.
     pub fn of(scenario: &Scenario, filter: &AttitudeFilter) -> Result<Self, Fault> {
         if filter.elastic.is_some() {
             return Err(Fault::new("elastic", "is not supported in linear loops: leave it out"));
@@ -74,7 +75,7 @@ impl AttitudeParts {
                 }
             }
         }
-        // The setting has both.
+        // The setting has a gyro and an attitude sensor.
         let (Some(gyro), Some((sensor, gain))) = found else {
             return Err(Fault::new("", "needs a gyro and a sensor of the attitude"));
         };

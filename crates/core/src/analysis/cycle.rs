@@ -1,9 +1,9 @@
-//! The limit cycle that a run of the relay law ends in, and its Floquet multipliers.
+//! Detection of the limit cycle in which a run of the relay law ends, and its Floquet multipliers.
 //!
-//! The Poincaré section is the entry into a strong push, where the angle is at its boundary. The fundamental
-//! matrix of one cycle is the product of exact derivatives: the flow's between switchings, and at each switching
-//! that of its time. A guard's time moves so that the angle stays on its level; a brake lasts k_t times the push
-//! before it, so its duration moves k_t times as much.
+//! The Poincaré section is the entry into a strong push, where the angle is at its boundary. The fundamental matrix of
+//! one cycle is a product of exact derivatives: those of the flow between switchings, and those of the switching times.
+//! The time of a guard crossing changes so that the angle stays on the guard's level; a brake lasts k_t times the push
+//! before it, so its duration changes k_t times as much.
 
 use nalgebra::{DMatrix, RowDVector, Schur};
 
@@ -14,48 +14,48 @@ use crate::motion::{self, State};
 use crate::record::{Command, Record, RecordError, Sample, Trigger};
 use crate::time::Instant;
 
-/// Cycles of more pushes than this are not looked for.
+/// Largest number of pushes per cycle that the detector considers.
 const LONGEST: usize = 16;
-/// Switchings that are kept: enough for two of the longest cycles.
+/// Number of switchings that are kept: enough for two of the longest cycles.
 const KEPT: usize = 16 * LONGEST;
-/// Two passes of the section are the same cycle if they agree so well, relative to the motion.
+/// Tolerance, relative to the motion, within which two passes of the section are the same cycle.
 const SAME: f64 = 1e-6;
-/// Multipliers are not computed for more modes: the eigenproblem grows with the third power.
+/// Largest number of modes for which multipliers are computed: the cost of the eigenproblem grows with its third power.
 const MOST_MODES: usize = 64;
 
-/// A limit cycle of a simulated run.
+/// Limit cycle of a simulated run.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LimitCycle {
-    /// Which boundaries push back.
+    /// Boundaries that push back.
     pub kind: CycleKind,
     /// Period (s).
     pub period: f64,
-    /// Pushes from the section's boundary in one period.
+    /// Number of pushes from the section's boundary in one period.
     pub order: usize,
-    /// Whether the second half mirrors the first.
+    /// True if the second half of the cycle mirrors the first.
     pub symmetric: bool,
     /// Fraction of the time under strong torque.
     pub duty: f64,
     /// Integral of the absolute torque over one period (N m s).
     pub impulse: f64,
-    /// Floquet multipliers: absolute value and argument (rad), largest first. Empty where they are not defined
-    /// (sampled measurement) or too many.
+    /// Floquet multipliers: absolute value and argument (rad), largest first. Empty where they are not defined (sampled
+    /// measurement) or where there are too many modes.
     pub multipliers: Vec<(f64, f64)>,
 }
 
-/// Which boundaries push back in a cycle.
+/// Boundaries that push back in a cycle.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum CycleKind {
-    /// Both, as often.
+    /// Both boundaries push back, equally often.
     TwoSided,
-    /// One.
+    /// One boundary pushes back.
     OneSided,
-    /// Both, one more often.
+    /// Both boundaries push back, one more often than the other.
     Mixed,
 }
 
 impl CycleKind {
-    /// The kind as a word.
+    /// Returns the kind as a word.
     pub const fn word(self) -> &'static str {
         match self {
             Self::TwoSided => "two-sided",
@@ -65,19 +65,19 @@ impl CycleKind {
     }
 }
 
-/// Watches a run for its limit cycle.
+/// Recorder that keeps the last switchings of a run, to detect its limit cycle.
 #[derive(Clone, Debug)]
 pub struct CycleWatch {
     segment: Segment,
     excitations: usize,
     smooth: bool,
-    /// The last switchings, and their states one after the other; the oldest is overwritten next.
+    /// Ring of the last switchings, with their states in `states`; the oldest is overwritten next.
     kept: Vec<Kept>,
     states: Vec<f64>,
     next: usize,
 }
 
-/// A switching without its state.
+/// Switching without the state of the motion.
 #[derive(Copy, Clone, Debug)]
 struct Kept {
     at: Instant,
@@ -94,7 +94,7 @@ struct Switching {
 }
 
 impl CycleWatch {
-    /// A watch over a body whose angle is measured continuously (`smooth`) or not.
+    /// Creates a detector for a body whose angle is measured continuously (`smooth`) or at samples.
     pub fn new(body: &Planar, smooth: bool) -> Self {
         let excitations = body.modes.len();
         Self {
@@ -107,7 +107,7 @@ impl CycleWatch {
         }
     }
 
-    /// Keeps a switching in the place of the oldest one: a watch of a long run allocates nothing.
+    /// Keeps a switching in place of the oldest one, so that a long run allocates no memory.
     fn keep(&mut self, switching: Kept, state: &State) {
         let modes = state.modes.iter().flat_map(|mode| [mode.displacement, mode.quadrature]);
         let numbers = [state.rigid_angle, state.rigid_rate].into_iter().chain(modes);
@@ -123,12 +123,12 @@ impl CycleWatch {
         self.next = (self.next + 1) % KEPT;
     }
 
-    /// Where a switching is kept, counted from the oldest one.
+    /// Returns the place of a switching in `kept`; `index` counts from the oldest one.
     fn place(&self, index: usize) -> usize {
         (self.next + index) % self.kept.len()
     }
 
-    /// A switching with its state, counted from the oldest one.
+    /// Returns a switching with its state; `index` counts from the oldest one.
     fn switching(&self, index: usize) -> Switching {
         let (place, size) = (self.place(index), self.states.len() / self.kept.len());
         let numbers = &self.states[size * place..][..size];
@@ -143,7 +143,7 @@ impl CycleWatch {
         }
     }
 
-    /// The cycle that the run ended in, if it did.
+    /// Returns the limit cycle in which the run ended; `None` if it ended in no cycle.
     pub fn cycle(mut self) -> Option<LimitCycle> {
         let sections_of = |phase: Phase| -> Vec<usize> {
             (0..self.kept.len()).filter(|&index| self.kept[self.place(index)].phase == phase).collect()
@@ -194,7 +194,7 @@ impl Record for CycleWatch {
     }
 }
 
-/// Whether two passes of the section are the same: rates and modes agree relative to their size.
+/// Returns true if two passes of the section are the same: rates and modes agree relative to their size.
 fn same(a: &State, b: &State) -> bool {
     let size: f64 = b.modes.iter().map(|m| m.displacement.abs() + m.quadrature.abs()).sum();
     let rate = b.rigid_rate.abs();
@@ -205,7 +205,7 @@ fn same(a: &State, b: &State) -> bool {
     modes && (a.rigid_rate - b.rigid_rate).abs() <= SAME * rate
 }
 
-/// Whether the second half of a cycle mirrors its first.
+/// Returns true if the second half of a cycle mirrors its first.
 fn symmetric(one: &[Switching]) -> bool {
     let middle = (one.len() - 1) / 2;
     let (first, half) = (&one[0], &one[middle]);
@@ -225,11 +225,12 @@ fn symmetric(one: &[Switching]) -> bool {
     same(&mirrored, &first.state)
 }
 
-/// The eigenvalues of the cycle's fundamental matrix on the section, largest first.
+/// Returns the eigenvalues of the cycle's fundamental matrix on the section (absolute value and argument), largest
+/// first.
 fn multipliers(segment: &mut Segment, one: &[Switching]) -> Vec<(f64, f64)> {
     let size = 2 + 2 * one[0].state.modes.len();
     let mut fundamental = DMatrix::<f64>::identity(size, size);
-    // How the duration of the last push moves with the state on the section.
+    // Derivative of the last push's duration with respect to the state on the section.
     let mut push = RowDVector::<f64>::zeros(size);
     let mut end = one[0].state.clone();
     for pair in one.windows(2) {
@@ -261,7 +262,7 @@ fn multipliers(segment: &mut Segment, one: &[Switching]) -> Vec<(f64, f64)> {
         .map(|z| (crate::numerics::phasor::abs(*z), crate::numerics::phasor::arg(*z)))
         .collect();
     eigenvalues.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
-    // Off the section nothing is left after a cycle: one eigenvalue is zero, and has no meaning.
+    // The motion off the section dies out within a cycle: one eigenvalue is zero, and has no meaning.
     eigenvalues.pop();
     eigenvalues
 }

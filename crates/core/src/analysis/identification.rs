@@ -1,7 +1,9 @@
-//! How often and how fast an adaptive observer finds the modes of a channel: many runs under random bursts of thrusters.
+//! Success rate and speed of an adaptive observer's identification of a channel's modes: many runs under random
+//! thruster bursts.
 //!
-//! The channel is a rigid rate and modes that are exact (\[Timakov14\], page 46, has such an example); the gyro has noise
-//! and a resolution. At the start each natural frequency is off by a part, up or down, and each influence by another.
+//! The channel has an exactly simulated rigid rate and modes (\[Timakov14\], page 46, has such an example); the gyro
+//! has noise and a resolution. The initial estimates have relative errors: each natural frequency by `off[0]`, up or
+//! down, and each influence by `off[1]`.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -12,71 +14,72 @@ use crate::quantity::{Finite, Frequency};
 use crate::random::{Seed, Stream};
 use crate::scenario::Cost;
 
-/// The cycle of the station's computer (s).
+/// Cycle of the station's computer (s).
 pub const CYCLE: f64 = 0.2;
-/// Frequencies that are off by less than this part are found.
+/// Relative error below which a frequency counts as identified.
 const BAND: f64 = 0.02;
-/// Cycles of the longest burst, and of the longest pause after it.
+/// Lengths of the longest burst, and of the longest pause after it (cycles).
 const BURST: usize = 10;
 const PAUSE: usize = 20;
 
-/// A channel, its thrusters and its gyro.
+/// Identification experiment: a channel, its thrusters, its gyro and its observer.
 #[derive(Clone, Debug)]
 pub struct Trial {
     /// Natural frequency (rad/s) and influence of each mode.
     pub modes: Vec<(f64, f64)>,
-    /// The observer, whose damping ratio is that of the modes.
+    /// Observer, with the damping ratio of the modes.
     pub observer: Gradient,
-    /// Parts by which frequencies and influences are off at the start.
+    /// Relative errors of frequencies and influences at the start.
     pub off: [f64; 2],
     /// Rigid acceleration of the thrusters (rad/s²).
     pub acceleration: f64,
     /// Standard deviation of the gyro's noise, and its resolution (rad/s).
     pub gyro: [f64; 2],
-    /// Cycle (s), and how many there are.
+    /// Duration of a cycle (s).
     pub cycle: f64,
-    /// See `cycle`.
+    /// Number of cycles of a run.
     pub cycles: u32,
     /// Seed of all runs.
     pub seed: u64,
 }
 
-/// What a run found.
+/// Result of one run.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct RunIdentification {
-    /// The last time at which a frequency was off by more than 2 % (s); none if that is the last cycle.
+    /// Last time at which a frequency was off by more than 2 % (s); none if this is the last cycle.
     pub time: Option<f64>,
-    /// Relative error of the frequency that is furthest off at the end, and of the influence.
+    /// Relative errors at the end: of the frequency that is furthest off, and of the influence that is.
     pub errors: [f64; 2],
     /// Persistence of excitation over the run; none if a parameter was never excited.
     pub persistence: Option<f64>,
 }
 
-/// What many runs found.
+/// Results of many runs.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct IdentificationRow {
-    /// Part by which the frequencies were off at the start.
+    /// Relative error of the frequencies at the start.
     pub off: f64,
-    /// Runs, and those that converged.
+    /// Number of runs.
     pub runs: u64,
-    /// See `runs`.
+    /// Number of runs that converged.
     pub converged: u64,
-    /// Of those that did, the median and the longest time (s); none if none did.
+    /// Median of the times in which runs converged (s); none if no run did.
     pub time_median_s: Option<f64>,
-    /// See `time_median_s`.
+    /// Longest of the times in which runs converged (s); none if no run did.
     pub time_longest_s: Option<f64>,
-    /// The medians of the relative errors at the end.
+    /// Median relative error of the frequencies at the end.
     pub frequency_error: Option<f64>,
-    /// See `frequency_error`.
+    /// Median relative error of the influences at the end.
     pub influence_error: Option<f64>,
-    /// The median persistence of excitation over a run: near 0, the measurements do not distinguish the modes.
+    /// Median persistence of excitation over a run: where it is near 0, the measurements do not distinguish the modes.
     pub persistence: Option<f64>,
-    /// When each run that converged did (s), from the first to the last.
+    /// Times in which the runs converged (s), in the order of the runs.
     pub times_s: Vec<f64>,
 }
 
 impl Trial {
-    /// The channel of the study behind \[Timakov14\]'s scenarios: yaw of the station, 300 s.
+    /// Returns the experiment with the channel of the study behind \[Timakov14\]'s scenarios: yaw of the station, 300
+    /// s.
     pub fn of(modes: Vec<(f64, f64)>, off: f64) -> Self {
         Self {
             modes,
@@ -90,12 +93,13 @@ impl Trial {
         }
     }
 
-    /// What so many runs of so many cycles ask for; the squares of the numbers of modes add up to this.
+    /// Returns the cost of a number of runs of `cycles` cycles; `squared` is the sum of the squares of the numbers of
+    /// modes.
     pub fn cost(runs: f64, cycles: u32, squared: f64) -> Cost {
         Cost::of_work("the identification", runs * f64::from(cycles), 1e-7 * (3.0 + squared))
     }
 
-    /// The first number that is out of its range, by what it is, and what is wrong with the modes then.
+    /// Returns the name of the first number that is out of range, and the reason.
     pub fn inconsistency(&self) -> Option<(&'static str, String)> {
         let highest = std::f64::consts::PI / self.cycle;
         if self.modes.is_empty() {
@@ -117,7 +121,7 @@ impl Trial {
         wrong.map(|(name, part)| (name, format!("must be off by 0 to 1, got {part}")))
     }
 
-    /// A run.
+    /// Simulates the run of a number.
     pub fn run(&self, number: u64) -> RunIdentification {
         let seed = Seed { scenario: self.seed, run: number };
         let mut observer =
@@ -146,12 +150,12 @@ impl Trial {
         RunIdentification { time, errors, persistence: excitation.persistence() }
     }
 
-    /// Runs on the threads of the current rayon pool.
+    /// Simulates runs on the threads of the current rayon pool, and returns their summary.
     pub fn table(&self, runs: u64) -> IdentificationRow {
         self.row(&(0..runs).into_par_iter().map(|number| self.run(number)).collect::<Vec<_>>())
     }
 
-    /// What was found in runs.
+    /// Returns the summary of the results of runs.
     pub fn row(&self, found: &[RunIdentification]) -> IdentificationRow {
         let converged: Vec<&RunIdentification> = found.iter().filter(|found| found.time.is_some()).collect();
         let mut times_s: Vec<f64> = converged.iter().filter_map(|found| found.time).collect();
@@ -170,7 +174,8 @@ impl Trial {
         }
     }
 
-    /// What the observer begins with: within the intervals of the design, for what is off is the spacecraft.
+    /// Returns the initial estimates: they stay within the intervals of the design, so the spacecraft itself is taken
+    /// to be off.
     fn start(&self, draws: &mut Stream) -> Vec<Tracker> {
         let mut sign = |size: f64| if draws.uniform() < 0.5 { 1.0 - size } else { 1.0 + size };
         let valid = |w: f64| Frequency::new(w).expect("a mode's frequency is one, and so are its bounds");
@@ -189,7 +194,7 @@ impl Trial {
     }
 }
 
-/// A channel in motion.
+/// State of the simulated channel.
 struct Channel {
     modes: Vec<(ModelOscillator, f64)>,
     rate: f64,
@@ -220,7 +225,7 @@ impl Channel {
     }
 }
 
-/// Bursts of one to ten cycles under a random sign, with random pauses.
+/// Random thruster bursts of one to ten cycles, with a random sign and random pauses.
 struct Bursts {
     draws: Stream,
     left: usize,
@@ -233,7 +238,7 @@ impl Bursts {
         Self { draws: seed.stream("bursts"), left: 0, wait: 0, sign: 1.0 }
     }
 
-    /// The pulse of the next cycle, if there is one.
+    /// Returns the pulse of the next cycle; `None` within a pause.
     fn next(&mut self, acceleration: f64, cycle: f64) -> Option<Pulse> {
         if self.left == 0 && self.wait > 0 {
             self.wait -= 1;
@@ -249,7 +254,7 @@ impl Bursts {
     }
 }
 
-/// By which part a value is off.
+/// Returns the relative error of a value.
 fn off(found: f64, exact: f64) -> f64 {
     (found / exact - 1.0).abs()
 }

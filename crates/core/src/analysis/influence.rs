@@ -1,11 +1,11 @@
-//! The modes of a spatial body as a table: what jets excite, and a gyro sees of it.
+//! Modes of a three-axis body as a table: excitation by the jets, and the response that a gyro measures.
 
 use serde::Serialize;
 
 use crate::body::Spatial;
 use crate::scenario::Scenario;
 
-/// A spatial body's modes, column by column in the order of the modes.
+/// Modes of a three-axis body as columns, in the order of the modes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Influences {
     /// Natural frequencies (rad/s).
@@ -14,18 +14,18 @@ pub struct Influences {
     pub periods_s: Vec<f64>,
     /// Damping ratios.
     pub dampings: Vec<f64>,
-    /// Influence of the jets that push to positive rates about each axis: the jump of the elastic rate at the gyro for each
-    /// jump of the rigid rate, both about that axis, mu_ia = phi_g,ia Q_ia/m_a. Where it is negative, a feedback of the
-    /// gyro's rate drives the mode.
+    /// Influence of the jets that push to positive rates about each axis: the jump of the elastic rate at the gyro for
+    /// each unit jump of the rigid rate, both about that axis, mu_ia = phi_g,ia Q_ia/m_a. Where it is negative, a
+    /// feedback of the gyro's rate drives the mode.
     pub influences: [Vec<f64>; 3],
-    /// Energy that a pulse from rest gives, for each squared second of it as long as it is short (J/s²): Q_ia²/2.
+    /// Energy that a short pulse gives to a mode at rest, divided by the squared duration of the pulse (J/s²): Q_ia²/2.
     pub energies_j_s2: [Vec<f64>; 3],
     /// Accelerations of the jets about each axis, m_a (rad/s²): plus, minus.
     pub accelerations_rad_s2: [[f64; 2]; 3],
 }
 
 impl Influences {
-    /// The modes of a scenario's body with three axes. Actuators that are no jets give a torque of 1 N m.
+    /// Returns the modes of a scenario's three-axis body. Actuators other than jets count as a torque of 1 N m.
     pub fn of(scenario: &Scenario, body: &Spatial) -> Self {
         let study = &scenario.study;
         let measured = study.measured(body);

@@ -1,7 +1,8 @@
-//! A scenario's body at rest as one linear system, x' = A x + B u, y = C x + D u: what design programs take.
+//! Scenario's body at rest as one linear system, x' = A x + B u, y = C x + D u, for control design programs.
 //!
-//! With one angle it is that of `Coupled`. With three axes G' = M + H x w, q'' + D q' + W² q = phi' (M + H x w): G = J w_r, the
-//! rate of the hub w = w_r + phi q' where modes act back on it, H what rotors store (\[Likins70\]). Surroundings are left out.
+//! A one-axis body has the system of `Coupled`. With three axes G' = M + H x w, q'' + D q' + W² q = phi' (M + H x w): G
+//! = J w_r, with the rate of the hub w = w_r + phi q' where modes act back on it, and the rotor momentum H
+//! (\[Likins70\]). Environment torques are left out.
 
 use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
@@ -14,29 +15,29 @@ use crate::random::Seed;
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-/// The system.
+/// Linear state-space model of a body.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LinearModel {
-    /// A, row by row.
+    /// Matrix A, row by row.
     pub a: Vec<Vec<f64>>,
-    /// B.
+    /// Matrix B, row by row.
     pub b: Vec<Vec<f64>>,
-    /// C.
+    /// Matrix C, row by row.
     pub c: Vec<Vec<f64>>,
-    /// What the states are.
+    /// States x.
     pub states: Vec<Signal>,
-    /// What the inputs are: the torques that actuators give.
+    /// Inputs u: the torques that actuators give.
     pub inputs: Vec<Signal>,
-    /// What the outputs are: what a sensor of angle and rate sees, and all coordinates.
+    /// Outputs y: angle and rate as sensors measure them, and all coordinates.
     pub outputs: Vec<Signal>,
 }
 
-/// A number of a system, and its unit.
+/// Name and unit of a state, an input or an output.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Signal {
-    /// Its name.
+    /// Name of the signal.
     pub name: String,
-    /// Its unit.
+    /// Unit of the signal.
     pub unit: String,
 }
 
@@ -49,10 +50,10 @@ fn rows(of: &DMatrix<f64>) -> Vec<Vec<f64>> {
 }
 
 impl LinearModel {
-    /// The body of a scenario, with natural frequencies as they are at a time (s).
+    /// Returns the linear model of a scenario's body, with its natural frequencies at the time `at` (s).
     ///
     /// # Errors
-    /// A body that is no linear system: its key, and why.
+    /// A body that is no linear system: its key, and the reason.
     pub fn of(scenario: &Scenario, at: f64) -> Result<Self, Fault> {
         if scenario.study.driven().is_some() {
             let why = "turn appendages, so the body changes with time and is not a linear system";
@@ -71,7 +72,7 @@ impl LinearModel {
         let coupled = Coupled::new(body, back_emf, total, &ratios);
         let order = coupled.system.nrows();
         let shown = |first: usize, j: usize| {
-            // The clamped modes of a hub whose motion is given do not show in it.
+            // The clamped modes of a hub with a commanded motion are not observable in it.
             let is_seen = j == first || j % 2 == first && body.drive == Drive::Torque;
             if is_seen { 1.0 } else { 0.0 }
         };
@@ -99,7 +100,7 @@ impl LinearModel {
         let (study, modes) = (&scenario.study, body.modes.len());
         let flexible = scenario.model.flexible();
         let inertia = flexible.map_or_else(|| body.tensor(), |flexible| flexible.inertia);
-        // A tensor that was checked has an inverse.
+        // The tensor was checked, so it has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         let seed = Seed { scenario: scenario.seed, run: 0 };
         let stored = Vector::from(study.actuator(scenario, seed).stored(Instant::START));
@@ -107,7 +108,7 @@ impl LinearModel {
         let hub = |mode: usize| flexible.map_or_else(Vector::zeros, |body| body.modes[mode].rotation);
         let order = 6 + 2 * modes;
         let (mut a, mut b) = (DMatrix::zeros(order, order), DMatrix::zeros(order, 3));
-        // How a torque at the hub moves rates and modes.
+        // Response of rates and modes to a torque at the hub.
         let mut pushed = DMatrix::zeros(order, 3);
         pushed.view_mut((3, 0), (3, 3)).copy_from(&inverse);
         for mode in 0..modes {
@@ -167,7 +168,7 @@ impl LinearModel {
         Self::new(&a, &b, states, inputs.into(), seen)
     }
 
-    /// A system that shows what is seen, and all its states.
+    /// Creates a system whose outputs are the measured coordinates and all its states.
     fn new(
         a: &DMatrix<f64>,
         b: &DMatrix<f64>,

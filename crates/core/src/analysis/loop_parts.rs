@@ -1,4 +1,5 @@
-//! The linear parts of a loop that are not read off a scenario's keys: filters of laws at their samples, and settled estimators.
+//! Linear parts of a loop that cannot be read from a scenario's keys: sampled filters of the laws, and settled
+//! estimators.
 
 use serde::Serialize;
 
@@ -11,36 +12,36 @@ use crate::law::Law;
 use crate::random::Seed;
 use crate::scenario::Scenario;
 
-/// The parts.
+/// Linear filters and settled estimators of a loop.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct LoopParts {
-    /// b0, b1, b2 and a1, a2 of each filter of the law about each axis, in the order in which they act.
+    /// Coefficients b0, b1, b2 and a1, a2 of each filter of the law about each axis, in the order in which they act.
     pub filters: Vec<Vec<([f64; 3], [f64; 2])>>,
-    /// The estimator of each axis; none where the law reads what is measured.
+    /// Estimator of each axis; none where the law reads the measurement.
     pub estimators: Option<Vec<AxisEstimator>>,
-    /// The attitude filter, if the law reads one.
+    /// Attitude filter; none if the law reads no attitude filter.
     pub attitude: Option<AttitudeParts>,
 }
 
-/// An estimator of one axis.
+/// Settled Kalman filter of one axis.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AxisEstimator {
-    /// The filter.
+    /// Kalman filter with its steady gain.
     #[serde(flatten)]
     pub steady: Steady,
-    /// The moment of inertia by which a torque becomes its reduced moment.
+    /// Moment of inertia (kg m²) by which a torque is divided to give its reduced moment.
     pub inertia: f64,
-    /// Whether the law reads the rigid motion, and not that of the hub.
+    /// True if the law reads the rigid motion instead of the hub's motion.
     pub rigid: bool,
-    /// Whether the rate is measured too.
+    /// True if the rate is measured too.
     pub rate: bool,
 }
 
 impl LoopParts {
-    /// The parts of a scenario whose laws are linear.
+    /// Returns the linear parts of a scenario whose laws are linear.
     ///
     /// # Errors
-    /// An estimator that is not linear, or does not settle: its key, and why.
+    /// An estimator that is not linear, or does not settle: its key, and the reason.
     pub fn of(scenario: &Scenario) -> Result<Self, Fault> {
         if let Some(fault) = scenario.unlike_loops() {
             return Err(fault);
@@ -74,19 +75,19 @@ impl LoopParts {
     }
 }
 
-/// What the estimator of a scenario writes into beliefs.
+/// Returns the part of the state estimate that a scenario's estimator writes.
 fn feeds(scenario: &Scenario, dominant: bool) -> Feeds {
     scenario.estimator.as_ref().map_or(Feeds::Modes, |estimator| estimator.feeds(dominant))
 }
 
-/// The filters of a law.
+/// Returns the coefficients of the filters of a law.
 fn filters(law: &Law) -> Vec<([f64; 3], [f64; 2])> {
     let Law::Attitude(law) = law else { return Vec::new() };
     let period = law.period.seconds();
     law.filters.iter().filter_map(|filter| Some(filter.sampled(period).ok()?.coefficients())).collect()
 }
 
-/// The filter about an axis in the end.
+/// Returns the settled filter about an axis.
 fn observer(scenario: &Scenario, kalman: &Kalman, axis: usize) -> Result<AxisEstimator, Fault> {
     let fault = |why: &str| Fault::new("estimator.kalman", why);
     let known = scenario.known();

@@ -1,4 +1,4 @@
-//! What a scenario or a run means: integrals, limit cycles, stability.
+//! Analyses of a scenario or a run: linear models, mode tables, limit cycles, stability.
 
 pub mod attitude_parts;
 pub mod cycle;

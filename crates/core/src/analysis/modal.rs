@@ -1,15 +1,15 @@
-//! The modes of a body as a table: the content of `flexsc modes` and of Python's `Scenario.modes`.
+//! Modes of a one-axis body as a table: the content of `flexsc modes` and of Python's `Scenario.modes`.
 
 use serde::Serialize;
 
 use crate::body::{Drive, Mode, Planar};
 
-/// A body's modes, column by column in the order of the modes.
+/// Modes of a one-axis body as columns, in the order of the modes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModalColumns {
     /// Moment of inertia (kg m²).
     pub inertia_kg_m2: f64,
-    /// What is commanded: with a torque the modes are those of the free body, with a motion those of the clamped one.
+    /// Commanded quantity: with a torque the modes are those of the free body, with a motion those of the clamped one.
     pub drive: Drive,
     /// Natural frequencies (rad/s).
     pub frequencies_rad_s: Vec<f64>,
@@ -23,20 +23,20 @@ pub struct ModalColumns {
     pub excitabilities_s2: Vec<f64>,
     /// Effective moments of inertia J k (kg m²): J² X_n\[theta\]² of a free body, m_n² of a clamped one.
     pub effective_inertias_kg_m2: Vec<f64>,
-    /// Natural frequencies with the hub free (rad/s), if there is such a body.
+    /// Natural frequencies with the hub free (rad/s); none if this body does not exist.
     pub free_frequencies_rad_s: Option<Vec<f64>>,
-    /// Natural frequencies with the hub held (rad/s), if there is such a body.
+    /// Natural frequencies with the hub held (rad/s); none if this body does not exist.
     pub clamped_frequencies_rad_s: Option<Vec<f64>>,
     /// Observed coordinates.
     pub outputs: Vec<Weighted>,
 }
 
-/// An observed coordinate: `rigid` times the rigid angle and `weights` times the modes' displacements.
+/// Observed coordinate: `rigid` times the rigid angle plus `weights` times the modes' displacements.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Weighted {
-    /// Name.
+    /// Name of the coordinate.
     pub name: String,
-    /// Unit.
+    /// Unit of the coordinate.
     pub unit: String,
     /// Weight of the rigid angle.
     pub rigid: f64,
@@ -45,7 +45,7 @@ pub struct Weighted {
 }
 
 impl ModalColumns {
-    /// The modes of a body.
+    /// Returns the modes of a body.
     pub fn of(body: &Planar) -> Self {
         let column = |value: &dyn Fn(&Mode) -> f64| -> Vec<f64> { body.modes.iter().map(value).collect() };
         let inertia = body.inertia.get();

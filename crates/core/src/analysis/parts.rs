@@ -1,4 +1,5 @@
-//! The parts of a spacecraft as tables: what the modes of each appendage carry, and what a torque on the hub does at each point.
+//! Modes of a spacecraft as tables: effective masses of each appendage's modes, and the response at each point to a
+//! torque on the hub.
 
 use serde::Serialize;
 
@@ -8,75 +9,75 @@ use crate::body::craft::Craft;
 use crate::motion::turning::Angles;
 use crate::scenario::{Drives, Scenario};
 
-/// Frequencies are told at the ends of so many parts of a run.
+/// Number of equal parts of a run at whose ends frequencies are listed.
 const PARTS: u32 = 12;
 
-/// A spacecraft's modes, clamped and free.
+/// Modes of a spacecraft, clamped and free.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ModalParts {
-    /// The free modes.
+    /// Free modes.
     #[serde(flatten)]
     pub free: Influences,
     /// Total mass (kg).
     pub mass_kg: f64,
     /// Total centre of mass, from the spacecraft's point O (m).
     pub centre_m: [f64; 3],
-    /// Inertia tensor about it, without the spin inertia of the wheels (kg m²).
+    /// Inertia tensor about the centre of mass, without the spin inertia of the wheels (kg m²).
     pub inertia_kg_m2: [[f64; 3]; 3],
     /// Off-diagonal damping of the free modes.
     pub damping_coupling: f64,
-    /// The modes with the roots held, appendage by appendage.
+    /// Modes with the roots held, appendage by appendage.
     pub clamped: Vec<Clamped>,
-    /// What a torque on the hub does at each point.
+    /// Response at each point to a torque on the hub.
     pub points: Vec<AtPoint>,
-    /// Where drives turn appendages, the frequencies of the free modes in the course of the run.
+    /// Frequencies of the free modes over the run; empty where no drive turns an appendage.
     pub turned: Vec<AtAngles>,
 }
 
-/// The free modes where drives have turned so far.
+/// Free modes at one set of drive angles.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AtAngles {
-    /// When (s).
+    /// Time (s).
     pub time_s: f64,
-    /// The angle of each drive (rad).
+    /// Angle of each drive (rad).
     pub angles_rad: Vec<f64>,
     /// Natural frequencies (rad/s), increasing.
     pub frequencies_rad_s: Vec<f64>,
 }
 
-/// A mode of an appendage with its root held.
+/// Mode of an appendage with its root held.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Clamped {
-    /// The appendage.
+    /// Name of the appendage.
     pub appendage: String,
     /// Natural frequency (rad/s).
     pub frequency_rad_s: f64,
     /// Damping ratio.
     pub damping: f64,
-    /// Effective mass along the appendage's own axes (kg): squares of its participation in translation.
+    /// Effective mass along the axes of the appendage (kg): squares of the mode's participation in translation.
     pub effective_mass_kg: [f64; 3],
-    /// Effective moment of inertia about those axes through the root (kg m²).
+    /// Effective moment of inertia about the axes of the appendage through its root (kg m²).
     pub effective_inertia_kg_m2: [f64; 3],
-    /// Whether its first moments are known.
+    /// True if the first moments of the mode are known.
     pub first_moments: bool,
 }
 
-/// A point of the structure.
+/// Point of the structure, and its response to a torque on the hub.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct AtPoint {
-    /// Name.
+    /// Name of the point.
     pub point: String,
-    /// The appendage that it is on; of the hub none.
+    /// Name of the appendage that carries the point; none for a point of the hub.
     pub appendage: Option<String>,
     /// Position from the total centre of mass (m).
     pub position_m: [f64; 3],
-    /// Influence of a torque on the hub about each axis: the jump of the elastic rate at the point for each jump of the
-    /// rigid rate, both about that axis, for each free mode.
+    /// Influence of a torque on the hub about each axis: the jump of the elastic rate at the point for each unit jump
+    /// of the rigid rate, both about that axis, for each free mode.
     pub influences: [Vec<f64>; 3],
 }
 
 impl ModalParts {
-    /// The modes of a scenario's spacecraft.
+    /// Returns the modes of a scenario's spacecraft.
     pub fn of(scenario: &Scenario, craft: &Craft) -> Self {
         let written = scenario.appendage.iter().flat_map(|appendage| {
             let participations = appendage.participations();
@@ -124,7 +125,7 @@ impl ModalParts {
     }
 }
 
-/// The frequencies at instants of the run.
+/// Returns the frequencies of the free modes at equidistant instants of the run.
 fn turned(Drives { driven, courses }: &Drives, scenario: &Scenario) -> Vec<AtAngles> {
     let at = |step: u32| {
         let time_s = scenario.duration.seconds() * f64::from(step) / f64::from(PARTS);

@@ -1,4 +1,4 @@
-//! The limit cycle of the relay law on a rigid body, in closed form.
+//! Limit cycle of the relay law on a rigid body, in closed form.
 //!
 //! With q = sqrt(2 m_u gamma), r = m_eps/m_u and v0 the speed at which a boundary is reached, z =
 //! (v0 + sqrt(v0² + q²))/q describes the cycle; beta = k_t (1 - k_t)(1 - r). Derived from the corrected law (2) of
@@ -52,14 +52,14 @@ pub struct Resonance {
     pub k_t: f64,
 }
 
-/// The law's numbers on a rigid body.
+/// Parameters of the relay law on a rigid body, as accelerations.
 struct Rigid {
     strong: f64,
     weak: f64,
     eps: f64,
     gamma: f64,
     inertia: f64,
-    /// Angle of the left boundary, if it pushes back (rad).
+    /// Angle of the left boundary (rad); minus infinity if it does not push back.
     left: f64,
 }
 
@@ -104,7 +104,7 @@ impl Rigid {
             Sides::Two => ((-exit - entry) / weak, 2.0, -angle_max),
             Sides::One => ((entry - exit) / weak, 1.0, eps - entry * entry / (2.0 * weak)),
         };
-        // A two-sided coast that would turn round, or a one-sided one that meets the left boundary, is no cycle.
+        // A two-sided coast that would reverse, or a one-sided one that reaches the left boundary, is no cycle.
         if coast <= 0.0 || (sides == Sides::One && angle_min <= left) {
             return None;
         }
@@ -128,8 +128,8 @@ impl Rigid {
     }
 }
 
-/// The limit cycles of a relay law on a body with its modes left out: those that exist at this gain, two-sided
-/// first. A law with one side has the one-sided cycle only, which then needs no left boundary to stay clear of.
+/// Returns the limit cycles of a relay law on a body without its modes at the gain `k_t`, two-sided first. A law with
+/// one side has only the one-sided cycle, which then has no left boundary to avoid.
 pub fn cycles(law: &Relay, body: &Planar, k_t: f64) -> Vec<RigidCycle> {
     let rigid = Rigid::new(law, body.inertia.get());
     let candidates: &[Sides] = match law.sides {
@@ -142,10 +142,10 @@ pub fn cycles(law: &Relay, body: &Planar, k_t: f64) -> Vec<RigidCycle> {
 /// Harmonics above this one are too weak for a resonance: the n-th falls as 1/n² at least.
 const HIGHEST: u32 = 9_999;
 
-/// The gains from 0.02 to 1 at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The even
-/// harmonics vanish by symmetry.
+/// Returns the gains from 0.02 to 1 at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The
+/// even harmonics vanish by symmetry.
 pub fn resonances(law: &Relay, body: &Planar) -> Vec<Resonance> {
-    /// Between neighbours on this grid of gains the period is monotonic.
+    /// Number of cells of the grid of gains: the period is monotonic between neighbours.
     const GRID: u32 = 4096;
     let rigid = Rigid::new(law, body.inertia.get());
     let period = |k_t: f64| rigid.cycle(Sides::Two, k_t).map(|cycle| cycle.period_s);
@@ -169,7 +169,7 @@ pub fn resonances(law: &Relay, body: &Planar) -> Vec<Resonance> {
     found
 }
 
-/// The root of an increasing function, to the last bit.
+/// Returns the root of an increasing function, to the last bit.
 fn bisect(mut low: f64, mut high: f64, f: impl Fn(f64) -> f64) -> f64 {
     loop {
         let middle = 0.5 * (low + high);

@@ -1,4 +1,4 @@
-//! Relay runs side by side: flights in lanes, windows' ends and metrics one by one.
+//! Batch of relay runs: the flow between switchings runs in lanes; window ends and metrics are processed run by run.
 
 #[cfg(test)]
 mod tests;
@@ -21,12 +21,12 @@ use crate::record::{self, Command, Course, Record, Sample, Trigger};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
-/// Runs that share the lanes of one flight, one after the other.
+/// Number of runs that share the lanes of one call of the kernel, one after the other.
 const RUNS: usize = 128;
-/// Longer runs (s) go alone: nothing is told of a flight before its end.
+/// Longest duration of a run in a batch (s): the kernel returns no results before a run's end.
 const LONGEST: f64 = 2e5;
 
-/// The batch.
+/// Batch of relay runs.
 pub struct Side;
 
 impl Batch for Side {
@@ -46,21 +46,22 @@ impl Batch for Side {
     }
 }
 
-/// Some runs, and what is known of those in the lanes.
+/// Runs of a batch, and the state of those in the lanes.
 struct Runs<'a> {
     structure: Structure,
     jobs: &'a [Job<'a>],
     next: usize,
     lanes: Vec<Option<Lane<'a>>>,
     found: Vec<Option<Metrics>>,
-    /// Whether any of them wants switchings, and to know where the angle leaves the band.
+    /// True if any of the runs needs its switchings (`listens`), or the instants at which the angle leaves the band
+    /// (`looks`).
     listens: bool,
     looks: bool,
 }
 
-/// A run in a lane.
+/// Run in a lane.
 struct Lane<'a> {
-    /// The place of its job.
+    /// Index of the run's job.
     index: usize,
     scenario: &'a Scenario,
     setup: Setup,
@@ -68,7 +69,7 @@ struct Lane<'a> {
     monitor: Option<Monitor>,
     segment: Segment,
     state: State,
-    /// Whether it has to be simulated alone.
+    /// True if the run has to be simulated alone.
     is_alone: bool,
 }
 
@@ -81,7 +82,7 @@ impl<'a> Runs<'a> {
 }
 
 impl Lane<'_> {
-    /// Departs from what was seen, on the motion of a place.
+    /// Begins a segment at the state of the lane, with the torque of `place`.
     fn depart(&mut self, place: CyclePlace, from: &LaneSight) {
         see(&mut self.state, from);
         let constant = self.setup.torque(place, from.side);

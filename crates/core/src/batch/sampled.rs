@@ -1,7 +1,7 @@
-//! Sampled loops about a body with a wheel, or with drifting frequencies: each run senses, estimates and decides on its own, and
-//! the motions between their events, which are most of the work, are computed side by side.
+//! Batch of sampled loops of a body with a wheel or with drifting frequencies: sensors, estimators and laws are
+//! evaluated run by run, and the motions between events, which are most of the work, are computed in lanes.
 //!
-//! The runs share no clock: in each round every run goes to its own next event, whatever it is.
+//! The runs share no clock: in each round every run advances to its own next event.
 
 mod filters;
 mod motions;
@@ -18,7 +18,7 @@ use crate::time::Instant;
 
 use motions::Motions;
 
-/// The batch.
+/// Batch of sampled loops.
 pub struct Side;
 
 impl Batch for Side {
@@ -42,7 +42,7 @@ impl Batch for Side {
         }
         let mut gathers: Vec<Gather> = Vec::with_capacity(jobs.len());
         for job in jobs {
-            // What differs in nothing but its noises begins alike.
+            // Runs that differ only in their noise begin with equal metrics.
             let alike = jobs.iter().zip(&gathers).find(|(other, _)| other.scenario == job.scenario);
             let gather = alike.map(|(_, gather)| gather.clone());
             gathers.push(gather.unwrap_or_else(|| Gather::of(job.scenario, job.selection)));
@@ -57,15 +57,15 @@ impl Batch for Side {
     }
 }
 
-/// A run among others.
+/// Run of a batch.
 struct Run {
     simulation: Simulation,
     motion: Lent,
-    /// When its motion began, its reduced moment (rad/s²), and its torques.
+    /// Start of the current segment, its reduced moment (rad/s²), and its torques.
     departed: Instant,
     moment: f64,
     exerted: Exerted,
-    /// Whether the simulation goes on, and whether it has come to its end side by side.
+    /// True while the simulation continues (`goes_on`), and true if it has ended within the batch (`is_whole`).
     goes_on: bool,
     is_whole: bool,
 }
@@ -85,13 +85,13 @@ impl Run {
         })
     }
 
-    /// Begins: what it departs under.
+    /// Begins the run and its first segment.
     fn begin(&mut self, gather: &mut Gather) {
         self.goes_on = self.simulation.begin_lent(gather).is_ok();
         self.depart();
     }
 
-    /// Whether a new motion began, which it goes on with.
+    /// Adopts a new segment of the simulation; returns true if there is one.
     fn depart(&mut self) -> bool {
         let Some((at, moment, exerted)) = self.simulation.departed() else { return false };
         (self.departed, self.moment, self.exerted) = (at, moment, exerted);
@@ -99,7 +99,7 @@ impl Run {
     }
 }
 
-/// The work of all runs.
+/// Loop over the events of all runs.
 struct Rounds<'a> {
     runs: &'a mut [Run],
     gathers: &'a mut [Gather],
@@ -122,7 +122,7 @@ impl LaneWork for Rounds<'_> {
         let mut filters = filters::of(kind, runs);
         let mut courses = MotionMetrics::new(kind);
         let wants_course = gathers.iter().any(|gather| gather.course() != Course::None);
-        // Where the bodies are: angles and rates of all coordinates.
+        // State of the bodies: angles and rates of all coordinates.
         let mut here = vec![zero; 2 * count];
         let mut rows = vec![[0.0; 16]; 2 * count];
         let mut fresh = true;
@@ -201,7 +201,7 @@ impl LaneWork for Rounds<'_> {
                     },
                 );
             }
-            // Those that depart do so from where they are.
+            // New segments begin at the current state of the bodies.
             fresh = departs.iter().any(|departs| *departs);
             if fresh {
                 let departs = zero.lt(kind.load(&departs.map(|departs| f64::from(u8::from(departs)))));

@@ -1,4 +1,4 @@
-//! Runs with commands from outside, repeated: what was commanded, and when, is all that they have beyond their scenario.
+//! Repetition of runs with external commands: scenario, commands and their times determine such a run completely.
 
 use std::fmt::Write;
 
@@ -11,12 +11,12 @@ use crate::time::Instant;
 
 const HEADER: &str = "time_whole_s,time_fs,x,y,z";
 
-/// Commands about each axis ([`Command::Torque`]), and the instants at which they were given, in order.
+/// Log of the commands about each axis ([`Command::Torque`]) and of the instants at which they were given, in order.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Commanded(Vec<(Instant, [f64; 3])>);
 
 impl Commanded {
-    /// A command is given now; one given at the same instant before was never executed.
+    /// Appends a command given at `now`; it replaces one of the same instant, which was never executed.
     pub fn push(&mut self, now: Instant, values: [f64; 3]) {
         match self.0.last_mut() {
             Some((at, last)) if *at == now => *last = values,
@@ -24,15 +24,15 @@ impl Commanded {
         }
     }
 
-    /// Whether there are none.
+    /// Returns true if there are no commands.
     pub fn is_empty(&self) -> bool {
         self.0.is_empty()
     }
 
-    /// Runs to an instant, everything that is due then included, with the commands given on the way.
+    /// Advances a run to an instant, including everything that is due then, with the commands given on the way.
     ///
     /// # Errors
-    /// As a run.
+    /// The errors of a run.
     pub fn run_until(
         &self,
         simulation: &mut Simulation,
@@ -46,18 +46,18 @@ impl Commanded {
         simulation.run_until(until, record)
     }
 
-    /// Repeats a run up to an instant, or to its end if that is earlier: the metrics are those of what has been. It is
-    /// the same run, whichever pieces it was advanced in.
+    /// Repeats a run up to an instant, or to its end if that is earlier, and returns the metrics up to then. The result
+    /// does not depend on the pieces in which the run was advanced.
     ///
     /// # Errors
-    /// As a run.
+    /// The errors of a run.
     pub fn simulate(
         &self,
         run: &CampaignRun,
         until: Instant,
         record: impl Record,
     ) -> Result<Metrics, SimulationError> {
-        // A run that is left is judged as one that ends there.
+        // A partial run has the metrics of a run that ends there.
         let end = Instant::START + run.scenario.duration;
         let left = (until < end).then(|| {
             let mut left = run.scenario.clone();
@@ -75,10 +75,10 @@ impl Commanded {
         Ok(both.0.finish(judged))
     }
 
-    /// Repeats a run, and tells its motion at times (s) that grow.
+    /// Repeats a run, and returns its motion at increasing times (s).
     ///
     /// # Errors
-    /// As a run.
+    /// The errors of a run.
     pub fn sample(
         &self,
         run: &CampaignRun,
@@ -99,7 +99,7 @@ impl Commanded {
         Ok(())
     }
 
-    /// The provenance in the log of the run: with commands, it has them too.
+    /// Returns the provenance in the log of the run, including its commands.
     pub fn provenance(&self, run: &CampaignRun, detail: Detail) -> Provenance {
         let mut provenance = Campaign::provenance(run, detail);
         if !self.is_empty() {
@@ -109,18 +109,18 @@ impl Commanded {
         provenance
     }
 
-    /// As text: whole seconds, femtoseconds past them, and the values about x, y and z.
+    /// Returns the commands as text: whole seconds, femtoseconds past them, and the values about x, y and z.
     pub fn to_csv(&self) -> String {
         let mut text = format!("{HEADER}\n");
         for (at, [x, y, z]) in &self.0 {
             let (whole, part) = at.parts();
-            // A string takes everything.
+            // Writing to a string cannot fail.
             let _ = writeln!(text, "{whole},{part},{x:?},{y:?},{z:?}");
         }
         text
     }
 
-    /// From text; nothing if it is none of [`Self::to_csv`].
+    /// Parses the text of [`Self::to_csv`]; returns `None` if it is not in this form.
     pub fn parse(text: &str) -> Option<Self> {
         let mut lines = text.lines();
         if lines.next()? != HEADER {
@@ -162,7 +162,7 @@ mod tests {
     fn given() -> Commanded {
         let mut given = Commanded::default();
         given.push(at(1.0), [9.0, 0.0, 0.0]);
-        // One that was never executed is not kept.
+        // A command that was never executed is not kept.
         given.push(at(1.0), [0.5, 0.0, 0.0]);
         given.push(at(3.0), [-0.1, 0.0, 0.0]);
         given
@@ -187,7 +187,7 @@ mod tests {
         let scenario = Scenario::parse("steered.toml", TEXT).expect("a scenario");
         let mut simulation = Simulation::new(&scenario, 0);
         given().run_until(&mut simulation, at(5.0), &mut ()).expect("a run");
-        // 0.5 N m on 2 kg m² for 2 s, then -0.1 N m for 2 s.
+        // The torque is 0.5 N m on 2 kg m² for 2 s, then -0.1 N m for 2 s.
         let rate = simulation.state().map(|state| state.rigid_rate);
         assert!((rate.expect("one angle") - 0.4).abs() < 1e-15);
     }

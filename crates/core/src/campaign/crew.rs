@@ -1,4 +1,4 @@
-//! The runs of a campaign on several threads, reported in order.
+//! Worker threads of a campaign, whose runs are reported in order.
 
 use std::collections::BTreeMap;
 use std::ops::Range;
@@ -11,16 +11,16 @@ use super::{Campaign, CampaignRun, RunError, RunOutcome};
 use crate::batch::{self, Job};
 use crate::metrics::{Metrics, Selection};
 
-/// No run begins that is so many runs ahead of the one reported next: those between wait in memory.
+/// Largest number of runs by which a run may be ahead of the one reported next: the runs between wait in memory.
 const AHEAD: u64 = 4096;
-/// The longest time without a report.
+/// Longest time without a report.
 const LOOK: Duration = Duration::from_millis(20);
-/// So many runs are begun at once where they go side by side.
+/// Number of runs that a thread begins at once if they are simulated in a batch.
 const BESIDE: u64 = 64;
-/// How long a campaign that was stopped waits for the runs under way, which are stopped too.
+/// Time for which a stopped campaign waits for the current runs, which are stopped too.
 const PATIENCE: Duration = Duration::from_millis(500);
 
-/// What the threads share: which run is next, and which one is reported next.
+/// State shared by the threads: the run that begins next, and the run that is reported next.
 struct Crew {
     state: Mutex<State>,
     told: Condvar,
@@ -34,11 +34,11 @@ struct State {
 
 impl Crew {
     fn state(&self) -> MutexGuard<'_, State> {
-        // A number is whole, whatever its thread did then.
+        // The numbers are valid even if a thread panicked.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    /// The numbers of the next runs, at most so many, which are waited for; none at the end.
+    /// Reserves the next `most` runs at most, waiting until they may begin; returns an empty range at the end.
     fn take(&self, most: u64) -> Range<u64> {
         let mut state = self.state();
         while state.next < state.end && state.next - state.due >= AHEAD {
@@ -54,14 +54,14 @@ impl Crew {
         self.told.notify_all();
     }
 
-    /// No more runs begin.
+    /// Prevents any further run from beginning.
     fn close(&self) {
         self.state().end = 0;
         self.told.notify_all();
     }
 }
 
-/// A thread at work: where it panics, no thread begins another run.
+/// Guard of a worker thread: if the thread panics, no thread begins another run.
 struct Worker(Arc<Crew>);
 
 impl Drop for Worker {
@@ -73,13 +73,14 @@ impl Drop for Worker {
 }
 
 impl Campaign {
-    /// Makes runs on so many threads, or with 0 on one for each core, and reports each, in order of their numbers.
+    /// Simulates runs on `threads` threads, or with 0 on one for each core, and reports each, in the order of their
+    /// numbers.
     ///
-    /// `work` simulates one run, on any thread. `tell` may stop the campaign with an error; it is called without an outcome
-    /// now and then while no run ends. A run that does not stop then is left behind.
+    /// `work` simulates one run, on any thread. `tell` may stop the campaign with an error; it is called regularly
+    /// without an outcome while no run ends. A run that does not stop then is abandoned.
     ///
     /// # Panics
-    /// Where a run does.
+    /// If a run panics.
     pub fn each<E>(
         self: &Arc<Self>,
         runs: Range<u64>,
@@ -90,8 +91,8 @@ impl Campaign {
         self.go(runs, threads, (1, Selection::ALL), work, tell)
     }
 
-    /// The same where `work` does nothing but simulate, for the selected metrics: runs of one structure then go side by side where
-    /// they can, and come to the same.
+    /// Simulates runs like [`Campaign::each`], for the selected metrics, if `work` only simulates: runs of one
+    /// structure are then simulated in batches where possible, with equal results.
     pub fn each_beside<E>(
         self: &Arc<Self>,
         runs: Range<u64>,
@@ -119,7 +120,7 @@ impl Campaign {
         let count = runs.end.saturating_sub(runs.start);
         let cores = || thread::available_parallelism().map_or(1, usize::from);
         let threads = if threads == 0 { cores() } else { threads };
-        // No thread is left without work for the sake of another's neighbours.
+        // Batches are small enough to leave work for every thread.
         let most = most.min(count / threads as u64).max(1);
         for _ in 0..threads.min(usize::try_from(count).unwrap_or(usize::MAX)) {
             let (study, worker, outcomes) = (self.clone(), Worker(crew.clone()), outcomes.clone());
@@ -164,8 +165,8 @@ impl Campaign {
         }
     }
 
-    /// What runs come to, side by side where they can go so, as soon as it is known; `work` simulates the others. Tells whether
-    /// `tell` wants more.
+    /// Simulates runs in a batch where possible, and reports them as soon as they end; `work` simulates the others.
+    /// Returns true if `tell` accepts more.
     fn beside(
         &self,
         numbers: Range<u64>,
@@ -179,7 +180,7 @@ impl Campaign {
         let jobs: Vec<Job<'_>> =
             whole().map(|run| Job { number: run.number, scenario: &run.scenario, selection }).collect();
         let mut found = batch::simulate(&jobs).into_iter();
-        // What they took together is told of each alike.
+        // The time of the batch is divided equally among its runs.
         let seconds = began.elapsed().as_secs_f64() / runs.len().max(1) as f64;
         let (mut known, mut alone) = (Vec::with_capacity(runs.len()), Vec::new());
         for (number, run) in runs {

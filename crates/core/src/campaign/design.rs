@@ -1,4 +1,4 @@
-//! Designs: the points of a campaign, which give keys their values, and how often each point is run.
+//! Designs: the points of a campaign, which set values of keys, and the number of runs of each point.
 
 use std::fmt::Write as _;
 
@@ -8,13 +8,13 @@ use super::Grid;
 use super::sampling::{Dimension, MOST_DIMENSIONS, Sampling};
 use crate::random::fnv1a;
 
-/// No design has more points.
+/// Largest number of points of a design.
 pub const MOST_POINTS: u64 = 100_000_000;
-/// Nor a list or a table more numbers: they are held in memory.
+/// Largest number of values in a list or a table, which are held in memory.
 pub const MOST_NUMBERS: usize = 10_000_000;
 
-/// The points of a campaign. With blocks, the points are all combinations of the points of each, counted as numbers are: those
-/// of the last block from point to point. Without, a point is the scenario itself, as often as it is wanted.
+/// The points of a campaign. With blocks, the points are all combinations of the points of each, counted as numbers
+/// are: those of the last block from point to point. Without, a point is the scenario itself, as often as it is wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointDesign {
@@ -95,14 +95,14 @@ impl From<Grid> for DesignBlock {
     }
 }
 
-/// One of so many values from the first to the last, evenly apart.
+/// Returns value `index` of `count` equidistant values from the first to the last.
 pub(super) fn even(first: f64, last: f64, count: u32, index: u32) -> f64 {
     let part = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.0 };
     first * (1.0 - part) + last * part
 }
 
 impl DesignBlock {
-    /// How many points there are.
+    /// Returns the number of points.
     pub fn count(&self) -> u64 {
         match self {
             Self::Even { count, .. } => u64::from(*count),
@@ -112,7 +112,7 @@ impl DesignBlock {
         }
     }
 
-    /// The keys.
+    /// Returns the keys.
     pub fn keys(&self) -> Vec<&str> {
         match self {
             Self::Even { key, .. } | Self::List { key, .. } => vec![key],
@@ -121,7 +121,7 @@ impl DesignBlock {
         }
     }
 
-    /// The values of a point, in the order of the keys; NaN where there is no such point.
+    /// Returns the values of a point, in the order of the keys; NaN if there is no such point.
     fn values(&self, point: u64, seed: u64) -> Vec<f64> {
         if point >= self.count() {
             return vec![f64::NAN; self.keys().len()];
@@ -142,7 +142,7 @@ impl DesignBlock {
         }
     }
 
-    /// The ends of what each key takes: its first and its last value.
+    /// Returns the first and the last value of each key.
     fn ends(&self) -> Vec<(&str, f64)> {
         match self {
             Self::Even { key, first, last, .. } => vec![(key, *first), (key, *last)],
@@ -166,7 +166,7 @@ impl DesignBlock {
         }
         let finite = match self {
             Self::Even { first, last, .. } => first.is_finite() && last.is_finite(),
-            // Of a list each value that is not accepted fails by itself.
+            // Each value of a list that is not accepted fails by itself.
             Self::List { .. } => true,
             Self::Table { points, .. } => {
                 points.iter().all(|p| p.len() == keys.len() && p.iter().all(|v| v.is_finite()))
@@ -197,7 +197,7 @@ impl DesignBlock {
         }
     }
 
-    /// What it is, for people, and different from that of any other one.
+    /// Appends a readable description that differs from that of any other design.
     fn describe(&self, text: &mut String) {
         let _ = match self {
             Self::Even { key, first, last, count } => {
@@ -222,24 +222,24 @@ impl DesignBlock {
 }
 
 impl Sampling {
-    /// Its name.
+    /// Returns the name of the sampling.
     pub fn name(self) -> &'static str {
         Self::ALL.iter().find(|(_, sampling)| *sampling == self).map_or("", |(name, _)| name)
     }
 }
 
 impl PointDesign {
-    /// The design of some blocks.
+    /// Returns the design of some blocks.
     pub fn of(blocks: impl IntoIterator<Item = DesignBlock>) -> Self {
         Self { blocks: blocks.into_iter().collect(), ..Self::default() }
     }
 
-    /// The keys whose values it gives.
+    /// Returns the keys that the design sets.
     pub fn keys(&self) -> Vec<&str> {
         self.blocks.iter().flat_map(DesignBlock::keys).collect()
     }
 
-    /// How many runs it has, if it is not as many as are wanted.
+    /// Returns the number of runs of the design; `None` if it has as many as are wanted.
     pub fn runs(&self) -> Option<u64> {
         if self.blocks.is_empty() {
             return (self.hypercube > 0).then(|| self.hypercube.saturating_mul(self.replicas));
@@ -248,12 +248,12 @@ impl PointDesign {
         Some(points.saturating_mul(self.replicas))
     }
 
-    /// The point of a run.
+    /// Returns the point of a run.
     pub fn point(&self, run: u64) -> u64 {
         run / self.replicas.max(1)
     }
 
-    /// The values of the keys of a point.
+    /// Returns the values of the keys of a point.
     pub(super) fn values(&self, point: u64, seed: u64) -> Vec<f64> {
         let mut rest = point;
         let mut values = Vec::new();
@@ -268,12 +268,12 @@ impl PointDesign {
         values
     }
 
-    /// The ends of what each key takes.
+    /// Returns the first and the last value of each key.
     pub(super) fn ends(&self) -> impl Iterator<Item = (&str, f64)> {
         self.blocks.iter().flat_map(DesignBlock::ends)
     }
 
-    /// What is wrong with it, if anything is; `uncertain` keys are drawn.
+    /// Returns the first inconsistency of the design; `uncertain` is the number of keys that are drawn.
     pub fn problem(&self, uncertain: usize) -> Option<String> {
         if let Some(problem) = self.blocks.iter().find_map(DesignBlock::problem) {
             return Some(problem);
@@ -297,7 +297,7 @@ impl PointDesign {
             .then(|| format!("no key is uncertain: there is nothing to draw by {}", self.draws.name()))
     }
 
-    /// What it is, for people, as lines of comments; nothing of a campaign that only draws.
+    /// Returns a readable description as lines of comments; empty for a campaign that only draws.
     pub fn describe(&self) -> String {
         let mut text = String::new();
         self.blocks.iter().for_each(|block| block.describe(&mut text));

@@ -1,13 +1,13 @@
-//! The directory of a campaign: a manifest, and parts of consecutive runs as Parquet files. Any number of processes write parts
-//! of it, on any number of machines; the rows are the same.
+//! Directory of a campaign: a manifest, and parts of consecutive runs as Parquet files. Any number of processes on any
+//! number of machines may write its parts; the rows do not depend on them.
 //!
 //! ```text
 //! manifest.toml                               Manifest: version, scenario, design, runs, hash
-//! runs/part-0000000000-0000002048.parquet     a row a run; each written beside its place, synced and renamed
-//! .lock                                       held by the command at work there, released by the kernel on its death
+//! runs/part-0000000000-0000002048.parquet     one row per run; written to a temporary file, synced and renamed
+//! .lock                                       locked by the writing command, released by the kernel on its death
 //! ```
 //!
-//! What a worker needs, such as a process of Dask:
+//! Example of a worker, such as a process of Dask:
 //!
 //! ```text
 //! let campaign = Directory::open(path)?;           // or Work::of(manifest text), without any file system
@@ -16,8 +16,8 @@
 //! }
 //! ```
 //!
-//! Where parts go to a bucket, [`Work::part`] gives a part's name and bytes. [`Directory::create`] makes or continues a directory,
-//! and holds its lock; workers need none.
+//! Where parts go to a bucket, [`Work::part`] gives a part's name and bytes. [`Directory::create`] makes or continues a
+//! directory, and holds its lock; workers need none.
 
 use std::fs::{self, File, TryLockError};
 use std::io;
@@ -33,19 +33,19 @@ use super::work::{NOTE, Work};
 use crate::record::Record;
 use crate::whole::{self, Partial};
 
-/// The manifest's file.
+/// Name of the manifest's file.
 pub const MANIFEST: &str = "manifest.toml";
-/// The directory of the parts.
+/// Name of the directory of the parts.
 pub const RUNS: &str = "runs";
-/// The file whose lock the command at work holds.
+/// Name of the file that the writing command locks.
 const LOCK: &str = ".lock";
 
-/// The directory of a campaign.
+/// Directory of a campaign.
 #[derive(Debug)]
 pub struct Directory {
     path: PathBuf,
     work: Work,
-    /// Held as long as this lives, by the command at work.
+    /// Lock file, held by the writing command for the lifetime of this value.
     _lock: Option<File>,
 }
 
@@ -59,22 +59,22 @@ impl Directory {
         Ok(Self { path: path.to_owned(), work: Work::of(manifest, &place)?, _lock: None })
     }
 
-    /// Whether a directory is that of a campaign.
+    /// Returns true if a directory is that of a campaign.
     pub fn is_one(path: &Path) -> bool {
         path.join(MANIFEST).is_file()
     }
 
-    /// Makes a directory, or continues the one that is there with these runs of the same campaign too, or with `force` in place
-    /// of another one. Its lock is held as long as this lives.
+    /// Creates a directory, or continues an existing one of the same campaign with these runs too, or with `force`
+    /// replaces one of another campaign. The returned value holds the directory's lock.
     ///
     /// # Errors
-    /// Another campaign, which is not to be replaced; another process at work.
+    /// Another campaign, which is not to be replaced; another process that is writing the directory.
     pub fn create(path: &Path, mut manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
         parquet_is_built_in().map_err(unread(path))?;
         let within = path.join(RUNS);
         fs::create_dir_all(&within).map_err(io_of(&within))?;
         let place = path.join(MANIFEST);
-        // Before anything is touched, and again by the only one that may.
+        // Checked before anything is changed, and again under the lock.
         fitting(path, &place, &manifest, force)?;
         let lock = lock(path)?;
         let there = fitting(path, &place, &manifest, force)?;
@@ -99,7 +99,7 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Leaves nothing but these runs of it.
+    /// Removes all runs but these.
     pub fn shrink(&mut self, runs: Range<u64>) -> Result<(), DirectoryError> {
         for part in self.parts()?.iter().filter(|part| part.start < runs.start || part.end > runs.end) {
             let file = self.file(part);
@@ -117,33 +117,33 @@ impl Directory {
         whole::write_synced(&place, text.as_bytes()).map_err(io_of(&place))
     }
 
-    /// Where it is.
+    /// Returns the path of the directory.
     pub fn path(&self) -> &Path {
         &self.path
     }
 
-    /// What makes its rows.
+    /// Returns the row maker of the campaign.
     pub fn work(&self) -> &Work {
         &self.work
     }
 
-    /// The runs of the parts that are there, in order.
+    /// Returns the runs of the existing parts, in order.
     pub fn parts(&self) -> Result<Vec<Range<u64>>, DirectoryError> {
         parts(&self.path)
     }
 
-    /// The runs of the parts that are not there, part by part.
+    /// Returns the runs of the missing parts, part by part.
     pub fn missing(&self) -> Result<Vec<Range<u64>>, DirectoryError> {
         self.missing_of(self.work.manifest.runs())
     }
 
-    /// The same of some runs.
+    /// Returns the runs of the missing parts among `runs`, part by part.
     pub fn missing_of(&self, runs: Range<u64>) -> Result<Vec<Range<u64>>, DirectoryError> {
         let gaps = part::without(runs, &self.parts()?);
         Ok(gaps.into_iter().flat_map(|gap| part::cut(gap, self.work.manifest.part)).collect())
     }
 
-    /// Makes the runs of a part, and writes it.
+    /// Computes the runs of a part, and writes it.
     pub fn write_part(
         &self,
         runs: Range<u64>,
@@ -154,7 +154,7 @@ impl Directory {
         self.write(&runs, &rows)
     }
 
-    /// Writes the rows of a part: beside its place, to the disk, and then under its name.
+    /// Writes the rows of a part atomically: to a temporary file, synced and then renamed.
     pub fn write(&self, runs: &Range<u64>, rows: &Rows) -> Result<PathBuf, DirectoryError> {
         let path = self.file(runs);
         let bytes = self.work.encode(rows).map_err(io_of(&path))?;
@@ -162,12 +162,12 @@ impl Directory {
         Ok(path)
     }
 
-    /// A column of all rows that there are, in the order of their runs. Parts without it have nothing there.
+    /// Returns a column of all existing rows, in the order of their runs; `None` if the campaign has no such column.
     pub fn column(&self, name: &str) -> Result<Option<ColumnCells>, DirectoryError> {
         Ok(self.columns(&[name])?.remove(0))
     }
 
-    /// Several columns, each part opened once.
+    /// Returns several columns, opening each part once.
     pub fn columns(&self, names: &[&str]) -> Result<Vec<Option<ColumnCells>>, DirectoryError> {
         let kind =
             |name: &str| self.work.fields().iter().find(|field| field.name == name).map(|field| field.kind);
@@ -182,7 +182,7 @@ impl Directory {
         Ok(all)
     }
 
-    /// Columns of a part.
+    /// Returns columns of a part.
     pub fn columns_of(&self, runs: &Range<u64>, names: &[&str]) -> Result<Vec<ColumnCells>, DirectoryError> {
         let path = self.file(runs);
         let reading = self.reading(runs)?;
@@ -193,12 +193,12 @@ impl Directory {
         names.iter().map(column).collect()
     }
 
-    /// The file of a part.
+    /// Returns the path of a part's file.
     pub fn file(&self, runs: &Range<u64>) -> PathBuf {
         self.path.join(RUNS).join(part::name(runs))
     }
 
-    /// Opens a part, which must be one of this campaign.
+    /// Opens a part, and checks that it belongs to this campaign.
     pub(super) fn reading(&self, runs: &Range<u64>) -> Result<Reading, DirectoryError> {
         let path = self.file(runs);
         let reading = Reading::open(&path).map_err(unread(&path))?;
@@ -211,13 +211,13 @@ impl Directory {
         Ok(reading)
     }
 
-    /// Removes what killed processes left of files; those that are being written stay.
+    /// Removes partial files of killed processes; those that are being written stay.
     fn remove_leftovers(&self) -> Result<(), DirectoryError> {
         let within = self.path.join(RUNS);
         for entry in fs::read_dir(&within).map_err(io_of(&within))?.flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
             if let Some(part) = name.strip_suffix(".partial").filter(|name| part::runs(name).is_some()) {
-                // What begins a file and drops it removes a leftover; one that is locked is another's at work.
+                // Creating and dropping a partial file removes a leftover, unless another process has locked it.
                 drop(Partial::create(&within.join(part)));
             }
         }
@@ -225,7 +225,7 @@ impl Directory {
     }
 }
 
-/// The manifest that is there, if any.
+/// Returns the existing manifest, if any.
 fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
     match fs::metadata(place) {
         Err(error) if is_none(&error) => return Ok(None),
@@ -239,7 +239,7 @@ fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
     Manifest::parse(&text).map(Some).map_err(|why| wrong(place, why))
 }
 
-/// The manifest that is there, if this one may be written in its place.
+/// Returns the existing manifest, and checks that the new one may replace it.
 fn fitting(
     path: &Path,
     place: &Path,
@@ -263,7 +263,7 @@ fn fitting(
     }
 }
 
-/// Whether there is no such file.
+/// Returns true if the error is that of a file that does not exist.
 fn is_none(error: &io::Error) -> bool {
     matches!(error.kind(), io::ErrorKind::NotFound | io::ErrorKind::NotADirectory)
 }

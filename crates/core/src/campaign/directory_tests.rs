@@ -1,4 +1,4 @@
-//! Directories: parts by any workers in any order, manifests that fit or not, locks.
+//! Tests of directories: parts by any workers in any order, manifests that fit or not, locks.
 
 use super::*;
 use crate::campaign::Campaign;
@@ -70,7 +70,7 @@ fn parts_in_any_order_are_the_same_rows() {
         one.write_part(runs, 1, ()).expect("written");
     }
     drop(Directory::create(&other.0, manifest(0..30), false).expect("made"));
-    // Workers that only open it.
+    // Workers only open the directory.
     let worker = Directory::open(&other.0).expect("there");
     for runs in worker.missing().expect("read").into_iter().rev() {
         worker.write_part(runs.clone(), 3, ()).expect("written");
@@ -80,7 +80,7 @@ fn parts_in_any_order_are_the_same_rows() {
     let (one, other) = (columns(&one), columns(&worker));
     assert_eq!(one, other);
     assert_eq!(one[0].as_ref().map(ColumnCells::numbers), Some((0..30).map(f64::from).collect()));
-    // Some gains are not accepted: their rows say so.
+    // Some gains are not accepted: their rows have the error.
     let Some(Some(ColumnCells::Words(errors))) = one.last() else { panic!("no errors") };
     let failed = errors.iter().flatten().count();
     assert!((1..30).contains(&failed), "{failed}");
@@ -91,7 +91,7 @@ fn parts_in_any_order_are_the_same_rows() {
 fn the_columns_are_known_before_any_run() {
     let here = Here::new("columns");
     let directory = Directory::create(&here.0, manifest(0..3), false).expect("made");
-    // The first whose gain is accepted.
+    // The first run whose gain is accepted.
     let run = (0..9).find_map(|number| directory.work().campaign.run(number).ok()).expect("a run");
     let told = Campaign::simulate(&run, ()).expect("metrics");
     let fields = directory.work().fields();
@@ -147,7 +147,7 @@ fn what_does_not_fit_is_refused() {
     let mut seeded = manifest(0..16);
     seeded.scenario = seeded.scenario.replace("seed = 7", "seed = 8");
     assert!(Manifest::parse(&seeded.to_toml()).expect_err("changed").contains("its hash does not match"));
-    // A part of another campaign under the name of one.
+    // A part of another campaign under the name of a part.
     let part = fs::read(here.0.join("runs/part-0000000000-0000000008.parquet")).expect("there");
     drop(Directory::create(&here.0, other, true).expect("replaced"));
     assert!(!here.0.join("runs/part-0000000000-0000000008.parquet").exists());

@@ -1,4 +1,4 @@
-//! What is drawn for a run: the values of its point, and those of the `[uncertain]` keys.
+//! Draws of a run: the values of its point, and those of the `[uncertain]` keys.
 
 use toml::Value;
 
@@ -9,7 +9,7 @@ use crate::numerics::normal;
 use crate::random::Seed;
 
 impl Campaign {
-    /// The value of each key that varies in a run.
+    /// Returns the value of each key that varies in a run.
     pub(super) fn draw(&self, number: u64) -> Vec<Value> {
         let point = self.design.point(number);
         let keys = self.design.keys();
@@ -30,7 +30,7 @@ impl Campaign {
         drawn
     }
 
-    /// The value of an uncertain key by itself.
+    /// Returns the value of an uncertain key, drawn independently of others.
     fn uncertain(&self, place: usize, point: u64) -> Value {
         let Some((key, distribution)) = self.scenario.uncertain.iter().nth(place) else {
             return Value::Float(f64::NAN);
@@ -48,7 +48,7 @@ impl Campaign {
         }
     }
 
-    /// The standard normal number behind an uncertain key that is drawn together with others.
+    /// Returns the standard normal number of an uncertain key that is drawn together with others.
     fn deviation(&self, place: usize, point: u64) -> f64 {
         let Some(key) = self.scenario.uncertain.keys().nth(place) else { return f64::NAN };
         let (seed, name) = (self.scenario.seed, format!("uncertain {key}"));
@@ -62,7 +62,7 @@ impl Campaign {
         }
     }
 
-    /// The scenario's own value of a key.
+    /// Returns the value of a key in the scenario.
     fn nominal(&self, key: &str) -> Value {
         // The scenario was checked: every uncertain key holds a number.
         key::get(&self.table, key).cloned().unwrap_or(Value::Float(f64::NAN))

@@ -1,4 +1,4 @@
-//! Why the directory of a campaign cannot be used.
+//! Errors of a campaign's directory.
 
 use std::io;
 use std::path::{Path, PathBuf};
@@ -7,58 +7,58 @@ use thiserror::Error;
 
 use crate::document::ScenarioError;
 
-/// Why a directory cannot be used.
+/// Error of a campaign's directory.
 #[derive(Debug, Error)]
 pub enum DirectoryError {
-    /// It is no campaign, or has a file that is none of it.
+    /// Directory that is no campaign, or has a file that does not belong to it.
     #[error("{}: {why}", path.display())]
     Wrong {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// What is wrong.
+        /// Reason.
         why: String,
     },
-    /// It is of another campaign.
+    /// Directory of another campaign.
     #[error("{}: contains another campaign ({difference})", path.display())]
     Other {
-        /// The manifest there.
+        /// Path of its manifest.
         path: PathBuf,
-        /// In what they differ.
+        /// First difference of the campaigns.
         difference: String,
     },
-    /// Another process is at work there.
+    /// Directory that another process is writing.
     #[error("{}: another process is working in it", path.display())]
     Busy {
-        /// The directory.
+        /// Path of the directory.
         path: PathBuf,
     },
-    /// A file cannot be written.
+    /// File that cannot be read or written.
     #[error("{}: {source}", path.display())]
     Io {
-        /// The file.
+        /// Path of the file.
         path: PathBuf,
-        /// Why not.
+        /// Error of the operating system.
         source: io::Error,
     },
-    /// Its scenario is not accepted.
+    /// Scenario that is not accepted.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// The work was stopped.
+    /// Interruption of the work.
     #[error("interrupted")]
     Interrupted,
 }
 
-/// A file that is not what it should be.
+/// Returns the error of a file with invalid content.
 pub(super) fn wrong(path: &Path, why: impl Into<String>) -> DirectoryError {
     DirectoryError::Wrong { path: path.to_owned(), why: why.into() }
 }
 
-/// A file that cannot be read.
+/// Returns the error of a file that cannot be read.
 pub(super) fn unread(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
     |source| wrong(path, source.to_string())
 }
 
-/// A file that cannot be written.
+/// Returns the error of a file that cannot be written.
 pub(super) fn io_of(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
     |source| match source.kind() {
         io::ErrorKind::InvalidData | io::ErrorKind::Unsupported => wrong(path, source.to_string()),

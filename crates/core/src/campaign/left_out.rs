@@ -1,4 +1,4 @@
-//! Parquet files in a build without them: each is refused with what has them.
+//! Stand-in for Parquet files in a build without them: each call fails with the name of a build that has them.
 
 use std::io;
 use std::path::Path;
@@ -12,20 +12,20 @@ fn left_out() -> io::Error {
     io::Error::new(io::ErrorKind::Unsupported, WHY)
 }
 
-/// Whether this build reads and writes Parquet files.
+/// Checks that this build reads and writes Parquet files.
 ///
 /// # Errors
-/// It does not, and what does.
+/// Always: this build does not, and the message names those that do.
 pub fn parquet_is_built_in() -> io::Result<()> {
     Err(left_out())
 }
 
-/// The file, with notes about it by their names.
+/// Returns the content of a file with these rows and metadata.
 pub fn encode(_: &Rows, _: &[(&str, String)]) -> io::Result<Vec<u8>> {
     Err(left_out())
 }
 
-/// A file that is read.
+/// Parquet file that is read.
 pub struct Reading(());
 
 #[expect(clippy::unused_self, reason = "the methods are those of a build with Parquet")]
@@ -35,17 +35,17 @@ impl Reading {
         Err(left_out())
     }
 
-    /// A note about it.
+    /// Returns a value of the metadata.
     pub fn note(&self, _: &str) -> Option<String> {
         None
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn rows(&self) -> u64 {
         0
     }
 
-    /// A column.
+    /// Returns a column.
     pub fn column(&self, _: &str) -> io::Result<Option<ColumnCells>> {
         Err(left_out())
     }

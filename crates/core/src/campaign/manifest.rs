@@ -1,4 +1,4 @@
-//! The manifest of a campaign's directory: all that its rows are made from, as TOML.
+//! Manifest of a campaign's directory: all that its rows depend on, as TOML.
 
 use std::ops::Range;
 
@@ -12,11 +12,11 @@ use crate::random::fnv1a;
 use crate::record::difference;
 use crate::scenario::Scenario;
 
-/// The form of directories that this version writes.
+/// Version of the directory format that this program writes.
 const FORMAT: u32 = 1;
-/// How the file begins.
+/// First line of the file.
 const MARK: &str = "# A campaign of flexsc: what the parts beside it are made from.\n";
-/// No manifest is larger (bytes).
+/// Largest size of a manifest (bytes).
 pub const LARGEST: u64 = 1 << 30;
 
 /// What a campaign's rows are made from, and which of its runs are wanted.
@@ -44,14 +44,14 @@ pub struct Manifest {
     pub design: PointDesign,
 }
 
-/// Why a manifest is none of a campaign, or not of this one.
+/// Reason why a manifest is not that of a campaign, or not of this one.
 pub type WrongManifest = String;
 
 impl Manifest {
-    /// The manifest of some runs of a campaign.
+    /// Returns the manifest of some runs of a campaign.
     ///
     /// # Errors
-    /// A campaign that no text can hold.
+    /// A campaign that cannot be written as text.
     pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, WrongManifest> {
         if campaign.scenario().has_own_parts() {
             return Err("has parts defined by a program, which a file cannot contain".to_owned());
@@ -59,7 +59,7 @@ impl Manifest {
         Self::in_memory(campaign, runs, selection)
     }
 
-    /// The same of a campaign that no file has to hold.
+    /// Returns the manifest of a campaign that need not be written as text.
     pub(super) fn in_memory(
         campaign: &Campaign,
         runs: Range<u64>,
@@ -97,13 +97,13 @@ impl Manifest {
         format!("{:016x}", fnv1a(&text.concat()))
     }
 
-    /// The manifest as a text.
+    /// Returns the manifest as text.
     pub fn to_toml(&self) -> String {
-        // It holds nothing that TOML cannot express.
+        // The manifest contains nothing that TOML cannot express.
         format!("{MARK}{}", toml::to_string(self).unwrap_or_default())
     }
 
-    /// Reads a manifest.
+    /// Parses a manifest.
     pub fn parse(text: &str) -> Result<Self, WrongManifest> {
         #[derive(Deserialize)]
         struct Form {
@@ -129,18 +129,19 @@ impl Manifest {
         Ok(manifest)
     }
 
-    /// Makes parts of about so much work (s), for schedulers; those that are there stay.
+    /// Limits the work of a part to about `seconds` (s), for schedulers; existing parts stay.
     pub fn shorten(&mut self, seconds: f64) {
         let part = (self.part as f64 * seconds / part::WORK_S).clamp(1.0, 65_536.0) as u64;
         self.part = part.next_power_of_two();
     }
 
-    /// The runs that are wanted.
+    /// Returns the runs that are wanted.
     pub fn runs(&self) -> Range<u64> {
         self.from..self.to
     }
 
-    /// The runs that are missing beside these files, part by part. Files that are no parts do not count.
+    /// Returns the missing runs part by part, given the names of the existing files. Files that are no parts are
+    /// ignored.
     pub fn missing<'a>(&self, files: impl IntoIterator<Item = &'a str>) -> Vec<Range<u64>> {
         let mut there: Vec<_> = files.into_iter().filter_map(part::runs).collect();
         there.sort_by_key(|runs| (runs.start, runs.end));
@@ -148,7 +149,7 @@ impl Manifest {
         gaps.into_iter().flat_map(|gap| part::cut(gap, self.part)).collect()
     }
 
-    /// In what it is another campaign than this one; nothing if they differ in their runs alone.
+    /// Returns the first difference from the manifest of another campaign; `None` if they differ in their runs alone.
     pub fn difference(&self, here: &Self) -> Option<String> {
         if self.hash == here.hash {
             return None;
@@ -172,12 +173,12 @@ impl Manifest {
         Some(format!("{} before, {} now", told(self, here), told(here, self)))
     }
 
-    /// The metrics of its rows.
+    /// Returns the metrics of the rows.
     pub fn selection(&self) -> Result<Selection, WrongManifest> {
         self.metrics.as_ref().map_or(Ok(Selection::ALL), Selection::of)
     }
 
-    /// The campaign. Its errors name the scenario, and no file: they are the same on every machine.
+    /// Returns the campaign. Its errors name the scenario, and no file: they are equal on every machine.
     pub fn campaign(&self) -> Result<Campaign, ScenarioError> {
         let scenario = Scenario::parse("scenario", &self.scenario)?;
         let name = scenario.name.clone();

@@ -1,4 +1,4 @@
-//! Parts of one campaign, made in several directories, in one.
+//! Merging of parts of one campaign that were made in several directories.
 
 use std::fs;
 use std::ops::Range;
@@ -9,10 +9,10 @@ use super::rows::SECONDS;
 use crate::whole;
 
 impl Directory {
-    /// Takes over the parts of another directory of the campaign, and returns how many runs are new.
+    /// Copies the parts of another directory of the campaign, and returns the number of new runs.
     ///
     /// # Errors
-    /// Another campaign; runs that both have, and that are not the same, or not the same part.
+    /// Another campaign; runs that both directories have with different rows, or in different parts.
     pub fn take(&self, other: &Self) -> Result<u64, DirectoryError> {
         let (here, there) = (&self.work().manifest, &other.work().manifest);
         if let Some(difference) = there.difference(here) {
@@ -20,7 +20,7 @@ impl Directory {
         }
         let own = self.parts()?;
         let theirs = other.parts()?;
-        // All is checked before anything is written.
+        // All parts are checked before anything is written.
         for runs in &theirs {
             let meets = |own: &&Range<u64>| own.start < runs.end && runs.start < own.end;
             match own.iter().find(meets) {
@@ -45,7 +45,7 @@ impl Directory {
         Ok(new)
     }
 
-    /// Whether a part has the same rows in both, but for the time they took.
+    /// Checks that a part has the same rows in both directories, except for the times of the runs.
     fn same(&self, other: &Self, runs: &Range<u64>) -> Result<(), DirectoryError> {
         let (own, theirs) = (self.reading(runs)?, other.reading(runs)?);
         let path = other.file(runs);

@@ -1,4 +1,4 @@
-//! Rows as a Parquet file, and back: one row group, compressed by zstd.
+//! Rows as a Parquet file, written and read: one row group, compressed by zstd.
 
 use std::fs::File;
 use std::io;
@@ -17,11 +17,11 @@ use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
 use super::rows::{ColumnCells, ColumnHeading, ColumnKind, Rows};
 
-/// How hard it is compressed: more gains nothing for numbers.
+/// Compression level of zstd: higher ones gain nothing for numbers.
 const LEVEL: i32 = 3;
-/// So many cells show what a column is like.
+/// Number of cells from which the encoding of a column is chosen.
 const FIRST: usize = 256;
-/// No part has more rows.
+/// Largest number of rows of a part.
 pub const MOST_ROWS: usize = 1 << 24;
 
 fn other(error: ParquetError) -> io::Error {
@@ -64,15 +64,15 @@ fn field_type(field: &ColumnHeading) -> Result<TypePtr, ParquetError> {
     Ok(Arc::new(whole.build()?))
 }
 
-/// Whether this build reads and writes Parquet files.
+/// Checks that this build reads and writes Parquet files.
 ///
 /// # Errors
-/// None: it does.
+/// Never: this build does.
 pub fn parquet_is_built_in() -> io::Result<()> {
     Ok(())
 }
 
-/// The file, with notes about it by their names.
+/// Returns the content of a file with these rows and metadata.
 pub fn encode(rows: &Rows, notes: &[(&str, String)]) -> io::Result<Vec<u8>> {
     written(rows, notes).map_err(other)
 }
@@ -103,7 +103,7 @@ fn written(rows: &Rows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetErro
     Ok(bytes)
 }
 
-/// Whether numbers come again and again, as far as the first ones show, so that a dictionary of them saves space.
+/// Returns true if the first numbers repeat so often that a dictionary saves space.
 fn repeats(column: &ColumnCells) -> bool {
     let ColumnCells::Numbers(cells) = column else { return true };
     let mut first: Vec<u64> = cells.iter().take(FIRST).map(|cell| cell.to_bits()).collect();
@@ -155,27 +155,27 @@ fn write_column<W: io::Write + Send>(
     writer.close()
 }
 
-/// A file that is read.
+/// Parquet file that is read.
 pub struct Reading(SerializedFileReader<File>);
 
 impl Reading {
-    /// Opens a file, and reads what it holds about itself.
+    /// Opens a file, and reads its metadata.
     pub fn open(path: &Path) -> io::Result<Self> {
         SerializedFileReader::new(File::open(path)?).map(Self).map_err(other)
     }
 
-    /// A note about it.
+    /// Returns a value of the metadata.
     pub fn note(&self, name: &str) -> Option<String> {
         let notes = self.0.metadata().file_metadata().key_value_metadata()?;
         notes.iter().find(|note| note.key == name)?.value.clone()
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn rows(&self) -> u64 {
         u64::try_from(self.0.metadata().file_metadata().num_rows()).unwrap_or(0)
     }
 
-    /// The columns.
+    /// Returns the headings of the columns.
     fn fields(&self) -> Vec<ColumnHeading> {
         let schema = self.0.metadata().file_metadata().schema();
         let kind = |field: &Type| {
@@ -192,7 +192,7 @@ impl Reading {
         schema.get_fields().iter().map(field).collect()
     }
 
-    /// A column; none where it has no such one.
+    /// Returns a column; `None` if the file has no such column.
     pub fn column(&self, name: &str) -> io::Result<Option<ColumnCells>> {
         self.read(name).map_err(other)
     }
@@ -236,7 +236,7 @@ impl Reading {
     }
 }
 
-/// Values, and the levels at which they and those that are null stand.
+/// Non-null values, and the definition and repetition levels of all cells.
 type Levelled<T> = (Vec<T>, Vec<i16>, Vec<i16>);
 
 fn read_all<D: DataType>(

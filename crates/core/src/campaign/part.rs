@@ -1,33 +1,34 @@
-//! Parts of a campaign: where they begin and end, and what their files are called.
+//! Parts of a campaign: ranges of runs, and names of their files.
 
 use std::ops::Range;
 
-/// Lanes of runs side by side are filled by so many.
+/// Multiple of runs that fills the lanes of batches.
 const LANES: u64 = 256;
-/// A part takes about so long on one core (s): what a killed worker loses.
+/// Duration of a part on one core (s): the work that a killed worker loses.
 pub(super) const WORK_S: f64 = 4.0;
-/// No campaign has many more parts than this ...
+/// Approximate upper limit of the number of parts ...
 const MOST_PARTS: u64 = 4096;
-/// ... and one of many runs has some of them, so that several workers have work.
+/// ... and lower limit for a campaign of many runs, so that several workers have work.
 const FEW_PARTS: u64 = 16;
 
-/// How many runs a part has: a power of two, and for short runs a multiple of 256. Parts begin at its multiples, whatever is run
+/// Returns the number of runs of a part: a power of two, and for short runs a multiple of 256. Parts begin at its
+/// multiples, whichever other runs are wanted.
 /// beside them.
 pub fn size(runs: u64, run_s: f64) -> u64 {
     let wanted = (WORK_S / run_s.max(1e-6)).clamp(1.0, 65_536.0) as u64;
-    // Downwards to a power of two; lanes are worth more than an even size.
+    // Rounded down to a power of two; full lanes matter more than equal durations.
     let by_time = 1 << wanted.max(1).ilog2();
     let by_time = if (LANES / 4..LANES).contains(&by_time) { LANES } else { by_time };
     let for_all = (runs / FEW_PARTS).next_power_of_two().max(LANES);
     by_time.min(for_all).max(runs.div_ceil(MOST_PARTS).next_power_of_two())
 }
 
-/// The file of a part.
+/// Returns the name of the file of a part.
 pub fn name(runs: &Range<u64>) -> String {
     format!("part-{:010}-{:010}.parquet", runs.start, runs.end)
 }
 
-/// The runs of a part, by the name of its file.
+/// Returns the runs of a part, by the name of its file.
 pub fn runs(name: &str) -> Option<Range<u64>> {
     let (from, to) = name.strip_prefix("part-")?.strip_suffix(".parquet")?.split_once('-')?;
     let number = |text: &str| text.parse().ok().filter(|_| text.len() >= 10);
@@ -35,7 +36,7 @@ pub fn runs(name: &str) -> Option<Range<u64>> {
     (runs.start < runs.end).then_some(runs)
 }
 
-/// Runs cut into parts of this size, at its multiples.
+/// Splits runs into parts of this size, at its multiples.
 pub fn cut(runs: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
     let size = size.max(1);
     let mut next = runs.start;
@@ -47,7 +48,7 @@ pub fn cut(runs: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
     })
 }
 
-/// What is left of runs without those that are there, which are sorted.
+/// Returns the runs without those that are present, which must be sorted.
 pub fn without(runs: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
     let mut left = Vec::new();
     let mut next = runs.start;

@@ -1,4 +1,4 @@
-//! Rows of a campaign's table, a row a run, held as typed columns.
+//! Rows of a campaign's table, one for each run, held as typed columns.
 
 use std::sync::Arc;
 
@@ -7,16 +7,16 @@ use toml::Value as Drawn;
 use super::{Campaign, RunOutcome};
 use crate::metrics::{Gather, Metrics, Selection, Value};
 
-/// The column of the numbers of the runs, which every table begins with.
+/// Name of the column with the numbers of the runs, the first of every table.
 pub const RUN: &str = "run";
-/// The column of the scenario's seed.
+/// Name of the column with the scenario's seed.
 pub const SEED: &str = "seed";
-/// The column of the time that a run took (s): no two campaigns have the same.
+/// Name of the column with the duration of a run's computation (s), which differs between equal campaigns.
 pub const SECONDS: &str = "seconds";
-/// The column that says why a run failed.
+/// Name of the column with the reason why a run failed.
 pub const ERROR: &str = "error";
 
-/// What a column holds. Where a run has nothing, the cell is null.
+/// Type of a column. Cells without a value are null.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum ColumnKind {
     /// Integers.
@@ -29,27 +29,27 @@ pub enum ColumnKind {
     Lists,
 }
 
-/// A column's name, unit and kind.
+/// Name, unit and type of a column.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ColumnHeading {
-    /// The name: of a key, of a metric, or one of those about the run.
+    /// Name: of a key, of a metric, or of a column about the run.
     pub name: String,
-    /// The unit of a metric.
+    /// Unit of a metric.
     pub unit: &'static str,
-    /// What it holds.
+    /// Type of the cells.
     pub kind: ColumnKind,
 }
 
-/// The cells of a column. Two are equal where all bits are; nothing equals nothing.
+/// Cells of a column. Two are equal if all bits are; null cells are equal.
 #[derive(Clone, Debug)]
 pub enum ColumnCells {
     /// Integers.
     Integers(Vec<Option<i64>>),
-    /// Numbers; NaN for none.
+    /// Numbers; NaN for null.
     Numbers(Vec<f64>),
     /// Words.
     Words(Vec<Option<String>>),
-    /// Lists of numbers, in which NaN stands for none.
+    /// Lists of numbers, with NaN for null.
     Lists(Vec<Option<Vec<f64>>>),
 }
 
@@ -71,14 +71,14 @@ impl PartialEq for ColumnCells {
 /// Rows of consecutive runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Rows {
-    /// The columns' names and kinds.
+    /// Headings of the columns.
     pub fields: Arc<[ColumnHeading]>,
-    /// Their cells.
+    /// Cells of the columns.
     pub columns: Vec<ColumnCells>,
 }
 
 impl Campaign {
-    /// The columns of the campaign's table. They are known before any run, and no run changes them.
+    /// Returns the headings of the campaign's table, which are fixed before any run.
     pub fn fields(&self, selection: &Selection) -> Arc<[ColumnHeading]> {
         let about = |name: &str, kind, unit| ColumnHeading { name: name.to_owned(), unit, kind };
         let key = |name: &str| {
@@ -106,7 +106,7 @@ impl Campaign {
 }
 
 impl ColumnCells {
-    /// An empty one.
+    /// Creates an empty column.
     pub fn of(kind: ColumnKind) -> Self {
         match kind {
             ColumnKind::Integers => Self::Integers(Vec::new()),
@@ -116,7 +116,7 @@ impl ColumnCells {
         }
     }
 
-    /// How many cells there are.
+    /// Returns the number of cells.
     pub fn len(&self) -> usize {
         match self {
             Self::Integers(cells) => cells.len(),
@@ -126,12 +126,12 @@ impl ColumnCells {
         }
     }
 
-    /// Whether there is no cell.
+    /// Returns true if there is no cell.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// How many cells are not null.
+    /// Returns the number of cells that are not null.
     pub fn told(&self) -> usize {
         match self {
             Self::Integers(cells) => cells.iter().flatten().count(),
@@ -141,7 +141,8 @@ impl ColumnCells {
         }
     }
 
-    /// The cells as numbers, in their order: of an integer its value, of other words than those of a goal nothing.
+    /// Returns the cells as numbers: integers by their value, verdicts by their score, and NaN for other words, lists
+    /// and null.
     pub fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Integers(cells) => cells.iter().map(|cell| cell.map_or(f64::NAN, |i| i as f64)).collect(),
@@ -185,47 +186,47 @@ impl ColumnCells {
         }
     }
 
-    /// Puts the cells of another one of its kind after its own.
+    /// Appends the cells of another column of the same type.
     pub fn append(&mut self, other: Self) {
         match (self, other) {
             (Self::Integers(cells), Self::Integers(mut more)) => cells.append(&mut more),
             (Self::Numbers(cells), Self::Numbers(mut more)) => cells.append(&mut more),
             (Self::Words(cells), Self::Words(mut more)) => cells.append(&mut more),
             (Self::Lists(cells), Self::Lists(mut more)) => cells.append(&mut more),
-            // A column of another kind has nothing for this one.
+            // Cells of another type become null.
             (column, other) => (0..other.len()).for_each(|_| column.push_nothing()),
         }
     }
 }
 
 impl Rows {
-    /// No rows yet.
+    /// Creates an empty table.
     pub fn new(fields: Arc<[ColumnHeading]>) -> Self {
         let columns = fields.iter().map(|field| ColumnCells::of(field.kind)).collect();
         Self { fields, columns }
     }
 
-    /// How many rows there are.
+    /// Returns the number of rows.
     pub fn len(&self) -> usize {
         self.columns.first().map_or(0, ColumnCells::len)
     }
 
-    /// Whether there is no row.
+    /// Returns true if there is no row.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
     }
 
-    /// A column.
+    /// Returns a column by its name.
     pub fn column(&self, name: &str) -> Option<&ColumnCells> {
         let place = self.fields.iter().position(|field| field.name == name)?;
         self.columns.get(place)
     }
 
-    /// The row of a run.
+    /// Appends the row of a run.
     pub fn push(&mut self, campaign: &Campaign, outcome: &RunOutcome) {
         let keys = outcome.drawn.len();
         let first = self.fields.iter().take_while(|field| [RUN, SEED].contains(&field.name.as_str())).count();
-        // A key may be the seed.
+        // The seed may be a key of the campaign.
         let first = if campaign.keys().next() == Some(SEED) { 1 } else { first };
         let mut metrics = outcome.metrics.as_ref().ok().map(Metrics::in_order);
         for (place, (field, column)) in self.fields.iter().zip(&mut self.columns).enumerate() {

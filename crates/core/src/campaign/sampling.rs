@@ -1,4 +1,5 @@
-//! Where points of a design lie: random numbers, Latin hypercubes and Sobol sequences, each point by its number alone.
+//! Placement of a design's points: random numbers, Latin hypercubes and Sobol sequences, each point by its number
+//! alone.
 
 use std::sync::OnceLock;
 
@@ -8,9 +9,9 @@ use sobol::params::JoeKuoD6;
 
 use crate::random::{Seed, fnv1a};
 
-/// No Sobol sequence has more dimensions.
+/// Largest number of dimensions of a Sobol sequence.
 pub const MOST_DIMENSIONS: usize = 100;
-/// The next double below 1.
+/// Largest double below 1.
 const BELOW_ONE: f64 = 1.0 - f64::EPSILON / 2.0;
 
 /// How points are spread over the ranges of several keys, or over their distributions.
@@ -26,23 +27,23 @@ pub enum Sampling {
     Sobol,
 }
 
-/// One key of a sample: it moves by itself.
+/// Dimension of a sample: one key, which is independent of the others.
 #[derive(Copy, Clone, Debug)]
 pub struct Dimension<'a> {
-    /// The scenario's seed.
+    /// Seed of the scenario.
     pub seed: u64,
-    /// What its numbers are called.
+    /// Name of the stream of its numbers.
     pub name: &'a str,
-    /// Its place among the keys.
+    /// Index of the key.
     pub place: usize,
 }
 
 impl Sampling {
-    /// All of them, with their names.
+    /// All samplings, with their names.
     pub const ALL: [(&'static str, Self); 3] =
         [("random", Self::Random), ("latin-hypercube", Self::LatinHypercube), ("sobol", Self::Sobol)];
 
-    /// A number in (0, 1) for a point of so many.
+    /// Returns the number in (0, 1) of a point out of `count`.
     pub fn number(self, of: Dimension<'_>, point: u64, count: u64) -> f64 {
         let random = || Seed { scenario: of.seed, run: point }.stream(of.name).uniform();
         let number = match self {
@@ -51,26 +52,27 @@ impl Sampling {
                 let cell = permuted(point.min(count.max(1) - 1), count.max(1), key(of));
                 (cell as f64 + random()) / count.max(1) as f64
             }
-            // Half a step up: the lattice of 2^-53 is centred.
+            // Half a step is added: this centres the lattice of 2^-53.
             Self::Sobol => (scrambled(sobol(point, of.place), key(of)) >> 11) as f64 * (f64::EPSILON / 2.0),
         };
         number.clamp(f64::EPSILON / 4.0, BELOW_ONE)
     }
 }
 
-/// What makes the numbers of a dimension its own.
+/// Returns the key that makes the numbers of a dimension differ from those of others.
 fn key(of: Dimension<'_>) -> u64 {
     mixed(of.seed ^ fnv1a(of.name))
 }
 
-/// All bits of a number mixed (the finaliser of SplitMix64).
+/// Mixes all bits of a number (the finaliser of SplitMix64).
 fn mixed(number: u64) -> u64 {
     let number = (number ^ (number >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
     let number = (number ^ (number >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
     number ^ (number >> 31)
 }
 
-/// A permutation of `0..count`, by a Feistel network over the next power of four, walked until it is back in range.
+/// Returns an element of a permutation of `0..count`, by a Feistel network over the next power of four, iterated until
+/// it is in range.
 fn permuted(index: u64, count: u64, key: u64) -> u64 {
     let bits = (64 - (count - 1).leading_zeros()).max(2).div_ceil(2);
     let mask = (1_u64 << bits) - 1;
@@ -88,21 +90,21 @@ fn permuted(index: u64, count: u64, key: u64) -> u64 {
     }
 }
 
-/// A point of a Sobol sequence in one dimension, as a binary fraction.
+/// Returns a point of a Sobol sequence in one dimension, as a binary fraction.
 fn sobol(point: u64, dimension: usize) -> u64 {
     static DIRECTIONS: OnceLock<Vec<Vec<u64>>> = OnceLock::new();
     let directions = DIRECTIONS
         .get_or_init(|| Sobol::<f64>::init_direction_vals(MOST_DIMENSIONS, 64, &JoeKuoD6::minimal()));
     let Some(directions) = directions.get(dimension) else { return 0 };
-    // The order of Gray's code: the points of every power of two are the same.
+    // In the order of Gray's code the points of every power of two are the same.
     let code = point ^ (point >> 1);
     (0..64).filter(|bit| code >> bit & 1 == 1).fold(0, |sum, bit| sum ^ directions[bit])
 }
 
-/// Owen's nested scrambling: each bit is turned by a hash of those above it.
+/// Applies Owen's nested scrambling: each bit is flipped by a hash of those above it.
 fn scrambled(fraction: u64, key: u64) -> u64 {
     (0..53).fold(fraction, |scrambled, bit| {
-        // The bits above, with a mark that tells how many they are.
+        // The bits above, with a mark for their number.
         let above = fraction.checked_shr(64 - bit).unwrap_or(0) | 1_u64 << bit;
         scrambled ^ (mixed(key ^ mixed(above)) >> 63) << (63 - bit)
     })
@@ -137,7 +139,7 @@ mod tests {
         }
     }
 
-    /// SciPy 1.16: `scipy.stats.qmc.Sobol(d=5, scramble=False).random(8)`.
+    /// Reference: SciPy 1.16, `scipy.stats.qmc.Sobol(d=5, scramble=False).random(8)`.
     #[test]
     fn the_sequence_is_that_of_joe_and_kuo() {
         let exact = [
@@ -158,7 +160,7 @@ mod tests {
         }
     }
 
-    /// Scrambled, 64 points still are one in each cell of every partition of two keys into 64 like boxes.
+    /// Checks that 64 scrambled points are one in each cell of every partition of two keys into 64 like boxes.
     #[test]
     fn scrambled_points_are_a_net() {
         let number = |point, place| {

@@ -1,4 +1,4 @@
-//! What the rows of a campaign come to: failures, and the statistics of every metric that is a number.
+//! Summary of a campaign's rows: failures, and the statistics of every numeric metric.
 
 use super::directory::Directory;
 use super::error::DirectoryError;
@@ -7,22 +7,22 @@ use super::work::Work;
 use crate::metrics::{self, goal};
 use crate::statistics::Statistics;
 
-/// No more numbers of the rows are held at once, or those of one metric (64 MB).
+/// Largest number of values that are held at once, unless one metric has more (64 MB).
 const HELD: usize = 1 << 23;
 
-/// What rows come to.
+/// Summary of rows.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Summary {
-    /// How many there are.
+    /// Number of rows.
     pub runs: usize,
-    /// How many runs failed, the first of them, and why.
+    /// Number of runs that failed, the number of the first of them, and its error.
     pub failed: Option<(u64, u64, String)>,
-    /// The statistics of each metric.
+    /// Statistics of each metric.
     pub statistics: Vec<Statistics>,
 }
 
 impl Directory {
-    /// What the rows that are there come to.
+    /// Returns the summary of the existing rows.
     pub fn summary(&self) -> Result<Summary, DirectoryError> {
         let (mut runs, mut failed) = (0, None);
         let about = (self.column(RUN)?, self.column(ERROR)?);
@@ -39,8 +39,8 @@ impl Directory {
 }
 
 impl Work {
-    /// The statistics of the metrics that are numbers, some at a time; `columns` gives columns by their names, nothing for one
-    /// that is not there.
+    /// Returns the statistics of the numeric metrics, computed for some of them at a time; `columns` returns columns by
+    /// their names, `None` for a missing one.
     pub fn statistics<E>(
         &self,
         runs: usize,

@@ -1,4 +1,4 @@
-//! What makes the rows of a campaign, with or without a file system.
+//! Computation of a campaign's rows, with or without a file system.
 
 use std::io;
 use std::ops::Range;
@@ -14,25 +14,25 @@ use crate::metrics::{Metrics, Selection};
 use crate::record::{Record, RecordError};
 use crate::sim::SimulationError;
 
-/// The note of a part that says which campaign it is of.
+/// Metadata name of the campaign to which a part belongs.
 pub(super) const NOTE: &str = "flexsc.campaign";
-/// The note that has the units of its columns.
+/// Metadata name of the units of the columns.
 const UNITS: &str = "flexsc.units";
 
-/// What makes the rows of a campaign: its manifest, and what that comes to.
+/// Maker of a campaign's rows: its manifest, with the campaign and the metrics that it describes.
 #[derive(Clone, Debug)]
 pub struct Work {
-    /// The manifest.
+    /// Manifest of the campaign.
     pub manifest: Manifest,
-    /// The campaign.
+    /// Campaign of the manifest.
     pub campaign: Arc<Campaign>,
-    /// The metrics of its rows.
+    /// Metrics of the rows.
     pub selection: Selection,
     fields: Arc<[ColumnHeading]>,
 }
 
 impl Work {
-    /// The work that a manifest describes; `origin` is what errors call it.
+    /// Creates the row maker of a manifest; `origin` is the name of the manifest in errors.
     pub fn of(manifest: Manifest, origin: &Path) -> Result<Self, DirectoryError> {
         let selection = manifest.selection().map_err(|why| wrong(origin, why))?;
         let campaign = Arc::new(manifest.campaign()?);
@@ -40,24 +40,24 @@ impl Work {
         Ok(Self { manifest, campaign, selection, fields })
     }
 
-    /// The work of runs that are made here alone, with parts of a program's own too.
+    /// Creates the row maker of a campaign without a manifest file, which may have custom parts of a program.
     pub fn here(campaign: Campaign, runs: Range<u64>, selection: Selection) -> Result<Self, String> {
         let manifest = Manifest::in_memory(&campaign, runs, &selection)?;
         let fields = campaign.fields(&selection);
         Ok(Self { manifest, campaign: Arc::new(campaign), selection, fields })
     }
 
-    /// No rows yet.
+    /// Returns an empty table.
     pub fn rows(&self) -> Rows {
         Rows::new(self.fields.clone())
     }
 
-    /// The columns of the rows.
+    /// Returns the headings of the columns.
     pub fn fields(&self) -> &[ColumnHeading] {
         &self.fields
     }
 
-    /// Rows as the bytes of a part.
+    /// Returns the content of a part's file with these rows.
     pub fn encode(&self, rows: &Rows) -> io::Result<Vec<u8>> {
         let units = self.fields.iter().filter(|field| !field.unit.is_empty());
         let units: serde_json::Map<_, _> =
@@ -66,7 +66,8 @@ impl Work {
         encode(rows, &[(NOTE, self.manifest.hash.clone()), (UNITS, units)])
     }
 
-    /// Makes some runs on so many threads, or with 0 on one for each core; `poll` is asked again and again whether to stop.
+    /// Computes the rows of some runs on `threads` threads, or with 0 on one for each core; `poll` is called repeatedly
+    /// to ask for a stop.
     pub fn make(
         &self,
         runs: Range<u64>,
@@ -76,7 +77,7 @@ impl Work {
         self.make_by(runs, threads, poll, Campaign::simulate_for)
     }
 
-    /// The same where something else simulates a run, and comes to what [`Campaign::simulate_for`] does.
+    /// Computes rows with a function that simulates a run, with the results of [`Campaign::simulate_for`].
     pub fn make_by<R: Record + Clone + Send + Sync + 'static>(
         &self,
         runs: Range<u64>,
@@ -107,7 +108,7 @@ impl Work {
         Ok(rows)
     }
 
-    /// A part as the name of its file and its bytes.
+    /// Computes a part, and returns the name and the content of its file.
     pub fn part(
         &self,
         runs: Range<u64>,

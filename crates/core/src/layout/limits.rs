@@ -1,16 +1,17 @@
-//! Limits of plots whose values are too small for the axes that viewers choose by themselves.
+//! Axis limits of plots whose values are too small for a viewer's own choice of the axes.
 
 use super::Layout;
 use super::panel::{LayoutPanel, topic};
 use crate::record::{Column, Columns, Log, LogError};
 
-/// The steps of a viewer's vertical axis are of 0.001 at least, and so its ends: below some of them, a plot is flat.
+/// Magnitude below which a plot may be flat: the steps of a viewer's vertical axis, and its ends, are multiples of
+/// 0.001 at least.
 const SMALL: f64 = 5e-3;
-/// The part of the values' range that is left free above and below.
+/// Fraction of the values' range that is left free above and below.
 const MARGIN: f64 = 0.05;
 
 impl Layout {
-    /// The layout with the vertical axes that the values of a log need.
+    /// Returns the layout with the vertical axes that the values of a log need.
     pub fn fitted(&self, log: &Log) -> Result<Self, LogError> {
         let mut fitted = self.clone();
         let panels = || self.tabs.iter().flat_map(|tab| &tab.panels);
@@ -38,7 +39,7 @@ impl Layout {
     }
 }
 
-/// The least and the greatest of the values of a field such as `modes[0].displacement_rad`.
+/// Returns the least and the greatest value of a field such as `modes[0].displacement_rad`.
 fn range(columns: &Columns, field: &str) -> Option<(f64, f64)> {
     let inner = field.split_once('[').and_then(|(rows, rest)| {
         let (index, inner) = rest.split_once("].")?;
@@ -56,13 +57,14 @@ fn range(columns: &Columns, field: &str) -> Option<(f64, f64)> {
     ends(of_row)
 }
 
-/// The least and the greatest, of those that are numbers.
+/// Returns the least and the greatest of the values, without NaN.
 fn ends(values: impl Iterator<Item = f64>) -> Option<(f64, f64)> {
     let pairs = values.filter(|value| value.is_finite()).map(|value| (value, value));
     pairs.reduce(|(a, b), (c, d)| (a.min(c), b.max(d)))
 }
 
-/// The limits of a plot of values within a range, where it needs some: two digits of the range beyond its ends.
+/// Returns the limits of a plot for values in a range, rounded outwards to two digits of the range; `None` if it needs
+/// none.
 fn limits((least, greatest): (f64, f64)) -> Option<[f64; 2]> {
     let range = greatest - least;
     if !(range > 0.0 && range < SMALL) {
@@ -72,12 +74,12 @@ fn limits((least, greatest): (f64, f64)) -> Option<[f64; 2]> {
     let step = libm::pow(10.0, f64::from(-digits));
     let below = libm::floor((least - MARGIN * range) / step) * step;
     let above = libm::ceil((greatest + MARGIN * range) / step) * step;
-    // What is never negative, and begins near 0, is seen from 0 on.
+    // Values that are never negative and begin near 0 are plotted from 0 on.
     let below = if least >= 0.0 && least < 0.5 * range { 0.0 } else { below };
-    // The nearest number to the decimal one, so that it is written as that.
+    // The nearest double to the decimal number, so that it is written with few digits.
     let decimal = |value: f64| format!("{value:.*}", digits.unsigned_abs() as usize).parse().unwrap_or(value);
     let limits = [decimal(below), decimal(above)];
-    // What varies in its last digits alone has none between.
+    // Values that differ in their last digits alone have no such limits.
     (limits[0] <= least && greatest < limits[1]).then_some(limits)
 }
 

@@ -1,8 +1,8 @@
-//! Viewer layouts: the panels that show a run in Foxglove-compatible viewers, made from its scenario.
+//! Viewer layouts: panels that show a run in Foxglove-compatible viewers, created from its scenario.
 //!
-//! A layout is made with all that a log of the scenario can hold, and then keeps the panels whose topics a log has. What is
-//! attached to a log, what `flexsc layout` writes and what is shipped come from here; the last two are fitted to what a log
-//! holds.
+//! A layout is created with all topics that a log of the scenario can have, and then keeps the panels whose topics a
+//! log has. The layouts attached to logs, written by `flexsc layout` and shipped with the examples come from this
+//! module; the last two have their axes fitted to the values of a log.
 
 mod limits;
 mod mosaic;
@@ -24,18 +24,18 @@ use crate::time::Instant;
 
 use panel::LayoutPanel;
 
-/// Above so many panels a layout has tabs.
+/// Number of panels above which a layout has tabs.
 const MOST_PANELS: usize = 8;
 
-/// A layout.
+/// Layout of a viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     tabs: Vec<Tab>,
-    /// The topics of a log, with the least detail that has each.
+    /// Topics of a log, with the least detail that has each.
     topics: Vec<(&'static str, Detail)>,
 }
 
-/// Panels that belong together.
+/// Tab with related panels.
 #[derive(Clone, Debug, PartialEq)]
 struct Tab {
     title: &'static str,
@@ -43,7 +43,7 @@ struct Tab {
 }
 
 impl Layout {
-    /// The layout of a scenario's logs, with all that they can show.
+    /// Returns the layout of a scenario's logs, with all that they can show.
     pub fn of(scenario: &Scenario) -> Self {
         let tabs = match scenario.model.axes() {
             Axes::One(body) => planar::tabs(scenario, body),
@@ -52,14 +52,14 @@ impl Layout {
         Self { tabs, topics: topics(scenario) }
     }
 
-    /// What is left of it for a log of this detail.
+    /// Returns the layout with the panels that a log of this detail can show.
     #[must_use]
     pub fn of_detail(&self, detail: Detail) -> Self {
         let has = |topic: &str| self.topics.iter().any(|(own, least)| *own == topic && *least <= detail);
         self.of_topics(has)
     }
 
-    /// What is left of it for a log that has these topics.
+    /// Returns the layout with the panels that a log with these topics can show.
     #[must_use]
     pub fn of_topics(&self, has: impl Fn(&str) -> bool) -> Self {
         let tabs = self.tabs.iter().map(|tab| {
@@ -70,7 +70,7 @@ impl Layout {
         Self { tabs, topics: self.topics.clone() }
     }
 
-    /// The layout as JSON, in the form that viewers import.
+    /// Returns the layout as JSON, in the form that viewers import.
     pub fn to_json(&self) -> String {
         let panels = || self.tabs.iter().flat_map(|tab| &tab.panels);
         let mut configs: Map<String, Value> = panels().map(|panel| (panel.id(), panel.config())).collect();
@@ -92,18 +92,18 @@ impl Layout {
             "playbackConfig": { "speed": 1 },
             "layout": layout,
         });
-        // What was just made is a tree of texts and finite numbers.
+        // The value is a tree of texts and finite numbers, so this cannot fail.
         serde_json::to_string_pretty(&layout).unwrap_or_default() + "\n"
     }
 }
 
-/// The metrics, page by page.
+/// Returns the panels of the metrics, page by page.
 fn metrics(scenario: &Scenario) -> impl Iterator<Item = LayoutPanel> {
     let pages = Gather::new(scenario).finish(scenario).0.len().div_ceil(Summary::PAGE);
     (0..pages).map(move |page| LayoutPanel::metrics(page, pages))
 }
 
-/// The topics of a complete log of a scenario, with the least detail that has each.
+/// Returns the topics of a complete log of a scenario, with the least detail that has each.
 fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
     use Detail::{Events, Full, Scene};
     let mut topics =

@@ -1,10 +1,10 @@
-//! The mosaic of a layout: two columns of panels, each as high as its weight.
+//! Mosaic of a layout: two columns of panels, each panel with a height by its weight.
 
 use serde_json::{Value, json};
 
 use super::panel::LayoutPanel;
 
-/// The mosaic of panels, the first of them at the upper left, down the first column and then the second.
+/// Returns the mosaic of panels, from the upper left down the first column and then down the second.
 pub fn of(panels: &[&LayoutPanel]) -> Value {
     let total: u32 = panels.iter().map(|panel| panel.weight()).sum();
     if panels.len() <= 2 {
@@ -20,7 +20,7 @@ pub fn of(panels: &[&LayoutPanel]) -> Value {
     json!({ "direction": "row", "splitPercentage": 50, "first": column(left), "second": column(right) })
 }
 
-/// Panels one below the other.
+/// Returns a column of panels.
 fn column(panels: &[&LayoutPanel]) -> Value {
     let Some((first, rest)) = panels.split_first() else { return Value::Null };
     if rest.is_empty() {

@@ -1,4 +1,4 @@
-//! Panels: what each kind shows, and its configuration as viewers read it.
+//! Panels of a layout: content of each kind, and its configuration for viewers.
 
 use serde_json::{Map, Value, json};
 
@@ -6,20 +6,20 @@ use crate::scene::Extent;
 
 /// Colours that colour-blind readers can distinguish.
 const COLORS: [&str; 7] = ["#0072B2", "#D55E00", "#009E73", "#CC79A7", "#56B4E9", "#E69F00", "#8C8C8C"];
-/// No plot has more lines of one kind.
+/// Largest number of lines of one kind in a plot.
 pub const MOST_LINES: usize = 6;
 
-/// A panel.
+/// Panel of a layout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LayoutPanel {
     name: String,
     title: String,
     shows: Shows,
-    /// The ends of the vertical axis of a plot; without them, the viewer chooses.
+    /// Limits of the vertical axis of a plot; without them, the viewer chooses.
     pub limits: Option<[f64; 2]>,
 }
 
-/// What a panel shows.
+/// Content of a panel.
 #[derive(Clone, Debug, PartialEq)]
 enum Shows {
     /// Values over time.
@@ -28,56 +28,56 @@ enum Shows {
     Plane(Vec<PlotLine>, String),
     /// States over time.
     States(Vec<PlotLine>),
-    /// The last message of a topic.
+    /// Last message of a topic.
     Message(String),
     /// Rows of the last message of a topic: viewers show ten.
     Table(String),
     /// Lines of the log.
     Log,
-    /// The scene, of these topics.
+    /// Three-dimensional scene, from these topics.
     Scene(Extent, Vec<&'static str>),
 }
 
-/// A line of a plot.
+/// Line of a plot.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PlotLine {
     path: String,
     label: String,
-    /// Points that are not joined.
+    /// True for points that are not joined.
     dots: bool,
     thick: bool,
-    /// The number of its colour, if it is not its own.
+    /// Number of the line's colour, if it is not the line's own.
     color: Option<usize>,
 }
 
-/// A line of a value, with its label.
+/// Creates a line of a value, with its label.
 pub fn line(path: impl Into<String>, label: impl Into<String>) -> PlotLine {
     PlotLine { path: path.into(), label: label.into(), dots: false, thick: false, color: None }
 }
 
 impl PlotLine {
-    /// The same as points.
+    /// Returns the line as separate points.
     pub fn dots(self) -> Self {
         Self { dots: true, ..self }
     }
 
-    /// The same, thick.
+    /// Returns the line with a thick stroke.
     pub fn thick(self) -> Self {
         Self { thick: true, ..self }
     }
 
-    /// The same in the colour of this number, such as that of what it is compared with.
+    /// Returns the line with the colour of another line's number, such as the line that it is compared with.
     pub fn color(self, number: usize) -> Self {
         Self { color: Some(number), ..self }
     }
 
-    /// Its topic; none of a number, which is a horizontal line.
+    /// Returns the topic of the line; `None` for a number, which is a horizontal line.
     fn topic(&self) -> Option<&str> {
         self.path.starts_with('/').then(|| topic(&self.path))
     }
 }
 
-/// The topic of a path.
+/// Returns the topic of a path.
 pub fn topic(path: &str) -> &str {
     path.split_once('.').map_or(path, |(topic, _)| topic)
 }
@@ -87,44 +87,44 @@ impl LayoutPanel {
         Self { name: name.into(), title: title.into(), shows, limits: None }
     }
 
-    /// Values over time.
+    /// Creates a plot of values over time.
     pub fn plot(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, Shows::Plot(lines))
     }
 
-    /// Values over another value. Its topic must not be that of the values, or viewers show nothing.
+    /// Creates a plot of values over another value. Its topic must not be that of the values, or viewers show nothing.
     pub fn plane(name: &'static str, title: impl Into<String>, x: &str, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, Shows::Plane(lines, x.to_owned()))
     }
 
-    /// States over time.
+    /// Creates a panel of states over time.
     pub fn states(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, Shows::States(lines))
     }
 
-    /// The last message of a topic.
+    /// Creates a panel with the last message of a topic.
     pub fn message(name: &'static str, title: impl Into<String>, topic: &str) -> Self {
         Self::new(name, title, Shows::Message(topic.to_owned()))
     }
 
-    /// A page of the metrics, of so many.
+    /// Creates page `page` of the `of` pages of the metrics.
     pub fn metrics(page: usize, of: usize) -> Self {
         let path = format!("/summary.pages[{page}].metrics");
         let title = format!("Metrics at the end, {} of {of}", page + 1);
         Self::new(format!("metrics_{}", page + 1), title, Shows::Table(path))
     }
 
-    /// Lines of the log.
+    /// Creates a panel with the lines of the log.
     pub fn log() -> Self {
         Self::new("log", "What happened", Shows::Log)
     }
 
-    /// The scene.
+    /// Creates a panel with the three-dimensional scene.
     pub fn scene(extent: Extent) -> Self {
         Self::new("scene", "Scene", Shows::Scene(extent, vec!["/scene", "/plumes"]))
     }
 
-    /// What is drawn along the vertical axis.
+    /// Returns the paths on the vertical axis.
     pub fn drawn(&self) -> Vec<&str> {
         match &self.shows {
             Shows::Plot(lines) | Shows::Plane(lines, _) => {
@@ -134,7 +134,7 @@ impl LayoutPanel {
         }
     }
 
-    /// The panel's name in a layout.
+    /// Returns the name of the panel in a layout.
     pub fn id(&self) -> String {
         let kind = match &self.shows {
             Shows::Plot(_) | Shows::Plane(..) => "Plot",
@@ -147,19 +147,19 @@ impl LayoutPanel {
         format!("{kind}!{}", self.name)
     }
 
-    /// How high it is, relative to others.
+    /// Returns the height of the panel, relative to others.
     pub fn weight(&self) -> u32 {
         match &self.shows {
             Shows::Scene(..) | Shows::Plane(..) => 8,
-            // The legend of more lines needs more.
+            // The legend needs more height for more lines.
             Shows::Plot(lines) => 4.max(lines.len() as u32),
             Shows::Log | Shows::Message(_) | Shows::Table(_) => 4,
-            // A row of states has a height of its own.
+            // A row of states has a fixed height.
             Shows::States(lines) => (3 * (lines.len() as u32 + 1)).div_ceil(2),
         }
     }
 
-    /// What is left of it where a log has these topics, if anything.
+    /// Returns the panel with those lines and rows whose topics a log has; `None` if nothing remains.
     pub fn with_topics(&self, has: &impl Fn(&str) -> bool) -> Option<Self> {
         let kept = |lines: &[PlotLine]| -> Option<Vec<PlotLine>> {
             // Horizontal lines alone show nothing.
@@ -180,12 +180,12 @@ impl LayoutPanel {
         Some(Self { shows, ..self.clone() })
     }
 
-    /// The configuration.
+    /// Returns the configuration of the panel.
     pub fn config(&self) -> Value {
         let mut config = match &self.shows {
             Shows::Plot(lines) => plot(lines, json!("timestamp"), true),
             Shows::Plane(lines, x) => {
-                // One that is synchronised takes the range of the others' time for its horizontal axis.
+                // A synchronised panel would take the time range of the other panels for its horizontal axis.
                 let mut config = plot(lines, json!("custom"), false);
                 let path = json!({ "value": x, "enabled": true, "timestampMethod": "receiveTime" });
                 config.insert("xAxisPath".to_owned(), path);
@@ -196,7 +196,7 @@ impl LayoutPanel {
                 object(json!({ "topicPath": topic, "diffEnabled": false, "expansion": "all" }))
             }
             Shows::Table(path) => object(json!({ "topicPath": path })),
-            // From level 2 on: without what is for those who look for an error.
+            // From level 2 on, which leaves out debug messages.
             Shows::Log => object(json!({ "searchTerms": [], "minLogLevel": 2, "topicToRender": "/log" })),
             Shows::Scene(extent, topics) => scene(extent, topics),
         };
@@ -237,7 +237,7 @@ fn plot(lines: &[PlotLine], x_axis: Value, synced: bool) -> Map<String, Value> {
         "showXAxisLabels": true,
         "showYAxisLabels": true,
         "showLegend": true,
-        // A floating one would hide the begin of the lines.
+        // A floating legend would hide the start of the lines.
         "legendDisplay": "left",
         "showPlotValuesInLegend": false,
         "isSynced": synced,
@@ -272,7 +272,8 @@ fn scene(extent: &Extent, topics: &[&str]) -> Map<String, Value> {
         },
         "followMode": "follow-pose",
         "followTf": "inertial",
-        // Without preloading Lichtblick raises an alert. Each message of the frames is whole: of a longer run it keeps the first.
+        // Without preloading Lichtblick raises an alert. Each message of the frames is complete: of a longer run only
+        // the first are preloaded.
         "scene": { "transforms": { "showLabel": false, "enablePreloading": true, "maxPreloadMessages": 20_000 } },
         "transforms": extent.frames.iter().map(hidden).collect::<Map<_, _>>(),
         "topics": topics.iter().map(shown).collect::<Map<_, _>>(),

@@ -1,4 +1,4 @@
-//! The panels of a body with one angle.
+//! Panels of a one-axis body.
 
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
 use super::{Tab, metrics};
@@ -8,7 +8,7 @@ use crate::law::Law;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
 
-/// Whether a filter acts at samples.
+/// Returns true if a scenario has a filter that acts at samples.
 pub fn filters(scenario: &Scenario) -> bool {
     let estimator = scenario.estimator.as_ref();
     estimator.is_some_and(|estimator| {
@@ -19,12 +19,12 @@ pub fn filters(scenario: &Scenario) -> bool {
     })
 }
 
-/// Whether the law feeds back after a manoeuvre, if there is one.
+/// Returns true if the law feeds back after a manoeuvre, or if there is no manoeuvre.
 pub fn feeds_back(scenario: &Scenario) -> bool {
     matches!(scenario.law, Law::Pd(_))
 }
 
-/// The tabs of a scenario.
+/// Returns the tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Planar) -> Vec<Tab> {
     let mut log =
         vec![LayoutPanel::log(), LayoutPanel::message("arrival", "End of the manoeuvre", "/arrival")];
@@ -111,7 +111,7 @@ fn torques(scenario: &Scenario) -> Vec<PlotLine> {
     lines
 }
 
-/// What drives the body, and its unit.
+/// Returns the title of the torque plot: the commanded quantity and its unit.
 fn torque_title(body: &Planar) -> String {
     let (name, unit) = body.commanded();
     let (first, rest) = name.split_at(1);
@@ -159,7 +159,7 @@ fn estimator(scenario: &Scenario, body: &Planar) -> Vec<LayoutPanel> {
     panels
 }
 
-/// What an adaptation decides; its objective, unless that is the envelope, and the number that it tunes.
+/// Returns the panels of an adaptation: its objective, unless it is the envelope, and the gain that it tunes.
 pub fn adaptation(scenario: &Scenario) -> Vec<LayoutPanel> {
     let search =
         LayoutPanel::states("search", "Search for the gain", vec![line("/adaptation.decision", "decision")]);
@@ -181,7 +181,7 @@ pub fn adaptation(scenario: &Scenario) -> Vec<LayoutPanel> {
     ]
 }
 
-/// The dominant mode, as the law reads it and as it really is.
+/// Returns the lines of the dominant mode: as the law reads it, and the true one.
 fn dominant(scenario: &Scenario, body: &Planar) -> Vec<PlotLine> {
     let mut lines = vec![line("/estimator.displacement_rad", "as the law reads it")];
     let excitability = |mode: usize| body.modes[mode].excitability().abs();

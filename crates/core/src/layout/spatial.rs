@@ -1,4 +1,4 @@
-//! The panels of a body with three axes.
+//! Panels of a three-axis body.
 
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
 use super::planar::adaptation;
@@ -11,7 +11,7 @@ use crate::motion::turning::Bearing;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
 
-/// The tabs of a scenario.
+/// Returns the tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     let plot = LayoutPanel::plot;
     let mut motion = vec![
@@ -101,7 +101,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     together(scenario, motion, elastic)
 }
 
-/// The angles of what turns appendages: drives, and hinges.
+/// Returns the panels with the angles of drives and hinges.
 fn turning(scenario: &Scenario) -> Vec<LayoutPanel> {
     let lines = |topic: &str, name: &str, count: usize| -> Vec<PlotLine> {
         let of = |index: usize| {
@@ -125,7 +125,7 @@ fn turning(scenario: &Scenario) -> Vec<LayoutPanel> {
     panels
 }
 
-/// The panels of control moment gyros, if there are any.
+/// Returns the panels of control moment gyros; empty without any.
 fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
     if scenario.study.gimbals.is_empty() {
         return Vec::new();
@@ -141,7 +141,7 @@ fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
     ]
 }
 
-/// The tabs, with the panels of the motion and of the modes.
+/// Arranges the panels of the motion and of the modes in tabs.
 fn together(scenario: &Scenario, motion: Vec<LayoutPanel>, elastic: Vec<LayoutPanel>) -> Vec<Tab> {
     let mut tabs = vec![Tab { title: "Motion", panels: motion }];
     if let Some(spec) = scenario.estimator.as_ref().and_then(Estimator::attitude) {
@@ -157,14 +157,14 @@ fn together(scenario: &Scenario, motion: Vec<LayoutPanel>, elastic: Vec<LayoutPa
     tabs
 }
 
-/// The journal, and the metrics.
+/// Returns the panels of the journal and of the metrics.
 fn log(scenario: &Scenario) -> Vec<LayoutPanel> {
     let mut log = vec![LayoutPanel::log()];
     log.extend(metrics(scenario));
     log
 }
 
-/// The envelope with its window means, if there is a monitor.
+/// Returns the panel of the envelope with its window means; `None` without a monitor.
 fn envelope(scenario: &Scenario) -> Option<LayoutPanel> {
     scenario.estimator.as_ref()?.envelope()?;
     let lines = vec![
@@ -174,7 +174,7 @@ fn envelope(scenario: &Scenario) -> Option<LayoutPanel> {
     Some(LayoutPanel::plot("envelope", "Envelope of the elastic modes (rad)", lines))
 }
 
-/// Errors of an attitude filter beside its own standard deviations, and whether they fit.
+/// Returns the panels of an attitude filter: errors with its own standard deviations, and their consistency.
 fn filter() -> Vec<LayoutPanel> {
     let beside = |field: &str, deviation: &str| {
         let axis = |(index, axis): (usize, &str)| {
@@ -203,7 +203,7 @@ fn filter() -> Vec<LayoutPanel> {
     ]
 }
 
-/// The speed of each wheel.
+/// Returns the lines of the wheel speeds.
 fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
     let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len()).min(MOST_LINES);
     (0..count)
@@ -224,7 +224,7 @@ fn torques(field: &str) -> Vec<PlotLine> {
     AXES.into_iter().enumerate().map(axis).collect()
 }
 
-/// A field of a topic along each axis.
+/// Returns the lines of a field of a topic, one along each axis.
 fn along(topic: &str, field: &str) -> Vec<PlotLine> {
     let axis = |(index, axis)| line(format!("{topic}.axes[{index}].{field}"), axis);
     ["x", "y", "z"].into_iter().enumerate().map(axis).collect()
@@ -238,7 +238,7 @@ fn rates(fields: &[(&str, &str)]) -> Vec<PlotLine> {
     fields.iter().flat_map(of).collect()
 }
 
-/// The frequencies that an attitude filter identifies, each beside what it really is.
+/// Returns the panel of the frequencies that an attitude filter identifies, with the true ones.
 fn identified(elastic: &ElasticStates) -> LayoutPanel {
     let of = |(index, mode): (usize, &usize)| {
         let at = |field: &str| format!("/attitude_filter_modes.modes[{index}].{field}");
@@ -251,7 +251,7 @@ fn identified(elastic: &ElasticStates) -> LayoutPanel {
     LayoutPanel::plot("identified", "Frequencies that the filter identifies (rad/s)", lines)
 }
 
-/// The energy of all modes, and of those that the jets excite most.
+/// Returns the lines of the energy of all modes, and of those that the jets excite most.
 fn energies(scenario: &Scenario, body: &Spatial) -> Vec<PlotLine> {
     let groups = || scenario.study.groups.iter().flatten().flatten();
     let push = |mode: usize| groups().map(|group| group.push.forces[mode].abs()).fold(0.0, f64::max);
@@ -266,7 +266,7 @@ fn energies(scenario: &Scenario, body: &Spatial) -> Vec<PlotLine> {
     std::iter::once(line("/energy.elastic_j", "all modes")).chain(each).collect()
 }
 
-/// The frequencies of the first tracked modes, each beside what it really is.
+/// Returns the lines of the frequencies of the first tracked modes, with the true ones.
 fn frequencies(tracked: &[usize]) -> Vec<PlotLine> {
     let named = AXES.into_iter().zip(tracked).flat_map(|(axis, count)| (0..*count).map(move |n| (axis, n)));
     let of = |(index, (axis, n)): (usize, (&str, usize))| {

@@ -1,4 +1,4 @@
-//! What an adaptation comes to: its objective over the windows, and the number that it tunes.
+//! Metrics of an adaptation: its objective over the windows, and the gain that it tunes.
 
 use super::{
     GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, Meaning, MetricValue, OBJECTIVE_FINAL,
@@ -9,7 +9,7 @@ use crate::record::Sample;
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-/// The units of objectives, and what the metrics mean in each.
+/// Descriptions of the objective's metrics, for each unit of an objective.
 static UNITS: [[Meaning; 4]; 6] =
     [in_unit(""), in_unit("rad"), in_unit("rad/s"), in_unit("N m"), in_unit("rad/s²"), in_unit("W")];
 
@@ -22,29 +22,30 @@ const fn in_unit(unit: &'static str) -> [Meaning; 4] {
     ]
 }
 
-/// What the metrics of the objective mean in a scenario, if it has one other than the envelope.
+/// Returns the descriptions of the objective's metrics in a scenario; `None` without an objective other than the
+/// envelope.
 pub fn meanings(scenario: &Scenario) -> Option<&'static [Meaning; 4]> {
     let objective = scenario.objective().filter(|objective| *objective != Objective::EnvelopeMean)?;
     let unit = objective.unit(scenario.torque_unit());
     UNITS.iter().find(|meanings| meanings[0].unit == unit)
 }
 
-/// Gathers the windows of an objective and the steps of the adaptation.
+/// Collector of an objective's windows and of the steps of the adaptation.
 #[derive(Clone, Debug)]
 pub struct Adapted {
-    /// Of an objective other than the envelope, its windows.
+    /// Descriptions of the metrics of an objective other than the envelope.
     meanings: Option<&'static [Meaning; 4]>,
-    /// Whether the number that is tuned is told elsewhere.
+    /// True if this collector reports the tuned gain, because no other one does.
     gains: bool,
     duration: f64,
-    /// When each window begins (s), and the objective over it.
+    /// Start of each window (s), and the objective over it.
     windows: Vec<(f64, f64)>,
     gain: [f64; 2],
     frozen_at: f64,
 }
 
 impl Adapted {
-    /// An empty gathering for runs of a scenario with an adaptation.
+    /// Creates an empty collector for runs of a scenario; `None` without an adaptation.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let gain = scenario.tuned()?;
         Some(Self {
@@ -57,7 +58,7 @@ impl Adapted {
         })
     }
 
-    /// Takes what happens.
+    /// Records an objective's window or a step of the adaptation.
     pub fn see(&mut self, now: Instant, sample: Sample<'_>) {
         match sample {
             Sample::Objective(row) => self.windows.push((row.from_s, row.value)),
@@ -71,7 +72,7 @@ impl Adapted {
         }
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(self) -> Vec<MetricValue> {
         let Self { windows, frozen_at, gain: [first, last], .. } = self;
         let mut metrics: Vec<MetricValue> = Vec::new();

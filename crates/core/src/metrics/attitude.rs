@@ -1,4 +1,4 @@
-//! How well an attitude filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
+//! Metrics of an attitude filter: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{
     ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, Meaning, MetricValue, NEES_MEAN,
@@ -9,35 +9,36 @@ use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEsti
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-/// What it tells.
+/// Descriptions of the metrics.
 pub(super) const TOLD: &[Meaning] =
     &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ESTIMATES, FREQUENCY_ERRORS];
 
-/// Chi-square of three degrees of freedom lies between these with a probability of 95 %.
+/// 95 % interval of chi-square with three degrees of freedom.
 const INSIDE: [f64; 2] = [0.215_795_282_623_897_85, 9.348_403_604_496_148];
-/// The same of two, times 3/2 as the NIS of a direction is: -3 ln 0.975 and -3 ln 0.025.
+/// 95 % interval of chi-square with two degrees of freedom, times 3/2 as the NIS of a direction is: -3 ln 0.975 and -3
+/// ln 0.025.
 const INSIDE_OF_TWO: [f64; 2] = [0.075_953_423_952_869_69, 11.066_638_362_341_81];
 
-/// Gathers the samples of a filter.
+/// Collector of the samples of an attitude filter.
 #[derive(Clone, Debug)]
 pub struct AttitudeMetrics {
     assess: [f64; 2],
-    /// Whether a program brought it.
+    /// True if the filter is custom, from a program.
     own: bool,
-    /// How many samples, and how many of them measured the attitude.
+    /// Number of samples, and number of those that measured the attitude.
     count: (u64, u64),
     nees: f64,
     nis: f64,
     inside: u64,
     /// Sums of the squared errors of attitude (rad²) and bias (rad²/s²).
     squares: [f64; 2],
-    /// The modes after the last sample, of a filter that identifies their frequencies.
+    /// Modes after the last sample, for a filter that identifies their frequencies.
     identified: Option<Vec<ElasticEstimate>>,
 }
 
 impl AttitudeMetrics {
-    /// An empty gathering for runs of a scenario with an attitude filter, or with one that a program brought, which may tell of
-    /// an attitude.
+    /// Creates an empty collector for runs of a scenario with an attitude filter, or with a custom one, which may
+    /// estimate an attitude; `None` for others.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let estimator = scenario.estimator.as_ref();
         let own = |of: &Estimator| matches!(of, Estimator::Own(_)) && scenario.axis_count() == 3;
@@ -58,7 +59,7 @@ impl AttitudeMetrics {
         })
     }
 
-    /// Takes what the filter made of a sample.
+    /// Records the filter's estimate at a sample.
     pub fn see(&mut self, now: Instant, estimate: &AttitudeEstimate) {
         let ([from, to], t) = (self.assess, now.seconds());
         if t < from || t > to {
@@ -79,16 +80,16 @@ impl AttitudeMetrics {
         }
     }
 
-    /// Takes what it knew of the modes after a sample.
+    /// Records the filter's estimates of the modes after a sample.
     pub fn learn(&mut self, estimates: &ElasticEstimates) {
         if let Some(identified) = &mut self.identified {
             identified.clone_from(&estimates.modes);
         }
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(self) -> Vec<MetricValue> {
-        // 0/0 of no samples: no number.
+        // Without samples the means are 0/0: NaN.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
         let [attitude, bias] = self.squares.map(|sum| Value::Number(f64::sqrt(sum / all)));
         if self.own && self.count.0 == 0 {

@@ -1,4 +1,4 @@
-//! The envelope over windows, of runs whose law is no relay of one angle.
+//! Metrics of the envelope over windows, for runs whose law is not the relay law of a one-axis body.
 
 use super::{
     ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, Meaning, MetricValue, REDUCTION, Value, WINDOW_MEANS,
@@ -6,10 +6,10 @@ use super::{
 use crate::record::WindowMean;
 use crate::scenario::Scenario;
 
-/// What it tells.
+/// Descriptions of the metrics.
 pub const TOLD: &[Meaning] = &[WINDOW_MEANS, ENVELOPE_MEAN, ENVELOPE_LATE, ENVELOPE_FINAL, REDUCTION];
 
-/// Gathers the means of the envelope's windows.
+/// Collector of the means of the envelope's windows.
 #[derive(Clone, Debug)]
 pub struct Windows {
     duration: f64,
@@ -19,7 +19,7 @@ pub struct Windows {
 }
 
 impl Windows {
-    /// An empty gathering for runs of a scenario.
+    /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             duration: scenario.duration.seconds(),
@@ -29,36 +29,36 @@ impl Windows {
         }
     }
 
-    /// An empty gathering for runs of a scenario whose monitor nothing else gathers.
+    /// Creates an empty collector; `None` if a scenario has no monitor, or if another collector records it.
     pub fn alone(scenario: &Scenario) -> Option<Self> {
         let observed = scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
         let relay = scenario.axis_count() == 1 && scenario.law.switches();
         (observed && !relay).then(|| Self::new(scenario))
     }
 
-    /// Takes a window.
+    /// Records a window.
     pub fn see(&mut self, window: &WindowMean) {
         self.means.push(window.mean_rad);
         self.from.push(window.from_s);
     }
 
-    /// The mean over the windows that begin from a time on (s), if there are any.
+    /// Returns the mean over the windows that begin at `from` (s) or later; `None` without any.
     pub fn since(&self, from: f64) -> Option<f64> {
         let first = self.from.iter().position(|begins| *begins >= from)?;
         Some(mean(&self.means[first..]))
     }
 
-    /// The mean over the last window; NaN without one.
+    /// Returns the mean over the last window; NaN without one.
     pub fn last(&self) -> f64 {
         self.means.last().copied().unwrap_or(f64::NAN)
     }
 
-    /// What the envelope is compared with: the reference, or the first window.
+    /// Returns the value with which the envelope is compared: the reference, or the first window.
     pub fn reference(&self) -> f64 {
         self.reference.unwrap_or(self.means.first().copied().unwrap_or(f64::NAN))
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(&self) -> [MetricValue; 5] {
         let late = self.since(0.5 * self.duration).unwrap_or(f64::NAN);
         [
@@ -72,6 +72,6 @@ impl Windows {
 }
 
 fn mean(values: &[f64]) -> f64 {
-    // 0 / 0 where there are none: a mean of nothing is not a number.
+    // Without values the mean is 0/0: NaN.
     values.iter().sum::<f64>() / values.len() as f64
 }

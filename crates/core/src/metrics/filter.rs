@@ -1,4 +1,4 @@
-//! How well a Kalman filter does: its errors, and their consistency with its covariance (\[BarShalom01\]).
+//! Metrics of a Kalman filter: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{
     FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, Meaning, MetricValue, NEES_MEAN,
@@ -8,33 +8,33 @@ use crate::record::{Estimate, Lock, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-/// What it tells.
+/// Descriptions of the metrics.
 pub(super) const TOLD: &[Meaning] =
     &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, FREQUENCY_ERROR_RMS, FREQUENCY_ERROR_MAX, LOCK_LOST, LOCK_LOST_AT];
 
-/// Chi-square lies between these with a probability of 95 %, of one and of two degrees of freedom.
+/// 95 % intervals of chi-square with one and with two degrees of freedom.
 const INSIDE: [[f64; 2]; 2] =
     [[9.820_691_171_752_583e-4, 5.023_886_187_314_888], [0.050_635_615_968_579_8, 7.377_758_908_227_871]];
 
-/// Gathers the samples of a filter.
+/// Collector of the samples of a filter.
 #[derive(Clone, Debug)]
 pub struct FilterMetrics {
     assess: [f64; 2],
     states: f64,
     measurements: usize,
-    /// How many samples, and how many of them were not dropped.
+    /// Number of samples, and number of those that were not dropped.
     count: (u64, u64),
     nees: f64,
     nis: f64,
     inside: u64,
     square: f64,
     largest: f64,
-    /// Since when the filter has lost the body.
+    /// Time at which the filter lost lock (s); none while it has not.
     lost_at: Option<f64>,
 }
 
 impl FilterMetrics {
-    /// An empty gathering for runs of a scenario with a filter.
+    /// Creates an empty collector for runs of a scenario; `None` without a filter.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let estimator = scenario.estimator.as_ref().filter(|estimator| estimator.filters())?;
         Some(Self {
@@ -51,7 +51,7 @@ impl FilterMetrics {
         })
     }
 
-    /// Takes what the filters of all axes made of a sample.
+    /// Records the estimates of the filters of all axes at a sample.
     pub fn see(&mut self, now: Instant, estimates: &[Estimate]) {
         let t = now.seconds();
         if estimates.iter().any(|estimate| estimate.lock == Lock::Lost) {
@@ -64,7 +64,7 @@ impl FilterMetrics {
         }
     }
 
-    /// Whether estimates at a time are judged (s).
+    /// Returns true if estimates at time `t` (s) are assessed.
     pub fn assesses(&self, t: f64) -> bool {
         let [from, to] = self.assess;
         from <= t && t <= to
@@ -87,9 +87,9 @@ impl FilterMetrics {
         }
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(self) -> [MetricValue; 7] {
-        // 0/0 of no samples: no number.
+        // Without samples the means are 0/0: NaN.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
         let largest = if self.count.0 > 0 { self.largest } else { f64::NAN };
         [

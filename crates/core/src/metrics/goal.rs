@@ -1,20 +1,21 @@
-//! Whether a run meets its goal: inside a band about it, without a break, up to the end.
+//! Verdict on a run's goal: the run must end inside a band about the goal, without leaving it over the last part of the
+//! time.
 
 use super::{GOAL, GOAL_BAND, Meaning, MetricValue, REQUIREMENT, TIME_OUTSIDE, Value};
 use crate::numerics::polynomial::Polynomial;
 
-/// The goal is met if the run ends with so much of its time inside the band.
+/// Fraction of the time since the goal's start that the run must end with inside the band.
 const LAST: f64 = 0.1;
-/// What it tells of one angle.
+/// Descriptions of the metrics of a one-axis body.
 pub(super) const TOLD: &[Meaning] = &[GOAL, GOAL_BAND, TIME_OUTSIDE];
-/// The names of verdicts among the metrics.
+/// Names of the metrics that are verdicts.
 pub const NAMES: [&str; 2] = [GOAL.name, REQUIREMENT.name];
-/// What it says.
+/// Words of a verdict.
 const MET: &str = "met";
 const MISSED: &str = "missed";
 const NONE: &str = "none";
 
-/// Whether a value is at most another: met or missed, none without a value.
+/// Returns the verdict on a value that is required to be at most `most`: met or missed, or none if a number is NaN.
 pub fn within(value: f64, most: f64) -> &'static str {
     if value.is_nan() {
         NONE
@@ -25,37 +26,38 @@ pub fn within(value: f64, most: f64) -> &'static str {
     }
 }
 
-/// Gathers the time outside a band about the goal.
+/// Collector of the time outside a band about the goal.
 #[derive(Copy, Clone, Debug)]
 pub struct Verdict {
-    /// When the goal begins (s).
+    /// Start of the goal (s).
     from: f64,
     band: f64,
-    /// Time outside so far (s), and what rounding has taken from that sum.
+    /// Total time outside (s), and the rounding carry of the sum.
     outside: (f64, f64),
-    /// Until when it was outside last (s).
+    /// End of the last time outside (s).
     last: f64,
 }
 
 impl Verdict {
-    /// Nothing seen of a goal that begins at a time (s), with a band of this half width (rad): NaN or 0 if there is none.
+    /// Creates a collector for a goal that starts at `from` (s), with a band of half width `band` (rad), NaN or 0
+    /// without one.
     pub fn new(from: f64, band: f64) -> Self {
         Self { from, band, outside: (0.0, 0.0), last: from }
     }
 
-    /// Half width of the band (rad).
+    /// Returns the half width of the band (rad).
     pub fn band(&self) -> f64 {
         self.band
     }
 
-    /// Takes a time outside the band, from one instant to another (s); what is before the goal begins does not count.
-    /// Times come in order.
+    /// Adds a time outside the band, from one instant to another (s); times before the goal's start do not count. Calls
+    /// must be in the order of time.
     pub fn outside(&mut self, from: f64, to: f64) {
         let from = from.max(self.from);
         if to <= from {
             return;
         }
-        // Kahan's sum: there may be many pieces.
+        // Kahan summation, because there may be many intervals.
         let (sum, lost) = self.outside;
         let piece = (to - from) - lost;
         let total = sum + piece;
@@ -63,7 +65,7 @@ impl Verdict {
         self.last = to;
     }
 
-    /// Takes the distance from the goal (rad) over a stretch that begins at a time and is so long (s).
+    /// Records the distance from the goal (rad) over a stretch of `length` (s) that begins at `from` (s).
     pub fn see(&mut self, from: f64, length: f64, distance: &Polynomial) {
         let band = self.band;
         let (low, high) = distance.bounds();
@@ -85,15 +87,15 @@ impl Verdict {
         }
     }
 
-    /// Until when the run was outside the band (s): the goal's beginning if it never was; NaN if it was at the end, or if
-    /// there is no band.
+    /// Returns the last time outside the band (s): the goal's start if the run never was outside, NaN if it ends
+    /// outside, or if there is no band.
     pub fn settled(&self, end: f64) -> f64 {
         if self.band > 0.0 && self.last < end { self.last } else { f64::NAN }
     }
 
-    /// The metrics of a run that ends at a time (s).
+    /// Returns the metrics of a run that ends at `end` (s).
     pub fn finish(self, end: f64) -> [MetricValue; 3] {
-        // Of what is no number, no comparison holds.
+        // Comparisons with NaN are false.
         let (word, band, outside) = if self.band > 0.0 && self.from < end {
             let met = end - self.last >= LAST * (end - self.from);
             (if met { MET } else { MISSED }, self.band, self.outside.0)
@@ -108,8 +110,8 @@ impl Verdict {
     }
 }
 
-/// What a verdict counts in statistics: 1 for a goal that is met, 0 for one that is missed, so that the mean is the
-/// fraction of runs that meet it. None of any other word.
+/// Returns the value of a verdict in statistics: 1 for met, 0 for missed, so that the mean is the fraction of runs that
+/// meet the goal; `None` for any other word.
 pub fn score(word: &str) -> Option<f64> {
     match word {
         MET => Some(1.0),
@@ -142,7 +144,7 @@ mod tests {
         assert_eq!(until(100.0), ("met", 0.5, 80.0));
         assert_eq!(until(100.001).0, "missed");
         assert_eq!(until(110.0), ("missed", 0.5, 90.0));
-        // Inside from the beginning.
+        // Inside from the start.
         assert_eq!(told(Verdict::new(10.0, 0.5), 110.0), ("met", 0.5, 0.0));
     }
 
@@ -157,7 +159,7 @@ mod tests {
     #[test]
     fn many_pieces_lose_no_time() {
         let mut verdict = Verdict::new(0.0, 1.0);
-        // A plain sum of so many tenths is 1.3e-6 off.
+        // A plain sum of a million tenths is 1.3e-6 off.
         for _ in 0..1_000_000 {
             verdict.outside(0.0, 0.1);
         }

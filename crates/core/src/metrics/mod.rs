@@ -1,4 +1,4 @@
-//! Metrics: what a run comes to, as named numbers with units.
+//! Metrics: results of a run as named numbers with units.
 
 mod adapted;
 mod attitude;
@@ -185,7 +185,7 @@ metrics! {
     DAMPING_PAUSES = "damping_pauses", "", "Number of times the watchdog paused active damping";
 }
 
-/// What a metric means on a body without inertia, or where the hub's motion is commanded.
+/// Returns the description with the unit of a body without inertia, or of a commanded hub motion.
 const fn reduced(meaning: Meaning, unit: &'static str) -> Meaning {
     Meaning { unit, ..meaning }
 }
@@ -195,7 +195,7 @@ const RESIDUAL_ENERGY_UNIT_INERTIA: Meaning = reduced(RESIDUAL_ENERGY, "J/(kg mÂ
 const REDUCED_IMPULSE: Meaning = reduced(IMPULSE, "rad/s");
 const CYCLE_REDUCED_IMPULSE: Meaning = reduced(CYCLE_IMPULSE, "rad/s");
 
-/// What a metric of this name means, of runs of a scenario if it is known.
+/// Returns the description of a metric by its name, with the units of a scenario if one is given.
 pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meaning> {
     const ACCELERATIONS: &[Meaning] =
         &[PEAK_ACCELERATION, PEAK_FEEDBACK_ACCELERATION, REDUCED_IMPULSE, CYCLE_REDUCED_IMPULSE];
@@ -208,7 +208,7 @@ pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meani
     accelerations.or(unit_inertia).or(objectives).or_else(|| of(ALL))
 }
 
-/// Gathers the metrics of a run.
+/// Collector of the metrics of a run.
 #[derive(Clone, Debug)]
 pub struct Gather {
     kind: Kind,
@@ -219,24 +219,24 @@ pub struct Gather {
     tracked: Tracked,
 }
 
-/// What kind of run it is.
+/// Collector for the kind of the run.
 #[derive(Clone, Debug)]
 enum Kind {
-    /// Of a relay law.
+    /// Collector for a relay law.
     Switchings(Box<Switchings>),
-    /// Of a rotation, under a manoeuvre or a PD law.
+    /// Collector for a rotation of a one-axis body, under a manoeuvre or a law without switchings.
     Rotation(Box<Rotation>),
-    /// Of a spatial body.
+    /// Collector for a three-axis body.
     Spatial(Box<SpatialMetrics>),
 }
 
 impl Gather {
-    /// An empty gathering for runs of a scenario.
+    /// Creates an empty collector of all metrics for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         Self::of(scenario, &Selection::ALL)
     }
 
-    /// The same for some of the metrics: what only the others need is not computed.
+    /// Creates an empty collector of the selected metrics; values that no selected metric needs are not computed.
     pub fn of(scenario: &Scenario, selection: &Selection) -> Self {
         let kind = match scenario.model.axes() {
             Axes::Three(_) => Kind::Spatial(Box::new(SpatialMetrics::new(scenario))),
@@ -255,7 +255,8 @@ impl Gather {
         }
     }
 
-    /// The rotation of which nothing but the angle is seen, towards 0 from the start on.
+    /// Returns the collector of a rotation towards angle 0 from the start on, without observed coordinates; `None` for
+    /// other runs.
     pub fn rotation(&mut self) -> Option<&mut Rotation> {
         match &mut self.kind {
             Kind::Rotation(rotation) if rotation.is_plain() => Some(rotation),
@@ -263,12 +264,12 @@ impl Gather {
         }
     }
 
-    /// Whether a filter's estimates at a time are judged (s).
+    /// Returns true if a filter's estimates at time `t` (s) are assessed.
     pub fn assesses(&self, t: f64) -> bool {
         self.filter.as_ref().is_some_and(|filter| filter.assesses(t))
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(self, scenario: &Scenario) -> Metrics {
         let mut metrics = match self.kind {
             Kind::Switchings(switchings) => switchings.finish(scenario),

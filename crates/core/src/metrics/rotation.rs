@@ -1,6 +1,6 @@
-//! What a rotation comes to: where the manoeuvre ends, what vibration it leaves, how large torques and deflections are.
+//! Metrics of a rotation: errors at the end of the manoeuvre, residual vibration, largest torques and deflections.
 //!
-//! All of it is found on the stretches of the motion, whose polynomials are exact to rounding: no log has a part in it.
+//! All of them are computed from the stretches of the motion, whose polynomials are exact to rounding, and from no log.
 
 mod beside;
 
@@ -22,39 +22,39 @@ use crate::time::Instant;
 
 pub use beside::{MotionMetrics, Passed};
 
-/// What is late in a run (s).
+/// Length of the late part of a run, at its end (s).
 const LATE: f64 = 5.0;
-/// Frequencies of a drift at which its loop is judged, besides its kinks and its end.
+/// Number of frequencies of a drift at which its loop is analysed, besides its kinks and its end.
 const DRIFTING: u32 = 8;
 
-/// Gathers the motion of a rotation.
+/// Collector of the motion of a rotation.
 #[derive(Clone, Debug)]
 pub struct Rotation {
     goal: Goal,
     promise: Promise,
     planned: bool,
-    /// Whether a torque is an acceleration, and whether an energy is that of a unit of inertia.
+    /// True if torques are accelerations, and true if energies are per unit of inertia.
     reduced: (bool, bool),
-    /// From when on a motion is late, and when the run ends (s).
+    /// Start of the late part of the run, and end of the run (s).
     late: f64,
     end: f64,
     arrival: Option<Arrival>,
-    /// Largest torques: the actuator's, the law's (N m).
+    /// Largest torques: of the actuator, of the law (N m).
     torque: (f64, f64),
-    /// Largest distances from the goal: after the manoeuvre, and late (rad).
+    /// Largest distances from the goal: after the manoeuvre, and in the late part (rad).
     error: (f64, f64),
-    /// Whether the goal is met; none before it begins.
+    /// Verdict on the goal; none before the goal starts.
     verdict: Option<Verdict>,
-    /// Integral of time times distance, and what rounding has taken from it (rad s²).
+    /// Integral of time times distance, and the rounding carry of the sum (rad s²).
     itae: (f64, f64),
-    /// Of a sampled loop, its spectral radius.
+    /// Spectral radius of a sampled loop.
     radius: Option<f64>,
     outputs: Vec<Seen>,
-    /// Whether anything that the motion tells is wanted.
+    /// True if any metric of the motion is wanted.
     wants_course: bool,
 }
 
-/// What the motion tells.
+/// Metrics that are computed from the motion.
 const OF_COURSE: &[Meaning] = &[
     PEAK_TORQUE,
     PEAK_FEEDBACK,
@@ -67,18 +67,18 @@ const OF_COURSE: &[Meaning] = &[
     OUTPUT_SWINGS_LATE,
 ];
 
-/// What is seen of an observed coordinate.
+/// Values of an observed coordinate.
 #[derive(Clone, Debug)]
 struct Seen {
     unit: String,
     /// Largest absolute value.
     peak: f64,
-    /// After the manoeuvre, and late.
+    /// Ranges after the manoeuvre, and in the late part.
     after: Range,
     late: Range,
 }
 
-/// The smallest and the largest of some values.
+/// Smallest and largest of some values.
 #[derive(Copy, Clone, Debug)]
 struct Range(f64, f64);
 
@@ -89,13 +89,14 @@ impl Range {
         *self = Self(-values.negative().maximum(-self.0), values.maximum(self.1));
     }
 
-    /// Half the width; NaN of nothing.
+    /// Returns half the width of the range; NaN if it is empty.
     fn swing(self) -> f64 {
         if self.0 <= self.1 { 0.5 * (self.1 - self.0) } else { f64::NAN }
     }
 }
 
-/// The largest spectral radius of the loop over the frequencies that the run comes to; NaN of what is no such loop.
+/// Returns the largest spectral radius of the loop over the frequencies of the run; NaN for a scenario without a
+/// sampled loop.
 fn spectral_radius(scenario: &Scenario) -> f64 {
     let Ok((sampled, law)) = Loop::of(scenario) else { return f64::NAN };
     let end = scenario.duration.seconds();
@@ -117,7 +118,7 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
 }
 
 impl Rotation {
-    /// An empty gathering for runs of a scenario.
+    /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
         let end = scenario.duration.seconds();
         let seen =
@@ -142,7 +143,7 @@ impl Rotation {
         }
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(self) -> Vec<MetricValue> {
         let mut metrics = Vec::new();
         let (acceleration, unit_inertia) = self.reduced;
@@ -196,7 +197,7 @@ impl Rotation {
         for (seen, output) in self.outputs.iter_mut().zip(&stretch.outputs) {
             seen.peak = output.magnitude(seen.peak);
         }
-        // Of a stretch in which the goal begins, or the run becomes late, the part from there on.
+        // If the goal or the late part starts within the stretch, only the rest of the stretch counts.
         let part = |from: f64| (from - stretch.from) / stretch.length;
         let (goal, late) = (part(self.goal.from.seconds()), part(self.late));
         if goal < 1.0 {
@@ -207,7 +208,7 @@ impl Rotation {
         }
     }
 
-    /// The distance from the goal (rad) over the last part of a stretch, from a point on.
+    /// Returns the distance from the goal (rad) over the last part of a stretch, from the fraction `from` of it on.
     fn error(&self, stretch: &Stretch, from: f64) -> Polynomial {
         let since = stretch.from - self.goal.from.seconds();
         let (start, slope) = (self.goal.angle + self.goal.rate * since, self.goal.rate * stretch.length);
@@ -215,7 +216,7 @@ impl Rotation {
         if from > 0.0 { error.part(from, 1.0) } else { error }
     }
 
-    /// The verdict, which begins at this distance from the goal (rad).
+    /// Returns the collector of the verdict, which starts at a distance from the goal (rad).
     fn judge(&mut self, distance: f64) -> &mut Verdict {
         let Self { goal, promise, .. } = self;
         self.verdict.get_or_insert_with(|| Verdict::new(goal.from.seconds(), promise.band(distance.abs())))
@@ -226,7 +227,7 @@ impl Rotation {
         let (begins, length) = (stretch.from + from * stretch.length, (1.0 - from) * stretch.length);
         let goal = self.goal.from.seconds();
         self.judge(error.at(0.0)).see(begins, length, &error);
-        // The larger one, whichever is a number.
+        // The larger one; NaN is ignored.
         self.error.0 = error.magnitude(self.error.0.max(0.0));
         let integral = integral(&error, begins - goal, length) - self.itae.1;
         let total = self.itae.0 + integral;
@@ -252,7 +253,7 @@ impl Rotation {
     }
 }
 
-/// The integral of time times the absolute value over a stretch that begins at a time and is so long (s).
+/// Returns the integral of time times the absolute value over a stretch of `length` (s) that begins at `begins` (s).
 fn integral(value: &Polynomial, begins: f64, length: f64) -> f64 {
     let (low, high) = value.bounds();
     let piece = |ends: &[f64]| {

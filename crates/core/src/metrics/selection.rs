@@ -1,20 +1,20 @@
-//! Which metrics are wanted: all, or those that are named.
+//! Selection of the metrics that are wanted: all, or those that are named.
 
 use super::{ALL, Meaning, Metrics};
 use crate::document::nearest;
 
-/// The metrics that a campaign's table has.
+/// Metrics in a campaign's table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Selection(Option<Vec<&'static str>>);
 
 impl Selection {
-    /// All metrics.
+    /// Selection of all metrics.
     pub const ALL: Self = Self(None);
 
-    /// Metrics by their names.
+    /// Returns the selection of metrics by their names.
     ///
     /// # Errors
-    /// A name that no metric has.
+    /// A name that is not a metric's.
     pub fn of<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Self, String> {
         let mut wanted = Vec::new();
         for name in names {
@@ -35,22 +35,22 @@ impl Selection {
         Ok(Self(Some(wanted)))
     }
 
-    /// Whether a metric is wanted.
+    /// Returns true if a metric is wanted.
     pub fn wants(&self, name: &str) -> bool {
         self.0.as_ref().is_none_or(|names| names.contains(&name))
     }
 
-    /// Whether any of some metrics is wanted.
+    /// Returns true if any of some metrics is wanted.
     pub fn wants_any(&self, metrics: &[Meaning]) -> bool {
         metrics.iter().any(|meaning| self.wants(meaning.name))
     }
 
-    /// The names of those that are wanted, unless all are.
+    /// Returns the names of the metrics that are wanted; `None` for all.
     pub fn names(&self) -> Option<&[&'static str]> {
         self.0.as_deref()
     }
 
-    /// The metrics that are wanted, in the order in which all are reported.
+    /// Returns those metrics of a run that are wanted, in the order in which all are reported.
     #[must_use]
     pub fn of_run(&self, metrics: Metrics) -> Metrics {
         match self.0 {

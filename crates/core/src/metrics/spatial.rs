@@ -1,4 +1,4 @@
-//! What a run of a spatial body comes to: propellant, firings, elastic energy, pointing.
+//! Metrics of a run of a three-axis body: propellant, firings, elastic energy, pointing.
 
 use super::goal::{self, Verdict};
 use super::{
@@ -12,54 +12,55 @@ use crate::record::{Accelerations, Sliding, SpatialCycle, Steered, WheelEvent};
 use crate::scenario::{Pointing, Scenario};
 use crate::time::Instant;
 
-/// The elastic rates are judged over so much of the run's end (s).
+/// Length of the end of a run over which elastic rates are averaged (s).
 const LATE: f64 = 200.0;
 
-/// Gathers the cycles of a run.
+/// Collector of the cycles of a run.
 #[derive(Clone, Debug)]
 pub struct SpatialMetrics {
-    /// From when on a cycle is late (s).
+    /// Time from which on a cycle is late (s).
     late: f64,
-    /// Whether there are jets, whose propellant and pulses count.
+    /// True if there are jets, whose propellant and pulses are counted.
     jets: bool,
-    /// Whether wheels have friction, how often they passed through zero and stuck, which way each turned last, and their heat (J).
+    /// True if wheels have friction; numbers of zero crossings and stictions, last sliding direction of each wheel, and
+    /// heat (J).
     rubs: bool,
     slips: (u64, u64),
-    /// Of each accelerometer, its place among the sensors, the sum of squares of what it tells, and how many samples.
+    /// For each accelerometer its index among the sensors, the sum of the squares of its samples, and their number.
     shaken: Vec<(u64, f64, u64)>,
     ways: Vec<Option<Sliding>>,
     heat: f64,
     fuel: f64,
-    /// Pulses, and cycles with any.
+    /// Number of pulses, and number of cycles with any.
     firings: (u64, u64),
-    /// Elastic energy at the start, at its largest, and last (J).
+    /// Elastic energy: initial, largest, and last (J).
     energy: (f64, f64, f64),
-    /// That of the modes that the gyro sees at its largest, and last (J).
+    /// Elastic energy of the modes that the gyro observes: largest, and last (J).
     visible: (f64, f64),
-    /// When it was first below a tenth and a hundredth of that at the start (s).
+    /// Times at which this energy was first below a tenth and a hundredth of its initial value (s).
     below: [f64; 2],
-    /// Sum of the squared elastic rates of late cycles (rad²/s²), and how many they were.
+    /// Sum of the squared elastic rates of late cycles (rad²/s²), and the number of these cycles.
     square: (f64, u64),
     error: f64,
-    /// Whether there are magnetorquers, and whether they unload wheels.
+    /// True if there are magnetorquers, and true if they unload wheels.
     magnetic: [bool; 2],
-    /// Rigid rate last (rad/s); momentum of the wheels at its largest, and last (N m s).
+    /// Last rigid rate (rad/s); largest and last momentum of the wheels (N m s).
     rate: f64,
     stored: [f64; 2],
-    /// What control moment gyros did.
+    /// Values of control moment gyros.
     steered: Option<Steered>,
-    /// What is asked of the pointing, the sum of the squared errors that count (rad²), and how many they are.
+    /// Pointing requirement, sum of the squared errors that count (rad²), and their number.
     asked: Option<Pointing>,
     pointing: (f64, u64),
     verdict: Verdict,
-    /// How near to the target each axis shall be (rad), and since when one is not (s).
+    /// Half width of the band about the target on each axis (rad), and the start of the current time outside (s).
     bands: [f64; 3],
     outside: Option<f64>,
     end: f64,
 }
 
 impl SpatialMetrics {
-    /// An empty gathering for runs of a scenario.
+    /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         let end = Instant::START + scenario.duration;
         let own: [f64; 3] =
@@ -97,7 +98,7 @@ impl SpatialMetrics {
         }
     }
 
-    /// Takes a cycle.
+    /// Records a cycle.
     pub fn see(&mut self, now: Instant, cycle: &SpatialCycle) {
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
         let norm = |of: [f64; 3]| of.iter().map(|value| value * value).sum::<f64>();
@@ -135,7 +136,7 @@ impl SpatialMetrics {
         self.outside = is_outside.then_some(t);
     }
 
-    /// Takes a sample of an accelerometer.
+    /// Records a sample of an accelerometer.
     pub fn shake(&mut self, row: &Accelerations) {
         if let Some((_, square, count)) = self.shaken.iter_mut().find(|(sensor, ..)| *sensor == row.sensor) {
             *square += row.axes.iter().map(|axis| axis.measured_m_s2 * axis.measured_m_s2).sum::<f64>();
@@ -143,7 +144,7 @@ impl SpatialMetrics {
         }
     }
 
-    /// Takes a wheel that slips otherwise.
+    /// Records a wheel's transition between sliding and sticking.
     pub fn slip(&mut self, event: &WheelEvent) {
         let Some(way) = self.ways.get_mut(event.wheel as usize) else { return };
         if event.after == Sliding::Stuck {
@@ -155,7 +156,7 @@ impl SpatialMetrics {
         }
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(mut self) -> Vec<MetricValue> {
         if let Some(since) = self.outside {
             self.verdict.outside(since, self.end);
@@ -199,7 +200,7 @@ impl SpatialMetrics {
         });
         let mut pointing: Vec<MetricValue> = Vec::new();
         if let Some(asked) = &self.asked {
-            // 0/0 of no cycles: no number.
+            // Without cycles the mean is 0/0: NaN.
             let rms = f64::sqrt(self.pointing.0 / self.pointing.1 as f64);
             pointing.push((&POINTING_RMS, Value::Number(rms)));
             let met = asked.rms.map(|most| goal::within(rms, most.get()));

@@ -1,4 +1,4 @@
-//! What the switchings of a relay law come to: pushes, impulse, envelope, adaptation, limit cycle.
+//! Metrics of a relay law's switchings: pushes, impulse, envelope, adaptation, limit cycle.
 
 use super::envelope::Windows;
 use super::goal::{self, Verdict};
@@ -17,7 +17,7 @@ use crate::record::{Course, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
-/// Gathers the switchings of a relay law, window means and the adaptation's steps.
+/// Collector of the switchings of a relay law, of window means and of the adaptation's steps.
 #[derive(Clone, Debug)]
 pub struct Switchings {
     duration: f64,
@@ -25,33 +25,33 @@ pub struct Switchings {
     pushes: (u64, u64),
     strong: Span,
     impulse: f64,
-    /// When the torque was switched last, to what, and whether it is strong.
+    /// Time of the last switching, its torque, and true if that is strong.
     since: (Instant, f64, bool),
     windows: Windows,
     gain: (f64, f64),
-    /// The number that the adaptation tunes, at the start.
+    /// Initial value of the gain that the adaptation tunes.
     tuned: Option<f64>,
     frozen_at: f64,
     cycle: CycleWatch,
     observed: bool,
     adapted: bool,
-    /// Whether a torque is an acceleration.
+    /// True if torques are accelerations.
     reduced: bool,
     goal: Goal,
     verdict: Verdict,
     wanted: Wanted,
 }
 
-/// What of these metrics is wanted.
+/// Groups of these metrics that are wanted.
 #[derive(Copy, Clone, Debug)]
 struct Wanted {
     cycle: bool,
     verdict: bool,
-    /// What switchings come to otherwise.
+    /// True if counts, duty or impulse are wanted.
     counts: bool,
 }
 
-/// What the limit cycle comes to.
+/// Metrics of the limit cycle.
 const OF_CYCLE: &[Meaning] = &[
     CYCLE_KIND,
     CYCLE_PERIOD,
@@ -64,13 +64,13 @@ const OF_CYCLE: &[Meaning] = &[
     CYCLE_MULTIPLIER_MAX,
 ];
 
-/// What switchings come to beside the cycle.
+/// Metrics of the switchings without those of the cycle.
 const COUNTED: &[Meaning] = &[SWITCHINGS, PUSHES_RIGHT, PUSHES_LEFT, DUTY, IMPULSE];
 
 impl Switchings {
-    /// An empty gathering for runs of a scenario.
+    /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
-        // The multipliers are those of modes that move on their own.
+        // Multipliers are defined for uncoupled modes only.
         let smooth = scenario.study.sampling.is_none() && scenario.linear.is_none();
         Self {
             duration: scenario.duration.seconds(),
@@ -97,7 +97,7 @@ impl Switchings {
         }
     }
 
-    /// The metrics of the run that has ended.
+    /// Returns the metrics of the run that has ended.
     pub fn finish(mut self, scenario: &Scenario) -> Vec<MetricValue> {
         self.switch(Instant::START + scenario.duration, 0.0, false);
         let hours = self.duration / 3600.0;
@@ -181,7 +181,7 @@ impl Record for Switchings {
         if !self.wanted.verdict {
             return Course::None;
         }
-        // About a goal that is 0 from the start on, bounds of the angle show most motions to be inside.
+        // For a goal of 0 from the start on, bounds of the angle show most motions to be inside the band.
         if self.goal == Goal::default() { Course::Beyond(self.verdict.band()) } else { Course::All }
     }
 

@@ -1,4 +1,4 @@
-//! What adaptive observers have found at the end of a run, and what active damping did.
+//! Metrics of adaptive observers, from their state at the end of a run, and of active damping.
 
 use super::{
     DAMPING_CYCLES, DAMPING_PAUSES, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, INFLUENCE_ERRORS,
@@ -8,11 +8,11 @@ use crate::estimator::Estimator;
 use crate::record::{TrackedMode, Tracking, Watch};
 use crate::scenario::Scenario;
 
-/// Gathers the cycles of a run.
+/// Collector of the cycles of a run.
 #[derive(Clone, Debug, Default)]
 pub struct Tracked {
     last: Option<Vec<TrackedMode>>,
-    /// Sum of the squared errors of the elastic rates (rad²/s²), and of how many cycles.
+    /// Sum of the squared errors of the elastic rates (rad²/s²), and the number of cycles.
     square: (f64, u64),
     cycles: u64,
     pauses: u64,
@@ -20,13 +20,13 @@ pub struct Tracked {
 }
 
 impl Tracked {
-    /// An empty gathering for runs of a scenario.
+    /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         let adaptive = matches!(scenario.estimator, Some(Estimator::Adaptive(_)));
         Self { last: adaptive.then(Vec::new), ..Self::default() }
     }
 
-    /// Takes a cycle.
+    /// Records a cycle.
     pub fn see(&mut self, tracking: &Tracking) {
         let error = |of: &crate::record::ChannelState| of.elastic_rad_s - of.true_elastic_rad_s;
         self.square.0 += tracking.channels.iter().map(|of| error(of) * error(of)).sum::<f64>();
@@ -40,7 +40,7 @@ impl Tracked {
         self.last.get_or_insert_default().clone_from(&tracking.trackers);
     }
 
-    /// The metrics of the run that has ended; none without an adaptive observer.
+    /// Returns the metrics of the run that has ended; empty without an adaptive observer.
     pub fn finish(self) -> Vec<MetricValue> {
         let Some(last) = self.last else { return Vec::new() };
         let list = |of: &dyn Fn(&TrackedMode) -> f64| Value::Numbers(last.iter().map(of).collect());

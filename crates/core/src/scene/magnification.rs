@@ -1,6 +1,7 @@
-//! Magnification: how many times as large as they are bending and turning are drawn, where the scenario leaves it out.
+//! Default factors by which bending and rotation are magnified in the scene, where the scenario leaves them out.
 //!
-//! A run does not know its largest motion beforehand. What its actuator can do, and how it begins, give the order of magnitude.
+//! The largest motion is not known before a run. The actuator's authority and the initial state give the order of
+//! magnitude.
 
 use crate::actuator::{Actuator, ActuatorMember};
 use crate::attitude::{Vector, turned};
@@ -13,15 +14,16 @@ use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-/// The bending that shall show (rad), and the turning.
+/// Bending and rotation (rad) that the estimated motion has as drawn.
 const BENDING: f64 = 0.35;
 const TURNING: f64 = 0.5;
-/// A mode damped by less than this is not in resonance for long enough to tell.
+/// Least damping ratio: a mode damped less is not in resonance long enough to reach its steady amplitude.
 const LEAST_DAMPING: f64 = 1e-3;
-/// The largest step of a disc (rad).
+/// Largest step of a disc per frame (rad).
 const TURN: f64 = 1.0;
 
-/// 1, 2 or 5 times a power of ten, at most so many times what makes an estimate reach a wanted angle (rad); at least 1.
+/// Returns 1, 2 or 5 times a power of ten, at least 1, and at most the factor by which `estimate` reaches `wanted`
+/// (rad).
 fn round_factor(wanted: f64, estimate: f64) -> f64 {
     let factor = wanted / estimate;
     if !factor.is_finite() || factor <= 1.0 {
@@ -31,18 +33,19 @@ fn round_factor(wanted: f64, estimate: f64) -> f64 {
     [5.0, 2.0].into_iter().find(|step| step * decade <= factor).unwrap_or(1.0) * decade
 }
 
-/// Factor for the bending of panels whose angles are estimated to be this (rad).
+/// Returns the magnification of the bending of panels with an estimated angle (rad).
 pub fn bending(estimate: f64) -> f64 {
     round_factor(BENDING, estimate)
 }
 
-/// Factor for the turning of a body by about this angle (rad).
+/// Returns the magnification of the rotation of a body with an estimated angle (rad).
 pub fn turning(estimate: f64) -> f64 {
     round_factor(TURNING, estimate)
 }
 
-/// By what a disc that turns by so much from one frame to the next (rad) is slowed: 1, 2 or 5 times a power of ten, at least
-/// 1, so that its steps are below `TURN`. Viewers would show a faster one as if it turned otherwise.
+/// Returns the factor by which the drawn rotation of a disc with `step` (rad) per frame is slowed: 1, 2 or 5 times a
+/// power of ten, at least 1, so that the drawn steps are at most `TURN`. Viewers would show a faster disc with another
+/// speed or direction.
 pub fn slowing(step: f64) -> f64 {
     let least = step / TURN;
     if !least.is_finite() || least <= 1.0 {
@@ -52,7 +55,7 @@ pub fn slowing(step: f64) -> f64 {
     [1.0, 2.0, 5.0].into_iter().find(|step| step * decade >= least).unwrap_or(10.0) * decade
 }
 
-/// The angle by which a body of one angle turns, about (rad).
+/// Returns the estimated rotation of a one-axis body (rad).
 pub fn angle(scenario: &Scenario, body: &Planar) -> f64 {
     let start = body.angle.get();
     let zone = match &scenario.law {
@@ -62,11 +65,11 @@ pub fn angle(scenario: &Scenario, body: &Planar) -> f64 {
     start.abs().max(scenario.goal().angle.abs()).max(zone)
 }
 
-/// The rate at which a body of one angle turns at most, about (rad/s).
+/// Returns the estimated largest rate of a one-axis body (rad/s).
 pub fn rate(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| 2.0 * scenario.goal().angle.abs() / plan.time);
     let by_law = match (&scenario.law, scenario.actuator.wheel()) {
-        // What the spring of the law makes of the angle.
+        // Rate of the free oscillation in which the proportional gain is the spring.
         (Law::Pd(pd), Some((wheel, _))) => {
             angle(scenario, body) * f64::sqrt(pd.k_p.get() * wheel.gain.get() / body.commanded_inertia())
         }
@@ -75,13 +78,13 @@ pub fn rate(scenario: &Scenario, body: &Planar) -> f64 {
     body.rate.get().abs().max(planned).max(by_law)
 }
 
-/// The angle by which a body with three axes turns, about (rad).
+/// Returns the estimated rotation angle of a three-axis body (rad).
 pub fn spatial_angle(scenario: &Scenario, body: &Spatial) -> f64 {
     let targets = scenario.targets().iter().map(|target| {
         let [roll, pitch, yaw] = [target.roll, target.pitch, target.yaw].map(Finite::get);
         turned(roll, pitch, yaw)
     });
-    // In axes that turn with the orbit, or to the Sun, it turns from where it is to where they are.
+    // A target in orbital or Sun-pointing axes: the body rotates from its initial attitude to these axes.
     let inertial = scenario.targets().iter().all(|target| target.frame == Frame::Inertial);
     let at_start = scenario.study.way.target(Instant::START).conjugate() * body.attitude.get();
     let start = if inertial { body.attitude.get() } else { at_start };
@@ -90,8 +93,9 @@ pub fn spatial_angle(scenario: &Scenario, body: &Spatial) -> f64 {
     targets.chain([start]).map(angle).fold(zones, f64::max)
 }
 
-/// The displacement that each mode reaches, about (rad): twice the equilibrium under the largest torque, or once where a
-/// wheel under a PD law lets go as the body turns, but no more than the same push gives without a spring, or what the initial state holds.
+/// Returns the estimated displacement of each mode (rad): twice the equilibrium under the largest torque, or once if a
+/// wheel under a PD law reduces its torque as the body rotates, but at most the displacement without a spring, or the
+/// initial amplitude if it is larger.
 pub fn displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
     let travel = angle(scenario, body);
     let moment = largest(scenario, body) / body.commanded_inertia();
@@ -99,7 +103,7 @@ pub fn displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
     let times = if lets_go { 1.0 } else { 2.0 };
     let of = |mode: &Mode| {
         let start = mode.start();
-        // One that does not swing holds what it is displaced by.
+        // A mode without an oscillation keeps its initial displacement.
         let swing = mode.amplitude(start);
         let held = if swing.is_nan() { libm::hypot(start.displacement, start.quadrature) } else { swing };
         held.max((times * mode.excitability().abs() * moment).min(mode.gain.get().abs() * travel))
@@ -107,7 +111,7 @@ pub fn displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
     body.modes.iter().map(of).collect()
 }
 
-/// The largest torque, about (N m; rad/s² where the motion is commanded).
+/// Returns the estimated largest torque (N m; rad/s² if the motion is commanded).
 pub fn largest(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| plan.peak().value.abs());
     let by_law = match &scenario.law {
@@ -133,7 +137,7 @@ pub fn largest(scenario: &Scenario, body: &Planar) -> f64 {
     scenario.actuator.members().into_iter().map(of).fold(0.0, f64::max)
 }
 
-/// The largest torque about an axis of a body with three (N m), about, of an actuator that is no jets.
+/// Returns the estimated largest torque (N m) about an axis of a three-axis body, for actuators other than jets.
 fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     let members = scenario.actuator.members();
     let serving = members.iter().find(|member| member.share(axis) > 0.0);
@@ -146,7 +150,8 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     by_law(scenario, body, axis, scenario.law.about(axis), (unit, most)).min(most)
 }
 
-/// The same that a law asks for, of an actuator with this unit of its command and this largest torque (N m).
+/// Returns the estimated largest torque (N m) that a law commands; `unit` is the torque per unit of its command, `most`
+/// the actuator's limit.
 fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &Law, (unit, most): (f64, f64)) -> f64 {
     let study = &scenario.study;
     match law {
@@ -157,7 +162,7 @@ fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &Law, (unit, mo
         }
         Law::Attitude(law) => {
             let inertia = study.axes[axis].inertia.get();
-            // A turn along a profile asks for its acceleration, and not for all of the angle at once.
+            // A manoeuvre along a profile commands its acceleration, not the whole angle at once.
             let led = scenario.targets().iter().map(|target| target.acceleration.map(Positive::get));
             match led.reduce(|most, next| Some(most?.max(next?))).flatten() {
                 Some(acceleration) => inertia * acceleration,
@@ -182,11 +187,12 @@ fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &Law, (unit, mo
     }
 }
 
-/// The same of the modes of a body with three axes (m sqrt(kg)), under the jets, the torque of any axis, or a force.
+/// Returns the estimated displacements of the modes of a three-axis body (m sqrt(kg)), under the jets, the torque of
+/// any axis, or a force.
 pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
     let hub = body.shapes(&scenario.study.acts_at);
-    // Pulses may come with the period of a mode, and add up.
+    // Pulses may repeat with the period of a mode, and add up.
     let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
     let pushes: Vec<_> =
         scenario.disturbance.iter().filter_map(|of| Some((of.push(body)?, times(of)))).collect();
@@ -207,8 +213,8 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     body.modes.iter().enumerate().map(mode).collect()
 }
 
-/// The displacement of a mode that imbalance makes (m sqrt(kg)), about: that in resonance, if wheels get there from their slowest
-/// speed at the start or their bias, else that at their fastest.
+/// Returns the estimated displacement of a mode by wheel imbalance (m sqrt(kg)): in resonance if a wheel's speed range,
+/// from the slowest initial or bias speed on, contains the mode's frequency, else at the highest speed.
 fn shaken(scenario: &Scenario, index: usize, mode: &SpatialMode, hub: &Vector) -> f64 {
     let Some((wheels, _)) = scenario.actuator.wheels() else { return 0.0 };
     let (w, damping) = (mode.frequency.get(), mode.damping.get().max(LEAST_DAMPING));

@@ -1,7 +1,8 @@
-//! The scene: what viewers in three dimensions show of a run.
+//! Three-dimensional scene of a run for viewers.
 //!
-//! The geometry is schematic. A scenario describes how a body moves, not its appearance: a hub with panels, or a boom to
-//! each point and two wings, stand for it. Bending and turning are magnified, by factors that the scene itself shows.
+//! The geometry is schematic. A scenario describes how a body moves, not its appearance: a hub with panels, or a boom
+//! to each point and two wings, stand for it. Bending and turning are magnified, by factors that the scene itself
+//! shows.
 
 mod magnification;
 mod panels;
@@ -21,17 +22,17 @@ use crate::time::Span;
 pub use planar::{PlanarScene, PlanarView};
 pub use spatial::SpatialScene;
 
-/// The scene of a run.
+/// Scene of a run.
 #[derive(Clone, Debug)]
 pub enum Scene {
-    /// Of a body with one angle.
+    /// Scene of a one-axis body.
     Planar(PlanarScene),
-    /// Of a body with three axes.
+    /// Scene of a three-axis body.
     Spatial(SpatialScene),
 }
 
 impl Scene {
-    /// The scene of a scenario.
+    /// Creates the scene of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         match scenario.model.axes() {
             Axes::One(body) => Self::Planar(PlanarScene::new(scenario, body)),
@@ -47,7 +48,7 @@ impl Scene {
         }
     }
 
-    /// What it consists of.
+    /// Returns the entities of the scene.
     pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
         match self {
             Self::Planar(scene) => scene.parts(stamp),
@@ -63,17 +64,17 @@ impl Scene {
     }
 }
 
-/// What a viewer has to know of a scene before it looks: how far it reaches (m), and the names of its frames.
+/// Size of a scene and the names of its frames, which a viewer needs for its layout.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extent {
     /// Distance of the farthest part (m).
     pub reach: f64,
-    /// The frames that move.
+    /// Names of the moving frames.
     pub frames: Vec<String>,
 }
 
 impl Extent {
-    /// That of a scenario's scene.
+    /// Returns the extent of a scenario's scene.
     pub fn of(scenario: &Scenario) -> Self {
         Scene::new(scenario).extent()
     }

@@ -1,44 +1,44 @@
-//! The panels of a body with one angle: where their sections are, and how they bend.
+//! Panels of a one-axis body: places of their sections, and their bending.
 
 use super::PlanarView;
 use super::magnification::displacements;
 use crate::body::{Body, Planar};
 use crate::scenario::Scenario;
 
-/// Panels of a body that has none of its own: so many sections, of this length altogether, from this distance on (m).
+/// Sections, total length (m) and root distance (m) of the panels of a body that defines none.
 const SECTIONS: usize = 8;
 const LENGTH: f64 = 10.0;
 const ROOT: f64 = 1.2;
-/// No section is drawn at a larger angle to the hub (rad).
+/// Largest angle at which a section is drawn relative to the hub (rad).
 const LARGEST: f64 = 1.5;
-/// No more panels are drawn.
+/// Largest number of panels that are drawn.
 const MOST_PANELS: u32 = 12;
 
-/// How the sections bend.
+/// Source of the sections' bending angles.
 #[derive(Clone, Debug)]
 enum Bends {
-    /// By their own angles.
+    /// Angles of the body's own sections.
     Own,
-    /// By these angles for a unit of each mode: the modes' slopes along the panel.
+    /// Slopes of the modes along the panel: the angle of each section for a unit of each mode.
     Modes(Vec<Vec<f64>>),
 }
 
-/// The panels of a body.
+/// Panels of a body.
 #[derive(Clone, Debug)]
 pub struct ScenePanels {
     /// Distance of the first section from the axis (m).
     pub root: f64,
     /// Lengths of the sections (m), from the hub outwards.
     pub lengths: Vec<f64>,
-    /// How many equal panels there are.
+    /// Number of equal panels.
     pub count: u32,
-    /// By how much they bend, about (rad).
+    /// Estimated bending (rad).
     pub bent: f64,
     bends: Bends,
 }
 
 impl ScenePanels {
-    /// Those of a scenario's body.
+    /// Returns the panels of a scenario's body.
     pub fn of(scenario: &Scenario, body: &Planar) -> Self {
         let reached = displacements(scenario, body);
         if let Some(Body::Panels(panels)) = &scenario.body {
@@ -62,22 +62,22 @@ impl ScenePanels {
         }
     }
 
-    /// Length of a panel (m).
+    /// Returns the length of a panel (m).
     pub fn length(&self) -> f64 {
         self.lengths.iter().sum()
     }
 
-    /// The angle about z at which a panel begins (rad).
+    /// Returns the angle about z at which a panel begins (rad).
     pub fn azimuth(&self, panel: u32) -> f64 {
         f64::from(panel) * (std::f64::consts::TAU / f64::from(self.count))
     }
 
-    /// The angle of each section to the hub (rad), drawn so many times as large as it is.
+    /// Returns the angle of each section relative to the hub (rad), multiplied by `bending`.
     pub fn angles(&self, bending: f64, view: PlanarView<'_>) -> Vec<f64> {
         let drawn = |angle: f64| (bending * angle).clamp(-LARGEST, LARGEST);
         match &self.bends {
             Bends::Own => view.sections.iter().copied().map(drawn).collect(),
-            // Where the hub swings one way, the panels swing the other.
+            // The panels bend against the elastic rotation of the hub.
             Bends::Modes(slopes) => (0..self.lengths.len())
                 .map(|section| {
                     let modes = slopes.iter().zip(view.modes);
@@ -88,9 +88,9 @@ impl ScenePanels {
     }
 }
 
-/// The slopes of a mode along a panel that is clamped at the hub, at the middles of equal sections, 1 at the tip.
+/// Returns the slopes of a mode along a panel clamped at the hub, at the middles of equal sections, 1 at the tip.
 fn slopes(mode: usize, sections: usize) -> Vec<f64> {
-    // What is finer than the sections would look like something else.
+    // Waves finer than the sections would be drawn as another shape.
     let waves = 2.0 * mode.min(sections / 2 - 1) as f64 + 1.0;
     let slope = |section: usize| {
         let along = (section as f64 + 0.5) / sections as f64;

@@ -1,4 +1,4 @@
-//! Parts of a scene: frames, and the boxes, cones and words that are fixed to them.
+//! Primitives of a scene: frames, and the boxes, cones and texts that are fixed to them.
 
 use super::pose::{from_z, place, point, pose, upright};
 use crate::attitude::Vector;
@@ -8,31 +8,31 @@ use crate::record::foxglove::{
 };
 use crate::record::row::{Lifetime, Stamp};
 
-/// The frame that does not move.
+/// Name of the inertial frame.
 pub const INERTIAL: &str = "inertial";
-/// The frame of the body.
+/// Name of the body frame.
 pub const BODY: &str = "body";
 
-/// Colours that colour-blind readers can distinguish, and two greys.
+/// Colour of hubs. All colours are two greys, and colours that colour-blind readers can distinguish.
 pub const HUB: Color = Color { r: 0.75, g: 0.75, b: 0.78, a: 1.0 };
-/// Of panels.
+/// Colour of panels.
 pub const PANEL: Color = Color { r: 0.0, g: 0.45, b: 0.70, a: 1.0 };
-/// Of booms.
+/// Colour of booms.
 pub const BOOM: Color = Color { r: 0.90, g: 0.88, b: 0.80, a: 1.0 };
-/// Of wheels.
+/// Colour of wheels.
 pub const WHEEL: Color = Color { r: 0.80, g: 0.47, b: 0.65, a: 1.0 };
-/// Of marks.
+/// Colour of marks.
 pub const MARK: Color = Color { r: 0.15, g: 0.15, b: 0.15, a: 1.0 };
-/// Of nozzles and masses.
+/// Colour of nozzles and masses.
 pub const NOZZLE: Color = Color { r: 0.40, g: 0.40, b: 0.42, a: 1.0 };
-/// Of plumes.
+/// Colour of plumes.
 pub const PLUME: Color = Color { r: 0.90, g: 0.60, b: 0.0, a: 0.75 };
-/// Of goals.
+/// Colour of goals.
 pub const GOAL: Color = Color { r: 0.0, g: 0.62, b: 0.45, a: 0.8 };
-/// Of words.
+/// Colour of texts.
 const WORDS: Color = Color { r: 0.90, g: 0.60, b: 0.0, a: 1.0 };
 
-/// A frame within another, at a place.
+/// Creates a frame within another one, at a place.
 pub fn frame(parent: &str, child: &str, at: Vector) -> FrameTransform {
     let pose = upright(at);
     FrameTransform {
@@ -44,7 +44,7 @@ pub fn frame(parent: &str, child: &str, at: Vector) -> FrameTransform {
     }
 }
 
-/// An entity without anything in it, fixed to a frame.
+/// Creates an empty entity, fixed to a frame.
 pub fn entity(stamp: Stamp, frame: &str, id: &str) -> SceneEntity {
     SceneEntity {
         timestamp: stamp,
@@ -63,17 +63,17 @@ pub fn entity(stamp: Stamp, frame: &str, id: &str) -> SceneEntity {
     }
 }
 
-/// A scene of entities.
+/// Creates a scene update with these entities.
 pub fn scene(entities: Vec<SceneEntity>) -> SceneUpdate {
     SceneUpdate { deletions: Vec::new(), entities }
 }
 
-/// A box about a place.
+/// Creates a box centred at a place.
 pub fn cube(at: Vector, size: Vector, color: Color) -> CubePrimitive {
     CubePrimitive { pose: upright(at), size: place(size), color }
 }
 
-/// A cylinder between two places, or a cone: its diameters are those at the first and at the second.
+/// Creates a cylinder or a cone between two places, with its diameters at the first and at the second.
 pub fn cone(from: Vector, to: Vector, [first, second]: [f64; 2], color: Color) -> CylinderPrimitive {
     let axis = to - from;
     let length = f64::sqrt(axis.norm_squared());
@@ -87,7 +87,7 @@ pub fn cone(from: Vector, to: Vector, [first, second]: [f64; 2], color: Color) -
     }
 }
 
-/// The axes of a frame: x red, y green, z blue.
+/// Creates the axes of a frame: x red, y green, z blue.
 pub fn axes(length: f64) -> Vec<ArrowPrimitive> {
     let arrow = |axis: usize| {
         // An arrow points along x.
@@ -109,7 +109,7 @@ pub fn axes(length: f64) -> Vec<ArrowPrimitive> {
     [0, 1, 2].map(arrow).into()
 }
 
-/// A straight line.
+/// Creates a straight line.
 pub fn line(from: Vector, to: Vector, color: Color) -> LinePrimitive {
     LinePrimitive {
         r#type: LineType::Strip,
@@ -121,7 +121,7 @@ pub fn line(from: Vector, to: Vector, color: Color) -> LinePrimitive {
     }
 }
 
-/// Words that face who looks.
+/// Creates a text that faces the viewer.
 pub fn words(at: Vector, text: String) -> TextPrimitive {
     TextPrimitive {
         pose: upright(at),

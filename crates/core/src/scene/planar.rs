@@ -1,4 +1,4 @@
-//! The scene of a body with one angle: a hub that turns about z, with panels of sections that bend in the plane.
+//! Scene of a one-axis body: a hub that rotates about z, with panels of sections that bend in the plane.
 
 use super::Extent;
 use super::magnification::{angle, bending, largest, turning};
@@ -18,11 +18,11 @@ use crate::record::row::Stamp;
 use crate::scenario::Scenario;
 use crate::time::Span;
 
-/// A torque is drawn in so many steps, and as nothing below this part of the largest.
+/// Number of steps in which a torque is drawn, and the fraction of the largest torque below which it is drawn as zero.
 const STEPS: f64 = 4.0;
 const LEAST: f64 = 0.01;
 
-/// Where the body is.
+/// Current pose of the body.
 #[derive(Copy, Clone, Debug)]
 pub struct PlanarView<'a> {
     /// Time since the start (s).
@@ -31,13 +31,13 @@ pub struct PlanarView<'a> {
     pub angle: f64,
     /// Angle of the body as if it were rigid (rad).
     pub rigid_angle: f64,
-    /// The modes.
+    /// States of the modes.
     pub modes: &'a [Phase],
-    /// The angles of the sections relative to the hub (rad), of a body that has sections.
+    /// Angles of the sections relative to the hub (rad); empty for a body without sections.
     pub sections: &'a [f64],
 }
 
-/// The scene.
+/// Scene of a one-axis body.
 #[derive(Clone, Debug)]
 pub struct PlanarScene {
     /// Period of the frames.
@@ -48,13 +48,13 @@ pub struct PlanarScene {
     panels: ScenePanels,
     wheel: Option<SceneWheel>,
     plumes: Option<Burning>,
-    /// The largest torque so far (N m).
+    /// Largest torque so far (N m).
     largest: f64,
     frames: FrameTransforms,
 }
 
 impl PlanarScene {
-    /// The scene of a scenario.
+    /// Creates the scene of a scenario.
     pub fn new(scenario: &Scenario, body: &Planar) -> Self {
         let spec = &scenario.log.scene;
         let panels = ScenePanels::of(scenario, body);
@@ -77,12 +77,12 @@ impl PlanarScene {
         scene
     }
 
-    /// The half edge of the hub (m).
+    /// Returns the half edge of the hub (m).
     fn half(&self) -> f64 {
         (0.8 * self.panels.root).max(0.06 * self.panels.length())
     }
 
-    /// Two pairs of thrusters, each a couple about z: those that push to positive rates first.
+    /// Returns two pairs of thrusters, each a couple about z: those that push to positive rates first.
     fn thrusters(&self) -> Burning {
         let half = self.half();
         let side = |name: &str, y: f64, x: f64| ScenePlume {
@@ -96,7 +96,7 @@ impl PlanarScene {
         Burning::new(plus.into_iter().chain(minus).collect(), 0.45 * self.panels.length())
     }
 
-    /// The frames of a body that is not turned and not bent.
+    /// Returns the frames of a body that is neither rotated nor bent.
     fn at_rest(&self) -> Vec<FrameTransform> {
         let mut frames = vec![frame(INERTIAL, BODY, Vector::zeros())];
         if self.wheel.is_some() {
@@ -114,12 +114,12 @@ impl PlanarScene {
         frames
     }
 
-    /// How far it reaches, and its frames.
+    /// Returns the extent of the scene.
     pub fn extent(&self) -> Extent {
         Extent::new(self.panels.root + self.panels.length(), &self.frames)
     }
 
-    /// What the scene consists of.
+    /// Returns the entities of the scene.
     pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
         let (half, length) = (self.half(), self.panels.length());
         let mut hub = entity(stamp, BODY, "hub");
@@ -144,7 +144,7 @@ impl PlanarScene {
         scene(entities)
     }
 
-    /// Lines at angle 0 and at the goal, and words on the magnification.
+    /// Returns the lines at angle 0 and at the goal, and a text with the magnification.
     fn surroundings(&self, stamp: Stamp) -> SceneEntity {
         let reach = 1.15 * (self.panels.root + self.panels.length());
         let mut entity = entity(stamp, INERTIAL, "surroundings");
@@ -160,7 +160,7 @@ impl PlanarScene {
         entity
     }
 
-    /// Where the frames are.
+    /// Updates the frames to a pose of the body.
     pub fn frames(&mut self, stamp: Stamp, view: PlanarView<'_>) -> &FrameTransforms {
         let bent = self.panels.angles(self.bending, view);
         let azimuths: Vec<f64> = (0..self.panels.count).map(|panel| self.panels.azimuth(panel)).collect();
@@ -183,7 +183,7 @@ impl PlanarScene {
         &self.frames
     }
 
-    /// The plumes under a torque (N m), if they are new.
+    /// Returns the plumes under a torque (N m) if they have changed.
     pub fn plumes(&mut self, stamp: Stamp, torque: f64) -> Option<Plumes> {
         let plumes = self.plumes.as_mut()?;
         self.largest = self.largest.max(torque.abs());

@@ -1,45 +1,45 @@
-//! Plumes: which thrusters burn, logged at each change and then whole.
+//! Plumes of the firing thrusters, logged completely at each change.
 
 use super::part::{PLUME, cone, entity};
 use crate::attitude::Vector;
 use crate::record::foxglove::{Deleted, Plumes, SceneEntityDeletion, SceneUpdate};
 use crate::record::row::Stamp;
 
-/// A nozzle: its frame, where its plume begins, and the direction in which it leaves.
+/// Nozzle: its frame, the origin of its plume, and the direction of the plume.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ScenePlume {
-    /// The frame to which it is fixed.
+    /// Frame to which the nozzle is fixed.
     pub frame: String,
-    /// Its name.
+    /// Name of the nozzle.
     pub name: String,
-    /// Where the plume begins (m).
+    /// Origin of the plume (m).
     pub at: Vector,
-    /// The direction of the plume, of length 1.
+    /// Direction of the plume, of length 1.
     pub direction: Vector,
 }
 
-/// The plumes of some nozzles at work.
+/// Run-time state of the plumes of some nozzles.
 #[derive(Clone, Debug)]
 pub struct Burning {
     nozzles: Vec<ScenePlume>,
     /// Length of a full plume (m).
     length: f64,
-    /// How much each nozzle gives, as a part of a full plume, as logged last.
+    /// Level of each nozzle, as a fraction of a full plume, as logged last.
     told: Option<Vec<f64>>,
 }
 
 impl Burning {
-    /// Nozzles that have not been logged yet.
+    /// Creates the state of nozzles that have not been logged yet.
     pub fn new(nozzles: Vec<ScenePlume>, length: f64) -> Self {
         Self { nozzles, length, told: None }
     }
 
-    /// The nozzles.
+    /// Returns the nozzles.
     pub fn nozzles(&self) -> &[ScenePlume] {
         &self.nozzles
     }
 
-    /// Takes how much each nozzle gives from now on, from 0 to 1; returns the plumes if that is new.
+    /// Sets the level of each nozzle, from 0 to 1; returns the plumes if the levels have changed.
     pub fn change(&mut self, stamp: Stamp, parts: Vec<f64>) -> Option<Plumes> {
         if self.told.as_ref() == Some(&parts) {
             return None;

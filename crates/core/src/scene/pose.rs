@@ -1,4 +1,5 @@
-//! Poses: rotations and places as viewers take them, in single precision, which the eye cannot distinguish from double.
+//! Poses: rotations and places as viewer messages, rounded to single precision, which the eye cannot distinguish from
+//! double.
 
 use nalgebra::Quaternion as Rotation;
 
@@ -9,22 +10,22 @@ fn single(value: f64) -> f64 {
     f64::from(value as f32)
 }
 
-/// A vector as viewers take it.
+/// Returns a vector as a message, in single precision.
 pub fn place(of: Vector) -> Vector3 {
     Vector3 { x: single(of.x), y: single(of.y), z: single(of.z) }
 }
 
-/// A point as viewers take it.
+/// Returns a point as a message, in single precision.
 pub fn point(of: Vector) -> Point3 {
     Point3 { x: single(of.x), y: single(of.y), z: single(of.z) }
 }
 
-/// A rotation as viewers take it.
+/// Returns a rotation as a message, in single precision.
 pub fn attitude(of: &Rotation<f64>) -> Quaternion {
     Quaternion { x: single(of.i), y: single(of.j), z: single(of.k), w: single(of.w) }
 }
 
-/// The rotation by a vector (rad): about its direction, by its length.
+/// Returns the rotation by a rotation vector (rad).
 pub fn about(vector: Vector) -> Rotation<f64> {
     let angle = f64::sqrt(vector.norm_squared());
     if angle == 0.0 {
@@ -34,12 +35,12 @@ pub fn about(vector: Vector) -> Rotation<f64> {
     Rotation::from_parts(cos, vector * (sin / angle))
 }
 
-/// The rotation about z (rad).
+/// Returns the rotation about z by an angle (rad).
 pub fn about_z(angle: f64) -> Rotation<f64> {
     about(Vector::z() * angle)
 }
 
-/// A rotation as many times as large, about its own axis.
+/// Returns a rotation about the same axis, with its angle multiplied by a factor.
 pub fn magnified(of: &Rotation<f64>, factor: f64) -> Rotation<f64> {
     let vector = of.vector() * libm::copysign(1.0, of.w);
     let sine = f64::sqrt(vector.norm_squared());
@@ -49,7 +50,7 @@ pub fn magnified(of: &Rotation<f64>, factor: f64) -> Rotation<f64> {
     about(vector * (factor * 2.0 * libm::atan2(sine, of.w.abs()) / sine))
 }
 
-/// The rotation that takes z to a direction of length 1, by the shortest way.
+/// Returns the shortest rotation that maps z to a direction of length 1.
 pub fn from_z(direction: Vector) -> Rotation<f64> {
     let axis = Vector::z().cross(&direction);
     let sine = f64::sqrt(axis.norm_squared());
@@ -59,17 +60,17 @@ pub fn from_z(direction: Vector) -> Rotation<f64> {
     about(axis * (libm::atan2(sine, direction.z) / sine))
 }
 
-/// A pose.
+/// Creates a pose from a place and a rotation.
 pub fn pose(at: Vector, turned: &Rotation<f64>) -> Pose {
     Pose { position: place(at), orientation: attitude(turned) }
 }
 
-/// A pose that is not turned.
+/// Creates a pose without a rotation.
 pub fn upright(at: Vector) -> Pose {
     pose(at, &about(Vector::zeros()))
 }
 
-/// A vector no longer than a limit, in the same direction.
+/// Returns the vector, shortened to a limit if it is longer.
 pub fn limited(vector: Vector, limit: f64) -> Vector {
     let length = f64::sqrt(vector.norm_squared());
     if length > limit { vector * (limit / length) } else { vector }
@@ -97,7 +98,7 @@ mod tests {
             assert!((turned(&from_z(direction), Vector::z()) - direction).norm() < 1e-15, "{direction}");
         }
         let small = about(Vector::new(0.01, -0.02, 0.03));
-        // Whichever of its two signs a rotation has.
+        // The quaternion of a rotation has either sign.
         for q in [small, -small] {
             let large = magnified(&q, 7.0);
             assert!((large - about(Vector::new(0.07, -0.14, 0.21))).norm() < 1e-15, "{large}");

@@ -1,7 +1,7 @@
-//! The scene of a body with three axes: a hub, a boom to each of its points, two wings, and jets at the points.
+//! Scene of a three-axis body: a hub, a boom to each of its points, two wings, and jets at the points.
 //!
-//! The booms bend by a cubic between the mode shapes at their ends. There are no shapes of the wings, which swing
-//! against the rotation of the hub.
+//! The booms bend by a cubic between the mode shapes at their ends. The wings have no mode shapes, and bend against the
+//! rotation of the hub.
 
 use nalgebra::Quaternion;
 
@@ -21,18 +21,18 @@ use crate::record::row::Stamp;
 use crate::scenario::Scenario;
 use crate::time::Span;
 
-/// Sections of a boom, and of a wing.
+/// Number of sections of a boom, and of a wing.
 const SECTIONS: usize = 6;
-/// A body without distant points is drawn as if there were one this far off (m).
+/// Size (m) of the scene of a body without distant points.
 const SIZE: f64 = 10.0;
-/// Points nearer to the centre of mass than this (m) are part of the hub.
+/// Distance (m) from the centre of mass below which points are part of the hub.
 const NEAR: f64 = 1.0;
-/// How many times as much as the hub the wings bend, the other way.
+/// Bending of the wings, relative to the elastic rotation of the hub and against it.
 const SWING: f64 = 2.0;
-/// Nothing is drawn as bent by more (rad).
+/// Largest bending that is drawn (rad).
 const LARGEST: f64 = 1.2;
 
-/// A point of the structure, and what the modes do there.
+/// Point of the structure, with the mode shapes there.
 #[derive(Clone, Debug)]
 struct Point {
     name: String,
@@ -42,7 +42,7 @@ struct Point {
 }
 
 impl Point {
-    /// Translation (m) and rotation (rad), for modes with these phases.
+    /// Returns translation (m) and rotation (rad) of the point for these states of the modes.
     fn moved(&self, modes: &[Phase]) -> (Vector, Vector) {
         let zero = (Vector::zeros(), Vector::zeros());
         self.shapes.iter().zip(modes).fold(zero, |(u, theta), ((f, phi), mode)| {
@@ -55,7 +55,7 @@ impl Point {
     }
 }
 
-/// The scene.
+/// Scene of a three-axis body.
 #[derive(Clone, Debug)]
 pub struct SpatialScene {
     /// Period of the frames.
@@ -65,16 +65,16 @@ pub struct SpatialScene {
     /// Distance of the farthest point (m).
     size: f64,
     points: Vec<Point>,
-    /// Which nozzles burn for plus and for minus about each axis.
+    /// Nozzles that fire for plus and for minus about each axis.
     groups: [[Vec<usize>; 2]; 3],
     plumes: Burning,
     frames: FrameTransforms,
-    /// What turns each wing, a drive or one of the hinges behind them, and about which axis.
+    /// Angle index (a drive, or one of the hinges after the drives) and rotation axis of each wing.
     turned: [Option<(usize, Vector)>; 2],
 }
 
 impl SpatialScene {
-    /// The scene of a loop.
+    /// Creates the scene of a scenario.
     pub fn new(scenario: &Scenario, body: &Spatial) -> Self {
         let spec = &scenario.log.scene;
         let jets = scenario.actuator.jets().map(|(jets, _)| jets);
@@ -145,17 +145,17 @@ impl SpatialScene {
         frames
     }
 
-    /// Length of a section of a wing (m).
+    /// Returns the length of a section of a wing (m).
     fn panel(&self) -> f64 {
         1.1 * self.size / SECTIONS as f64
     }
 
-    /// How far it reaches, and its frames.
+    /// Returns the extent of the scene.
     pub fn extent(&self) -> Extent {
         Extent::new(1.2 * self.size, &self.frames)
     }
 
-    /// What the scene consists of.
+    /// Returns the entities of the scene.
     pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
         let size = self.size;
         let mut hub = entity(stamp, BODY, "hub");
@@ -195,7 +195,7 @@ impl SpatialScene {
         scene(entities)
     }
 
-    /// Where the frames are, at an attitude, with modes of these phases, and drives and hinges at these angles (rad).
+    /// Updates the frames to an attitude, states of the modes, and angles of drives and hinges (rad).
     pub fn frames(
         &mut self,
         stamp: Stamp,
@@ -218,7 +218,7 @@ impl SpatialScene {
                 (point.at * along + u, about(theta) * from_z(point.at.normalize()))
             }));
         }
-        // Each section of a wing is turned further than the one before by the same rule, on both sides.
+        // Rotations from each section of a wing to the next, the same on both sides.
         let tip = limited(hub.1 * -SWING, LARGEST);
         let shape = |section: usize| {
             libm::sin(std::f64::consts::FRAC_PI_2 * (section as f64 + 0.5) / SECTIONS as f64)
@@ -242,13 +242,14 @@ impl SpatialScene {
         &self.frames
     }
 
-    /// How a point moves as drawn: by how much (m), and by which rotation (rad).
+    /// Returns translation (m) and rotation (rad) of a point as drawn.
     fn drawn(&self, point: &Point, modes: &[Phase]) -> (Vector, Vector) {
         let (u, theta) = point.moved(modes);
         (limited(u * self.bending, LARGEST * self.size), limited(theta * self.bending, LARGEST))
     }
 
-    /// The plumes where the jets of each axis push this way, or thrusters are so far open, if they are new.
+    /// Returns the plumes if they have changed: where jets of each axis push with these signs, or where thrusters are
+    /// open by `open`.
     pub fn plumes(&mut self, stamp: Stamp, signs: [f64; 3], open: Vec<f64>) -> Option<Plumes> {
         if !open.is_empty() {
             return self.plumes.change(stamp, open);
@@ -261,7 +262,7 @@ impl SpatialScene {
     }
 }
 
-/// What turns the wings: the first drives or hinges on their sides, or the only one turns both. Drives turn them about y.
+/// Finds the drive or hinge of each wing: the first on its side, or the only one for both. Drives rotate wings about y.
 fn wings(scenario: &Scenario) -> [Option<(usize, Vector)>; 2] {
     let Some(drives) = &scenario.study.drives else { return [None; 2] };
     let mut hinges = drives.driven.drives();
@@ -276,7 +277,7 @@ fn wings(scenario: &Scenario) -> [Option<(usize, Vector)>; 2] {
         Some((by, axis, panel.root.y))
     };
     let turned: Vec<_> = drives.driven.panels.iter().filter_map(&mut axis).collect();
-    // The first wing is that to y.
+    // The first wing points to +y.
     let of = |side: f64| {
         let own = turned.iter().find(|(.., root)| root * side > 0.0).or(turned.first());
         own.map(|(by, axis, _)| (*by, *axis))
@@ -284,8 +285,8 @@ fn wings(scenario: &Scenario) -> [Option<(usize, Vector)>; 2] {
     [of(1.0), of(-1.0)]
 }
 
-/// Translation and rotation of a straight boom to a point, at a part of its length, between those of its ends: a cubic
-/// whose slopes are the rotations.
+/// Returns translation and rotation of a straight boom to a point at the fraction `s` of its length, between those of
+/// its ends: a cubic whose slopes are the rotations.
 fn between(to: Vector, from: (Vector, Vector), end: (Vector, Vector), s: f64) -> (Vector, Vector) {
     let (slope0, slope1) = (from.1.cross(&to), end.1.cross(&to));
     let (s2, s3) = (s * s, s * s * s);
@@ -301,7 +302,7 @@ fn between(to: Vector, from: (Vector, Vector), end: (Vector, Vector), s: f64) ->
     (u, direction.cross(&slope) / to.norm() + direction * twist)
 }
 
-/// The frame of a point, apart from those of the scene's own parts whatever the point is called.
+/// Returns the frame name of a point, which differs from all frames of the scene's other entities.
 fn point_frame(point: &str) -> String {
     format!("point_{point}")
 }

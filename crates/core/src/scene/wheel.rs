@@ -1,4 +1,4 @@
-//! The wheel of a body with one angle: a disc that turns by its momentum.
+//! Wheel of a one-axis body: a disc that rotates by its momentum.
 
 use super::PlanarView;
 use super::magnification::{rate, slowing};
@@ -10,22 +10,22 @@ use crate::record::row::Stamp;
 use crate::scenario::Scenario;
 use crate::time::Span;
 
-/// A wheel without a rotor of its own is drawn with this part of the body's inertia.
+/// Inertia of a wheel without a rotor model, relative to the body's inertia, as drawn.
 const ROTOR: f64 = 0.02;
 
-/// A wheel: its speed at the start (rad/s), and how many times as much as the body it turns the other way.
+/// Wheel: its initial speed (rad/s), and the ratio by which it rotates against the body.
 #[derive(Clone, Debug)]
 pub struct SceneWheel {
     speed: f64,
     ratio: f64,
-    /// How many times slower it is drawn than it turns.
+    /// Factor by which the drawn rotation is slower than the true one.
     pub slowed: f64,
     /// Angle and rate of the body at the start (rad, rad/s).
     from: (f64, f64),
 }
 
 impl SceneWheel {
-    /// That of a scenario, if it has one, for frames with this period.
+    /// Returns the wheel of a scenario for frames with a period; `None` without a wheel.
     pub fn of(scenario: &Scenario, body: &Planar, period: Span) -> Option<Self> {
         let (wheel, _) = scenario.actuator.wheel()?;
         let (speed, inertia) = match &wheel.rotor {
@@ -38,7 +38,7 @@ impl SceneWheel {
         Some(Self { speed, ratio, slowed, from })
     }
 
-    /// The angle by which it is drawn as turned (rad): the integral of its speed, which is what the body's momentum leaves it.
+    /// Returns the drawn angle of the wheel (rad): the integral of its speed, which follows from the body's momentum.
     pub fn angle(&self, view: PlanarView<'_>) -> f64 {
         let (angle, rate) = self.from;
         let turned = self.speed * view.time - self.ratio * (view.rigid_angle - angle - rate * view.time);
@@ -46,7 +46,7 @@ impl SceneWheel {
     }
 }
 
-/// A disc on a hub with this half edge (m), with a mark that shows how it turns.
+/// Creates a disc on a hub with the half edge `half` (m), with a mark that shows the rotation.
 pub fn disc(stamp: Stamp, half: f64) -> SceneEntity {
     let mut disc = entity(stamp, "wheel", "wheel");
     let (low, high) = (Vector::z() * (-0.15 * half), Vector::z() * (0.15 * half));

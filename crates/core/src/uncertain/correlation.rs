@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 use crate::document::Fault;
 use crate::quantity::Finite;
 
-/// What rounding leaves of a variance of 0 (`[[1, 1], [1, 1]]` is accepted).
+/// Bound of the rounding errors of a zero variance (`[[1, 1], [1, 1]]` is accepted).
 const ROUNDING: f64 = 1e-12;
 
-/// Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix correlates these numbers,
-/// and each key keeps its own distribution. For normal distributions these are the correlations of the keys.
+/// Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix correlates these
+/// numbers, and each key keeps its own distribution. For normal distributions these are the correlations of the keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Correlated {
@@ -21,7 +21,7 @@ pub struct Correlated {
 }
 
 impl Correlated {
-    /// What is wrong with it, if anything is.
+    /// Returns the first inconsistency of the correlations.
     pub(crate) fn fault(&self) -> Option<Fault> {
         let fault = |key: &str, why: String| Some(Fault::new(key, why));
         let order = self.keys.len();
@@ -59,7 +59,8 @@ impl Correlated {
         None
     }
 
-    /// The lower triangle whose product with its transpose is the matrix (Cholesky); none of one with a negative eigenvalue.
+    /// Returns the lower triangle whose product with its transpose is the matrix (Cholesky); `None` if an eigenvalue is
+    /// negative.
     fn factor(&self) -> Option<Vec<Vec<f64>>> {
         let order = self.keys.len();
         let mut factor = vec![vec![0.0; order]; order];
@@ -82,9 +83,9 @@ impl Correlated {
         Some(factor)
     }
 
-    /// Independent standard normal numbers, one for each key, as correlated ones.
+    /// Returns correlated standard normal numbers, one for each key, computed from independent ones.
     pub fn correlate(&self, independent: &[f64]) -> Vec<f64> {
-        // The scenario was checked: there is a factor.
+        // The scenario was checked, so the factor exists.
         let factor = self.factor().unwrap_or_default();
         factor.iter().map(|row| row.iter().zip(independent).map(|(a, b)| a * b).sum()).collect()
     }
@@ -136,7 +137,7 @@ mod tests {
         assert!(why(&[&[1.0, 0.5], &[0.5]]).contains("as many as keys"));
         let impossible: [&[f64]; 3] = [&[1.0, 0.9, -0.9], &[0.9, 1.0, 0.9], &[-0.9, 0.9, 1.0]];
         assert!(why(&impossible).contains("negative eigenvalue"));
-        // Keys that are one and the same number.
+        // Keys with one and the same number.
         assert_eq!(of(&[&[1.0, 1.0], &[1.0, 1.0]]).fault(), None);
         assert_eq!(of(&[&[1.0, 1.0], &[1.0, 1.0]]).correlate(&[0.5, 2.0]), [0.5, 0.5]);
     }

@@ -188,7 +188,7 @@ fn option(argument: &Arg, arguments: &mut Vec<String>, chance: &mut Chance) {
     arguments.push(tame(value, names_file || name == "docs"));
 }
 
-/// What is written stays where the command runs.
+/// Confines output paths to the directory where the command runs.
 fn tame(value: String, names_file: bool) -> String {
     let leaves =
         value.contains("..") || names_file && value.starts_with('/') && !value.starts_with("/dev/null/");

@@ -1,4 +1,4 @@
-//! What viewers send to a live run: requests to upgrade, frames, and the words within; and a run to send them to.
+//! Messages of viewers to a live run: requests to upgrade, frames, and the words within; and a run that receives them.
 
 use std::ffi::OsString;
 use std::io::{self, Read, Write};
@@ -14,12 +14,12 @@ use crate::chance::Chance;
 use crate::node::Node;
 use crate::{mutate, nasty};
 
-/// The run that viewers watch.
+/// Run that viewers watch.
 const RUN: &str = include_str!("../../../../scenarios/relay-fixed.toml");
 const COMMAND: &str = "simulate s.toml --log none --set duration=1e7 --live=127.0.0.1:0 --speed 50";
-/// A run is served, and a viewer that behaves is answered, within this time: others may keep the processor busy.
+/// Time within which a run is served and a correct viewer answered, while others may keep the processor busy.
 const PATIENCE: Duration = Duration::from_secs(60);
-/// A viewer says farewell.
+/// Closing frame of a viewer.
 const FAREWELL: [u8; 6] = [0x88, 0x80, 0, 0, 0, 0];
 
 pub fn make(chance: &mut Chance) -> Case {
@@ -30,12 +30,12 @@ pub fn make(chance: &mut Chance) -> Case {
     if chance.percent(15) {
         mutate::bytes(&mut sent, chance);
     }
-    // A flood is another matter than bytes that are wrong.
+    // A flood of bytes is another case than wrong bytes.
     sent.truncate(1 << 22);
     Case::new(COMMAND, vec![("s.toml".to_owned(), RUN.as_bytes().to_vec()), (SENT.to_owned(), sent)])
 }
 
-/// A request to upgrade as it should be.
+/// Returns a correct request to upgrade.
 fn hello() -> String {
     "GET / HTTP/1.1\r\nHost: 127.0.0.1\r\nConnection: Upgrade\r\nUpgrade: websocket\r\nSec-WebSocket-Version: 13\r\n\
      Sec-WebSocket-Key: dGhlIHNhbXBsZSBub25jZQ==\r\nSec-WebSocket-Protocol: foxglove.sdk.v1\r\n\r\n"
@@ -185,18 +185,18 @@ impl Server {
         Err(io::Error::other("the run does not say where it is served"))
     }
 
-    /// Whether the run has ended, as a viewer may make it do.
+    /// Returns true if the run has ended, which a viewer may cause.
     pub fn has_ended(&self) -> bool {
         self.run.is_finished()
     }
 
-    /// Sends the bytes of a viewer, and takes what comes.
+    /// Sends the bytes of a viewer, and reads the answers.
     pub fn receive(&self, sent: &[u8]) {
         let Ok(mut stream) = TcpStream::connect(&self.address) else { return };
         let _ = stream.set_write_timeout(Some(Duration::from_millis(200)));
         let _ = stream.set_read_timeout(Some(Duration::from_millis(3)));
         let mut taken = vec![0; 1 << 16];
-        // In parts, between which answers are taken: nobody waits for the other.
+        // In pieces, between which answers are read, so that neither side blocks.
         for part in sent.chunks(1 << 15) {
             if stream.write_all(part).is_err() {
                 break;
@@ -207,7 +207,7 @@ impl Server {
         while began.elapsed() < Duration::from_millis(10) && stream.read(&mut taken).is_ok_and(|n| n > 0) {}
     }
 
-    /// Whether a viewer that behaves is served as it should be.
+    /// Returns true if a correct viewer is served.
     pub fn serves(&self) -> bool {
         let began = Instant::now();
         while began.elapsed() < PATIENCE && !self.has_ended() {

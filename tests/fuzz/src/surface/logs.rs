@@ -17,7 +17,7 @@ use crate::case::Case;
 use crate::chance::Chance;
 use crate::{mutate, nasty};
 
-/// The scenarios of the logs, and how much of them is run.
+/// Scenarios of the logs, with their settings and details.
 const RUNS: &[(&str, &str, Detail)] = &[
     ("relay-adaptive", "40.0", Detail::Full),
     ("rotation-sine", "1.0", Detail::Full),
@@ -57,7 +57,7 @@ fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Err
     Ok(log.finish(&metrics, RunEnd::Complete)?)
 }
 
-/// The same log without compression.
+/// Returns a log without compression.
 fn plain(log: &[u8]) -> mcap::McapResult<Vec<u8>> {
     let options = mcap::WriteOptions::new().compression(None).chunk_size(Some(1 << 14)).library("flexsc");
     let mut writer = mcap::Writer::with_options(Cursor::new(Vec::new()), options)?;
@@ -139,7 +139,7 @@ fn log(logs: &[Vec<u8>], seeds: &Seeds, topic: &str, chance: &mut Chance) -> Vec
         bytes = records::seal(&records);
     }
     match chance.below(10) {
-        // The checksums are gone: what is changed now is read.
+        // Checksums are removed, so that changed bytes are read.
         0 | 1 => {
             let mut records = records::read(&bytes);
             let offsets: Vec<_> = (0..records.len())

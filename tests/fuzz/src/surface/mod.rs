@@ -1,4 +1,4 @@
-//! The surfaces on which input comes in, and what makes inputs for them.
+//! Surfaces on which input arrives, and the makers of their inputs.
 
 mod arguments;
 mod live;
@@ -34,7 +34,7 @@ pub enum Surface {
     Live,
 }
 
-/// Makes the inputs of a surface.
+/// Maker of the inputs of a surface.
 pub struct Maker {
     surface: Surface,
     seed: u64,
@@ -42,11 +42,11 @@ pub struct Maker {
     logs: Vec<Vec<u8>>,
 }
 
-/// What inputs are made from.
+/// Material of the inputs.
 pub struct Seeds {
-    /// The scenarios that are shipped, by their names: text and tree.
+    /// Shipped scenarios, by their names: text and tree.
     pub scenarios: Vec<(String, String, Node)>,
-    /// The same trees alone.
+    /// Trees of the shipped scenarios.
     pub trees: Vec<Node>,
     /// Sparse and dense matrices as NumPy writes them.
     pub archives: Vec<(String, Vec<u8>)>,
@@ -87,7 +87,7 @@ impl Maker {
         Ok(Self { surface, seed, seeds, logs })
     }
 
-    /// The input of a number.
+    /// Returns the input of a number.
     pub fn make(&self, number: u64) -> Case {
         let chance = &mut Chance::new(self.seed, self.surface as usize, number);
         match self.surface {

@@ -2,7 +2,7 @@
 
 use mcap::MAGIC;
 
-/// What the records that matter here are called.
+/// Opcodes of the records that matter here.
 pub mod op {
     pub const FOOTER: u8 = 0x02;
     pub const SCHEMA: u8 = 0x03;
@@ -18,20 +18,20 @@ pub mod op {
     pub const DATA_END: u8 = 0x0f;
 }
 
-/// What comes before the records of a chunk: two times, size, checksum.
+/// Length of a chunk's head before its records: two times, size, checksum.
 const CHUNK_HEAD: usize = 28;
 
 /// A record.
 #[derive(Clone)]
 pub struct Record {
     pub op: u8,
-    /// Of a chunk whose records are read, only its head.
+    /// Content; for a chunk whose records are read, its head only.
     pub body: Vec<u8>,
-    /// The records of a chunk that is not compressed.
+    /// Records of a chunk that is not compressed.
     pub within: Vec<Record>,
 }
 
-/// The records of a file, up to where it makes no sense.
+/// Reads the records of a file, up to the first invalid one.
 pub fn read(bytes: &[u8]) -> Vec<Record> {
     parse(bytes.strip_prefix(MAGIC).unwrap_or(bytes))
 }
@@ -74,10 +74,10 @@ pub fn string(bytes: &[u8], at: usize) -> Option<std::ops::Range<usize>> {
     (at + 4 + length <= bytes.len()).then_some(at + 4..at + 4 + length)
 }
 
-/// Where a record begins, and its length.
+/// Start of a record, and its length.
 type Place = (u64, u64);
 
-/// The file of these records. Offsets lead to where things are now, and checksums are left out, which the format allows.
+/// Writes the file of these records. Offsets are adjusted, and checksums are left out, which the format allows.
 pub fn seal(records: &[Record]) -> Vec<u8> {
     let mut out = MAGIC.to_vec();
     let mut places: Vec<(u8, Place)> = Vec::new();

@@ -6,7 +6,7 @@ use crate::chance::Chance;
 use crate::mutate;
 use crate::node::Node;
 
-/// What is done with them.
+/// Commands that are run with the scenarios.
 const COMMANDS: &[&str] = &[
     "check s.toml",
     "check s.toml",

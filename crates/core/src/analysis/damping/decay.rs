@@ -1,4 +1,4 @@
-//! The decay of a mode under a relay: its amplitude over time, with and without a threshold. Ours.
+//! Decay of a mode under a relay: its amplitude over time, with and without a threshold. Derived for this project.
 
 use std::f64::consts::FRAC_PI_2;
 
@@ -8,33 +8,35 @@ use crate::numerics::quadrature;
 /// dV/dt = -r V - s sqrt(1 - (g/V)²).
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Decay {
-    /// Fall by the relay s (rad/s²): 2 a E/pi, negative where it feeds the mode.
+    /// Decrease rate s of the amplitude by the relay (rad/s²): 2 a E/pi, negative where the relay drives the mode.
     pub slope: f64,
-    /// Decay rate of the mode itself r, zeta w (1/s).
+    /// Decay rate r of the free mode, zeta w (1/s).
     pub rate: f64,
 }
 
 impl Decay {
-    /// A decay under an acceleration of which a part damps, a E (rad/s²), with the mode's own rate zeta w (1/s).
+    /// Creates the decay under the damping part a E of an acceleration (rad/s²), with the decay rate zeta w of the free
+    /// mode (1/s).
     pub fn new(effective: f64, rate: f64) -> Self {
         Self { slope: effective / FRAC_PI_2, rate }
     }
 
-    /// Amplitude (rad/s) after a time (s) without a threshold, (V0 + s/r) exp(-r t) - s/r, and 0 once it is there.
+    /// Returns the amplitude (rad/s) after `time` (s) without a threshold: (V0 + s/r) exp(-r t) - s/r, at least 0.
     pub fn amplitude(&self, start: f64, time: f64) -> f64 {
         let turn = self.rate * time;
         let mean = if turn > 0.0 { -libm::expm1(-turn) / turn } else { 1.0 };
         (start * libm::exp(-turn) - self.slope * time * mean).max(0.0)
     }
 
-    /// Amplitude (rad/s) after a time (s) with a threshold and no damping of the mode's own:
-    /// sqrt(V² - g²) = sqrt(V0² - g²) - s t, and g once it is there.
+    /// Returns the amplitude (rad/s) after `time` (s) with a threshold and without natural damping: sqrt(V² - g²) =
+    /// sqrt(V0² - g²) - s t, at least g.
     pub fn amplitude_above(&self, start: f64, threshold: f64, time: f64) -> f64 {
         let left = f64::sqrt((start - threshold) * (start + threshold)) - self.slope * time;
         libm::hypot(left.max(0.0), threshold)
     }
 
-    /// Time (s) in which the amplitude falls from `start` to a threshold, also 0; none if it does not.
+    /// Returns the time (s) in which the amplitude falls from `start` to a threshold, which may be 0; `None` if it does
+    /// not.
     pub fn threshold_time(&self, start: f64, threshold: f64) -> Option<f64> {
         if start <= threshold {
             return Some(0.0);
@@ -53,7 +55,8 @@ impl Decay {
         Some(self.integral(start, threshold, |_| 1.0))
     }
 
-    /// The integral of a function of V/g over the time from `start` to a threshold.
+    /// Returns the integral of a function of V/g over the time in which the amplitude falls from `start` to a
+    /// threshold.
     fn integral(&self, start: f64, threshold: f64, of: impl Fn(f64) -> f64) -> f64 {
         // With V = g cosh u the integrand is smooth at the threshold.
         let part = |_, u: f64| {
@@ -63,13 +66,13 @@ impl Decay {
         quadrature::integral(&[0.0, libm::acosh(start / threshold)], 0.5, part)
     }
 
-    /// Part of the time under thrust at an amplitude: (2/pi) acos(g/V).
+    /// Returns the fraction of the time under thrust at an amplitude: (2/pi) acos(g/V).
     pub fn duty(amplitude: f64, threshold: f64) -> f64 {
         if amplitude <= threshold { 0.0 } else { libm::acos(threshold / amplitude) / FRAC_PI_2 }
     }
 
-    /// Time under thrust (s) until the threshold; none if the amplitude does not get there. Without damping of the mode's
-    /// own (2 g/(pi s)) (theta tan(theta) + ln cos(theta)) with cos(theta) = g/V0.
+    /// Returns the time under thrust (s) until the amplitude reaches the threshold; `None` if it does not. Without
+    /// natural damping the time is (2 g/(pi s)) (theta tan(theta) + ln cos(theta)) with cos(theta) = g/V0.
     pub fn thrust_time(&self, start: f64, threshold: f64) -> Option<f64> {
         let whole = self.threshold_time(start, threshold)?;
         if threshold == 0.0 || start <= threshold {

@@ -1,18 +1,18 @@
-//! Whether the measurements of an observer distinguish its parameters.
+//! Persistence of excitation: a measure of how well an observer's measurements distinguish its parameters.
 
 use nalgebra::{DMatrix, SymmetricEigen};
 
-/// The Gram matrix of the sensitivities of the prediction to each parameter, summed over samples.
+/// Gram matrix of the sensitivities of the prediction to each parameter, summed over samples.
 #[derive(Clone, Debug)]
 pub struct Excitation(DMatrix<f64>);
 
 impl Excitation {
-    /// Of so many parameters, nothing seen yet.
+    /// Creates the matrix for a number of parameters, before the first sample.
     pub fn new(parameters: usize) -> Self {
         Self(DMatrix::zeros(parameters, parameters))
     }
 
-    /// Takes the sensitivities at a sample, one for each parameter.
+    /// Adds the sensitivities at a sample, one for each parameter.
     pub fn add(&mut self, sensitivities: &[f64]) {
         for (i, a) in sensitivities.iter().enumerate() {
             for (j, b) in sensitivities.iter().enumerate() {
@@ -21,8 +21,9 @@ impl Excitation {
         }
     }
 
-    /// Persistence of excitation: the least eigenvalue of the matrix, each parameter's sensitivities normalised to
-    /// length 1. It is 1 where the parameters are distinguished as well as can be, 0 where some combination of them is never
+    /// Returns the persistence of excitation: the least eigenvalue of the matrix, with each parameter's sensitivities
+    /// normalised to length 1. It is 1 where the parameters are distinguished as well as possible, and 0 where some
+    /// combination of them is not observable; `None` if there are no parameters, or if one was never excited.
     /// seen; none if there are no parameters, or one that was never excited.
     pub fn persistence(&self) -> Option<f64> {
         let count = self.0.nrows();
@@ -36,8 +37,8 @@ impl Excitation {
     }
 }
 
-/// The persistence of excitation of these sensitivities, one row a sample, one column a parameter; none if there are no
-/// numbers, rows of different length or a parameter that was never excited.
+/// Returns the persistence of excitation of sensitivities, with a row for each sample and a column for each parameter;
+/// `None` if there are no numbers, if rows differ in length, or if a parameter was never excited.
 pub fn persistence(sensitivities: &[Vec<f64>]) -> Option<f64> {
     let count = sensitivities.first()?.len();
     if sensitivities.iter().any(|row| row.len() != count) {

@@ -1,7 +1,8 @@
-//! When the recurrence observer converges, its regressor the oscillation that it is.
+//! Convergence of the recurrence observer with its true regressor, the oscillation of the mode.
 //!
-//! Linear in the errors, each cycle is a matrix that depends on the phase of the elastic rate, and after a number of cycles
-//! that phase returns. Gains that the frozen regressor allows are too large by a factor of hundreds. Ours.
+//! Each cycle of the linearised errors is a matrix that depends on the phase of the elastic rate; after a number of
+//! cycles this phase returns. The frozen regressor allows gains that are too large by a factor of hundreds. Derived for
+//! this project.
 
 use nalgebra::linalg::Schur;
 use nalgebra::{Matrix4, RowVector4};
@@ -9,29 +10,29 @@ use serde::Serialize;
 
 use super::Convergence;
 
-/// The most cycles until the phase is taken to return.
+/// Largest number of cycles after which the phase is taken to return.
 const LONGEST: u32 = 400;
-/// So much of a turn apart, two phases are the same.
+/// Difference (turns) below which two phases are the same.
 const SAME: f64 = 1e-9;
-/// The least gain that is tried, the greatest, and the ratio of one to the next.
+/// Least and greatest gain that is tried, and the ratio of consecutive gains.
 const GAINS: [f64; 3] = [1e-4, 10.0, 1.05];
-/// Sweeps after which the search for eigenvalues is given up.
+/// Number of sweeps after which the search for eigenvalues is given up.
 const SWEEPS: usize = 10_000;
 
-/// The gains of the identification that converge.
+/// Gains of the identification with which the observer converges.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct Margin {
-    /// The gain kappa up to which the observer converges.
+    /// Largest gain kappa up to which the observer converges.
     pub gain_max: f64,
-    /// The gain with which it converges soonest.
+    /// Gain with which the observer converges fastest.
     pub gain_best: f64,
-    /// What a cycle leaves of an error with that gain.
+    /// Factor by which a cycle multiplies an error with the gain `gain_best`.
     pub spectral_radius: f64,
 }
 
 impl Convergence {
-    /// What a cycle leaves of an error in the long run, for W4 = kappa/V under an elastic rate V cos(w T n): below 1 it
-    /// converges. Infinite if the eigenvalues cannot be found.
+    /// Returns the factor by which a cycle multiplies an error in the long run, for W4 = kappa/V under an elastic rate
+    /// V cos(w T n): the observer converges below 1. Infinite if the eigenvalues cannot be found.
     pub fn spectral_radius(&self, kappa: f64) -> f64 {
         let count = self.cycles();
         let (mut product, mut scale) = (Matrix4::identity(), 0.0);
@@ -50,7 +51,7 @@ impl Convergence {
         libm::exp((libm::log(largest) + scale) / f64::from(count))
     }
 
-    /// The gains that converge; none if the least that is tried does not.
+    /// Returns the gains with which the observer converges; `None` if it does not with the least gain that is tried.
     pub fn margin(&self) -> Option<Margin> {
         let [least, greatest, ratio] = GAINS;
         let radius = |gain: f64| self.spectral_radius(gain);
@@ -83,7 +84,7 @@ impl Convergence {
         Some(Margin { gain_max: low, gain_best, spectral_radius: radius(gain_best) })
     }
 
-    /// After how many cycles the phase returns, or as nearly as it gets.
+    /// Returns the number of cycles after which the phase returns, or returns most nearly.
     fn cycles(&self) -> u32 {
         let turn = self.frequency * self.period / (2.0 * std::f64::consts::PI);
         let apart = |count: u32| {
@@ -94,8 +95,8 @@ impl Convergence {
         (1..=LONGEST).find(|&count| apart(count) < SAME).unwrap_or(nearest)
     }
 
-    /// One cycle of the errors: of the predicted rigid rate, of the predicted elastic rate, of the elastic rate one sample
-    /// before, and of A times V.
+    /// Returns the matrix of one cycle of the errors: of the predicted rigid rate, of the predicted elastic rate, of
+    /// the elastic rate one sample before, and of A times V.
     fn cycle(&self, kappa: f64, cycle: u32) -> Matrix4<f64> {
         let ((a, b), [w1, w2, w3]) = (self.recurrence(), self.weights);
         let step = self.frequency * self.period;

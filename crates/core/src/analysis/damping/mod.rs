@@ -1,8 +1,8 @@
 //! Active damping of an elastic mode by the spacecraft's own relay thrusters, in closed form.
 //!
-//! The thrusters push against the elastic rate g' that an observer estimates: g'' + 2 zeta w g' + w² g = -a sign g', with
-//! a = mu m, the influence of the thrusters times their rigid acceleration (\[Timakov14\], page 48). Beside it, when that
-//! adaptive observer converges.
+//! The thrusters push against the elastic rate g' that an observer estimates: g'' + 2 zeta w g' + w² g = -a sign g',
+//! with a = mu m, the influence of the thrusters times their rigid acceleration (\[Timakov14\], page 48). The module
+//! also analyses the convergence of this adaptive observer.
 
 mod convergence;
 mod decay;
@@ -23,37 +23,37 @@ pub use floquet::Margin;
 /// No mode turns further (rad) from a sample to its push.
 const FARTHEST: f64 = 1e5;
 
-/// A mode under a relay.
+/// Result of active damping of one mode by a relay.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct DampedMode {
     /// Natural frequency (rad/s).
     pub frequency_rad_s: f64,
-    /// Part of the push that damps: negative where it feeds the mode.
+    /// Fraction of the push that damps: negative where the push drives the mode.
     pub phase_factor: f64,
-    /// Fall of the amplitude of the elastic rate that the relay makes at any amplitude (rad/s²).
+    /// Decrease rate of the amplitude of the elastic rate by the relay, at any amplitude (rad/s²).
     pub slope_rad_s2: f64,
-    /// The longest delay that still damps (s); negative where even none is too long.
+    /// Longest delay with which the relay still damps (s); negative where it does not even without a delay.
     pub delay_limit_s: f64,
-    /// The largest stable gain of a linear feedback of the rate with the mean delay (1/s); none without a delay.
+    /// Largest stable gain of a linear rate feedback with the mean delay (1/s); none without a delay.
     pub gain_limit_1_s: Option<f64>,
-    /// Amplitude (rad/s) and frequency (rad/s) of the limit cycle in which the relay ends; none without a delay.
+    /// Amplitude of the limit cycle in which the relay ends (rad/s); none without a delay.
     pub limit_cycle_rate_rad_s: Option<f64>,
-    /// See `limit_cycle_rate_rad_s`.
+    /// Frequency of the limit cycle in which the relay ends (rad/s); none without a delay.
     pub limit_cycle_frequency_rad_s: Option<f64>,
-    /// Time to bring the amplitude to the threshold (s); none where it does not get there.
+    /// Time in which the amplitude falls to the threshold (s); none if it does not.
     pub decay_s: Option<f64>,
-    /// Time of that under thrust (s).
+    /// Time under thrust within `decay_s` (s).
     pub thrust_s: Option<f64>,
 }
 
-/// A relay against the modes of one damping ratio.
+/// Relay that damps modes of one damping ratio.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct PulsedDamping {
-    /// When the relay pushes.
+    /// Timing of the relay's pushes.
     pub timing: PulseTiming,
     /// Damping ratio of the modes.
     pub damping: f64,
-    /// Elastic acceleration of a push, a (rad/s²).
+    /// Elastic acceleration a of a push (rad/s²).
     pub acceleration: f64,
     /// Amplitude of the elastic rate at the start (rad/s).
     pub amplitude: f64,
@@ -62,7 +62,7 @@ pub struct PulsedDamping {
 }
 
 impl PulsedDamping {
-    /// The first number that is out of its range, by its name, and what is wrong with it.
+    /// Returns the name of the first number that is out of range, and the reason.
     pub fn inconsistency(&self) -> Option<(&'static str, String)> {
         let Self { timing, damping, acceleration, amplitude, threshold } = *self;
         let from_zero = [
@@ -107,7 +107,7 @@ impl PulsedDamping {
         })
     }
 
-    /// What the relay does to a mode of each of these natural frequencies (rad/s).
+    /// Returns the result of the relay for a mode of each of these natural frequencies (rad/s).
     pub fn table(&self, frequencies: &[f64]) -> Vec<DampedMode> {
         frequencies.iter().map(|frequency| self.mode(*frequency)).collect()
     }

@@ -1,35 +1,35 @@
-//! The closed loop: its matrix from sample to sample, and the angle at the samples.
+//! Closed sampled loop: its matrix from sample to sample, and the angle at the samples.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::CommandPath;
 
-/// Samples that one product with a matrix gives.
+/// Number of samples that one product with a matrix gives.
 const BLOCK: usize = 32;
-/// Rows that are summed side by side.
+/// Number of rows that are summed together.
 const LANES: usize = 8;
 
-/// A closed loop: u = shape(-feedback s), s+ = free s + forced u, x = angle s.
+/// Closed loop: u = shape(-feedback s), s+ = free s + forced u, x = angle s.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ClosedLoop {
-    /// Transition without the command.
+    /// Transition matrix of the state without the command.
     pub free: DMatrix<f64>,
-    /// What a unit of the command adds.
+    /// Change of the state for a unit of the command.
     pub forced: DVector<f64>,
-    /// What the command is made of.
+    /// Row that gives the negative command from the state.
     pub feedback: RowDVector<f64>,
-    /// What the angle (rad) is made of.
+    /// Row that gives the angle (rad) from the state.
     pub angle: RowDVector<f64>,
-    /// The state at the start.
+    /// State at the start.
     pub start: DVector<f64>,
-    /// Period of the samples (s).
+    /// Sampling period (s).
     pub period: f64,
-    /// What shapes the command; none for a linear loop.
+    /// Nonlinear path of the command; none for a linear loop.
     pub shape: Option<CommandPath>,
 }
 
 impl ClosedLoop {
-    /// A loop of so many states in which nothing happens.
+    /// Returns a loop of `order` states whose matrices are zero.
     pub(super) fn resting(order: usize) -> Self {
         Self {
             free: DMatrix::zeros(order, order),
@@ -42,19 +42,19 @@ impl ClosedLoop {
         }
     }
 
-    /// The matrix of the linear loop, s+ = M s: all of the command is executed.
+    /// Returns the matrix of the linear loop, s+ = M s, in which all of the command is executed.
     pub fn matrix(&self) -> DMatrix<f64> {
         &self.free - &self.forced * &self.feedback
     }
 
-    /// The angle at the first so many samples (rad), the start first.
+    /// Returns the angle at the first `count` samples (rad), the start first.
     pub fn angles(&self, count: usize) -> Vec<f64> {
         let mut angles = Vec::with_capacity(count);
         self.each_angle(count, |angle| angles.push(angle));
         angles
     }
 
-    /// Tells the angle at each of the first so many samples (rad), the start first.
+    /// Calls `tell` with the angle at each of the first `count` samples (rad), the start first.
     pub fn each_angle(&self, count: usize, tell: impl FnMut(f64)) {
         match &self.shape {
             None => self.each_linear(count, tell),
@@ -62,8 +62,8 @@ impl ClosedLoop {
         }
     }
 
-    /// A block of samples and the state after it are one product with a matrix: the angles are c s, c M s, c M² s, ...,
-    /// and the state is M^32 s.
+    /// Calls `tell` with the angles of a linear loop. A block of samples and the state after it are one product with a
+    /// matrix: the angles are c s, c M s, c M² s, ..., and the state is M^32 s.
     fn each_linear(&self, count: usize, mut tell: impl FnMut(f64)) {
         let matrix = self.matrix();
         let order = matrix.nrows();
@@ -95,13 +95,13 @@ impl ClosedLoop {
     }
 }
 
-/// A matrix by panels of rows that lie side by side in memory, column after column.
+/// Matrix in panels of rows; the rows of a panel are adjacent in memory, column after column.
 pub(super) struct Panels {
     panels: Vec<Vec<[f64; LANES]>>,
 }
 
 impl Panels {
-    /// Matrices of the same number of columns, one below the other.
+    /// Packs matrices of the same number of columns, one below the other.
     pub(super) fn new(parts: &[&DMatrix<f64>]) -> Self {
         let columns = parts.first().map_or(0, |part| part.ncols());
         let rows: usize = parts.iter().map(|part| part.nrows()).sum();
@@ -116,12 +116,12 @@ impl Panels {
         Self { panels }
     }
 
-    /// The number of rows, filled up with zeros to whole panels.
+    /// Returns the number of rows, filled up with zeros to whole panels.
     pub(super) fn rows(&self) -> usize {
         self.panels.len() * LANES
     }
 
-    /// The product with a vector.
+    /// Computes the product with a vector.
     pub(super) fn apply(&self, vector: &[f64], out: &mut [f64]) {
         for (panel, out) in self.panels.iter().zip(out.chunks_exact_mut(LANES)) {
             let mut sum = [0.0; LANES];

@@ -1,4 +1,4 @@
-//! What a loop's body does between samples, at given frequencies: all that no gain changes.
+//! Plant of a sampled loop in discrete time at given frequencies: everything that does not depend on the gain.
 
 use nalgebra::{DMatrix, DVector};
 
@@ -6,27 +6,27 @@ use super::{ClosedLoop, Loop};
 use crate::flow::Coupled;
 use crate::law::Differentiation;
 
-/// A loop's body in discrete time, z+ = Ad z + sum of B_i u_{k-n-i}.
+/// Plant of a loop in discrete time, z+ = Ad z + sum of B_i u_{k-n-i}.
 #[derive(Clone, Debug)]
 pub struct DiscreteBody<'a> {
     of: &'a Loop,
     transition: DMatrix<f64>,
-    /// What a unit of the command from n samples ago adds, and of the one before that where a delay parts the period.
+    /// Response to a unit of the command from n samples ago, and to the one before it where a delay divides the period.
     forced: Vec<DVector<f64>>,
-    /// Whole periods of the delay, n.
+    /// Whole periods n of the delay.
     late: usize,
 }
 
 impl Loop {
-    /// Whole periods of the delay, and the part of a period beyond them (s).
+    /// Returns the whole periods of the delay, and the part of a period beyond them (s).
     fn lateness(&self) -> (f64, f64) {
         let periods = self.delay / self.period;
-        // A delay of whole periods is one, whatever its last bits.
+        // A delay of whole periods stays one in spite of rounding.
         let late = libm::floor(periods + 1e-9);
         (late, (periods - late).max(0.0) * self.period)
     }
 
-    /// The spans over which its body's motion is needed (s): a period and, where a delay parts it, its parts.
+    /// Returns the spans over which the body's motion is needed (s): a period and, where a delay divides it, its parts.
     fn spans(&self) -> Vec<f64> {
         let (_, part) = self.lateness();
         if part > 1e-9 * self.period {
@@ -38,13 +38,13 @@ impl Loop {
 }
 
 impl<'a> DiscreteBody<'a> {
-    /// A loop at its own frequencies times these ratios.
+    /// Creates the plant of a loop whose natural frequencies are multiplied by `ratios`.
     pub fn new(of: &'a Loop, ratios: &[f64]) -> Self {
         let coupled = Coupled::new(&of.body, of.back_emf, of.total, ratios);
         Self::from(of, of.spans().into_iter().map(|span| coupled.discrete(span)).collect())
     }
 
-    /// The same at several sets of ratios.
+    /// Creates the plants of a loop for several sets of ratios of the natural frequencies.
     pub fn several(of: &'a Loop, ratios: &[Vec<f64>]) -> Vec<Self> {
         let system = |ratios: &Vec<f64>| Coupled::new(&of.body, of.back_emf, of.total, ratios);
         let systems: Vec<_> = ratios.iter().map(system).collect();
@@ -55,11 +55,11 @@ impl<'a> DiscreteBody<'a> {
         found.chunks(spans.len()).map(|found| Self::from(of, found.to_vec())).collect()
     }
 
-    /// By the transitions over the spans of a loop.
+    /// Creates the plant from the transitions over the spans of a loop.
     fn from(of: &'a Loop, found: Vec<(DMatrix<f64>, DVector<f64>)>) -> Self {
         let (late, _) = of.lateness();
         let mut found = found.into_iter();
-        // The first is always there.
+        // The first transition always exists.
         let (transition, mut whole) =
             found.next().unwrap_or_else(|| (DMatrix::zeros(0, 0), DVector::zeros(0)));
         whole *= of.authority;
@@ -73,9 +73,9 @@ impl<'a> DiscreteBody<'a> {
         Self { of, transition, forced, late: late as usize }
     }
 
-    /// The loop closed with a gain of the extra loop.
+    /// Closes the loop with a gain of the extra loop.
     ///
-    /// Its state is (z, y_{k-1} where the law takes differences, u_{k-1}, u_{k-2}, ... as far as they are still to come).
+    /// The state is (z, y_{k-1} where the law takes differences, u_{k-1}, u_{k-2}, ... as far as they still act).
     pub fn closed(&self, gain: f64) -> ClosedLoop {
         let of = self.of;
         let body = self.transition.nrows();
@@ -83,7 +83,8 @@ impl<'a> DiscreteBody<'a> {
         let pending = body + usize::from(differs);
         let order = pending + self.late + self.forced.len() - 1;
 
-        // y and y' = every displacement and every rate, and the dominant mode's once more.
+        // y and y' are the sums of all displacements and of all rates, with the dominant mode's once more for the extra
+        // loop.
         let weight = |j: usize| if j / 2 == of.dominant + 1 { 1.0 + gain } else { 1.0 };
         let (k_p, k_d) = (of.k_p, of.k_d);
         let (angle, rate, last) = match of.differentiation {
@@ -104,7 +105,7 @@ impl<'a> DiscreteBody<'a> {
             closed.feedback[body] = last;
         }
         closed.free.view_mut((0, 0), (body, body)).copy_from(&self.transition);
-        // The command that is now computed, or what is left of earlier ones.
+        // The current command, or the rest of earlier ones.
         for (i, column) in self.forced.iter().enumerate() {
             match self.late + i {
                 0 => closed.forced.rows_mut(0, body).copy_from(column),
@@ -124,7 +125,7 @@ impl<'a> DiscreteBody<'a> {
         closed
     }
 
-    /// The body's state at the start. y_{-1} is y_0, so that the first difference is 0.
+    /// Writes the initial state of the body. y_{-1} is y_0, so that the first difference is 0.
     fn start(&self, state: &mut DVector<f64>, gain: f64, differs: bool) {
         let body = &self.of.body;
         (state[0], state[1]) = (body.angle.get(), body.rate.get());

@@ -1,16 +1,16 @@
-//! The map of stability and settling over the frequency of the dominant mode and the period of the samples.
+//! Map of stability and settling over the frequency of the dominant mode and the sampling period.
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{DiscreteBody, Loop, Scaling, SettlingWindow};
 
-/// One cell of the map.
+/// Cell of the map.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct MapCell {
     /// Frequency of the dominant mode (rad/s).
     pub frequency_rad_s: f64,
-    /// Period of the samples (s).
+    /// Sampling period (s).
     pub period_s: f64,
     /// Spectral radius: the loop is stable below 1.
     pub spectral_radius: f64,
@@ -20,9 +20,9 @@ pub struct MapCell {
     pub itae_rad_s2: f64,
 }
 
-/// The map with a gain of the extra loop that may depend on the frequency: a row for each frequency (rad/s), within it the
-/// periods (s). Rows are made on the threads of the current rayon pool. A delay of the loop counts as its part of the
-/// period, so that a delay of one sample stays one.
+/// Returns the map with a gain of the extra loop that may depend on the frequency: a row for each frequency (rad/s),
+/// within it the periods (s). Rows are computed on the threads of the current rayon pool. A delay of the loop scales
+/// with the period, so that a delay of one sample stays one.
 pub fn map(
     of: &Loop,
     frequencies: &[f64],

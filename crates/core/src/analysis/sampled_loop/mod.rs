@@ -1,7 +1,7 @@
-//! The sampled loop at constant frequencies: body, wheel and PD law as one linear system from sample to sample.
+//! Sampled loop at constant frequencies: body, wheel and PD law as one linear system from sample to sample.
 //!
-//! u_k = shape(-(k_p y_k + k_d D_k)), held over [k T0, (k + 1) T0) or as much later as the wheel delays it;
-//! y = x + gain x_d with the displacement x_d of the dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)). The
+//! The law is u_k = shape(-(k_p y_k + k_d D_k)), held over [k T0, (k + 1) T0), later by the delay of the wheel; y = x +
+//! gain x_d with the displacement x_d of the dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)). The
 //! reduced moment is m = b u - a x' with b > 0: the papers print k'_u with the sign that feeds back positively.
 
 mod closed;
@@ -26,44 +26,44 @@ pub use robust::{Doubt, Robust, RobustGoal, RobustSearch, robust};
 pub use settling::{Settling, SettlingWindow};
 pub use spectrum::Slowest;
 
-/// A body under a sampled PD law, by way of a wheel or not.
+/// Body under a sampled PD law, with or without a wheel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Loop {
-    /// The body with its natural frequencies, of which each point of an analysis takes a ratio.
+    /// Body with its natural frequencies, which each point of an analysis multiplies by ratios.
     pub body: Planar,
     /// Back-EMF a, k'_omega of the papers (1/s); 0 without a wheel.
     pub back_emf: f64,
-    /// Whether the back-EMF opposes the total rate, elastic part included, or the rigid rate alone.
+    /// True if the back-EMF opposes the total rate, elastic part included; false if it opposes the rigid rate alone.
     pub total: bool,
-    /// Reduced moment for each unit of the command b, k'_u of the papers (rad/s²).
+    /// Reduced moment for each unit of the command, b, k'_u of the papers (rad/s²).
     pub authority: f64,
     /// Proportional gain (units of the command for each rad).
     pub k_p: f64,
     /// Derivative gain (units of the command for each rad/s; for each rad where the difference is raw).
     pub k_d: f64,
-    /// How the derivative is taken.
+    /// Differentiation method of the law.
     pub differentiation: Differentiation,
-    /// The index of the dominant mode, whose displacement the extra loop feeds back.
+    /// Index of the dominant mode, whose displacement the extra loop feeds back.
     pub dominant: usize,
-    /// Period of the samples T0 (s).
+    /// Sampling period T0 (s).
     pub period: f64,
-    /// Time from a sample to the command that is computed from it (s).
+    /// Time from a sample to the start of the command that is computed from it (s).
     pub delay: f64,
-    /// What shapes the command; none where all of it is executed.
+    /// Nonlinear path of the command; none where all of it is executed.
     pub shape: Option<CommandPath>,
 }
 
-/// What becomes of a command before it is executed: the law's limit, then what the wheel makes of it.
+/// Path of a command to its execution: the law's limit, then the wheel's dead zone, quantum and limit.
 #[derive(Clone, Debug, PartialEq)]
 pub struct CommandPath {
-    /// The law's limit (units of the command).
+    /// Limit of the law (units of the command).
     pub limit: f64,
-    /// The wheel.
+    /// Wheel that executes the command; none without a wheel.
     pub wheel: Option<Wheel>,
 }
 
 impl CommandPath {
-    /// The command that is executed.
+    /// Returns the command that is executed.
     pub fn of(&self, command: f64) -> f64 {
         let command = command.clamp(-self.limit, self.limit);
         self.wheel.as_ref().map_or(command, |wheel| wheel.shaped(command))
@@ -71,18 +71,19 @@ impl CommandPath {
 }
 
 impl Loop {
-    /// The mode of the greatest static response to a moment, |k|/w²: the papers' criterion of dominance.
+    /// Returns the index of the mode with the greatest static response to a moment, |k|/w²: the papers' criterion of
+    /// dominance.
     pub fn dominant_of(modes: &[Mode]) -> usize {
         let pull = |mode: &Mode| mode.excitability().abs();
         (1..modes.len()).fold(0, |best, i| if pull(&modes[i]) > pull(&modes[best]) { i } else { best })
     }
 
-    /// The natural frequency of the dominant mode (rad/s); NaN for a body without modes.
+    /// Returns the natural frequency of the dominant mode (rad/s); NaN for a body without modes.
     pub fn frequency(&self) -> f64 {
         self.body.modes.get(self.dominant).map_or(f64::NAN, |mode| mode.frequency.get())
     }
 
-    /// The ratios at which the dominant mode has a frequency (rad/s).
+    /// Returns the ratios of the natural frequencies at which the dominant mode has the frequency `frequency` (rad/s).
     pub fn ratios(&self, frequency: f64, scaling: Scaling) -> Vec<f64> {
         let ratio = frequency / self.frequency();
         let of = |index: usize| match scaling {

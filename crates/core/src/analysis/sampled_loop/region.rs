@@ -1,51 +1,51 @@
-//! Where the gain of the extra loop may lie, over the frequency of the dominant mode (\[Wheel11, Sukhanov\], figure 5).
+//! Admissible gains of the extra loop over the frequency of the dominant mode (\[Wheel11, Sukhanov\], figure 5).
 
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{ClosedLoop, DiscreteBody, Loop, SettlingWindow};
 
-/// Which modes follow when the frequency of the dominant one changes.
+/// Modes whose frequencies scale with that of the dominant one.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum Scaling {
-    /// All, by one ratio.
+    /// All modes scale by one ratio.
     #[default]
     All,
-    /// None: the dominant mode alone changes.
+    /// The dominant mode alone changes.
     First,
 }
 
-/// Gains in even steps.
+/// Equidistant gains.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Gains {
-    /// The lowest.
+    /// Lowest gain.
     pub low: f64,
-    /// The highest.
+    /// Highest gain.
     pub high: f64,
-    /// From one to the next.
+    /// Step from one gain to the next.
     pub step: f64,
 }
 
 impl Gains {
-    /// The gains, the lowest first.
+    /// Returns the gains, the lowest first.
     pub fn values(&self) -> Vec<f64> {
         let count = libm::floor((self.high - self.low) / self.step + 1e-9) as usize + 1;
         (0..count).map(|index| self.low + index as f64 * self.step).collect()
     }
 }
 
-/// The gains that do at one frequency of the dominant mode: the longest run of them without a gap.
+/// Admissible gains at one frequency of the dominant mode: the longest interval of them without a gap.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct Region {
     /// Frequency of the dominant mode (rad/s).
     pub frequency_rad_s: f64,
-    /// The lowest and the highest gain of the run; none if no gain does.
+    /// Lowest and highest gain of the interval; none if no gain is admissible.
     pub gain: Option<(f64, f64)>,
-    /// The middle of the run: k_d of equations (10) and (12).
+    /// Midpoint of the interval: k_d of equations (10) and (12).
     pub midpoint: Option<f64>,
-    /// Settling time at the middle (s).
+    /// Settling time with the gain `midpoint` (s).
     pub settling_s: Option<f64>,
-    /// Spectral radius at the middle.
+    /// Spectral radius with the gain `midpoint`.
     pub spectral_radius: Option<f64>,
     /// Settling time without the extra loop (s).
     pub settling_without_s: Option<f64>,
@@ -53,15 +53,16 @@ pub struct Region {
     pub spectral_radius_without: f64,
 }
 
-/// Whether a loop settles in time and is stable: an angle may stay small while a mode grows.
+/// Returns true if a loop is stable and settles in time: an angle may stay small while a mode grows.
 fn does(closed: &ClosedLoop, window: SettlingWindow, limit: f64) -> bool {
     closed.settle(window).time_s.is_some_and(|time| time <= limit) && closed.spectral_radius() < 1.0
 }
 
-/// The first and the last of a row of gains, and how many they are.
+/// First and last gain of an interval, and the number of gains in it.
 type Run = (f64, f64, usize);
 
-/// The region at one frequency (rad/s): gains whose settling time is at most the limit (s) and whose loop is stable.
+/// Returns the admissible gains at one frequency (rad/s): the loop is stable, and its settling time is at most the
+/// limit (s).
 pub fn region(
     of: &Loop,
     frequency: f64,
@@ -93,7 +94,8 @@ pub fn region(
     }
 }
 
-/// The region at each of these frequencies (rad/s), on the threads of the current rayon pool, in their order.
+/// Returns the admissible gains at each of these frequencies (rad/s) in order, computed on the threads of the current
+/// rayon pool.
 pub fn regions(
     of: &Loop,
     frequencies: &[f64],
@@ -105,7 +107,7 @@ pub fn regions(
     frequencies.par_iter().map(|w| region(of, *w, scaling, gains, window, limit)).collect()
 }
 
-/// The schedule of the midpoints: frequencies (rad/s) and gains, where there are any.
+/// Returns the schedule of the midpoints: frequencies (rad/s) and gains, where there are any.
 pub fn midpoints(regions: &[Region]) -> Vec<(f64, f64)> {
     regions.iter().filter_map(|region| Some((region.frequency_rad_s, region.midpoint?))).collect()
 }

@@ -1,7 +1,8 @@
-//! A schedule of gains that settles soonest whatever of a set of perturbed loops is the true one.
+//! Schedule of the gains with the least settling time over a set of perturbed loops.
 //!
-//! The midpoint of the papers' region centres the gain between its limits; this minimises the settling time itself, over the
-//! corners of a box of frequencies, modal gains, the wheel's gain and its delay, and at the centre of the box.
+//! The midpoint of the papers' region centres the gain between its limits; this schedule minimises the settling time
+//! itself, over the corners of a box of frequencies, modal gains, the wheel's gain and its delay, and at the centre of
+//! the box.
 
 use rayon::prelude::*;
 use serde::Serialize;
@@ -9,47 +10,47 @@ use serde::Serialize;
 use super::{DiscreteBody, Gains, Loop, Scaling, SettlingWindow};
 use crate::quantity::{Finite, Frequency};
 
-/// How far off the model may be.
+/// Uncertainty of the loop's model.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Doubt {
-    /// All natural frequencies, relative to them.
+    /// Relative uncertainty of all natural frequencies.
     pub frequency: f64,
-    /// All modal gains, relative to them.
+    /// Relative uncertainty of all modal gains.
     pub modal_gain: f64,
-    /// The wheel's gain, relative to it.
+    /// Relative uncertainty of the wheel's gain.
     pub authority: f64,
-    /// What the delay may have more (s).
+    /// Largest additional delay (s).
     pub delay: f64,
 }
 
-/// What is minimised.
+/// Quantity that is minimised.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
 pub enum RobustGoal {
-    /// The settling time, and among equal ones the integral of time times |angle|.
+    /// Settling time, and among equal ones the integral of time times |angle|.
     #[default]
     Settling,
-    /// The integral of time times |angle|: smooth in all parameters.
+    /// Integral of time times |angle|: smooth in all parameters.
     Itae,
 }
 
-/// The best gain at one frequency of the dominant mode.
+/// Best gain at one frequency of the dominant mode.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct Robust {
     /// Frequency of the dominant mode (rad/s).
     pub frequency_rad_s: f64,
-    /// The gain; none if every one leaves a perturbed loop with too little margin.
+    /// Best gain; none if every gain leaves a perturbed loop with too little margin.
     pub gain: Option<f64>,
-    /// Settling time of the loop as it is (s).
+    /// Settling time of the unperturbed loop (s).
     pub settling_s: Option<f64>,
-    /// The quantile of the settling times that was asked for (s); none if so many loops do not settle.
+    /// Requested quantile of the settling times (s); none if too many loops do not settle.
     pub settling_quantile_s: Option<f64>,
-    /// The largest spectral radius of all perturbed loops.
+    /// Largest spectral radius of all perturbed loops.
     pub spectral_radius: Option<f64>,
-    /// The same quantile without the extra loop (s).
+    /// Requested quantile of the settling times without the extra loop (s).
     pub settling_without_s: Option<f64>,
 }
 
-/// What a gain comes to.
+/// Performance of a gain over the perturbed loops.
 #[derive(Copy, Clone)]
 struct Score {
     settling: f64,
@@ -58,12 +59,12 @@ struct Score {
 }
 
 impl Doubt {
-    /// There are at most so many perturbed loops.
+    /// Returns the largest number of perturbed loops.
     pub fn most_loops(&self) -> usize {
         if self.delay > 0.0 { 17 } else { 9 }
     }
 
-    /// The perturbed loops, the loop as it is first.
+    /// Returns the perturbed loops, the unperturbed one first.
     fn loops(&self, of: &Loop) -> Vec<Loop> {
         let signs = |part: f64| if part > 0.0 { vec![-1.0, 1.0] } else { vec![0.0] };
         let delays = if self.delay > 0.0 { vec![0.0, self.delay] } else { vec![0.0] };
@@ -94,14 +95,15 @@ impl Doubt {
     }
 }
 
-/// The quantile of values that grow: the smallest that so large a part of them does not exceed.
+/// Returns the quantile of values: the smallest value that a fraction `part` of them does not exceed.
 fn quantile(mut values: Vec<f64>, part: f64) -> f64 {
     values.sort_by(f64::total_cmp);
     let index = libm::ceil(part * values.len() as f64) as usize;
     values[index.clamp(1, values.len()) - 1]
 }
 
-/// What a gain comes to; none if a loop has too little margin, or if the worst one settles later than that (s).
+/// Returns the performance of a gain; `None` if a loop has too little margin, or if the worst one settles later than
+/// `beat` (s).
 fn score(held: &[DiscreteBody], gain: f64, search: &RobustSearch, beat: f64) -> Option<Score> {
     let (mut radius, mut settled) = (0.0_f64, Vec::with_capacity(held.len()));
     for held in held {
@@ -122,26 +124,27 @@ fn score(held: &[DiscreteBody], gain: f64, search: &RobustSearch, beat: f64) -> 
     Some(Score { settling, itae, radius })
 }
 
-/// How a schedule is searched.
+/// Settings of the search for a schedule.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct RobustSearch {
     /// Gains that are tried.
     pub gains: Gains,
-    /// Which modes follow the dominant one.
+    /// Modes whose frequencies scale with that of the dominant one.
     pub scaling: Scaling,
-    /// What counts as settled.
+    /// Settling band and horizon.
     pub window: SettlingWindow,
-    /// How far off the model may be.
+    /// Uncertainty of the model.
     pub doubt: Doubt,
-    /// What is minimised.
+    /// Quantity that is minimised.
     pub goal: RobustGoal,
-    /// The quantile of it over the perturbed loops; 1 is the worst.
+    /// Quantile of the goal over the perturbed loops; 1 is the worst loop.
     pub quantile: f64,
-    /// By how much every spectral radius stays below 1.
+    /// Distance by which every spectral radius stays below 1.
     pub margin: f64,
 }
 
-/// The best gain at each of these frequencies (rad/s), on the threads of the current rayon pool, in their order.
+/// Returns the best gain at each of these frequencies (rad/s) in order, computed on the threads of the current rayon
+/// pool.
 pub fn robust(of: &Loop, frequencies: &[f64], search: RobustSearch) -> Vec<Robust> {
     let loops = search.doubt.loops(of);
     let gains = search.gains.values();

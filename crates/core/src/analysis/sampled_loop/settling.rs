@@ -1,41 +1,42 @@
-//! When the angle has settled: the settling time of the papers, and measures that are smooth in the parameters.
+//! Settling of the angle: the settling time of the papers, and measures that are smooth in the parameters.
 
 use serde::Serialize;
 
 use super::ClosedLoop;
 
-/// What counts as settled, and for how long it is watched.
+/// Settling band, and horizon of the evaluation.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct SettlingWindow {
     /// Half width of the band (rad).
     pub band: f64,
-    /// How long the loop is watched (s): longer than any settling time that is of interest.
+    /// Horizon (s): longer than any settling time of interest.
     pub horizon: f64,
 }
 
-/// How a loop settles.
+/// Settling measures of a loop.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct Settling {
-    /// The last sample outside the band (s), 0 if there is none: T_r of the papers. None if that is the last sample
-    /// watched: the loop has not settled.
+    /// Time of the last sample outside the band (s), 0 if there is none: T_r of the papers. None if the last sample of
+    /// the horizon is outside: the loop has not settled.
     pub time_s: Option<f64>,
-    /// Where a straight line from that sample to the next enters the band (s): free of the samples' steps.
+    /// Time at which a straight line from the last sample outside to the next enters the band (s): free of the samples'
+    /// steps.
     pub crossing_s: Option<f64>,
-    /// Integral of time times |angle| over the horizon (rad s²): smooth in the parameters, where the settling time jumps
-    /// by half a period whenever a swing touches the band.
+    /// Integral of time times |angle| over the horizon (rad s²): smooth in the parameters, where the settling time
+    /// jumps by half a period whenever a swing touches the band.
     pub itae_rad_s2: f64,
 }
 
 impl SettlingWindow {
-    /// The number of samples within it, its ends included.
+    /// Returns the number of samples within the horizon, its ends included.
     pub fn samples(&self, period: f64) -> usize {
-        // A sample at the horizon itself counts, whatever its last bits.
+        // A sample at the horizon itself counts in spite of rounding.
         libm::floor(self.horizon / period * (1.0 + 1e-12)) as usize + 1
     }
 }
 
 impl ClosedLoop {
-    /// How the loop settles, as seen at its samples.
+    /// Returns the settling measures of the loop, from the angle at its samples.
     pub fn settle(&self, window: SettlingWindow) -> Settling {
         let count = window.samples(self.period);
         let SettlingWindow { band, .. } = window;
@@ -44,7 +45,7 @@ impl ClosedLoop {
         self.each_angle(count, |angle| {
             let size = angle.abs();
             weighted += index as f64 * size;
-            // What is not a number is outside.
+            // NaN is outside the band.
             if size <= band {
                 if outside == Some(index.wrapping_sub(1)) {
                     entry = (before - band) / (before - size);

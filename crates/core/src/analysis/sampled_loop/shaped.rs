@@ -1,4 +1,4 @@
-//! The loop whose command has a dead zone, a quantum or a limit: sample after sample.
+//! Simulation, sample by sample, of a loop whose command has a dead zone, a quantum or a limit.
 
 use nalgebra::DMatrix;
 
@@ -6,7 +6,8 @@ use super::closed::Panels;
 use super::{ClosedLoop, CommandPath};
 
 impl ClosedLoop {
-    /// One product a sample: the state, and from it angle and command of the next sample.
+    /// Calls `tell` with the angle (rad) at each of the first `count` samples; one product a sample gives the state,
+    /// and from it the angle and the command of the next sample.
     pub(super) fn each_shaped(&self, shape: &CommandPath, count: usize, mut tell: impl FnMut(f64)) {
         let order = self.free.nrows();
         let dense = |row: &nalgebra::RowDVector<f64>| DMatrix::from_iterator(1, order, row.iter().copied());

@@ -1,4 +1,4 @@
-//! The spectral radius of a closed loop, and the pair of motions that dies last.
+//! Spectral radius of a closed loop, and the pair of motions that decays last.
 
 use nalgebra::linalg::Schur;
 use nalgebra::{Complex, DMatrix, DVector};
@@ -6,26 +6,26 @@ use serde::Serialize;
 
 use super::ClosedLoop;
 
-/// Sweeps after which the search for eigenvalues is given up.
+/// Number of sweeps after which the search for eigenvalues is given up.
 const SWEEPS: usize = 10_000;
-/// Squarings in place of it: the 2^40th root of what a norm adds is below the last bit of 1.
+/// Number of squarings that replace it: the 2^40th root of the factor that a norm adds is below the last bit of 1.
 const SQUARINGS: u32 = 40;
 
-/// The slowest motion of a loop: a pair of eigenvalues, or a real one.
+/// Slowest motion of a loop: a pair of eigenvalues, or a real one.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
 pub struct Slowest {
-    /// Absolute value of the eigenvalue: what a sample leaves of the motion.
+    /// Absolute value of the eigenvalue: the decay factor of the motion per sample.
     pub radius: f64,
-    /// Angle by which it turns in a sample (rad).
+    /// Angle of the eigenvalue: the rotation of the motion per sample (rad).
     pub turn_rad: f64,
-    /// Amplitude with which it begins in the angle (rad).
+    /// Initial amplitude of the motion in the angle (rad).
     pub amplitude_rad: f64,
-    /// When its envelope enters the band (s), smooth in the parameters; none if it grows.
+    /// Time at which the envelope of the motion enters the band (s), smooth in the parameters; none if it grows.
     pub settling_s: Option<f64>,
 }
 
 impl ClosedLoop {
-    /// The eigenvalues of the linear loop, in the order in which they come out; none if the search finds no end.
+    /// Returns the eigenvalues of the linear loop, in no particular order; `None` if the search does not converge.
     pub fn eigenvalues(&self) -> Option<Vec<Complex<f64>>> {
         let matrix = self.matrix();
         if matrix.iter().any(|m| !m.is_finite()) {
@@ -35,7 +35,7 @@ impl ClosedLoop {
         Some(schur.complex_eigenvalues().iter().copied().collect())
     }
 
-    /// The spectral radius of the linear loop: it is stable below 1. Infinite where a number is not finite.
+    /// Returns the spectral radius of the linear loop, which is stable below 1. Infinite where a number is not finite.
     pub fn spectral_radius(&self) -> f64 {
         match self.eigenvalues() {
             Some(values) => values.iter().map(|value| modulus(*value)).fold(0.0, f64::max),
@@ -43,12 +43,12 @@ impl ClosedLoop {
         }
     }
 
-    /// The slowest motion, and when it alone has settled.
+    /// Returns the slowest motion, and the time at which it alone has settled within `band` (rad).
     pub fn slowest(&self, band: f64) -> Option<Slowest> {
         let values = self.eigenvalues()?;
         let mut value = *values.first()?;
         for other in values {
-            // The upper one of a pair.
+            // The upper eigenvalue of a pair.
             if modulus(other) > modulus(value) || (modulus(other) == modulus(value) && other.im > value.im) {
                 value = other;
             }
@@ -83,7 +83,7 @@ fn modulus(value: Complex<f64>) -> f64 {
     libm::hypot(value.re, value.im)
 }
 
-/// An eigenvector by inverse iteration, from a place just beside the eigenvalue.
+/// Computes an eigenvector by inverse iteration, from a shift close to the eigenvalue.
 fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> Option<DVector<Complex<f64>>> {
     let order = matrix.nrows();
     let beside = value * (1.0 + 1e-11);
@@ -98,7 +98,7 @@ fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> Option<DVector<Com
     vector.iter().all(|v| v.re.is_finite() && v.im.is_finite()).then_some(vector)
 }
 
-/// The limit of |M^n|^(1/n), by squaring.
+/// Returns the limit of |M^n|^(1/n), by squaring.
 fn gelfand(mut matrix: DMatrix<f64>) -> f64 {
     let (mut logarithm, mut weight) = (0.0, 1.0);
     for _ in 0..SQUARINGS {

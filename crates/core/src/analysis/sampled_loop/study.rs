@@ -1,4 +1,4 @@
-//! The sampled loop that a scenario describes.
+//! Construction of the sampled loop that a scenario describes.
 
 use super::{CommandPath, Loop, SettlingWindow};
 use crate::Scenario;
@@ -9,16 +9,16 @@ use crate::law::{Law, Pd};
 use crate::quantity::Positive;
 use crate::scenario::Cost;
 
-/// A delay of more periods makes the loop's matrix too large.
+/// Largest delay (periods): a longer one makes the loop's matrix too large.
 const MOST_LATE: f64 = 200.0;
-/// A loop is watched for no more samples.
+/// Largest number of samples over which a loop is simulated.
 const MOST_SAMPLES: f64 = 1e7;
 
 impl Loop {
-    /// The loop of a scenario whose angle is measured exactly and at once, and the law that closes it.
+    /// Returns the loop of a scenario whose angle is measured exactly and without delay, and the law that closes it.
     ///
     /// # Errors
-    /// A key that has no place in such a loop, and why.
+    /// A key that such a loop does not support, and the reason.
     pub fn of(scenario: &Scenario) -> Result<(Self, &Pd), Fault> {
         let refused = |key: &str, why: &str| Err(Fault::new(key, why));
         let Some(body) = scenario.model.planar() else {
@@ -96,11 +96,11 @@ impl Loop {
         Ok((sampled, law))
     }
 
-    /// What it takes to close the loop so often with this shortest period (s), each time with up to this delay more (s), and
-    /// to watch it for a time (s).
+    /// Returns the cost of closing the loop `times` times with sampling periods from `shortest` (s) on and up to
+    /// `delay` (s) of additional delay, and of simulating each over `horizon` (s).
     ///
     /// # Errors
-    /// More samples, or more delay, than a loop is watched with.
+    /// More samples, or a longer delay, than a simulation of a loop supports.
     pub fn watched(&self, times: f64, horizon: f64, shortest: f64, delay: f64) -> Result<Cost, String> {
         let (samples, late) = (horizon / shortest, (self.delay + delay) / self.period);
         if samples > MOST_SAMPLES {
@@ -114,17 +114,17 @@ impl Loop {
             ));
         }
         let order = 3.0 + 2.0 * self.body.modes.len() as f64 + late;
-        // Of a block of 32 samples, the state costs as much as the angles.
+        // In a block of 32 samples, the state costs as much as the angles.
         let watched = samples * order * (1.0 + order / 32.0);
         Ok(Cost::of_work("the grid", times, (watched + 50.0 * order * order * order) * 1e-9))
     }
 
-    /// The measured angle at the start (rad).
+    /// Returns the measured angle at the start (rad).
     pub fn angle(&self) -> f64 {
         self.body.start().angle()
     }
 
-    /// A band of 5 % of the angle at the start, as in the papers.
+    /// Returns the settling window, by default with a band of 5 % of the angle at the start, as in the papers.
     ///
     /// # Errors
     /// The body starts at angle 0.

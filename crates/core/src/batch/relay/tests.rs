@@ -1,4 +1,4 @@
-//! Runs of the relay law in lanes come to what each comes to alone, to the bit.
+//! Tests that relay runs in lanes have the results of single runs, to the bit.
 
 use std::path::Path;
 
@@ -23,7 +23,7 @@ fn shipped(name: &str, changes: &[(&str, String)]) -> Scenario {
     Scenario::from_document(&document).expect("valid")
 }
 
-/// Metrics as text, whose digits are those of all bits.
+/// Returns the metrics of a single run as text, with digits for all bits.
 fn alone(number: u64, scenario: &Scenario) -> String {
     let run = CampaignRun { number, scenario: scenario.clone(), drawn: Vec::new() };
     Campaign::simulate(&run, ()).expect("a run").to_json().to_string()

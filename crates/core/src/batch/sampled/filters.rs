@@ -1,17 +1,17 @@
-//! The filters of runs side by side: each sample is read ahead, and what is matrices of it is done at once.
+//! Kalman filters of the runs of a batch: samples are read ahead, and the matrix work is done for all lanes at once.
 
 use super::Run;
 use crate::estimator::kalman::{Filters, KalmanFilter};
 use crate::lanes::Real;
 use crate::metrics::Gather;
 
-/// Whether all runs have filters, or none has.
+/// Returns true if all runs have filters, or none has.
 pub fn agree(runs: &mut [Run]) -> bool {
     let count = runs.len();
     [0, count].contains(&all(runs).len())
 }
 
-/// The filters that go side by side; filters of another kind act one by one.
+/// Creates the filters that are processed in lanes; `None` for filters of another kind, which are updated run by run.
 pub fn of<R: Real>(kind: R, runs: &mut [Run]) -> Option<Filters<R>> {
     Filters::new(kind, &mut all(runs))
 }
@@ -20,7 +20,7 @@ fn all(runs: &mut [Run]) -> Vec<&mut KalmanFilter> {
     runs.iter_mut().filter_map(|run| run.simulation.filter()).map(|(filter, _)| filter).collect()
 }
 
-/// Takes the samples that are due. A run goes on alone whose filter cannot.
+/// Processes the samples that are due. A run whose filter cannot be processed in the batch continues alone.
 #[inline(always)]
 pub fn sample<R: Real>(
     filters: &mut Filters<R>,

@@ -1,4 +1,4 @@
-//! The motions of bodies side by side, from one departure to the next: of drifting frequencies, or of constant ones.
+//! Motions of bodies in lanes, from the start of one segment to the next: with drifting or with constant frequencies.
 
 use super::Run;
 use crate::body::SERIES;
@@ -7,22 +7,23 @@ use crate::lanes::Real;
 use crate::motion::stretch::REACH;
 use crate::numerics::polynomial::TERMS;
 
-/// So many sets of transitions are kept, the newest last.
+/// Number of sets of transitions that are kept, the newest last.
 const KEPT: usize = 8;
 
-/// The motions: Taylor series of all coordinates, the n-th terms side by side. Their first two terms are where they depart from.
+/// Motions in lanes as Taylor series of all coordinates, ordered by terms. The first two terms are the state at the
+/// segment's start.
 #[derive(Debug)]
 pub struct Motions<R> {
-    /// How many coordinates each body has.
+    /// Number of coordinates of each body.
     pub count: usize,
-    /// See above.
+    /// Coefficients of the Taylor series.
     pub series: Vec<R>,
     flow: Flow<R>,
 }
 
 #[derive(Debug)]
 enum Flow<R> {
-    /// Ratios of each run, and of all side by side.
+    /// Springs, with the frequency ratios of each run and of all lanes.
     Drifting(Springs<R>, Vec<Vec<Ratio<f64>>>, Vec<Ratio<R>>),
     Constant(Box<Flat<R>>),
 }
@@ -31,21 +32,21 @@ enum Flow<R> {
 #[derive(Debug)]
 struct Flat<R> {
     systems: Vec<Coupled>,
-    /// A row by row, with the columns of each row that are not 0 in all lanes, and g.
+    /// Matrix A row by row, with the columns of each row that are not 0 in all lanes, and the vector g.
     matrix: Vec<R>,
     columns: Vec<Vec<usize>>,
     input: Vec<R>,
     reach: R,
     moment: R,
-    /// z at departure, and room for it elsewhere.
+    /// State z at the start of the segment, and buffers for z at other instants.
     from: Vec<R>,
     room: [Vec<R>; 2],
-    /// Transitions over spans (s): their columns, and what a unit moment adds.
+    /// Transitions over spans (s): the spans, the columns of the matrices, and the response to a unit moment.
     kept: Vec<([f64; 16], Vec<R>, Vec<R>)>,
 }
 
 impl<R: Real> Motions<R> {
-    /// Bodies at their start; none of bodies that differ in structure.
+    /// Creates the motions of bodies at their start; `None` for bodies that differ in structure.
     pub fn new(kind: R, runs: &[Run]) -> Option<Self> {
         let count = runs.first()?.motion.start().len() / 2;
         if runs.iter().any(|run| run.motion.start().len() != 2 * count) {
@@ -81,7 +82,7 @@ impl<R: Real> Motions<R> {
         Some(Self { count, series, flow })
     }
 
-    /// Fills the series of all motions from their first two terms.
+    /// Computes the series of all motions from their first two terms.
     #[inline(always)]
     pub fn fill(&mut self, runs: &[Run], kind: R) {
         let mut moments = [0.0; 16];
@@ -105,7 +106,7 @@ impl<R: Real> Motions<R> {
         }
     }
 
-    /// Where a motion of this length is one stretch (s).
+    /// Returns the lanes in which a motion over `h` (s) needs a single expansion.
     #[inline(always)]
     pub fn reach(&self, h: R) -> R::Mask {
         match &self.flow {
@@ -114,7 +115,7 @@ impl<R: Real> Motions<R> {
         }
     }
 
-    /// The angles of all coordinates, and their rates, so long after departure (s).
+    /// Computes the angles of all coordinates, and their rates, `spans` (s) after the start of the segment.
     #[inline(always)]
     pub fn go(&mut self, spans: &[f64; 16], h: R, here: &mut [R]) {
         let (angles, rates) = here.split_at_mut(self.count);
@@ -207,12 +208,12 @@ impl<R: Real> Flat<R> {
         }
     }
 
-    /// Finds the transitions over spans (s), and where they are kept.
+    /// Returns the place of the transitions over `spans` (s), which are computed if they are not kept yet.
     fn keep(&mut self, spans: &[f64; 16]) -> usize {
         let order = self.from.len();
         let mut all = Vec::with_capacity(self.systems.len());
         for (lane, system) in self.systems.iter().enumerate() {
-            // Bodies that differ in nothing but their noises share one.
+            // Bodies that differ only in their noise share one transition.
             let same =
                 (0..lane).find(|other| spans[*other] == spans[lane] && self.systems[*other] == *system);
             let of = same.map_or_else(

@@ -1,4 +1,5 @@
-//! What rotations that run side by side come to: as each alone, with what bounds decide found for all of them at once.
+//! Metrics of the rotations in the lanes of a batch, equal to those of single runs; bounds decide for all lanes at once
+//! where they can.
 
 use super::{Rotation, integral};
 use crate::lanes::{Mask, Real};
@@ -6,28 +7,28 @@ use crate::metrics::Gather;
 use crate::numerics::polynomial::TERMS;
 use crate::numerics::polynomials::Polynomials;
 
-/// A motion in each lane that has ended: one stretch of each.
+/// Piece of motion in each lane that has ended: one stretch of each run.
 #[derive(Debug)]
 pub struct Passed<'a, R> {
-    /// When it began, and how long it was (s).
+    /// Start of the stretch (s).
     pub from: R,
-    /// See `from`.
+    /// Length of the stretch (s).
     pub length: R,
-    /// The series of its coordinates, the n-th terms of all of them side by side, and how many coordinates there are.
+    /// Taylor series of the coordinates of all lanes, ordered by terms.
     pub series: &'a [R],
-    /// See `series`.
+    /// Number of coordinates.
     pub count: usize,
-    /// The actuator's torque beside the back-EMF (N m).
+    /// Actuator torque without the back-EMF (N m).
     pub constant: R,
-    /// Back-EMF for each unit of the rate (N m s), and whether it is that of the elastic body.
+    /// Back-EMF for each unit of the rate (N m s), and true if it acts on the rate with the elastic part.
     pub back_emf: (R, bool),
-    /// What the law asks for (N m).
+    /// Torque commanded by the law (N m).
     pub feedback: R,
-    /// The lanes whose motion counts.
+    /// Lanes whose motion counts.
     pub counts: &'a [bool],
 }
 
-/// Gathers motions of runs towards angle 0 from their start on.
+/// Collector of the motions of runs in lanes, towards angle 0 from the start on.
 #[derive(Clone, Debug)]
 pub struct MotionMetrics<R> {
     torque: R,
@@ -37,14 +38,14 @@ pub struct MotionMetrics<R> {
 }
 
 impl<R: Real> MotionMetrics<R> {
-    /// Nothing seen.
+    /// Creates an empty collector.
     #[inline(always)]
     pub fn new(kind: R) -> Self {
         let zero = kind.of(0.0);
         Self { torque: zero, feedback: zero, error: zero, itae: (zero, zero) }
     }
 
-    /// Takes a motion of each run.
+    /// Records a stretch of the motion of each run.
     #[inline(always)]
     pub fn see(&mut self, runs: &mut [Gather], passed: &Passed<'_, R>) {
         let Passed { from, length, series, count, .. } = *passed;
@@ -113,7 +114,7 @@ impl<R: Real> MotionMetrics<R> {
         self.itae = (R::select(counts, total, self.itae.0), R::select(counts, lost, self.itae.1));
     }
 
-    /// Lets each run have what was found.
+    /// Writes the results to the collector of each run.
     pub fn finish(self, runs: &mut [Gather]) {
         for (lane, run) in runs.iter_mut().enumerate() {
             if let Some(run) = run.rotation() {
@@ -125,7 +126,7 @@ impl<R: Real> MotionMetrics<R> {
     }
 }
 
-/// The largest absolute values, where they count: one by one where bounds do not tell.
+/// Returns the largest absolute values in the lanes that count, computed lane by lane where bounds do not decide.
 #[inline(always)]
 fn peak<R: Real>(of: &Polynomials<R>, floor: R, counts: R::Mask) -> R {
     let (mut best, certain) = of.magnitude(floor);
@@ -141,7 +142,7 @@ fn peak<R: Real>(of: &Polynomials<R>, floor: R, counts: R::Mask) -> R {
 }
 
 impl Rotation {
-    /// Whether its goal is angle 0 from the start on, and nothing but the angle is seen.
+    /// Returns true if the goal is angle 0 from the start on, and no coordinates are observed.
     pub fn is_plain(&self) -> bool {
         self.outputs.is_empty() && !self.planned && self.goal == crate::law::Goal::default()
     }

@@ -1,11 +1,11 @@
-//! What stretches come to, beside an implementation with 66 digits.
+//! Tests of the metrics of stretches against an implementation with 66 digits.
 
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::*;
 use crate::motion::stretch::Linear;
 
-/// What a motion comes to: largest and smallest value, integral, ITAE, time outside a band, zeros.
+/// Metrics of a stretch: largest and smallest value, integral, ITAE, time outside a band, zeros.
 struct Arc {
     range: Range,
     integral: f64,
@@ -46,7 +46,8 @@ fn agrees(arc: &Arc, [max, min, integral, itae, outside]: [f64; 5], zeros: usize
     assert_eq!(arc.zeros, zeros);
 }
 
-/// x_r'' = m, x_i'' + w_i² x_i = k_i m with m = u - a y', y = x_r + x_1 + x_2: A, and what a unit of u pushes.
+/// Returns A and the response to a unit of u for x_r'' = m, x_i'' + w_i² x_i = k_i m with m = u - a y', y = x_r + x_1 +
+/// x_2.
 fn two_modes(order: usize, back_emf: f64) -> (DMatrix<f64>, DVector<f64>) {
     let (mut system, mut push) = (DMatrix::zeros(order, order), DVector::zeros(order));
     for (x, w, k) in [(0, 0.0, 1.0), (2, 0.44, 0.0213), (4, 0.755, 0.0216)] {
@@ -60,7 +61,8 @@ fn two_modes(order: usize, back_emf: f64) -> (DMatrix<f64>, DVector<f64>) {
     (system, push)
 }
 
-// The numbers are those of an implementation with 66 digits (Taylor series of the matrix exponential, certified strides).
+// Reference values are those of an implementation with 66 digits (Taylor series of the matrix exponential, certified
+// strides).
 
 #[test]
 fn a_coast_with_back_emf() {
