@@ -3,9 +3,9 @@
 /// Written by sensor and estimator, read by the law of the axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Belief {
-    /// Angle (rad): of a body with one angle the angle itself, of one with three axes how far it is beyond the target.
+    /// Angle (rad): of a body with one angle the angle itself, of one with three axes this component of the rotation vector from the target.
     pub angle: f64,
-    /// Length of the vector of such angles about all axes (rad); 0 of a body with one angle.
+    /// Length of that vector, the angle between target and attitude (rad); 0 of a body with one angle.
     pub whole: f64,
     /// Rate (rad/s): of a sampled sensor without a gyro, the difference of its last two samples over the period.
     pub rate: f64,

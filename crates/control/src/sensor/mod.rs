@@ -21,7 +21,7 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{AXES, Vector, beyond, rotation};
+use crate::attitude::{AXES, Vector, rotation, rotation_vector};
 use crate::document;
 use crate::environment::SkySight;
 use crate::own::{Halt, Own};
@@ -108,11 +108,11 @@ pub enum Orientation {
 }
 
 impl Orientation {
-    /// How far it is turned beyond another, about each axis (rad); about the first alone for one angle.
+    /// Returns the rotation vector from another orientation to this one (rad); for one angle, the difference about the first axis.
     #[inline]
     pub fn beyond(&self, other: &Self) -> [f64; 3] {
         match (self, other) {
-            (Self::Attitude(q), Self::Attitude(goal)) => beyond(goal, q).into(),
+            (Self::Attitude(q), Self::Attitude(goal)) => rotation_vector(goal, q).into(),
             (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
             // A run has one kind.
             _ => [f64::NAN; 3],

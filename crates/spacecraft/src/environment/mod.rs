@@ -1,6 +1,7 @@
 //! The surroundings of a body with three axes: torques that depend on where it faces, and when.
 
 mod around;
+mod date;
 mod dipole;
 mod drag;
 mod gravity_gradient;

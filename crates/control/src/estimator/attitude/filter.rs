@@ -13,7 +13,7 @@ use nalgebra::{
 use super::carried::Carried;
 use super::measurement::{AttitudeMeasurement, GyroNoise, across};
 use super::swinging::{SwingInnovation, Swinging};
-use crate::attitude::{Vector, beyond, rotation};
+use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::environment::into;
 use crate::lanes::Four;
 use crate::numerics::stumpff::stumpff;
@@ -112,7 +112,7 @@ impl AttitudeFilterState {
     /// Takes a measured attitude whose error in the body's axes has this covariance (rad²). It tells nothing where the
     /// covariance of the innovation is not positive.
     pub fn correct(&mut self, measured: &Quaternion<f64>, noise: &Matrix3<f64>) -> Option<Correction> {
-        let innovation = beyond(&self.attitude, measured);
+        let innovation = rotation_vector(&self.attitude, measured);
         let to_attitude = self.covariance.fixed_columns::<3>(0).into_owned();
         let inverse = Cholesky::new(to_attitude.fixed_rows::<3>(0) + noise)?.inverse();
         let gain = to_attitude * inverse;
@@ -147,7 +147,7 @@ impl AttitudeFilterState {
     ) -> Option<Correction> {
         let (off, moved, gain) = match measured {
             AttitudeMeasurement::Attitude(attitude) => {
-                (beyond(&self.attitude, attitude), Matrix3::identity(), *gain)
+                (rotation_vector(&self.attitude, attitude), Matrix3::identity(), *gain)
             }
             AttitudeMeasurement::Vector(sight) => {
                 let expected = into(&self.attitude, &sight.inertial);
@@ -198,7 +198,7 @@ impl AttitudeFilterState {
 
     /// Its error where these are attitude and bias: so far is the truth beyond the estimate (rad, rad/s).
     pub fn error(&self, attitude: &Quaternion<f64>, bias: &Vector) -> [Vector; 2] {
-        [beyond(&self.attitude, attitude), bias - self.bias]
+        [rotation_vector(&self.attitude, attitude), bias - self.bias]
     }
 
     /// The normalised square of its error where these are attitude and bias; NaN of a covariance that is not positive.
