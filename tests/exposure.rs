@@ -2,7 +2,7 @@
 
 use nalgebra::Quaternion;
 
-use flexsc_core::attitude::{Vector, rotation, turn};
+use flexsc_core::attitude::{Vector, rotation, rotation_vector};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{LookField, Scenario, Simulation};
 
@@ -102,8 +102,10 @@ fn off(scenario: &Scenario, point: &str, [at, exposure, latency]: [f64; 3], part
     run.go(instant(at));
     let middle = run.attitude();
     run.go(instant(at + latency));
-    let mean = seen.iter().fold(Vector::zeros(), |sum, (seen, weight)| sum + turn(&middle, seen) * *weight);
-    let told = turn(&middle, &run.told());
+    let mean = seen
+        .iter()
+        .fold(Vector::zeros(), |sum, (seen, weight)| sum + rotation_vector(&middle, seen) * *weight);
+    let told = rotation_vector(&middle, &run.told());
     [(told - mean).norm(), told.norm()]
 }
 

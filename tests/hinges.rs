@@ -42,6 +42,33 @@ fn panels_swing_as_rigid_bodies_do() {
     }
 }
 
+/// The kinetic energy of point masses, whose centre moves with a hinge and with modes beside it: `golden/swung_oracle.py`.
+#[test]
+fn a_hinge_beside_modes_swings_as_point_masses_do() {
+    let text = std::fs::read_to_string(format!("{GOLDEN}/swung.toml")).expect("a file");
+    let trace = traced(&Scenario::parse("swung.toml", &text).expect("a scenario"));
+    let rows = golden_rows("swung.csv");
+    let attitude = ["q_w", "q_x", "q_y", "q_z"].map(|name| column(&trace, "/pointing", name));
+    let rates = within(&trace, "/rates", "axes", "rate_rad_s");
+    let [angles, speeds] = ["angle_rad", "rate_rad_s"].map(|name| within(&trace, "/hinges", "hinges", name));
+    let [elastic, rotational] = ["elastic_j", "rotational_j"].map(|name| column(&trace, "/energy", name));
+    assert_eq!(attitude[0].len(), rows.len());
+    let mut worst = [0.0_f64; 5];
+    for (at, row) in rows.iter().enumerate() {
+        let off = [
+            (0..4).map(|k| (attitude[k][at] - row[1 + k]).abs()).fold(0.0, f64::max),
+            (0..3).map(|k| (rates[3 * at + k] - row[5 + k]).abs()).fold(0.0, f64::max),
+            (angles[at] - row[8]).abs(),
+            (speeds[at] - row[9]).abs(),
+            (elastic[at] + rotational[at] - row[10]).abs(),
+        ];
+        worst.iter_mut().zip(off).for_each(|(most, off)| *most = most.max(off));
+    }
+    for (most, bound) in worst.into_iter().zip([1e-11, 1e-11, 1e-11, 3e-11, 1e-10]) {
+        assert!(most < bound, "{worst:?}");
+    }
+}
+
 /// Returns the golden spacecraft without torques, and with modes of the usual kind on the antenna, which is fixed.
 fn alone(damping: &str) -> String {
     let modes = "modes = [{ frequency = 1.7, translation = [0.0, 0.4, 2.1], moments = [[0.1, 0.3, 2.5], [0.0, 0.1, 0.4], \

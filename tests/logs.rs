@@ -46,6 +46,7 @@ fn a_log_makes_itself_again() {
         let set = "--set duration=3000 --set epoch=2026-03-20T14:46:00Z --seed 5 --log full";
         dir.run(&format!("simulate {name}.toml -o first {set}")).exits(0);
         let toml = dir.run(&format!("log scenario first/{name}.mcap")).exits(0).out;
+        assert!(toml.contains("\nepoch = 2026-03-20T14:46:00Z\n"), "{toml}");
         dir.write("again.toml", &toml);
         dir.run("simulate again.toml -o second --log full").exits(0);
         let (first, second) = (format!("first/{name}.mcap"), format!("second/{name}.mcap"));

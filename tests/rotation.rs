@@ -152,6 +152,28 @@ fn a_zero_order_hold_of_a_short_period_is_ideal() {
     assert!(coarse > 3.0 * ideal, "{coarse:e} {ideal:e}");
 }
 
+/// A log with the period of the thrusters has rows at the edges of their pulses: those of a fine one.
+#[test]
+fn no_pulse_is_missing_in_a_coarse_log() {
+    let edges = |period: &str| -> Vec<(f64, f64)> {
+        let trace = traced(&scenario("rotation-thrusters", &[("log.period", period), ("duration", "14")]));
+        let (times, applied) = (column(&trace, "/torque", "time_s"), column(&trace, "/torque", "applied_nm"));
+        assert!(times.windows(2).all(|row| row[0] < row[1]), "each instant has one row");
+        assert_eq!(times.len(), column(&trace, "/attitude", "time_s").len());
+        let changes = times.iter().zip(applied).zip(&applied[1..]).zip(&times[1..]);
+        changes.filter(|(((_, a), b), _)| a != b).map(|(((_, _), b), at)| (*at, *b)).collect()
+    };
+    let (coarse, fine) = (edges("0.25"), edges("0.005"));
+    assert_eq!(coarse, fine);
+    let pulses: Vec<_> = coarse.iter().filter(|(_, torque)| *torque != 0.0).collect();
+    assert!(pulses.len() > 20, "{coarse:?}");
+    for pair in coarse.chunks_exact(2) {
+        // Whole multiples of 10 ms.
+        let on = 100.0 * (pair[1].0 - pair[0].0);
+        assert!(pair[1].1 == 0.0 && (on - on.round()).abs() < 1e-9, "{pair:?}");
+    }
+}
+
 #[test]
 fn thrusters_give_the_planned_impulse_in_pulses() {
     let set = [("log.period", "0.005"), ("duration", "14")];
@@ -160,7 +182,11 @@ fn thrusters_give_the_planned_impulse_in_pulses() {
         (column(&trace, "/torque", "applied_nm"), column(&trace, "/torque", "feedforward_nm"));
     assert!(applied.iter().all(|torque| [0.0, 600.0].contains(&torque.abs())));
     // Over the first half, the impulse is that of the plan to the shortest pulse and the sampling of this log.
-    let half = |torque: &[f64]| torque[..1200].iter().sum::<f64>() * 0.005;
+    let times = column(&trace, "/torque", "time_s");
+    let half = |torque: &[f64]| -> f64 {
+        let rows = times.windows(2).zip(torque).filter(|(row, _)| row[1] <= 6.0);
+        rows.map(|(row, torque)| torque * (row[1] - row[0])).sum()
+    };
     assert!(
         (half(applied) - half(planned)).abs() < 600.0 * 0.02 + 20.0,
         "{} {}",

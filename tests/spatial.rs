@@ -6,9 +6,11 @@ use flexsc_core::attitude::Vector;
 use flexsc_core::body::spatial::Spatial;
 use flexsc_core::flow::{Elastic, Rigid, RigidTurn, SpatialState};
 use flexsc_core::quantity::Finite;
+use flexsc_core::record::Detail;
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, scenario};
+use crate::traces::{column, flown};
 use crate::util::Dir;
 
 /// A small free body with one mode: the law's dead zones are so wide that the jets stay silent.
@@ -52,6 +54,39 @@ pub fn free(set: &[(&str, &str)]) -> Scenario {
         document.set_text(key, value).expect("a key");
     }
     Scenario::from_document(&document).expect("valid")
+}
+
+/// A body that hardly anything turns is as far from its target as the target's angle says, up to half a turn.
+#[test]
+fn pointing_errors_are_rotation_vectors() {
+    let degrees = |angle: f64| angle.to_radians();
+    for (target, angle, [roll, pitch, yaw]) in [
+        ("yaw = \"150 deg\"", degrees(150.0), [0.0, 0.0, -degrees(150.0)]),
+        ("yaw = \"180 deg\"", degrees(180.0), [0.0, 0.0, degrees(180.0)]),
+        ("pitch = \"1e-5 deg\"", degrees(1e-5), [0.0, -degrees(1e-5), 0.0]),
+        // A quarter turn about z and then about the turned x: a third of a turn about (1, 1, 1).
+        ("roll = \"90 deg\"\nyaw = \"90 deg\"", degrees(120.0), [-degrees(120.0) / f64::sqrt(3.0); 3]),
+    ] {
+        let text = format!(
+            "duration = 10.0\n[spacecraft]\nmass = 50.0\ninertia = [[5, 0, 0], [0, 6, 0], [0, 0, 7]]\n\
+             [sensor.gyro]\nperiod = 0.5\n[law.pd]\nk_p = 1e-15\nk_d = 1e-15\nperiod = 0.5\n[log]\nperiod = 1.0\n\
+             [[target]]\nfrom = 0.0\n{target}\n"
+        );
+        let (metrics, trace) = flown(&Scenario::parse("far.toml", &text).expect("valid"), 0, Detail::Full);
+        let near = |name: &str, exact: f64| {
+            let found = metrics.number(name).expect(name);
+            assert!((found - exact).abs() < 1e-9 * exact.min(1.0), "{target}: {name} {found} {exact}");
+        };
+        near("pointing_error_end_rad", angle);
+        near("goal_band_rad", 0.05 * angle);
+        for (name, exact) in [("roll_error_rad", roll), ("pitch_error_rad", pitch), ("yaw_error_rad", yaw)] {
+            for found in column(&trace, "/pointing", name) {
+                // Either way around is half a turn.
+                let found = if angle > 3.14 { found.abs() } else { *found };
+                assert!((found - exact).abs() < 1e-9 * angle, "{target}: {name} {found} {exact}");
+            }
+        }
+    }
 }
 
 /// Returns the body of a scenario.

@@ -1,4 +1,5 @@
-"""A spacecraft with two panels of point masses, for driven_oracle.py and gimbals_oracle.py.
+"""A spacecraft with two panels of point masses, for driven_oracle.py, gimbals_oracle.py
+and swung_oracle.py.
 
 The panels are lattices of point masses with two clamped modes each, shapes that are orthonormal by mass. The
 data of scenarios are sums over the points. The oracles know the points alone: with the place of each as a
@@ -30,7 +31,7 @@ def about(axis, angle):
 
 class Panel:
     def __init__(self, root, axes, seed):
-        self.root, self.axes = np.array(root), axes
+        self.root, self.axes, self.axis = np.array(root), axes, AXIS
         x, y = np.meshgrid(np.linspace(-0.4, 0.6, 3), np.linspace(0.4, 3.4, 6))
         z = 0.1 + 0.05 * np.sin(3 * x + y + seed)
         self.r = np.stack([x.ravel(), y.ravel(), z.ravel()], 1)
@@ -51,10 +52,10 @@ class Panel:
 
     def place(self, angle, eta):
         bent = self.r + sum(e * s for e, s in zip(eta, self.shapes, strict=False))
-        turned = self.axes @ about(AXIS, angle)
+        turned = self.axes @ about(self.axis, angle)
         return (
             self.root + bent @ turned.T,
-            np.cross(self.axes @ AXIS, bent @ turned.T),
+            np.cross(self.axes @ self.axis, bent @ turned.T),
             [s @ turned.T for s in self.shapes],
         )
 

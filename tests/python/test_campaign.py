@@ -8,7 +8,7 @@ import flexsc
 import numpy as np
 import pytest
 from conftest import SCENARIOS, Command, json_lines, shipped
-from flexsc import Scenario, ScenarioError, Table
+from flexsc import Scenario, ScenarioError, SimulationError, Table
 
 
 @pytest.fixture(scope="module")
@@ -152,10 +152,17 @@ def test_a_value_that_is_not_accepted_is_a_row(fixed: Scenario) -> None:
     assert table.statistics()["switchings"]["runs"] == 2
 
 
-def test_runs_that_all_fail_make_a_table(fixed: Scenario) -> None:
+def test_runs_that_all_fail_are_an_error(fixed: Scenario, tmp_path: Path) -> None:
     hopeless = fixed.with_({"body.planar.rate": 1e308, "body.planar.angle": 1e308})
-    table = flexsc.campaign(hopeless, 2)
-    assert table["run"].tolist() == [0, 1]
+    why = "relay-fixed: 2 of 2 runs failed; run 3: .*no longer finite"
+    for out in (None, tmp_path / "out"):
+        with pytest.raises(SimulationError, match=why):
+            flexsc.campaign(hopeless, range(3, 5), out=out)
+    with pytest.raises(SimulationError, match="relay-fixed: 2 of 2 runs failed; run 0: .*no longer finite"):
+        flexsc.sweep(hopeless, "law.relay.k_t", [0.31, 0.32])
+    # The directory has the rows.
+    table = flexsc.read_campaign(tmp_path / "out")
+    assert table["run"].tolist() == [3, 4]
     assert np.isnan(table["switchings"]).all()
     assert "no longer finite" in table["error"][0]
     assert table.statistics()["switchings"]["runs"] == 0

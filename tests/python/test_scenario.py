@@ -30,6 +30,37 @@ def test_a_scenario_survives_every_form(name: str) -> None:
     assert scenario != name
 
 
+# Shortened, so that no run takes a second.
+SHORTER = {
+    "detumble-and-point": 600.0,
+    "magnetic-unloading": 300.0,
+    "sun-tracking": 400.0,
+    "wheel-friction": 20.0,
+    "wheel-run-up": 5.0,
+}
+
+
+@pytest.mark.parametrize("name", ALL)
+def test_a_scenario_is_varied_in_every_way(name: str) -> None:
+    scenario = shipped(name).with_("log.period", 1.0)
+    if name in SHORTER:
+        scenario = scenario.with_("duration", SHORTER[name])
+    drawn = scenario.draw(1)
+    assert pickle.loads(pickle.dumps(drawn)) == drawn
+    assert drawn.to_dict().get("epoch") == scenario.to_dict().get("epoch")
+    for table in (
+        flexsc.campaign(scenario, runs=2, metrics=["goal"]),
+        flexsc.sweep(scenario, "log.period", [1.0, 2.0], metrics=["goal"]),
+    ):
+        assert table["error"].tolist() == ["", ""]
+
+
+def test_a_shipped_scenario_has_a_date() -> None:
+    scenario = shipped("detumble-and-point")
+    assert scenario.to_dict()["epoch"] == datetime(2027, 4, 16, 6, tzinfo=timezone.utc)
+    assert "\nepoch = 2027-04-16T06:00:00Z\n" in scenario.to_toml()
+
+
 def test_a_dictionary_is_as_good_as_a_file(fixed: Scenario) -> None:
     built = Scenario(
         {

@@ -3,9 +3,9 @@
 /// State estimate about one axis, written by sensor and estimator, and read by the law of the axis.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Belief {
-    /// Angle (rad): absolute on a one-axis body, relative to the target on a three-axis body.
+    /// Angle (rad): of a body with one angle the angle itself, of one with three axes this component of the rotation vector from the target.
     pub angle: f64,
-    /// Length of the vector of the angles about all axes (rad); 0 on a one-axis body.
+    /// Length of that vector, the angle between target and attitude (rad); 0 of a body with one angle.
     pub whole: f64,
     /// Rate (rad/s); of a sampled sensor without a gyro, the difference of the last two samples divided by the period.
     pub rate: f64,

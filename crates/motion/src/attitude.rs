@@ -121,16 +121,10 @@ pub fn rotation(by: &Vector) -> Quaternion<f64> {
     Quaternion::from_parts(cos, by * (sin / angle))
 }
 
-/// Returns the attitude error of `q` relative to a goal, 2 vec(goal* o q), in the body's axes and on the shorter way
-/// (rad for small angles; exactly, twice the sine of half the angle along its axis).
+/// Returns the rotation vector from one attitude to another, in the body's axes and on the shorter way: its length is the angle
+/// (rad), from 0 to pi, and [`rotation`] by it makes the one of the other.
 #[inline]
-pub fn beyond(goal: &Quaternion<f64>, q: &Quaternion<f64>) -> Vector {
-    let difference = goal.conjugate() * q;
-    difference.vector() * 2.0_f64.copysign(difference.w)
-}
-
-/// Returns the rotation vector from one attitude to another, in the body's axes and on the shorter way (rad).
-pub fn turn(from: &Quaternion<f64>, to: &Quaternion<f64>) -> Vector {
+pub fn rotation_vector(from: &Quaternion<f64>, to: &Quaternion<f64>) -> Vector {
     let difference = from.conjugate() * to;
     let sine = difference.vector().norm();
     let twice = libm::copysign(2.0, difference.w);
@@ -184,7 +178,7 @@ mod tests {
                 (q * Quaternion::from_imag(axis) * q.conjugate()).vector().into_owned()
             };
             let found = of_axes(&[turn(Vector::x()), turn(Vector::y()), turn(Vector::z())]);
-            assert!(beyond(&q, &found).norm() < 1e-14, "{by:?}");
+            assert!(rotation_vector(&q, &found).norm() < 1e-14, "{by:?}");
         }
     }
 
@@ -197,15 +191,20 @@ mod tests {
         // Rotates further by a small angle about the body's y axis, with both signs of the quaternion.
         let further = at * turned(0.0, 1e-3, 0.0);
         for q in [further, -further] {
-            let error = beyond(&at, &q);
-            assert!((error - Vector::new(0.0, 2.0 * libm::sin(5e-4), 0.0)).norm() < 1e-15, "{error}");
+            let error = rotation_vector(&at, &q);
+            assert!((error - Vector::new(0.0, 1e-3, 0.0)).norm() < 1e-15, "{error}");
         }
-        // Recovers the rotation vector, also for large angles.
-        for by in [[1e-9, 0.0, -2e-9], [0.3, -0.1, 0.2], [1.8, 0.0, -2.4], [0.0; 3]].map(Vector::from) {
+        // However long it is: 150 degrees, and nearly half a turn.
+        let long = [[0.0, 0.0, 2.617_993_877_991_494], [0.0, -3.141_592_653, 0.0], [1.8, 0.0, -2.4]];
+        for by in long.into_iter().chain([[1e-9, 0.0, -2e-9], [0.3, -0.1, 0.2], [0.0; 3]]).map(Vector::from) {
             for q in [at * rotation(&by), -(at * rotation(&by))] {
-                assert!((turn(&at, &q) - by).norm() < 4e-16 * by.norm().max(1.0), "{by}");
+                assert!((rotation_vector(&at, &q) - by).norm() < 1e-15 * by.norm().max(1.0), "{by}");
             }
         }
+        // The square of the shortest is 0.
+        let least =
+            rotation_vector(&Quaternion::new(1.0, 0.0, 0.0, 0.0), &Quaternion::new(1.0, 2e-300, 0.0, 0.0));
+        assert_eq!(least, Vector::new(4e-300, 0.0, 0.0));
         // Yaw first: a quarter turn rotates the body's x to the inertial y.
         let quarter = turned(0.0, 0.0, std::f64::consts::FRAC_PI_2);
         let x = quarter * Quaternion::from_imag(Vector::x()) * quarter.conjugate();

@@ -67,6 +67,10 @@ impl AxisActuate for Impaired {
         self.inner.believed()
     }
 
+    fn firing(&self) -> f64 {
+        self.inner.firing()
+    }
+
     fn sines(&self) -> &[Sine] {
         self.failing.sines()
     }

@@ -150,6 +150,11 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     /// Returns the torque held about an axis (N m), without a waveform and without back-EMF.
     fn torque(&self, axis: usize) -> f64;
 
+    /// Returns the torque of the pulse of thrusters that is on about an axis (N m); 0 of other actuators.
+    fn firing(&self, _axis: usize) -> f64 {
+        0.0
+    }
+
     /// Returns the torque applied about an axis (N m), of a body with this rate and this rigid rate (rad/s).
     fn applied(&self, _now: Instant, axis: usize, _rates: [f64; 2]) -> f64 {
         self.torque(axis)

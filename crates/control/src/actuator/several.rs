@@ -132,6 +132,10 @@ impl Actuate for Several {
         self.sum(|actuator| actuator.torque(axis))
     }
 
+    fn firing(&self, axis: usize) -> f64 {
+        self.sum(|actuator| actuator.firing(axis))
+    }
+
     fn applied(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {
         self.sum(|actuator| actuator.applied(now, axis, rates))
     }

@@ -124,6 +124,10 @@ impl AxisActuate for Pulsed {
         self.held
     }
 
+    fn firing(&self) -> f64 {
+        self.held
+    }
+
     fn asked(&self) -> f64 {
         self.feedback
     }

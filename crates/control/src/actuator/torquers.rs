@@ -78,6 +78,11 @@ pub trait AxisActuate: fmt::Debug + Send + Sync {
         self.torque()
     }
 
+    /// Returns the torque of the pulse that is on (N m), of thrusters.
+    fn firing(&self) -> f64 {
+        0.0
+    }
+
     /// Returns the sines of time in the torque, on a three-axis body.
     fn sines(&self) -> &[Sine] {
         &[]
@@ -186,6 +191,10 @@ impl Actuate for Torquers {
 
     fn torque(&self, axis: usize) -> f64 {
         self.about(axis, |actuator, _| actuator.torque())
+    }
+
+    fn firing(&self, axis: usize) -> f64 {
+        self.about(axis, |actuator, _| actuator.firing())
     }
 
     fn applied(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {

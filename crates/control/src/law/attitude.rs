@@ -192,7 +192,7 @@ impl AtSamples {
 impl Control for AtSamples {
     fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
         let (angle, rate) = goal.at(now);
-        let error = self.spec.error.of(belief) - angle;
+        let error = self.spec.error.error(belief) - angle;
         let (feedback, limited) = self.feedback(error, belief.rate - rate);
         let acceleration = feedback + goal.acceleration;
         let [above, below] = self.accelerations;

@@ -288,7 +288,7 @@ mod tests {
         let environment = crate::document::from_text(
             "orbit = { semi_major_axis = 8e6, eccentricity = 0.1, inclination = 1.2 }\nsun = [1, 2, 3]",
         );
-        let sky = Sky::new(&environment.unwrap(), Span::from_seconds(1e4), 0);
+        let sky = Sky::new(&environment.unwrap(), Span::from_seconds(1e4), None);
         let way = targets(
             "target = [{ from = 0, frame = \"sun\", yaw = 0.3 }, { from = 50, frame = \"nadir\", roll = 0.2, acceleration = 2e-3 }, \
              { from = 400, frame = \"nadir\", table = [{ time = 0, roll = 0.2 }, { time = 20, pitch = 0.4 }, { time = 60, yaw = -0.3 }] }]",

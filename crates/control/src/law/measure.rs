@@ -1,5 +1,7 @@
 //! Measures of the attitude error: by the vector part of the quaternion, or by Rodrigues parameters.
 
+use std::f64::consts::PI;
+
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -22,16 +24,18 @@ impl Measure {
         *self == Self::default()
     }
 
-    /// Returns the error about the axis of a state estimate (rad).
-    pub fn of(self, belief: &Belief) -> f64 {
-        match self {
-            Self::Quaternion => belief.angle,
-            Self::Rodrigues => {
-                let half = 0.5 * belief.whole;
-                let cosine = f64::sqrt((1.0 - half * half).max(0.0));
-                belief.angle * 2.0 / (1.0 + cosine)
-            }
+    /// Returns the error about the axis of a belief (rad).
+    pub fn error(self, belief: &Belief) -> f64 {
+        // Estimates about single axes may add up to more than half a turn.
+        let angle = belief.whole.min(PI);
+        if angle == 0.0 {
+            return belief.angle;
         }
+        let length = match self {
+            Self::Quaternion => 2.0 * libm::sin(0.5 * angle),
+            Self::Rodrigues => 4.0 * libm::tan(0.25 * angle),
+        };
+        belief.angle * (length / angle)
     }
 }
 
@@ -43,10 +47,10 @@ mod tests {
     fn both_are_the_angle_for_small_ones_and_differ_for_large_ones() {
         // Rotation by 1.2 rad about (3, 0, 4)/5.
         for (angle, share) in [(1.2, 0.6), (1.2, 0.8), (-1e-4, 0.6), (3.1, 1.0)] {
-            let whole = 2.0 * libm::sin(0.5 * angle);
-            let belief = Belief { angle: share * whole, whole, ..Belief::default() };
-            assert_eq!(Measure::Quaternion.of(&belief), share * whole);
-            let found = Measure::Rodrigues.of(&belief);
+            let belief = Belief { angle: share * angle, whole: f64::abs(angle), ..Belief::default() };
+            let found = Measure::Quaternion.error(&belief);
+            assert!((found - share * 2.0 * libm::sin(0.5 * angle)).abs() < 1e-15, "{angle} {found}");
+            let found = Measure::Rodrigues.error(&belief);
             assert!((found - share * 4.0 * libm::tan(0.25 * angle)).abs() < 1e-14, "{angle} {found}");
         }
     }

@@ -152,7 +152,7 @@ impl Control for Pd {
             .extra
             .as_ref()
             .map_or(0.0, |extra| self.tuned.of("extra.gain", extra.gain(belief.dominant.frequency)));
-        let error = self.error.of(belief) - angle + gain * belief.dominant.displacement;
+        let error = self.error.error(belief) - angle + gain * belief.dominant.displacement;
         let difference = error - self.last.unwrap_or(error);
         let derivative = match self.differentiation {
             Differentiation::Exact => belief.rate - rate + gain * belief.dominant.rate,

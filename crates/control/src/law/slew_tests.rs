@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Matrix3, Quaternion};
 
 use super::{AttitudeLaw, Authority, Cause, Control, Goal, Itinerary, Rule, TorqueDistribution};
 use crate::actuator::{Actuate, PulseWidth, Spinning, TorquerSetting, Wheels};
-use crate::attitude::{Vector, beyond, rotation};
+use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::belief::Belief;
 use crate::manoeuvre::{Profile, Slew};
 use crate::motion::turning::{Acting, Bearing, Flexible, FreeMode, Slip, Turning};
@@ -107,7 +107,7 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
         let (t, now) = (PERIOD * f64::from(k), Instant::START + Span::from_seconds(PERIOD * f64::from(k)));
         let (attitude, rate) = (turning.seen().attitude, turning.seen().rate);
         let pose = slew.at(t);
-        let angles = beyond(&pose.attitude, &attitude);
+        let angles = rotation_vector(&pose.attitude, &attitude);
         if let Some(row) = table.iter().find(|row| row[0] == t) {
             met += 1;
             let three = |from: usize| Vector::from_row_slice(&row[from..from + 3]);

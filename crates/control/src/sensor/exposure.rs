@@ -3,7 +3,7 @@
 use nalgebra::Quaternion;
 
 use super::Sensor;
-use crate::attitude::{Vector, rotation, turn};
+use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::parts::Parts;
 use crate::time::Span;
 
@@ -29,7 +29,7 @@ impl Exposure {
         let (mut whole, mut sum) = (0.0, Vector::zeros());
         for (lasts, attitude) in &self.0 {
             whole += lasts;
-            sum += turn(middle, attitude) * *lasts;
+            sum += rotation_vector(middle, attitude) * *lasts;
         }
         if whole > 0.0 { middle * rotation(&(sum / whole)) } else { *middle }
     }
@@ -74,7 +74,7 @@ mod tests {
     }
 
     fn off(found: &Quaternion<f64>, exact: Vector) -> f64 {
-        (turn(&Quaternion::new(1.0, 0.0, 0.0, 0.0), found) - exact).norm()
+        (rotation_vector(&Quaternion::new(1.0, 0.0, 0.0, 0.0), found) - exact).norm()
     }
 
     #[test]
@@ -119,7 +119,7 @@ mod tests {
             let sum = nodes(0.5, 40.0)
                 .into_iter()
                 .fold(Quaternion::default(), |sum, (t, lasts)| sum + rotation(&turned(t - 0.25)) * lasts);
-            let apart = turn(&(sum / sum.norm()), &found).norm();
+            let apart = rotation_vector(&(sum / sum.norm()), &found).norm();
             assert!(apart < 0.05 * size * size * size && apart > 0.0, "{size} {apart:e}");
         }
     }

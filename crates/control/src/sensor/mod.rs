@@ -21,7 +21,7 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{AXES, Vector, beyond, rotation};
+use crate::attitude::{AXES, Vector, rotation, rotation_vector};
 use crate::document;
 use crate::environment::SkySight;
 use crate::own::{Halt, Own};
@@ -108,12 +108,11 @@ pub enum Orientation {
 }
 
 impl Orientation {
-    /// Returns the rotation relative to another orientation, about each axis (rad); of one angle about the first axis
-    /// only.
+    /// Returns the rotation vector from another orientation to this one (rad); for one angle, the difference about the first axis.
     #[inline]
     pub fn beyond(&self, other: &Self) -> [f64; 3] {
         match (self, other) {
-            (Self::Attitude(q), Self::Attitude(goal)) => beyond(goal, q).into(),
+            (Self::Attitude(q), Self::Attitude(goal)) => rotation_vector(goal, q).into(),
             (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
             // All orientations of a run are of the same kind.
             _ => [f64::NAN; 3],

@@ -248,7 +248,7 @@ mod tests {
                 assert_eq!(one.is_some(), other.is_some());
                 if let (Some(one), Some(other)) = (one, other) {
                     // Both have the same noise; only the mean over the exposure differs, except at the start.
-                    let by = crate::attitude::turn(&attitude(other), &attitude(one));
+                    let by = crate::attitude::rotation_vector(&attitude(other), &attitude(one));
                     let exact = if now == Instant::START { Vector::zeros() } else { smear };
                     assert!((by - exact).norm() < 1e-8, "{by}");
                     told += 1;
@@ -289,7 +289,7 @@ mod tests {
         for k in 0..count {
             let now = Instant::START + Span::from_seconds(f64::from(k));
             let seen = attitude(tracker.read(now, &truth(at, elastic, [0.0; 3]), None).unwrap());
-            let error = crate::attitude::beyond(&(at * rotation(&elastic.into())), &seen);
+            let error = crate::attitude::rotation_vector(&(at * rotation(&elastic.into())), &seen);
             sums += error * error.transpose() / f64::from(count);
         }
         let exact = tracker.tracker.covariance([1e-5, 2e-5, 1e-3]);

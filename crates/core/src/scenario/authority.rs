@@ -3,7 +3,7 @@
 use super::Written;
 use super::study::Study;
 use crate::actuator::{Actuator, PulseWidth};
-use crate::attitude::beyond;
+use crate::attitude::rotation_vector;
 use crate::body::Spatial;
 use crate::document::Fault;
 use crate::estimator::adaptive;
@@ -111,7 +111,7 @@ impl Study {
                     let before = written.targets().iter().rev().nth(1);
                     let from =
                         before.map_or_else(|| body.attitude.get(), |target| self.way.target(target.begins()));
-                    let distance = beyond(&goal, &from).norm();
+                    let distance = rotation_vector(&goal, &from).norm();
                     (distance > 0.0).then_some(part * distance)
                 }
             },

@@ -2,7 +2,7 @@
 //! a confirmation.
 
 use super::Scenario;
-use crate::actuator::{ActuatorTask, Unloads};
+use crate::actuator::{Actuator, ActuatorTask, Unloads};
 use crate::attitude::vector;
 use crate::body::Spatial;
 use crate::body::spatial::Periodic;
@@ -310,6 +310,13 @@ impl Scenario {
         let mut messages = Vec::new();
         if log >= Some(Detail::Full) {
             messages.push(("log.period".to_owned(), topics * duration / period.seconds()));
+            // A row for each edge of a pulse.
+            for member in self.actuator.members() {
+                if let Actuator::Thrusters(thrusters) = &*member.kind {
+                    let edges = 2.0 * duration / thrusters.period.seconds();
+                    messages.push((format!("{}.period", member.key), topics * edges));
+                }
+            }
         }
         if log >= Some(Detail::Scene) {
             let frames = duration / self.log.scene.period(period).seconds();

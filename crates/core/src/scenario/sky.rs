@@ -33,7 +33,7 @@ impl Written {
 
     /// Returns the orbit environment in inertial axes, independent of the body's attitude.
     pub fn sky(&self) -> Sky {
-        let of = |environment| Sky::new(environment, self.duration, self.epoch_ns());
+        let of = |environment| Sky::new(environment, self.duration, self.date_ns());
         self.environment.as_ref().map(of).unwrap_or_default()
     }
 

@@ -8,7 +8,7 @@ use crate::actuator::{
     Actuate, Actuator, ActuatorMember, ActuatorTask, Allocation, Firing, FiringGroup, GyroAxes, OpenThruster,
     Opposes, Several, TorquerSetting, Torquers,
 };
-use crate::attitude::{Vector, beyond, tensor};
+use crate::attitude::{Vector, rotation_vector, tensor};
 use crate::body::craft::{HubRotor, Moving};
 use crate::body::{Axes, Drive, Mode, Model, Planar, Spatial};
 use crate::document::Fault;
@@ -201,7 +201,7 @@ impl Study {
         let craft = model.craft().filter(|_| pushed);
         self.moving = craft.map(|craft| Moving::new(body, craft.mass));
         let measured = self.measured(body);
-        let angles = beyond(&self.way.target(Instant::START), &body.attitude.get());
+        let angles = rotation_vector(&self.way.target(Instant::START), &body.attitude.get());
         for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
             let mode = |(index, mode): (usize, &crate::body::spatial::SpatialMode)| {
                 let shape = seen[index];

@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-use toml::{Table, value::Datetime};
+use toml::{Table, Value, value::Datetime};
 
 use super::{Log, Reference, epoch};
 use crate::actuator::Assigned;
@@ -139,7 +139,12 @@ impl Written {
     /// Returns the scenario with all its defaults, as a table.
     pub fn to_table(&self) -> Table {
         // Every scenario can be expressed in TOML.
-        Table::try_from(self).unwrap_or_default()
+        let mut table = Table::try_from(self).unwrap_or_default();
+        // serde knows no dates: `toml` makes a marked table of one.
+        if let Some(epoch) = self.epoch {
+            table.insert("epoch".to_owned(), Value::Datetime(epoch));
+        }
+        table
     }
 
     /// Returns the scenario with all its defaults, as TOML.
@@ -160,9 +165,14 @@ impl Written {
         self.appendage.iter_mut().for_each(Appendage::forget_file);
     }
 
-    /// Returns the date of the start in nanoseconds since 1970 UTC; 0 without one.
+    /// The date of the start in nanoseconds since 1970 UTC, if it has one.
+    pub fn date_ns(&self) -> Option<u64> {
+        self.epoch.as_ref().and_then(epoch::nanoseconds_since_1970)
+    }
+
+    /// The instant in nanoseconds since 1970 UTC from which a log counts: the date of the start, 0 without one.
     pub fn epoch_ns(&self) -> u64 {
-        self.epoch.as_ref().and_then(epoch::nanoseconds_since_1970).unwrap_or(0)
+        self.date_ns().unwrap_or(0)
     }
 
     /// Returns true if the torque consists of more than the switchings of a law.

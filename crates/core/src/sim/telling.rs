@@ -29,6 +29,8 @@ pub struct Telling {
     /// Period of the rows of a dense record.
     pub log_period: Span,
     next_dense: Option<Instant>,
+    /// Torques of the pulses of thrusters that were on at the last row (N m).
+    firing: [f64; 3],
     next_law: Instant,
     /// Period of the cycle rows of a three-axis body.
     cycle: Option<Span>,
@@ -67,6 +69,7 @@ impl Telling {
             next_frames: None,
             log_period: scenario.log_period(),
             next_dense: None,
+            firing: [0.0; 3],
             next_law: Instant::START,
             cycle: scenario.model.spatial().map(|_| scenario.study.tick),
             slips: Vec::new(),
@@ -144,8 +147,14 @@ impl Simulation {
             self.telling.next_cycle = self.telling.cycle.map(|cycle| now + cycle);
             self.tell_cycle(record)?;
         }
-        if self.telling.next_dense == Some(now) {
+        let Some(due) = self.telling.next_dense else { return Ok(()) };
+        // A pulse that begins or ends has a row of its own, or a log could miss it.
+        let firing = [0, 1, 2].map(|axis| self.drive.actuator.firing(axis));
+        let pulses = std::mem::replace(&mut self.telling.firing, firing) != firing;
+        if due == now {
             self.telling.next_dense = Some(now + self.telling.log_period);
+        }
+        if due == now || pulses {
             self.plant.view(now)?;
             match &self.plant {
                 Plant::Planar(_) => self.tell_motion(record)?,
@@ -153,7 +162,7 @@ impl Simulation {
                     record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant)))?;
                 }
             }
-            if now >= self.telling.next_law {
+            if due == now && now >= self.telling.next_law {
                 if let Plant::Planar(_) = self.plant {
                     record.record(now, Sample::Law(&self.law_row()))?;
                 }

@@ -64,7 +64,8 @@ def campaign(
         progress: Called after each task with the number of finished runs and the total number.
 
     Raises:
-        ScenarioError: The scenario does not allow this variation. A failed run is a row with an `error`.
+        ScenarioError: The scenario does not allow this variation.
+        SimulationError: All runs failed. If only some of them fail, each is a row with an `error`.
         ValueError: There are more than 100 000 000 runs, `yes` is needed, `out` contains another campaign, or
             parts written in Python cannot be pickled.
         OSError: `out` cannot be written, or another process is using it.
@@ -98,10 +99,10 @@ def campaign(
         from flexsc import _brought
 
         study = (span, sample, replicas, names)
-        return _brought.run(scenario, study, work, executor, _threads(jobs), task_s, progress)
+        return _checked(_brought.run(scenario, study, work, executor, _threads(jobs), task_s, progress))
     from flexsc._executor import run
 
-    return run(work, out, executor, _threads(jobs), task_s, force, progress)
+    return _checked(run(work, out, executor, _threads(jobs), task_s, force, progress))
 
 
 def sweep(
@@ -133,6 +134,7 @@ def sweep(
     Raises:
         ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
             finite. Any other value that is not accepted becomes a row with an `error`.
+        SimulationError: All runs failed. If only some of them fail, each is a row with an `error`.
 
     >>> import flexsc
     >>> scenario = flexsc.Scenario.example("relay-fixed").with_("duration", 600.0)
@@ -189,7 +191,18 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
 
 def _made(work: engine.Work, jobs: int | None) -> Table:
     columns, summaries = work.make(work.runs, _threads(jobs))
-    return Table(work, columns.__getitem__, lambda: summaries)
+    return _checked(Table(work, columns.__getitem__, lambda: summaries))
+
+
+def _checked(table: Table) -> Table:
+    """Return a table unless all of its runs failed."""
+    errors = table["error"]
+    if all(errors):
+        name, count = table.scenario.name, len(errors)
+        raise engine.SimulationError(
+            f"{name}: {count} of {count} runs failed; run {table['run'][0]}: {errors[0]}"
+        )
+    return table
 
 
 def _threads(jobs: int | None) -> int:

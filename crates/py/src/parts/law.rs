@@ -113,7 +113,7 @@ impl Event {
         Instant(self.goal.from)
     }
 
-    /// Length of the vector of the angles about all axes (rad); 0 of a body with one angle.
+    /// Length of the rotation vector from the target, of which `angle` is a component (rad); 0 of a body with one angle.
     #[getter]
     fn whole(&self) -> f64 {
         self.belief.whole

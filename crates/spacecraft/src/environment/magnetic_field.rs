@@ -4,6 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::date::greenwich;
 use crate::attitude::Vector;
 use crate::quantity::{Finite, Positive};
 
@@ -18,8 +19,10 @@ pub struct MagneticField {
     pub radius: Positive,
     /// Rotation rate of the planet (rad/s); default: the Earth's.
     pub rotation: Finite,
-    /// Angle from the inertial x to the prime meridian at the start (rad).
-    pub meridian: Finite,
+    /// Angle from the inertial x to the prime meridian at the start (rad); default: that of Greenwich at the scenario's `epoch`, 0
+    /// without one.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub meridian: Option<Finite>,
 }
 
 impl Default for MagneticField {
@@ -29,17 +32,24 @@ impl Default for MagneticField {
             coefficients: [-1450.9e-9, 4652.5e-9, -29_404.8e-9].map(|t| Finite::new(t).unwrap_or_default()),
             radius: Positive::new(6_371_200.0).unwrap_or(Positive::ONE),
             rotation: Finite::new(7.292_115e-5).unwrap_or_default(),
-            meridian: Finite::ZERO,
+            meridian: None,
         }
     }
 }
 
 impl MagneticField {
+    /// Returns the field with its meridian, of a scenario that begins so many nanoseconds after 1970, UTC.
+    #[must_use]
+    pub fn at_epoch(mut self, epoch_ns: u64) -> Self {
+        self.meridian = self.meridian.or_else(|| Finite::new(greenwich(epoch_ns)));
+        self
+    }
+
     /// Returns the field (T) at a position from the planet's centre (m), both in inertial axes, at a time since the
     /// start (s).
     pub fn at(&self, position: &Vector, t: f64) -> Vector {
         let [x, y, z] = self.coefficients.map(Finite::get);
-        let (sin, cos) = libm::sincos(self.meridian.get() + self.rotation.get() * t);
+        let (sin, cos) = libm::sincos(self.meridian.unwrap_or_default().get() + self.rotation.get() * t);
         let south = Vector::new(cos * x - sin * y, sin * x + cos * y, z);
         let distance = position.norm();
         let (up, ratio) = (position / distance, self.radius.get() / distance);
@@ -79,6 +89,15 @@ mod tests {
             assert!((local - exact).norm() < 1e-13 * strength, "{t} {local} {exact}");
             assert!(found.norm() <= field.bound(radius));
         }
+    }
+
+    #[test]
+    fn with_a_date_its_meridian_is_that_of_greenwich_unless_it_is_a_key() {
+        let field = MagneticField::default().at_epoch(1_774_017_960_000_000_000);
+        let same = MagneticField { meridian: Finite::new(0.691_984_659), ..MagneticField::default() };
+        let position = Vector::new(7e6, -1e6, 2e6);
+        assert!((field.at(&position, 900.0) - same.at(&position, 900.0)).norm() < 1e-13);
+        assert_eq!(same.at_epoch(1_774_017_960_000_000_000), same);
     }
 
     #[test]

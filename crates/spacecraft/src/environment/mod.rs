@@ -1,6 +1,7 @@
 //! Environment of a three-axis body: torques that depend on attitude and time.
 
 mod around;
+mod date;
 mod dipole;
 mod drag;
 mod gravity_gradient;

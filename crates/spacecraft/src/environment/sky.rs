@@ -26,9 +26,10 @@ pub struct SkySight {
 }
 
 impl Sky {
-    /// Creates the orbit environment of a run of length `duration` that begins `epoch_ns` nanoseconds after 1970, UTC.
-    pub fn new(environment: &Environment, duration: Span, epoch_ns: u64) -> Self {
-        let sun = environment.sun.map(|sun| sun.direction(epoch_ns));
+    /// The sky of an environment, for a run that lasts so long and begins so many nanoseconds after 1970, if its date is known.
+    pub fn new(environment: &Environment, duration: Span, epoch_ns: Option<u64>) -> Self {
+        let sun = environment.sun.map(|sun| sun.direction(epoch_ns.unwrap_or(0)));
+        let dated = |field: MagneticField| epoch_ns.map_or(field, |ns| field.at_epoch(ns));
         let shadows = match (&environment.orbit, &sun) {
             (Some(orbit), Some(sun)) => orbit.shadows(sun, duration.seconds()),
             _ => Vec::new(),
@@ -36,7 +37,7 @@ impl Sky {
         let at = |seconds: f64| Instant::START + Span::from_seconds(seconds);
         Self {
             orbit: environment.orbit,
-            field: environment.magnetic_field,
+            field: environment.magnetic_field.map(dated),
             sun,
             shadows: shadows.into_iter().map(|shadow| shadow.map(at)).collect(),
         }

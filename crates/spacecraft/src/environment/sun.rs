@@ -8,14 +8,12 @@ use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
+use super::date::{DAY, J2000};
 use crate::attitude::{Vector, vector};
 use crate::quantity::Finite;
 
 /// Word of the scenario for the Sun at the date of the start.
 const EPOCH: &str = "epoch";
-
-/// Seconds from 1970 to J2000, noon of 1 January 2000.
-const J2000: f64 = 946_728_000.0;
 
 /// Direction from the body to the Sun, constant during a run.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -44,7 +42,7 @@ impl Sun {
 /// Returns the direction to the Sun at `seconds` after 1970, within 0.01 degrees from 1950 to 2050: the low-precision
 /// formulas of \[AstronomicalAlmanac\].
 fn seen(seconds: f64) -> Vector {
-    let days = (seconds - J2000) / 86_400.0;
+    let days = (seconds - J2000) / DAY;
     let anomaly = (357.528 + 0.985_600_3 * days).to_radians();
     let longitude =
         280.460 + 0.985_647_4 * days + 1.915 * libm::sin(anomaly) + 0.020 * libm::sin(2.0 * anomaly);

@@ -6,7 +6,7 @@ use std::f64::consts::FRAC_PI_2;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::{Around, Environment, Sky};
-use crate::attitude::{Vector, beyond, rotation};
+use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::body::Spatial;
 use crate::flow::{Rigid, RigidTurn};
 use crate::motion::turning::{Acting, Flexible, FreeMode, Rotor, Surroundings, Turning};
@@ -24,7 +24,7 @@ fn upright() -> Matrix3<f64> {
 
 fn around(text: &str, inertia: &Matrix3<f64>) -> Around {
     let environment: Environment = crate::document::from_text(text).expect("an environment");
-    let sky = Sky::new(&environment, Span::from_seconds(1e5), 0);
+    let sky = Sky::new(&environment, Span::from_seconds(1e5), None);
     Around::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
 }
 
@@ -68,7 +68,7 @@ fn local(t: f64) -> Quaternion<f64> {
 fn libration(body: &One) -> (Vector, Vector) {
     let attitude = body.turn.attitude;
     let normal = super::orbit::into(&attitude, &Vector::new(0.0, -RATE, 0.0));
-    (beyond(&local(body.t), &attitude), body.rigid.rate(&body.turn) - normal)
+    (rotation_vector(&local(body.t), &attitude), body.rigid.rate(&body.turn) - normal)
 }
 
 /// Returns the instant near `guess` at which the pitch crosses 0.
@@ -121,7 +121,7 @@ fn a_sail_behind_the_body_swings_as_a_pendulum() {
     let quarter = 1.725_064_310_933_874_4 / 0.1;
     for (quarters, angle) in [(1.0, 0.0), (2.0, -0.6), (3.0, 0.0), (8.0, 0.6)] {
         body.go(quarters * quarter);
-        let off = beyond(&rotation(&Vector::new(0.0, angle, 0.0)), &body.turn.attitude);
+        let off = rotation_vector(&rotation(&Vector::new(0.0, angle, 0.0)), &body.turn.attitude);
         assert!(off.norm() < 1e-9, "{quarters} {:e}", off.norm());
     }
 }
@@ -308,7 +308,7 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let text = "solar_pressure = { force = [1e-4, 0.0, 0.0], at = [0.1, 0.5, 0.0], shadow = [[10.0, 20.0]] }";
     let environment: Environment = crate::document::from_text(text).expect("an environment");
     let centre = Vector::new(0.1, 0.3, 0.0);
-    let sky = Sky::new(&environment, Span::from_seconds(100.0), 0);
+    let sky = Sky::new(&environment, Span::from_seconds(100.0), None);
     let around = Around::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);
     let at = |t: f64| around.torque(t, &Quaternion::identity(), &upright());
     let pushed = Vector::new(0.0, 0.0, -0.2e-4);

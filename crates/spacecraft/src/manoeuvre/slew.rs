@@ -47,11 +47,9 @@ impl Pose {
         }
     }
 
-    /// Returns rate and acceleration in the axes of a body that is rotated relative to this attitude by `beyond` (twice
-    /// the sine of half the angle along the rotation axis, rad).
+    /// Rate and acceleration in the axes of a body that is beyond it by this rotation vector (rad).
     pub fn seen_from(&self, beyond: &Vector) -> [Vector; 2] {
-        let half = beyond * 0.5;
-        let turn = Quaternion::from_parts(f64::sqrt((1.0 - half.norm_squared()).max(0.0)), half);
+        let turn = rotation(beyond);
         let turned = |vector: &Vector| -> Vector {
             (turn.conjugate() * Quaternion::from_imag(*vector) * turn).vector().into_owned()
         };

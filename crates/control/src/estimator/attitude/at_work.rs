@@ -5,7 +5,7 @@ use nalgebra::Quaternion;
 use super::spec::{AttitudeFilter, AttitudeSetting, Role};
 use super::swinging::Swinging;
 use super::{AttitudeFilterState, AttitudeMeasurement, Correction, FilterHistory, Fix};
-use crate::attitude::{Vector, beyond, rotation};
+use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::belief::Belief;
 use crate::estimator::kalman::Prior;
 use crate::estimator::{Estimate, Taken};
@@ -163,9 +163,8 @@ impl Estimate for Tracking {
         let now = taken.now;
         if self.history.is_none() {
             let Orientation::Attitude(origin) = taken.origin else { return };
-            let beyond = Vector::from_fn(|axis, _| 0.5 * (taken.truth)(axis).rigid_angle);
-            let real = f64::sqrt((1.0 - beyond.norm_squared()).max(0.0));
-            let filter = self.prior(&(origin * Quaternion::from_parts(real, beyond)));
+            let beyond = Vector::from_fn(|axis, _| (taken.truth)(axis).rigid_angle);
+            let filter = self.prior(&(origin * rotation(&beyond)));
             let mut history = FilterHistory::new(now, filter, self.setting.noise, self.setting.reach);
             history.push(now, self.torque);
             self.history = Some(history);
@@ -200,7 +199,7 @@ impl Estimate for Tracking {
         };
         let (estimate, bias) = (Tracking::attitude(self, now)?, Vector::from(bias));
         let [angle_sd, bias_sd] = filter.deviations();
-        let error = [beyond(&estimate, truth), bias - filter.bias];
+        let error = [rotation_vector(&estimate, truth), bias - filter.bias];
         let [angle_error, bias_error] = error;
         let axis = |axis: usize| AxisEstimate {
             angle_error_rad: -angle_error[axis],

@@ -14,7 +14,7 @@ use nalgebra::{
 use super::carried::Carried;
 use super::measurement::{AttitudeMeasurement, GyroNoise, across};
 use super::swinging::{SwingInnovation, Swinging};
-use crate::attitude::{Vector, beyond, rotation};
+use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::environment::into;
 use crate::lanes::Four;
 use crate::numerics::stumpff::stumpff;
@@ -114,7 +114,7 @@ impl AttitudeFilterState {
     /// Corrects the filter by a measured attitude whose error has the covariance `noise` in body axes (rad²). Returns
     /// `None` and changes nothing if the covariance of the innovation is not positive definite.
     pub fn correct(&mut self, measured: &Quaternion<f64>, noise: &Matrix3<f64>) -> Option<Correction> {
-        let innovation = beyond(&self.attitude, measured);
+        let innovation = rotation_vector(&self.attitude, measured);
         let to_attitude = self.covariance.fixed_columns::<3>(0).into_owned();
         let inverse = Cholesky::new(to_attitude.fixed_rows::<3>(0) + noise)?.inverse();
         let gain = to_attitude * inverse;
@@ -149,7 +149,7 @@ impl AttitudeFilterState {
     ) -> Option<Correction> {
         let (off, moved, gain) = match measured {
             AttitudeMeasurement::Attitude(attitude) => {
-                (beyond(&self.attitude, attitude), Matrix3::identity(), *gain)
+                (rotation_vector(&self.attitude, attitude), Matrix3::identity(), *gain)
             }
             AttitudeMeasurement::Vector(sight) => {
                 let expected = into(&self.attitude, &sight.inertial);
@@ -201,7 +201,7 @@ impl AttitudeFilterState {
 
     /// Returns the errors against a true attitude and bias: truth relative to the estimate (rad, rad/s).
     pub fn error(&self, attitude: &Quaternion<f64>, bias: &Vector) -> [Vector; 2] {
-        [beyond(&self.attitude, attitude), bias - self.bias]
+        [rotation_vector(&self.attitude, attitude), bias - self.bias]
     }
 
     /// Returns the normalised squared error against a true attitude and bias; NaN if the covariance is not positive

@@ -11,7 +11,7 @@ use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
 
 use super::elastic::KnownModes;
 use super::measurement::{GyroNoise, across};
-use crate::attitude::{Vector, beyond, rotation};
+use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::environment::into;
 use crate::numerics::exponential::exponential;
 use crate::numerics::stumpff::stumpff;
@@ -202,7 +202,7 @@ impl Swinging {
         noise: &DMatrix<f64>,
         sensor: usize,
     ) -> Option<(Vector, SwingInnovation)> {
-        let off = beyond(&(attitude * rotation(&self.mounted(sensor))), measured);
+        let off = rotation_vector(&(attitude * rotation(&self.mounted(sensor))), measured);
         let told =
             self.take(&DMatrix::identity(3, 3), &DVector::from_column_slice(off.as_slice()), noise, sensor)?;
         Some((off, told))

@@ -4,7 +4,7 @@ use nalgebra::Quaternion;
 
 use super::UNSEEN;
 use super::two_way::{Mount, TwoWay};
-use crate::attitude::{Vector, beyond};
+use crate::attitude::{Vector, rotation_vector};
 use crate::body::spatial::Periodic;
 use crate::environment::Around;
 use crate::flow::{DriftingModes, Elastic, Rigid, SpatialState};
@@ -333,7 +333,7 @@ impl SpatialPlant {
             quadrature: shape[axis] * phase.quadrature,
         };
         State {
-            rigid_angle: beyond(goal, &self.state.turn.attitude)[axis],
+            rigid_angle: rotation_vector(goal, &self.state.turn.attitude)[axis],
             rigid_rate: self.rigid.rate(&self.state.turn)[axis],
             modes: self.state.modes.iter().zip(&self.sensed).map(phase).collect(),
         }

@@ -7,10 +7,12 @@
 //! parts that move relative to the hub,
 //!
 //! ```text
-//! dT/dth = (w x b - p/m) . (u x (a x S)) + u . (a x K u) - (w x (a x S)) . p1/m,
+//! dT/dth = (w x b - (p + p1)/m) . (u x (a x S)) + u . (a x K u),
 //! ```
 //!
-//! Here p1 is the momentum that displacements of other modes have because the body rotates.
+//! in which p1 = w x s + g is the momentum that displacements of other modes have because the body and drives turn, s = sum t eta
+//! over these modes. The momentum p of a hinge is not small, so that its product with p1 counts: T has -p . p1/m. With t of the
+//! hinge, that changes its delta by -s x t/m and its k by -t . g/m, and dT/d eta of another mode by -p . (w x t + its part of g)/m.
 
 use nalgebra::Matrix3;
 
@@ -103,22 +105,48 @@ impl Posed {
             .collect()
     }
 
-    /// Computes the forces dT/d eta on the hinge modes from the hub's rate (rad/s), the displacements of the other
-    /// modes, and the rates of all.
+    /// Changes what hinges have of the body's rate by what these displacements of other modes do to the centre of mass.
+    pub(super) fn offset_hinges(&mut self, eta: &[f64]) {
+        let Self { hinges, translations, pushes, rotations, kicks, mass, .. } = self;
+        let (mut offset, mut carried) = (Vector::zeros(), Vector::zeros());
+        for (mode, eta) in eta.iter().enumerate() {
+            if hinges.iter().all(|hinge| hinge.mode != mode) {
+                offset += translations[mode] * *eta;
+                carried += pushes[mode] * *eta;
+            }
+        }
+        for hinge in hinges {
+            let t = translations[hinge.mode];
+            rotations[hinge.mode] -= offset.cross(&t) / *mass;
+            kicks[hinge.mode] -= t.dot(&carried) / *mass;
+        }
+    }
+
+    /// Gives hinges their dT/d eta at this rate of the hub (rad/s), displacements of other modes, and rates of all, and adds to the
+    /// other modes what hinges do to theirs.
     pub fn swing(&self, rate: &Vector, small: &[f64], rates: &[f64], forces: &mut [f64]) {
         if self.hinges.is_empty() {
             return;
         }
-        let moved = self.translations.iter().zip(rates).fold(self.push, |sum, (t, rate)| sum + t * *rate);
-        let carried = self.translations.iter().zip(&self.pushes).zip(small);
-        let carried =
-            carried.fold(Vector::zeros(), |sum, ((t, push), eta)| sum + (rate.cross(t) + push) * *eta);
+        let (mut moved, mut swung) = (self.push, Vector::zeros());
+        for (t, rate) in self.translations.iter().zip(rates) {
+            moved += t * *rate;
+        }
+        for hinge in &self.hinges {
+            swung += self.translations[hinge.mode] * rates[hinge.mode];
+        }
+        for (((t, push), eta), force) in
+            self.translations.iter().zip(&self.pushes).zip(small).zip(&mut *forces)
+        {
+            let carried = rate.cross(t) + push;
+            moved += carried * *eta;
+            *force -= swung.dot(&carried) / self.mass;
+        }
         for hinge in &self.hinges {
             let turned = rate + hinge.about * (rates[hinge.mode] / hinge.unit);
             let root = rate.cross(&hinge.from_centre) - moved / self.mass;
             let force = root.dot(&turned.cross(&hinge.across))
-                + turned.dot(&hinge.about.cross(&(hinge.inertia * turned)))
-                - rate.cross(&hinge.across).dot(&carried) / self.mass;
+                + turned.dot(&hinge.about.cross(&(hinge.inertia * turned)));
             forces[hinge.mode] = force / hinge.unit;
         }
     }

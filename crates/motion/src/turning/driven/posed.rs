@@ -138,6 +138,7 @@ impl DrivenSpacecraft {
         (posed.centre, posed.inertia, posed.momentum) =
             (centre, 0.5 * (inertia + inertia.transpose()), momentum);
         (posed.energy, posed.push, posed.mass) = (0.5 * double, push, mass);
+        posed.offset_hinges(eta);
         let (mut carried, mut across) = (Matrix3::zeros(), Matrix3::zeros());
         for (delta, t) in posed.rotations.iter().zip(&posed.translations) {
             carried += delta * delta.transpose();

@@ -115,15 +115,13 @@ impl Turning {
         let mut small = eta.clone();
         posed.small(&mut small);
         // Initial hinge angles and rates do not contribute to the hub's initial attitude and rate.
-        let swung = |all: &[f64]| {
-            let mut others = all.to_vec();
-            posed.small(&mut others);
-            driving.basis.bent(&driving.basis.free(all)) - driving.basis.bent(&driving.basis.free(&others))
-        };
         let (mut attitude, mut rate) = (self.seen.attitude, self.seen.rate);
         if driving.swings {
-            attitude *= rotation(&-swung(&eta));
-            rate -= swung(&rates);
+            let bent = |eta: &[f64]| driving.basis.bent(&driving.basis.free(eta));
+            let mut others = rates.clone();
+            posed.small(&mut others);
+            attitude = self.seen.mean * rotation(&bent(&small));
+            rate += bent(&others) - bent(&rates);
         }
         let (momentum, pi) = posed.momenta(&rate, &small, &rates);
         let bare = Bare { attitude, momentum, bent: driving.basis.bent(&self.seen.displacements), eta, pi };

@@ -275,11 +275,11 @@ rows! {
         pitch_rad: f64,
         /// Yaw, the first rotation (rad).
         yaw_rad: f64,
-        /// Pointing error about the body's x axis (rad).
+        /// Pointing error about the body's x axis: this component of the rotation vector from the target (rad).
         roll_error_rad: f64,
-        /// Pointing error about the body's y axis (rad).
+        /// Pointing error about the body's y axis: this component of the rotation vector from the target (rad).
         pitch_error_rad: f64,
-        /// Pointing error about the body's z axis (rad).
+        /// Pointing error about the body's z axis: this component of the rotation vector from the target (rad).
         yaw_error_rad: f64,
     }
     /// One mass-normalised elastic mode.

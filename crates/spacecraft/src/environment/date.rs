@@ -1,0 +1,41 @@
+//! The Earth at a date: how far it has turned.
+
+use std::f64::consts::TAU;
+
+/// Seconds from 1970 to noon of the first day of 2000.
+pub const J2000: f64 = 946_728_000.0;
+
+/// Seconds of a day.
+pub const DAY: f64 = 86_400.0;
+
+/// Returns the angle of the meridian of Greenwich from the mean equinox (rad, 0 to 2 pi) so many nanoseconds after 1970, UTC: mean
+/// sidereal time by the formula of 1982, with UT1 = UTC.
+pub fn greenwich(epoch_ns: u64) -> f64 {
+    let days = (epoch_ns as f64 / 1e9 - J2000) / DAY;
+    let centuries = days / 36_525.0;
+    // Its 876600 hours a century are the days themselves.
+    let seconds = 67_310.548_41
+        + DAY * (days - days.floor())
+        + centuries * (8_640_184.812_866 + centuries * (0.093_104 - centuries * 6.2e-6));
+    TAU * (seconds / DAY).rem_euclid(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn greenwich_is_where_erfa_has_it() {
+        // Seconds since 1970 (`date --utc +%s`) and ERFA's gmst82 with UT1 = UTC (rad).
+        for (seconds, angle) in [
+            (1_774_017_960, 0.691_984_659), // 2026-03-20T14:46:00Z
+            (1_782_030_240, 0.620_491_352), // 2026-06-21T08:24:00Z
+            (1_795_478_400, 1.098_991_055), // 2026-11-24T00:00:00Z
+            (1_798_977_600, 4.937_296_780), // 2027-01-03T12:00:00Z
+            (1_914_517_800, 4.511_043_448), // 2030-09-01T18:30:00Z
+        ] {
+            let found = greenwich(seconds * 1_000_000_000);
+            assert!((found - angle).abs() < 1e-9, "{seconds}: {found}");
+        }
+    }
+}
