@@ -13,6 +13,7 @@ pub mod figures;
 mod files;
 mod grid;
 mod help;
+mod human;
 mod identify;
 mod layout;
 #[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]

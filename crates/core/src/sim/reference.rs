@@ -87,6 +87,11 @@ impl Reference {
         }
     }
 
+    /// Whether the target moves from one attitude to another, of three axes.
+    pub fn slews(&self, now: Instant) -> bool {
+        self.way.as_ref().is_some_and(|way| way.slews(now))
+    }
+
     /// The target that the body is on its way to, of three axes, or 0.
     pub fn target(&self, now: Instant) -> Orientation {
         match &self.way {

@@ -2,7 +2,7 @@
 
 use super::{
     Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Hinges, Jets, Magnetorquers, Orbit,
-    Pointing, Position, Rates, Torques, Vibrations, Wheels,
+    Pointing, Position, Rates, Torques, Vibrations, Wheel, Wheels,
 };
 
 /// A cycle of a spatial loop, after its law has decided.
@@ -12,6 +12,8 @@ pub struct SpatialCycle {
     pub jets: Jets,
     /// Of thrusters that act by themselves, the on-time of each (s).
     pub thrusters: Vec<f64>,
+    /// Propellant of the jets about x, y and z, or of each thruster that acts by itself or may fail (kg).
+    pub fuels_kg: Vec<f64>,
     /// How many pulses begin.
     pub pulses: u64,
     /// Energy of the elastic modes (J).
@@ -24,6 +26,12 @@ pub struct SpatialCycle {
     pub elastic_rate_rad_s: [f64; 3],
     /// Angles beyond the target (rad).
     pub error_rad: [f64; 3],
+    /// Whether the target moves from one attitude to another.
+    pub slewing: bool,
+    /// Wheels about axes of their own.
+    pub wheels: Vec<Wheel>,
+    /// Magnetic moments of torquers (A m²).
+    pub moments_am2: Vec<f64>,
     /// Heat of the friction of wheels since the start (J); not a number without bearings.
     pub friction_heat_j: f64,
     /// Momentum of the wheels and control moment gyros, in the body's axes (N m s).
