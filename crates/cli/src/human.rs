@@ -185,7 +185,8 @@ mod tests {
 
     #[test]
     fn columns_stay_apart() {
-        let rows = [vec!["a".to_owned(), "b".to_owned()], vec!["123456789".to_owned(), "37917.7205".to_owned()]];
+        let rows =
+            [vec!["a".to_owned(), "b".to_owned()], vec!["123456789".to_owned(), "37917.7205".to_owned()]];
         assert_eq!(columns(&rows, 0), ["        a           b", "123456789  37917.7205"]);
     }
 }

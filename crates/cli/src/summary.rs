@@ -89,9 +89,13 @@ impl Summary<'_> {
         match *word {
             "met" if outside == "0" => say!("  goal           met: {within} all the time"),
             "met" => {
-                say!("  goal           met: {within} for the last tenth of the time or longer; outside for {outside} s before");
+                say!(
+                    "  goal           met: {within} for the last tenth of the time or longer; outside for {outside} s before"
+                );
             }
-            _ => say!("  goal           {word}: not {within} for the last tenth of the time; outside for {outside} s"),
+            _ => say!(
+                "  goal           {word}: not {within} for the last tenth of the time; outside for {outside} s"
+            ),
         }
     }
 
@@ -108,8 +112,11 @@ impl Summary<'_> {
         if let Some(Value::Word(kind)) = self.metrics.get("cycle_kind") {
             let (period, largest) = (self.number("cycle_period_s"), self.number("cycle_multiplier_max"));
             if period.is_finite() {
-                let multiplier =
-                    if largest.is_finite() { format!(", multiplier {}", digits(largest)) } else { String::new() };
+                let multiplier = if largest.is_finite() {
+                    format!(", multiplier {}", digits(largest))
+                } else {
+                    String::new()
+                };
                 say!("  cycle          {kind}, period {} s{multiplier}", digits(period));
             } else {
                 say!("  cycle          {kind}: the run is not periodic at its end");
@@ -127,8 +134,11 @@ impl Summary<'_> {
             say!("  objective      {}: {}", objective.word(), self.units.list(&both, " -> ", unit));
         }
         let frozen = self.number("gain_frozen_at_s");
-        let end =
-            if frozen.is_finite() { format!("frozen at {} s", digits(frozen)) } else { "not frozen".to_owned() };
+        let end = if frozen.is_finite() {
+            format!("frozen at {} s", digits(frozen))
+        } else {
+            "not frozen".to_owned()
+        };
         let [first, last] = ["gain_initial", "gain_final"].map(|name| digits(self.number(name)));
         say!("  {:<14} {first} -> {last}, {end}", adaptation.tunes());
     }

@@ -19,8 +19,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.mode_count()));
     let window = WINDOW.min(motion.estimates.len()).max(1);
     let panel = |name: &str, ratio: fn(&Estimate) -> f64, degrees: usize, averaged: usize, named: bool| {
-        let values: Vec<Point> =
-            motion.estimates.iter().map(|e| (e.time, ratio(e) / degrees as f64)).collect();
+        let values: Vec<Point> = motion.estimates.iter().map(|e| (e.time, ratio(e))).collect();
         let line = averages(&values, window);
         let [low, high] = chi_square(degrees * averaged).map(|bound| bound / (degrees * averaged) as f64);
         let shown = || line.iter().map(|point| point.1).chain([low, high]);

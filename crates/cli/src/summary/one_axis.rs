@@ -74,8 +74,11 @@ impl Summary<'_> {
         };
         for (index, output) in self.scenario.model.outputs().iter().enumerate() {
             let quantity = |name: &str| self.units.quantity(number(name, index), &output.unit);
-            let at_end =
-                if late { format!(", ±{} over the last {LATE} s", quantity("output_swings_late")) } else { String::new() };
+            let at_end = if late {
+                format!(", ±{} over the last {LATE} s", quantity("output_swings_late"))
+            } else {
+                String::new()
+            };
             say!(
                 "  {:<14} at most {}; swings by ±{}{after}{at_end}",
                 output.name,

@@ -66,7 +66,8 @@ impl Summary<'_> {
         }
         let parts = |name: &str, names: &[String]| match self.metrics.get(name) {
             Some(Value::Numbers(parts)) if parts.len() <= THRUSTERS && parts.len() == names.len() => {
-                let part = |(name, part): (&String, &f64)| format!("{name} {}", self.units.quantity(*part, "kg"));
+                let part =
+                    |(name, part): (&String, &f64)| format!("{name} {}", self.units.quantity(*part, "kg"));
                 format!(" ({})", names.iter().zip(parts).map(part).collect::<Vec<_>>().join(", "))
             }
             _ => String::new(),

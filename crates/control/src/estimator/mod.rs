@@ -31,9 +31,9 @@ use crate::record;
 use crate::sensor::{Orientation, Reading};
 use crate::time::{Instant, Span};
 
-pub use consistency::chi_square;
 pub use adaptive::Adaptive;
 pub use attitude::AttitudeFilter;
+pub use consistency::chi_square;
 pub use envelope::{Envelope, EnvelopeMonitor, Form};
 pub use given::GivenRecord;
 pub use kalman::{FrequencyTracking, Kalman};

@@ -1,9 +1,16 @@
 //! What is reported of a body with three axes.
 
 use super::{
-    Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Hinges, Jets, Magnetorquers, Orbit,
-    Pointing, Position, Rates, Torques, Vibrations, Wheel, Wheels,
+    AttitudeEstimate, Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Hinges, Jets,
+    Magnetorquers, Orbit, Pointing, Position, Rates, Torques, Vibrations, Wheel, Wheels,
 };
+
+impl AttitudeEstimate {
+    /// Number of states: attitude and bias.
+    pub const STATES: f64 = 6.0;
+    /// Number of measurements of an attitude; the NIS of a direction is scaled to it.
+    pub const MEASUREMENTS: f64 = 3.0;
+}
 
 /// A cycle of a spatial loop, after its law has decided.
 #[derive(Clone, Debug, PartialEq)]
