@@ -94,6 +94,18 @@ fn prefixed(size: f64, unit: &str) -> (f64, String) {
     }
 }
 
+/// Returns a duration, roughly: `3 ms`, `20 s`, `5 min`, `7 h`.
+pub fn seconds(value: f64) -> String {
+    match value {
+        s if s < 0.9995e-3 => "1 ms".to_owned(),
+        s if s < 0.9995 => format!("{} ms", digits(format!("{:.1e}", s * 1e3).parse().unwrap_or(s * 1e3))),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s if s < 172_800.0 => format!("{:.0} h", s / 3600.0),
+        s => format!("{:.0} days", s / 86_400.0),
+    }
+}
+
 /// Returns a number in at most four significant digits.
 pub fn digits(value: f64) -> String {
     if value == 0.0 {
@@ -181,6 +193,21 @@ mod tests {
         assert_eq!(Units::Engineering.list(&[0.5e-3, 2.0], " -> ", "N m"), "5e-4 -> 2 N m");
         assert_eq!(Units::Engineering.speed(TAU), "60 rpm");
         assert_eq!(Units::Si.speed(TAU), "6.283 rad/s");
+    }
+
+    #[test]
+    fn durations_are_rough() {
+        let cases = [
+            (3e-5, "1 ms"),
+            (0.020_6, "21 ms"),
+            (0.183, "180 ms"),
+            (19.6, "20 s"),
+            (340.0, "6 min"),
+            (2e5, "2 days"),
+        ];
+        for (value, text) in cases {
+            assert_eq!(seconds(value), text);
+        }
     }
 
     #[test]

@@ -142,7 +142,9 @@ impl Campaign {
             let ends = self.scenario_with(&[(key, self.like(key, value))]);
             cost = cost.max(ends.map_err(|error| error.to_string())?.cost(log, false));
         }
-        Ok(cost.times(runs))
+        let side_by_side =
+            runs > 1 && log.is_none() && crate::batch::takes(&self.scenario) && !self.scenario.law.switches();
+        Ok(if side_by_side { cost.in_lanes() } else { cost }.times(runs))
     }
 
     /// The scenario that the runs are drawn from, as TOML: the same campaign can be made from it. It needs no file, unless

@@ -9,13 +9,13 @@ use crate::record::SpatialCycle;
 const AT_LIMIT: f64 = 1e-9;
 /// Part of a run that is its end.
 const LATE: f64 = 0.1;
-/// An actuator is saturated at the end if it is at one limit for more than this part of it ...
+/// An actuator is saturated at the end if it is at one limit for more than this part of it.
 const STEADY: f64 = 0.5;
-/// ... and cycles if it is at opposite torque limits in turn, for more than this part of it, ...
-const RARE: f64 = 0.05;
-/// ... with so many changes from one to the other: two whole periods ...
+/// A wheel cycles if it is at each of its torque limits for more than this part of the end ...
+const RARE: f64 = 0.025;
+/// ... with so many changes from one to the other, two whole periods, ...
 const REVERSALS: u64 = 4;
-/// ... while the mean square pointing error of the end's second half is more than this part of that of its first.
+/// ... and in the second half of the end more than this part as often as in the first.
 const DECAY: f64 = 0.5;
 
 /// State of wheels and magnetorquers at the end of a run.
@@ -74,8 +74,6 @@ pub struct Saturation {
     wheels: Vec<LateWheel>,
     /// At the end: cycles, those at any limit, and those of them at that of the moment.
     ending: [u64; 3],
-    /// Sums of the squared pointing errors in the halves of the end (rad²), and of how many cycles.
-    errors: [(f64, u64); 2],
 }
 
 /// A wheel at the end of a run.
@@ -88,6 +86,8 @@ struct LateWheel {
     /// Sign of the torque limit that it was at last, and how often that changed.
     last: f64,
     reversals: u64,
+    /// Cycles at a torque limit in each half of the end.
+    halves: [u64; 2],
 }
 
 impl Saturation {
@@ -111,7 +111,6 @@ impl Saturation {
             peaks: [0.0; 2],
             wheels: vec![LateWheel::default(); wheels.map_or(0, |wheels| wheels.count())],
             ending: [0; 3],
-            errors: [(0.0, 0); 2],
         }
     }
 
@@ -128,7 +127,7 @@ impl Saturation {
             torque |= forced;
             momentum |= full;
             if is_late {
-                own.take(if forced { wheel.torque_nm } else { 0.0 }, full);
+                own.take(if forced { wheel.torque_nm } else { 0.0 }, full, t >= self.middle);
             }
         }
         let moment = cycle.moments_am2.iter().zip(self.moments).any(|(value, limit)| reaches(*value, limit));
@@ -140,9 +139,6 @@ impl Saturation {
             self.ending[0] += 1;
             self.ending[1] += u64::from(torque || momentum || moment);
             self.ending[2] += u64::from(moment);
-            let half = &mut self.errors[usize::from(t >= self.middle)];
-            half.0 += cycle.error_rad.iter().map(|error| error * error).sum::<f64>();
-            half.1 += 1;
         }
     }
 
@@ -178,13 +174,15 @@ impl Saturation {
             let is_steady =
                 |wheel: &LateWheel| steady(wheel.ahead) || steady(wheel.back) || steady(wheel.full);
             let alternates = |wheel: &LateWheel| {
-                wheel.reversals >= REVERSALS && (wheel.ahead + wheel.back) as f64 > RARE * all
+                let [before, after] = wheel.halves.map(|count| count as f64);
+                wheel.reversals >= REVERSALS
+                    && wheel.ahead.min(wheel.back) as f64 > RARE * all
+                    && after > DECAY * before
             };
-            let [before, after] = self.errors.map(|(sum, count)| sum / count as f64);
-            if self.wheels.iter().any(is_steady) || moment > STEADY * all {
-                EndState::Saturated
-            } else if self.wheels.iter().any(alternates) && after > DECAY * before {
+            if self.wheels.iter().any(alternates) {
                 EndState::Cycling
+            } else if self.wheels.iter().any(is_steady) || moment > STEADY * all {
+                EndState::Saturated
             } else {
                 EndState::Free
             }
@@ -205,13 +203,15 @@ impl Saturation {
 }
 
 impl LateWheel {
-    /// Takes the torque of a cycle if that is at its limit, else 0, and whether the wheel is as fast as it can be.
-    fn take(&mut self, torque: f64, full: bool) {
+    /// Takes the torque of a cycle if that is at its limit, else 0, whether the wheel is as fast as it can be, and whether the cycle is in
+    /// the second half of the end.
+    fn take(&mut self, torque: f64, full: bool, second: bool) {
         self.full += u64::from(full);
         if torque == 0.0 {
             return;
         }
         let sign = torque.signum();
+        self.halves[usize::from(second)] += 1;
         self.ahead += u64::from(sign > 0.0);
         self.back += u64::from(sign < 0.0);
         self.reversals += u64::from(self.last == -sign);

@@ -198,7 +198,7 @@ fn filter() -> Vec<LayoutPanel> {
             "Errors of the gyro's bias (rad/s)",
             beside("bias_error_rad_s", "bias_sd_rad_s"),
         ),
-        LayoutPanel::plot("consistency", "Consistency", consistency),
+        LayoutPanel::plot("consistency", "NEES and NIS (1 if consistent)", consistency),
     ]
 }
 

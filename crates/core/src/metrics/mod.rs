@@ -130,7 +130,7 @@ metrics! {
     MOMENT_SHARE = "moment_limit_share", "",
         "Fraction of the control cycles that begin with any magnetorquer at its largest magnetic moment";
     ACTUATOR_END = "actuator_end", "",
-        "Wheels and magnetorquers in the last tenth of the run: saturated if one is at the same limit in over half of its cycles; cycling if a wheel alternates between its torque limits, at least four times and in over 5 % of the cycles, while the mean square pointing error of the second half is over half that of the first; else free";
+        "Wheels and magnetorquers in the last tenth of the run: cycling if a wheel alternates between its torque limits at least four times, is at each in over 2.5 % of the cycles, and in the second half over half as often as in the first; saturated if one is at the same limit in over half of the cycles; else free";
     LATE_SHARE = "actuator_limit_late_share", "",
         "Fraction of the control cycles in the last tenth of the run with any wheel or magnetorquer at a limit";
     GIMBAL_RATE = "gimbal_rate_peak_rad_s", "rad/s", "Largest rate of a gimbal of the control moment gyros";

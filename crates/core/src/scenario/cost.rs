@@ -2,6 +2,7 @@
 //! yes.
 
 use super::Scenario;
+use super::pace::STEP;
 use crate::actuator::{ActuatorTask, Unloads};
 use crate::attitude::vector;
 use crate::body::Spatial;
@@ -34,19 +35,15 @@ const MUCH_MEMORY: f64 = 4e9;
 /// ... or more room for logs (bytes).
 const MUCH_DISK: f64 = 2e10;
 
-/// Time of a step (s), and what each mode adds. A rough figure, of an ordinary core.
-const STEP_S: (f64, f64) = (3e-7, 4e-8);
 /// Steps of a relay law for each radian of the fastest mode: between those of runs in lanes, and of damped modes one by one, which
 /// take half and twice as long.
 const RELAY_STRIDES: f64 = 0.1;
-/// A step of a rotation about three axes, with its passes over the stages, takes as long as so many others.
-const PASSES: f64 = 20.0;
 /// Looks at the motion within an exposure, and more for each radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
 /// What the steps of a rotation are told by.
-const TURNS: &str = "duration";
-/// Time of an operation with numbers of a matrix (s).
-const PRODUCT_S: f64 = 1e-9;
+pub(super) const TURNS: &str = "duration";
+/// Side by side, so many runs about one axis take the time of one.
+const LANES: f64 = 4.5;
 /// What is kept of a run of a campaign (bytes).
 const KEPT: f64 = 2e3;
 /// What a message of a log takes (bytes): its own, and for each mode; two thirds are left of it when it is packed.
@@ -101,6 +98,12 @@ impl Cost {
         Self { most, runs, seconds: runs * seconds, memory: memory + runs * KEPT, disk: runs * disk }
     }
 
+    /// The same work where runs go side by side in the lanes of a processor.
+    #[must_use]
+    pub fn in_lanes(self) -> Self {
+        Self { seconds: self.seconds / LANES, ..self }
+    }
+
     /// The larger of two estimates, by what is asked for most.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
@@ -136,17 +139,9 @@ impl Scenario {
     /// What a run asks for, with a log of this detail in memory or a file.
     pub fn cost(&self, log: Option<Detail>, in_memory: bool) -> Cost {
         let modes = self.mode_count() as f64;
-        let step = STEP_S.0 + modes * STEP_S.1;
-        let own = |(key, steps): &(String, f64)| match &self.estimator {
-            _ if *key == TURNS && self.axis_count() == 3 => steps * PASSES * step,
-            // A filter takes every sample, with matrices of the order of its state.
-            Some(filter) if key.starts_with("sensor") && filter.filters() => {
-                steps * (step + filter_work(filter, modes) * PRODUCT_S)
-            }
-            _ => steps * step,
-        };
+        let step = STEP.0 + modes * STEP.1;
         let acts = self.steps();
-        let mut seconds: f64 = acts.iter().map(own).sum();
+        let mut seconds = self.run_seconds(&acts);
         let mut most = acts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let mut room = 0.0;
         for (key, messages) in self.messages(log) {
@@ -308,11 +303,4 @@ impl Scenario {
         }
         messages
     }
-}
-
-/// Operations of a filter for each sample.
-fn filter_work(filter: &Estimator, modes: f64) -> f64 {
-    let order = 4.0 + 2.0 * modes;
-    let passes = if matches!(filter, Estimator::UnscentedKalman(_)) { 4.0 } else { 2.0 };
-    passes * order * order * order
 }

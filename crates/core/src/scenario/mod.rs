@@ -15,6 +15,7 @@ mod known;
 mod learning;
 mod log;
 mod own;
+mod pace;
 mod parts;
 mod plain;
 mod reference;
