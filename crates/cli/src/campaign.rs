@@ -23,6 +23,7 @@ use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 use crate::failure::Failure;
+use crate::human::Units;
 use crate::number::short;
 use crate::results::print_lines;
 use crate::table::Table;
@@ -84,6 +85,8 @@ pub struct Job<'a> {
     pub jobs: Option<u16>,
     /// Whether each run is printed as JSON.
     pub json: bool,
+    /// Units of the summary of a run that is alone.
+    pub units: Units,
     /// The scheduler that makes the runs, if one does.
     pub scheduler: Option<&'a str>,
     /// Whether a run is nothing but simulated: many then go side by side.
@@ -128,7 +131,7 @@ pub fn run(
     if !job.json {
         let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
         if let Some(only) = &told.only {
-            summary::tell(study.scenario(), only, took);
+            summary::tell(study.scenario(), only, took, job.units);
         } else {
             say!("{name}   {}, {took:.2} s", counted(runs, "run"));
             tell_statistics(&told.statistics, &study.design().keys(), told.runs);
@@ -302,7 +305,13 @@ pub fn object(
         "drawn": drawn,
     });
     match metrics {
-        Ok(metrics) => object["metrics"] = metrics.to_json(),
+        Ok(metrics) => {
+            object["metrics"] = metrics.to_json();
+            let warnings = summary::warnings(study.scenario(), metrics);
+            if !warnings.is_empty() {
+                object["warnings"] = json!(warnings);
+            }
+        }
         Err(error) => object["error"] = json!(error.to_string()),
     }
     object

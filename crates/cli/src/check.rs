@@ -8,6 +8,7 @@ use flexsc_core::{Scenario, ScenarioError};
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::human::seconds;
 use crate::{print, say, scenario};
 
 #[derive(clap::Args)]
@@ -41,16 +42,22 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), Failure> {
     let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
-    let costly = scenario.cost(None, false).excess();
+    let cost = scenario.cost(None, false);
+    let costly = cost.excess();
     if json {
         let object = json!({
             "file": path.display().to_string(), "scenario": scenario.name, "duration_s": duration, "modes": modes,
-            "accepted": true, "needs_yes": costly.is_some(),
+            "accepted": true, "estimate_s": cost.seconds, "needs_yes": costly.is_some(),
             "remarks": scenario.remarks().iter().map(|of| json!({"key": of.key, "message": of.to_string()})).collect::<Vec<_>>(),
         });
         return print(format!("{object}\n").as_bytes());
     }
-    say!("{}: accepted: {duration} s, {}", path.display(), counted(modes, "mode"));
+    let takes = seconds(cost.seconds);
+    say!(
+        "{}: accepted: {duration} s, {}; a run takes about {takes} on one core",
+        path.display(),
+        counted(modes, "mode")
+    );
     if let Some(why) = costly {
         say!("  {why}");
     }

@@ -13,6 +13,7 @@ pub mod figures;
 mod files;
 mod grid;
 mod help;
+mod human;
 mod identify;
 mod layout;
 #[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
@@ -71,7 +72,7 @@ enum Verb {
     /// Show the progress and the statistics of a running campaign
     Top(top::Args),
     /// Print the elastic modes of a spacecraft
-    Modes(scenario::Args),
+    Modes(modes::Args),
     /// Print the limit cycles and resonances of a relay law
     ///
     /// In closed form, for the rigid body. A resonance is a gain at which an odd harmonic of the limit cycle matches a mode.

@@ -14,19 +14,42 @@ use flexsc_core::count::counted;
 use serde_json::{Value as Json, json};
 
 use crate::failure::Failure;
+use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario, show};
-use crate::say;
-use crate::scenario::Args;
+use crate::{say, scenario};
 
 /// The largest number of modes for which the weights of outputs are printed beside each other.
 const WEIGHTS: usize = 12;
+
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    pub scenario: scenario::Args,
+    /// Print every influence, also those below 1e-3 of the largest
+    #[arg(long)]
+    all: bool,
+    #[command(flatten)]
+    units: UnitsArgs,
+}
+
+/// Influences below this part of the largest are left out.
+const SMALL: f64 = 1e-3;
+
+/// How modes are printed.
+#[derive(Copy, Clone)]
+struct Style {
+    units: Units,
+    /// Whether small influences are printed too.
+    all: bool,
+}
 
 /// The modes of a body with one angle.
 struct Planar {
     /// Name of the scenario.
     name: String,
     modal: ModalColumns,
+    style: Style,
 }
 
 /// The modes of a spatial body, and what its actuator does to them.
@@ -36,59 +59,69 @@ struct Spatial {
     modes: Influences,
     /// About which axes jets act; about others a torque of 1 N m is told.
     jets: [bool; 3],
+    style: Style,
 }
 
 /// The modes of a scenario's body.
-pub fn results(scenario: &Scenario) -> Box<dyn Results> {
+pub fn results(scenario: &Scenario, args: &Args) -> Box<dyn Results> {
     let name = scenario.name.clone();
+    let style = Style { units: args.units.units, all: args.all };
     if let Some(craft) = scenario.model.craft() {
         let (parts, jets) = (ModalParts::of(scenario, craft), scenario.study.fired);
-        return Box::new(spacecraft::Spacecraft { name, parts, jets });
+        return Box::new(spacecraft::Spacecraft { name, parts, jets, style });
     }
     match scenario.model.axes() {
         Axes::Three(body) => {
             let (modes, jets) = (Influences::of(scenario, body), scenario.study.fired);
-            Box::new(Spatial { name, modes, jets })
+            Box::new(Spatial { name, modes, jets, style })
         }
-        Axes::One(body) => Box::new(Planar { name, modal: ModalColumns::of(body) }),
+        Axes::One(body) => Box::new(Planar { name, modal: ModalColumns::of(body), style }),
     }
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    show(&*results(&args.load()?), None, args.json)
+    show(&*results(&args.scenario.load()?, args), None, args.scenario.json)
+}
+
+/// Prints rows of text in columns.
+fn tell_table(rows: &[Vec<String>], left: usize) {
+    for line in columns(rows, left) {
+        say!("  {line}");
+    }
+}
+
+fn texts(words: &[&str]) -> Vec<String> {
+    words.iter().map(|word| (*word).to_owned()).collect()
+}
+
+/// The columns of a mode's frequency, period and damping.
+fn frequency(units: Units, frequency: f64, damping: f64) -> [String; 3] {
+    [digits(frequency * units.frequency().0), digits(std::f64::consts::TAU / frequency), digits(damping)]
 }
 
 /// Prints what the actuator of a body with three axes does to its modes.
-fn tell_influences(modes: &Influences, jets: [bool; 3]) {
+fn tell_influences(modes: &Influences, jets: [bool; 3], style: Style) {
     let giver = match jets {
         [true, true, true] => "the jets give",
         [false, false, false] => "a torque gives",
         _ => "the jets or a torque give",
     };
+    let mut rows = vec![texts(&["acceleration of the hub", "positive", "negative", "rad/s²"])];
     for ((axis, [plus, minus]), jets) in AXES.iter().zip(modes.accelerations_rad_s2).zip(jets) {
-        let of = if jets { "jets" } else { "1 N m" };
-        say!("  {of}, {axis:<8} {plus:+.4e} {:+.4e} rad/s²", -minus);
+        let by = if jets { "by the jets" } else { "by a torque of 1 N m" };
+        rows.push(vec![format!("{axis}, {by}"), digits(plus), digits(-minus), String::new()]);
     }
+    tell_table(&rows, 0);
     say!("  influence: elastic rate at the gyro for each rigid rate that {giver} about the same axis");
-    say!(
-        "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>12}{:>12}",
-        "mode",
-        "rad/s",
-        "s",
-        "damping",
-        AXES[0],
-        AXES[1],
-        AXES[2]
-    );
+    let mut rows = vec![texts(&["mode", style.units.frequency().1, "period, s", "damping"])];
+    rows[0].extend(AXES.map(str::to_owned));
     for index in 0..modes.dampings.len() {
-        let [roll, pitch, yaw] = [0, 1, 2].map(|axis: usize| unsigned_zero(modes.influences[axis][index], 5));
-        say!(
-            "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{roll:>12}{pitch:>12}{yaw:>12}",
-            modes.frequencies_rad_s[index],
-            modes.periods_s[index],
-            modes.dampings[index],
-        );
+        let mut row = vec![index.to_string()];
+        row.extend(frequency(style.units, modes.frequencies_rad_s[index], modes.dampings[index]));
+        row.extend([0, 1, 2].map(|axis: usize| unsigned_zero(modes.influences[axis][index], 5)));
+        rows.push(row);
     }
+    tell_table(&rows, 0);
 }
 
 impl Results for Spatial {
@@ -97,9 +130,9 @@ impl Results for Spatial {
     }
 
     fn tell(&self) -> Result<(), Failure> {
-        let Self { name, modes, jets } = self;
+        let Self { name, modes, jets, style } = self;
         say!("{name}   {}", counted(modes.dampings.len(), "mode"));
-        tell_influences(modes, *jets);
+        tell_influences(modes, *jets, *style);
         Ok(())
     }
 }
@@ -110,7 +143,7 @@ impl Results for Planar {
     }
 
     fn tell(&self) -> Result<(), Failure> {
-        let Self { name, modal } = self;
+        let Self { name, modal, style } = self;
         let hub = match modal.drive {
             Drive::Torque => "free",
             Drive::Motion => "held",
@@ -121,47 +154,38 @@ impl Results for Planar {
             Drive::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
             Drive::Motion => ("hub free", &modal.free_frequencies_rad_s),
         };
-        say!(
-            "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>18}{:>10}{:>14}{:>12}",
-            "mode",
-            "frequency",
-            "period",
-            "damping",
-            "gain",
-            "excitability",
-            "relative",
-            "inertia",
-            other.0
-        );
-        say!(
-            "  {:>5}{:>14}{:>12}{:>12}{:>12}{:>18}{:>10}{:>14}{:>12}",
-            "",
-            "rad/s",
-            "s",
-            "",
-            "",
-            "k/w², s²",
-            "",
-            "J k, kg m²",
-            "rad/s"
-        );
+        let (factor, unit) = style.units.frequency();
+        let mut rows = vec![
+            texts(&[
+                "mode",
+                "frequency",
+                "period",
+                "damping",
+                "gain",
+                "excitability",
+                "relative",
+                "inertia",
+                other.0,
+            ]),
+            texts(&["", unit, "s", "", "", "k/w², s²", "", "J k, kg m²", unit]),
+        ];
         for index in 0..modal.gains.len() {
-            let frequency =
-                other.1.as_ref().map_or_else(|| "none".to_owned(), |w| format!("{:.6}", w[index]));
-            say!(
-                "  {index:>5}{:>14.6}{:>12.4}{:>12.5}{:>12}{:>18.6e}{:>10.3}{:>14}{frequency:>12}",
-                modal.frequencies_rad_s[index],
-                modal.periods_s[index],
-                modal.dampings[index],
-                unsigned_zero(modal.gains[index], 5),
-                modal.excitabilities_s2[index],
-                modal.excitabilities_s2[index].abs() / strongest,
-                unsigned_zero(modal.effective_inertias_kg_m2[index], 6),
-            );
+            let mut row = vec![index.to_string()];
+            row.extend(frequency(style.units, modal.frequencies_rad_s[index], modal.dampings[index]));
+            let excitability = modal.excitabilities_s2[index];
+            let numbers = [
+                modal.gains[index],
+                excitability,
+                excitability.abs() / strongest,
+                modal.effective_inertias_kg_m2[index],
+            ];
+            row.extend(numbers.map(digits));
+            row.push(other.1.as_ref().map_or_else(|| "none".to_owned(), |w| digits(w[index] * factor)));
+            rows.push(row);
         }
+        tell_table(&rows, 0);
         for output in &modal.outputs {
-            let shown: Vec<_> =
-                output.weights.iter().take(WEIGHTS).map(|weight| unsigned_zero(*weight, 5)).collect();
+            let shown: Vec<_> = output.weights.iter().take(WEIGHTS).map(|weight| digits(*weight)).collect();
             let more = if output.weights.len() > WEIGHTS { " ..." } else { "" };
             let (name, unit, rigid) = (&output.name, &output.unit, output.rigid);
             say!(

@@ -1,5 +1,6 @@
 //! How far a long run or a campaign has come.
 
+use std::io::Write;
 use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::motion::Stretch;
@@ -7,6 +8,8 @@ use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use indicatif::{ProgressBar, ProgressStyle};
 
+use crate::human::seconds;
+use crate::say;
 use crate::terminal::is_plain;
 
 /// A bar on the terminal over so many steps; invisible elsewhere, and where escape sequences are not wanted.
@@ -25,11 +28,56 @@ pub fn bar_from(steps: u64, done: u64, unit: &str) -> ProgressBar {
     ProgressBar::new(steps).with_style(style).with_position(done)
 }
 
+/// Lines on stderr about long work where no bar is visible, such as on a pipe: one every 30 s.
+pub struct Lines {
+    began: WallInstant,
+    steps: u64,
+    unit: &'static str,
+    /// How many steps were done before, and after how many seconds the next line is due.
+    before: u64,
+    due: f64,
+}
+
+impl Lines {
+    /// How often there is a line (s).
+    const AGAIN: f64 = 30.0;
+
+    /// Lines about so many steps, of which some were done before.
+    pub fn new(steps: u64, before: u64, unit: &'static str) -> Self {
+        Self { began: WallInstant::now(), steps, unit, before, due: Self::AGAIN }
+    }
+
+    /// Prints a line if one is due, with so many steps done.
+    pub fn show(&mut self, done: u64) {
+        if let Some(line) = self.line(self.began.elapsed().as_secs_f64(), done) {
+            say!("{line}");
+        }
+    }
+
+    /// The line after so many seconds, if one is due.
+    fn line(&mut self, elapsed: f64, done: u64) -> Option<String> {
+        if elapsed < self.due {
+            return None;
+        }
+        self.due = elapsed + Self::AGAIN;
+        let Self { steps, unit, before, .. } = self;
+        let speed = done.saturating_sub(*before) as f64 / elapsed;
+        let left = match steps.saturating_sub(done) as f64 / speed {
+            left if left.is_finite() => format!(", about {} left", seconds(left)),
+            _ => String::new(),
+        };
+        Some(format!("progress: {done} of {steps} {unit} after {}{left}", seconds(elapsed)))
+    }
+}
+
 /// A line on the terminal with the current activity; invisible where a bar is.
 #[cfg(feature = "papers")]
 pub fn spinner() -> ProgressBar {
     if is_plain() { ProgressBar::hidden() } else { ProgressBar::new_spinner() }
 }
+
+/// What a single run counts.
+const UNIT: &str = "simulated seconds";
 
 /// A record that shows how far a single run has come, once it takes longer than half a second.
 pub struct Progress {
@@ -37,12 +85,14 @@ pub struct Progress {
     length: Span,
     samples: u32,
     bar: Option<ProgressBar>,
+    lines: Lines,
 }
 
 impl Progress {
     /// Progress towards the end of a run of this length.
     pub fn new(length: Span) -> Self {
-        Self { began: WallInstant::now(), length, samples: 0, bar: None }
+        let lines = Lines::new(length.seconds() as u64, 0, UNIT);
+        Self { began: WallInstant::now(), length, samples: 0, bar: None, lines }
     }
 
     /// Clears the bar.
@@ -72,11 +122,30 @@ impl Progress {
         // The wall clock is asked rarely: it costs as much as a sample.
         if self.samples.is_multiple_of(4096) {
             if self.bar.is_none() && self.began.elapsed() > Duration::from_millis(500) {
-                self.bar = Some(bar(self.length.seconds() as u64, "simulated seconds"));
+                self.bar = Some(bar(self.length.seconds() as u64, UNIT));
             }
-            if let Some(bar) = &self.bar {
-                bar.set_position(now as u64);
+            match &self.bar {
+                Some(bar) if bar.is_hidden() => self.lines.show(now as u64),
+                Some(bar) => bar.set_position(now as u64),
+                None => {}
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_pipe_gets_a_line_every_thirty_seconds() {
+        let mut lines = Lines::new(200, 0, "runs");
+        assert_eq!(lines.line(29.9, 17), None);
+        let line = lines.line(30.0, 20).expect("a line");
+        assert_eq!(line, "progress: 20 of 200 runs after 30 s, about 5 min left");
+        assert_eq!(lines.line(31.0, 21), None);
+        // Nothing is done yet: there is no time left to tell.
+        let mut resumed = Lines::new(200, 50, "runs");
+        assert_eq!(resumed.line(60.0, 50).expect("a line"), "progress: 50 of 200 runs after 60 s");
     }
 }

@@ -17,6 +17,7 @@ use crate::campaign::logs::{self, LogDetail, logged};
 use crate::campaign::{self, Options, parts};
 use crate::consent::Consent;
 use crate::failure::Failure;
+use crate::human::UnitsArgs;
 use crate::progress::Progress;
 use crate::results::print_lines;
 use crate::stop::{self, Stop};
@@ -57,6 +58,8 @@ pub struct Args {
     /// Print one JSON object per run to stdout
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    units: UnitsArgs,
     #[command(flatten)]
     options: Options,
     #[command(flatten)]
@@ -224,6 +227,7 @@ fn several(
         force: args.force,
         jobs: args.jobs,
         json: args.json,
+        units: args.units.units,
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
         plain: detail.is_none(),
     };
@@ -267,7 +271,7 @@ fn single(
     if args.json {
         print_lines(&[campaign::object(study, run.number, &run.drawn, Ok(&metrics))])?;
     } else {
-        summary::tell(&run.scenario, &metrics, took);
+        summary::tell(&run.scenario, &metrics, took, args.units.units);
         if let Some(bytes) = bytes {
             say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
         }

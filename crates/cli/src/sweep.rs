@@ -15,6 +15,7 @@ use crate::campaign::Options;
 use crate::campaign::logs::{self, LogDetail};
 use crate::consent::Consent;
 use crate::failure::Failure;
+use crate::human::Units;
 use crate::simulate::{Runs, runs};
 use crate::{campaign, files, scenario};
 
@@ -180,6 +181,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         force: args.force,
         jobs: args.jobs,
         json: args.json,
+        units: Units::default(),
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
         plain: detail.is_none(),
     };

@@ -143,7 +143,9 @@ impl Campaign {
             let ends = self.scenario_with(&[(key, self.like(key, value))]);
             cost = cost.max(ends.map_err(|error| error.to_string())?.cost(log, false));
         }
-        Ok(cost.times(runs))
+        let side_by_side =
+            runs > 1 && log.is_none() && crate::batch::takes(&self.scenario) && !self.scenario.law.switches();
+        Ok(if side_by_side { cost.in_lanes() } else { cost }.times(runs))
     }
 
     /// Returns the scenario from which the runs are drawn as TOML; the same campaign can be created from it. It refers

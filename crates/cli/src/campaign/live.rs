@@ -10,7 +10,7 @@ use serde_json::{Value as Json, json};
 
 use super::MAIN;
 use crate::number::short;
-use crate::progress;
+use crate::progress::{self, Lines};
 
 /// So many metrics are shown.
 const SHOWN: usize = 4;
@@ -92,6 +92,7 @@ fn number(metrics: &Metrics, name: &str) -> Option<f64> {
 /// The bar, and below it the table.
 pub struct Live {
     bar: ProgressBar,
+    lines: Lines,
     metrics: Vec<(&'static str, Running)>,
     failed: u64,
     shown: Instant,
@@ -101,7 +102,8 @@ impl Live {
     /// A bar over so many runs, of which some are there.
     pub fn new(runs: u64, there: u64) -> Self {
         let bar = progress::bar_from(runs, there, "runs");
-        Self { bar, metrics: Vec::new(), failed: 0, shown: Instant::now() }
+        let lines = Lines::new(runs, there, "runs");
+        Self { bar, lines, metrics: Vec::new(), failed: 0, shown: Instant::now() }
     }
 
     /// A run has ended.
@@ -129,7 +131,10 @@ impl Live {
 
     /// Writes the table anew, unless that was done just now.
     pub fn show(&mut self) {
-        if self.bar.is_hidden() || self.shown.elapsed() < AGAIN {
+        if self.bar.is_hidden() {
+            return self.lines.show(self.bar.position());
+        }
+        if self.shown.elapsed() < AGAIN {
             return;
         }
         self.shown = Instant::now();

@@ -2,7 +2,6 @@
 
 mod figures;
 
-use std::f64::consts::PI;
 use std::io::Write;
 
 use flexsc_core::actuator::PulseTiming;
@@ -13,6 +12,7 @@ use serde_json::{Value as Json, json};
 use crate::drawing::Drawing;
 use crate::failure::Failure;
 use crate::grid::Even;
+use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::or_none;
 use crate::results::{Results, show};
 use crate::say;
@@ -45,6 +45,8 @@ pub struct Args {
     #[arg(long, value_name = "RATE", default_value_t = 0.0, requires = "amplitude")]
     threshold: f64,
     #[command(flatten)]
+    units: UnitsArgs,
+    #[command(flatten)]
     drawing: Drawing,
     /// Print one JSON object to stdout
     #[arg(long)]
@@ -57,6 +59,7 @@ pub struct Effect {
     /// The frequency above which it drives the modes (rad/s).
     limit: f64,
     rows: Vec<DampedMode>,
+    units: Units,
 }
 
 impl Args {
@@ -87,7 +90,7 @@ impl Args {
                 (row.decay_s, row.thrust_s) = (None, None);
             }
         }
-        Ok(Effect { timing, limit: timing.frequency_limit(), rows })
+        Ok(Effect { timing, limit: timing.frequency_limit(), rows, units: self.units.units })
     }
 }
 
@@ -107,44 +110,46 @@ impl Results for Effect {
 
     fn tell(&self) -> Result<(), Failure> {
         let PulseTiming { period, delay, on_time } = self.timing;
+        let (factor, unit) = self.units.frequency();
         let damps = if self.limit.is_finite() {
-            format!("damps below {:.4} rad/s, {:.4} Hz", self.limit, self.limit / (2.0 * PI))
+            format!("damps below {} {unit}", digits(self.limit * factor))
         } else {
             "damps every frequency".to_owned()
         };
-        if period > 0.0 {
+        let [period, delay, on_time] = [period, delay, on_time].map(digits);
+        if self.timing.period > 0.0 {
             say!("relay   a push of {on_time} s each {period} s, {delay} s after its sample: {damps}");
         } else {
             say!("relay   all the time, {delay} s late: {damps}");
         }
         let head = [
-            ["frequency", "rad/s"],
+            ["frequency", unit],
             ["part", ""],
             ["slope", "rad/s²"],
             ["delay", "limit, s"],
             ["gain", "limit, 1/s"],
             ["cycle", "rad/s"],
-            ["at", "rad/s"],
+            ["at", unit],
             ["decay", "s"],
             ["thrust", "s"],
         ];
-        for line in 0..2 {
-            let cells: Vec<String> = head.iter().map(|words| format!("{:>12}", words[line])).collect();
-            say!("{}", cells.concat());
-        }
+        let mut rows: Vec<Vec<String>> =
+            [0, 1].map(|line| head.iter().map(|words| words[line].to_owned()).collect()).into();
         for row in &self.rows {
-            say!(
-                "{:>12.4}{:>12.4}{:>12.3e}{:>12.4}{:>12}{:>12}{:>12}{:>12}{:>12}",
-                row.frequency_rad_s,
-                row.phase_factor,
-                row.slope_rad_s2,
-                row.delay_limit_s,
-                or_none(row.gain_limit_1_s, |gain| format!("{gain:.5}")),
-                or_none(row.limit_cycle_rate_rad_s, |rate| format!("{rate:.3e}")),
-                or_none(row.limit_cycle_frequency_rad_s, |frequency| format!("{frequency:.4}")),
-                or_none(row.decay_s, |time| format!("{time:.2}")),
-                or_none(row.thrust_s, |time| format!("{time:.2}")),
-            );
+            rows.push(vec![
+                digits(row.frequency_rad_s * factor),
+                digits(row.phase_factor),
+                digits(row.slope_rad_s2),
+                digits(row.delay_limit_s),
+                or_none(row.gain_limit_1_s, digits),
+                or_none(row.limit_cycle_rate_rad_s, digits),
+                or_none(row.limit_cycle_frequency_rad_s, |frequency| digits(frequency * factor)),
+                or_none(row.decay_s, digits),
+                or_none(row.thrust_s, digits),
+            ]);
+        }
+        for line in columns(&rows, 0) {
+            say!("  {line}");
         }
         Ok(())
     }

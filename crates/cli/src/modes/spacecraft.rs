@@ -3,10 +3,13 @@
 use std::io::Write;
 
 use flexsc_core::analysis::parts::ModalParts;
+use flexsc_core::attitude::AXES;
+use flexsc_core::count::counted;
 use serde_json::{Value as Json, json};
 
-use super::tell_influences;
+use super::{SMALL, Style, frequency, tell_influences, tell_table, texts};
 use crate::failure::Failure;
+use crate::human::digits;
 use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario};
 use crate::say;
@@ -18,6 +21,7 @@ pub struct Spacecraft {
     pub parts: ModalParts,
     /// About which axes jets act; about others a torque of 1 N m is told.
     pub jets: [bool; 3],
+    pub style: Style,
 }
 
 impl Results for Spacecraft {
@@ -26,68 +30,99 @@ impl Results for Spacecraft {
     }
 
     fn tell(&self) -> Result<(), Failure> {
-        let Self { name, parts, jets } = self;
-        let [x, y, z] = parts.centre_m.map(|of| unsigned_zero(of, 5));
-        say!("{name}   {} kg, centre of mass at {x} {y} {z} m", parts.mass_kg);
-        for (row, of) in parts.inertia_kg_m2.iter().enumerate() {
-            let [x, y, z] = of.map(|of| unsigned_zero(of, 4));
-            say!("  {:>22}{x:>12}{y:>12}{z:>12}", if row == 0 { "inertia, kg m²" } else { "" });
-        }
+        let Self { name, parts, jets, style } = self;
+        let [x, y, z] = parts.centre_m.map(digits);
+        say!("{name}   {} kg, centre of mass at {x}, {y}, {z} m", digits(parts.mass_kg));
+        let inertia = parts.inertia_kg_m2.iter().enumerate().map(|(row, moments)| {
+            let mut cells = vec![if row == 0 { "inertia, kg m²".to_owned() } else { String::new() }];
+            cells.extend(moments.map(|moment| unsigned_zero(moment, 4)));
+            cells
+        });
+        tell_table(&inertia.collect::<Vec<_>>(), 0);
         say!(
             "  modes of the appendages, clamped, with effective masses and inertias in their own axes about the root"
         );
-        say!(
-            "  {:>5}{:>14}{:>10}{:>10}{:>10}{:>10}{:>12}{:>10}{:>10}  appendage",
+        let mut rows = vec![texts(&[
             "mode",
-            "rad/s",
+            style.units.frequency().1,
+            "period, s",
             "damping",
             "kg x",
             "y",
             "z",
             "kg m² x",
             "y",
-            "z"
-        );
+            "z",
+            "appendage",
+        ])];
         for (index, mode) in parts.clamped.iter().enumerate() {
-            let [mx, my, mz] = mode.effective_mass_kg;
-            let [x, y, z] = mode.effective_inertia_kg_m2;
+            let mut row = vec![index.to_string()];
+            row.extend(frequency(style.units, mode.frequency_rad_s, mode.damping));
+            let effective = mode.effective_mass_kg.into_iter().chain(mode.effective_inertia_kg_m2);
+            row.extend(effective.map(|value| unsigned_zero(value, 4)));
             let unknown = if mode.first_moments { "" } else { ", without first moments" };
-            say!(
-                "  {index:>5}{:>14.6}{:>10.5}{mx:>10.4}{my:>10.4}{mz:>10.4}{x:>12.4}{y:>10.4}{z:>10.4}  {}{unknown}",
-                mode.frequency_rad_s,
-                mode.damping,
-                mode.appendage
-            );
+            row.push(format!("{}{unknown}", mode.appendage));
+            rows.push(row);
         }
+        tell_table(&rows, 1);
         say!(
-            "  modes of the complete spacecraft, hub free; off-diagonal damping {:.2e}",
-            parts.damping_coupling
+            "  modes of the complete spacecraft, hub free; off-diagonal damping {}",
+            digits(parts.damping_coupling)
         );
-        tell_influences(&parts.free, *jets);
-        say!("  influence of a torque, on the hub (the same at all its points) and at points of appendages");
+        tell_influences(&parts.free, *jets, *style);
+        self.tell_points();
+        if !parts.turned.is_empty() {
+            let drives = parts.turned[0].angles_rad.len();
+            let (factor, unit) = style.units.frequency();
+            say!("  frequencies as drives turn, increasing, {unit}");
+            let mut rows = vec![texts(&["s"])];
+            rows[0].extend((0..drives).map(|drive| format!("angle {}, rad", drive + 1)));
+            for at in &parts.turned {
+                let frequencies = at.frequencies_rad_s.iter().map(|frequency| frequency * factor);
+                let numbers = [at.time_s].into_iter().chain(at.angles_rad.iter().copied()).chain(frequencies);
+                rows.push(numbers.map(digits).collect());
+            }
+            tell_table(&rows, 0);
+        }
+        Ok(())
+    }
+}
+
+impl Spacecraft {
+    /// Prints what a torque on the hub does at the points of the spacecraft.
+    fn tell_points(&self) {
+        let parts = &self.parts;
         let (mut hub, ends): (Vec<_>, Vec<_>) =
             parts.points.iter().partition(|point| point.appendage.is_none());
         hub.truncate(1);
-        for point in hub.into_iter().chain(ends) {
+        let points = || hub.iter().chain(&ends);
+        let largest = points().flat_map(|point| point.influences.iter().flatten());
+        let largest = largest.fold(0.0, |most: f64, influence| most.max(influence.abs()));
+        let least = if self.style.all { 0.0 } else { SMALL * largest };
+        say!("  influence of a torque, on the hub (the same at all its points) and at points of appendages");
+        let (mut rows, mut left_out) = (vec![texts(&["mode"])], 0);
+        rows[0].extend(AXES.map(str::to_owned));
+        rows[0].push("point".to_owned());
+        for point in points() {
             let place = point.appendage.as_ref().map_or("hub", |_| &point.point);
             for index in 0..parts.clamped.len() {
-                let [roll, pitch, yaw] =
-                    [0, 1, 2].map(|axis: usize| unsigned_zero(point.influences[axis][index], 5));
-                say!("  {index:>5}{roll:>14}{pitch:>12}{yaw:>12}  {place}");
+                let influences = [0, 1, 2].map(|axis: usize| point.influences[axis][index]);
+                if influences.iter().all(|influence| influence.abs() < least) {
+                    left_out += 1;
+                    continue;
+                }
+                let mut row = vec![index.to_string()];
+                row.extend(influences.map(|influence| unsigned_zero(influence, 5)));
+                row.push(place.to_owned());
+                rows.push(row);
             }
         }
-        if !parts.turned.is_empty() {
-            let drives = parts.turned[0].angles_rad.len();
-            say!("  frequencies as drives turn, increasing, rad/s");
-            say!("  {:>10}{:>width$}", "s", "angles, rad", width = 12 * drives);
-            for at in &parts.turned {
-                let row = |of: &[f64], digits: usize| -> String {
-                    let values: Vec<_> = of.iter().map(|value| format!("{value:>12.digits$}")).collect();
-                    values.concat()
-                };
-                say!("  {:>10.1}{}{}", at.time_s, row(&at.angles_rad, 4), row(&at.frequencies_rad_s, 6));
-            }
+        tell_table(&rows, 1);
+        if left_out > 0 {
+            say!(
+                "  {} below 1e-3 of the largest influence left out (--all prints them)",
+                counted(left_out, "line")
+            );
         }
-        Ok(())
     }
 }

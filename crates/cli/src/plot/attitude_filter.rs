@@ -8,8 +8,6 @@ use super::spatial::{Cycles, panels};
 use super::story::Story;
 use super::{time, title};
 
-/// Attitude and bias.
-const STATES: f64 = 6.0;
 /// Chi-square of six degrees of freedom lies between these with a probability of 95 %, over six.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
 
@@ -34,7 +32,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     if let Some(last) = panels.last_mut() {
         last.x = last.x.unnamed();
     }
-    let nees: Vec<Point> = cycles.attitude.iter().map(|(time, row)| (*time, row.nees / STATES)).collect();
+    let nees: Vec<Point> = cycles.attitude.iter().map(|(time, row)| (*time, row.nees)).collect();
     let level = |height: f64| [(0.0, height), (story.end, height)];
     let y = FigureAxis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));
     let layers = vec![

@@ -1,6 +1,7 @@
 //! Figure `consistency`: whether a filter's covariance fits its errors. The normalised innovation squared, over the number
 //! of measurements, and the normalised estimation error squared, over the number of states, are both about 1 if it does.
 
+use flexsc_core::estimator::chi_square;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::motion::{Estimate, Motion};
@@ -9,8 +10,6 @@ use super::{lock, time, title};
 
 /// So many samples are averaged, as by the filter itself when it judges whether it follows the body.
 const WINDOW: usize = 50;
-/// Where a normal variable lies with a probability of 95 %, in standard deviations.
-const INSIDE: f64 = 1.959_963_984_540_054;
 /// Beyond this an axis has decades.
 const FAR: f64 = 10.0;
 
@@ -20,8 +19,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.mode_count()));
     let window = WINDOW.min(motion.estimates.len()).max(1);
     let panel = |name: &str, ratio: fn(&Estimate) -> f64, degrees: usize, averaged: usize, named: bool| {
-        let values: Vec<Point> =
-            motion.estimates.iter().map(|e| (e.time, ratio(e) / degrees as f64)).collect();
+        let values: Vec<Point> = motion.estimates.iter().map(|e| (e.time, ratio(e))).collect();
         let line = averages(&values, window);
         let [low, high] = chi_square(degrees * averaged).map(|bound| bound / (degrees * averaged) as f64);
         let shown = || line.iter().map(|point| point.1).chain([low, high]);
@@ -68,32 +66,9 @@ fn averages(values: &[Point], window: usize) -> Vec<Point> {
     values.windows(window).map(mean).collect()
 }
 
-/// Between these chi-square lies with a probability of 95 %. Wilson and Hilferty: the cube root of it over its degrees of
-/// freedom is about normal.
-fn chi_square(degrees: usize) -> [f64; 2] {
-    let degrees = degrees as f64;
-    let spread = 2.0 / (9.0 * degrees);
-    [-INSIDE, INSIDE].map(|deviations| degrees * (1.0 - spread + deviations * spread.sqrt()).powi(3))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn bands_are_those_of_chi_square() {
-        // scipy.stats.chi2.ppf([0.025, 0.975], n).
-        let exact = [
-            (12, [4.403_788_506_981_701_5, 23.336_664_158_645_34]),
-            (50, [32.357_363_695_658_655, 71.420_195_187_506_42]),
-            (100, [74.221_927_474_923_73, 129.561_197_185_836_6]),
-        ];
-        for (degrees, exact) in exact {
-            for (bound, exact) in chi_square(degrees).into_iter().zip(exact) {
-                assert!((bound / exact - 1.0).abs() < 5e-3, "{degrees}: {bound}");
-            }
-        }
-    }
 
     #[test]
     fn dropped_samples_do_not_count() {

@@ -45,7 +45,7 @@ impl Command {
     /// What the command's analysis comes to.
     pub fn results(&self) -> Result<Box<dyn Results>, Failure> {
         Ok(match &self.verb {
-            Verb::Modes(args) => modes::results(&analysed(args)?),
+            Verb::Modes(args) => modes::results(&analysed(&args.scenario)?, args),
             Verb::Cycle(args) => Box::new(cycle::results(&analysed(args)?)?),
             Verb::Plan(args) => args.results(analysed(&args.scenario)?)?,
             Verb::Tune(args) => Box::new(args.results(&analysed(&args.scenario)?)?),

@@ -222,6 +222,7 @@ impl Actuate for Allocated {
         Some(JetCycle {
             on,
             fuel: self.valves.fuel(left),
+            fuels: self.valves.fuels(left),
             pulses: self.pulses,
             burning: [0.0; 3],
             each: self.executed.clone(),

@@ -267,6 +267,11 @@ impl Jets {
         Ok(FiringGroup { push, flow, acceleration })
     }
 
+    /// Whether propellant is counted by thruster: each is commanded individually, or can fail.
+    pub fn is_by_thruster(&self) -> bool {
+        self.allocation == Firing::LeastPropellant || !self.faults.is_empty()
+    }
+
     /// Returns the names of the thrusters.
     pub fn names(&self) -> Vec<String> {
         self.thrusters.iter().map(|thruster| thruster.name.clone()).collect()

@@ -18,6 +18,7 @@ mod per_wheel;
 mod pulse_timing;
 mod pulse_width;
 mod pulsing;
+mod saturation;
 mod several;
 mod spinning;
 mod steering;
@@ -59,6 +60,7 @@ pub use per_wheel::PerWheel;
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use pulsing::{Pulse, Pulsing};
+pub use saturation::{EndState, Saturation};
 pub use several::Several;
 pub use spinning::Spinning;
 pub use steering::{GyroAxes, NullMotion, Robustness, Steering};
@@ -256,6 +258,8 @@ pub struct JetCycle {
     pub on: [f64; 3],
     /// Propellant used until the end of the pulses (kg).
     pub fuel: f64,
+    /// The propellant of each group about x, y and z, or of each thruster where they act by themselves or may fail (kg).
+    pub fuels: Vec<f64>,
     /// Number of pulses since the start, of all axes together.
     pub pulses: u64,
     /// Sign of the group that fires now about each axis; 0 for none.

@@ -47,6 +47,8 @@ pub struct Pulsing {
     /// End of the current pulse about each axis.
     ends: [Option<Instant>; 3],
     fuel: f64,
+    /// The same about each axis.
+    fuels: [f64; 3],
     /// Number of pulses since the start.
     pulses: u64,
     /// Valves and groups of each thruster, if thrusters have failures.
@@ -74,6 +76,7 @@ impl Pulsing {
             executed: [0.0; 3],
             ends: [None; 3],
             fuel: 0.0,
+            fuels: [0.0; 3],
             pulses: 0,
         }
     }
@@ -105,7 +108,9 @@ impl Pulsing {
         for axis in 0..3 {
             let on = self.executed[axis];
             self.ends[axis] = (on != 0.0).then(|| now + Span::from_seconds(on.abs()));
-            self.fuel += on.abs() * self.group(axis, on).flow;
+            let fuel = on.abs() * self.group(axis, on).flow;
+            self.fuel += fuel;
+            self.fuels[axis] += fuel;
             self.pulses += u64::from(on != 0.0);
         }
         self.open(now);
@@ -120,14 +125,15 @@ impl Pulsing {
         valves.set(now, |index| members[index].iter().filter(burns).count() as f64);
     }
 
-    /// Returns the propellant used until the end of the pulses (kg).
-    fn fuel(&self) -> f64 {
-        let Some((valves, members)) = &self.valves else { return self.fuel };
+    /// Propellant until the end of the pulses (kg), of all jets and of each group or thruster.
+    fn fuel(&self) -> (f64, Vec<f64>) {
+        let Some((valves, members)) = &self.valves else { return (self.fuel, self.fuels.to_vec()) };
         let remaining = |[axis, side]: &[usize; 2]| {
             let own = usize::from(self.executed[*axis] < 0.0) == *side;
             self.ends[*axis].filter(|_| own).map_or(0.0, |end| end.since(valves.since()).seconds())
         };
-        valves.fuel(|index| members[index].iter().map(remaining).fold(0.0, f64::max))
+        let remaining = |index: usize| members[index].iter().map(remaining).fold(0.0, f64::max);
+        (valves.fuel(remaining), valves.fuels(remaining))
     }
 
     fn pulses(&self, on: [f64; 3]) -> Vec<Pulse> {
@@ -211,9 +217,11 @@ impl Actuate for Pulsing {
 
     fn cycle(&self) -> Option<JetCycle> {
         let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
+        let (fuel, fuels) = self.fuel();
         Some(JetCycle {
             on: self.executed,
-            fuel: self.fuel(),
+            fuel,
+            fuels,
             pulses: self.pulses,
             burning: [0, 1, 2].map(sign),
             each: Vec::new(),

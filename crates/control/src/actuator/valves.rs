@@ -17,6 +17,9 @@ pub(super) struct Valves {
     fuel: f64,
     since: Instant,
     flow: f64,
+    /// The same of each thruster.
+    fuels: Vec<f64>,
+    flows: Vec<f64>,
 }
 
 impl Valves {
@@ -41,6 +44,8 @@ impl Valves {
             fuel: 0.0,
             since: Instant::START,
             flow: 0.0,
+            fuels: vec![0.0; nozzles.len()],
+            flows: vec![0.0; nozzles.len()],
         }
     }
 
@@ -69,7 +74,9 @@ impl Valves {
 
     /// Sets the opening of each valve from `now` on, and starts and ends failures.
     pub fn set(&mut self, now: Instant, open: impl Fn(usize) -> f64) {
-        self.fuel += self.flow * now.since(self.since).seconds();
+        let seconds = now.since(self.since).seconds();
+        self.fuel += self.flow * seconds;
+        self.fuels.iter_mut().zip(&self.flows).for_each(|(fuel, flow)| *fuel += flow * seconds);
         self.since = now;
         for (index, (own, failing)) in self.open.iter_mut().zip(&mut self.failing).enumerate() {
             *own = open(index);
@@ -77,7 +84,8 @@ impl Valves {
                 failing.serve(now, *own);
             }
         }
-        self.flow = self.parts().map(|(nozzle, part)| nozzle.flow * part).sum();
+        self.flows = self.parts().map(|(nozzle, part)| nozzle.flow * part).collect();
+        self.flow = self.flows.iter().sum();
     }
 
     /// Returns the propellant used (kg) until `remaining` (s) after the last change, by thruster, without further
@@ -86,6 +94,12 @@ impl Valves {
         let until =
             self.parts().enumerate().map(|(index, (nozzle, part))| nozzle.flow * part * remaining(index));
         self.fuel + until.sum::<f64>()
+    }
+
+    /// The same of each thruster.
+    pub fn fuels(&self, remaining: impl Fn(usize) -> f64) -> Vec<f64> {
+        let of = |(index, (fuel, flow)): (usize, (&f64, &f64))| fuel + flow * remaining(index);
+        self.fuels.iter().zip(&self.flows).enumerate().map(of).collect()
     }
 
     /// Returns the current fraction of the thrust of each thruster.

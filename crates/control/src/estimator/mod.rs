@@ -2,6 +2,7 @@
 
 pub mod adaptive;
 pub mod attitude;
+mod consistency;
 mod direct;
 mod envelope;
 mod given;
@@ -32,6 +33,7 @@ use crate::time::{Instant, Span};
 
 pub use adaptive::Adaptive;
 pub use attitude::AttitudeFilter;
+pub use consistency::chi_square;
 pub use envelope::{Envelope, EnvelopeMonitor, Form};
 pub use given::GivenRecord;
 pub use kalman::{FrequencyTracking, Kalman};
@@ -349,6 +351,12 @@ impl Estimator {
                 2 + 2 * modes + 2 * filter.ratios.count(modes)
             }
         }
+    }
+
+    /// Between these the normalised estimation error squared of a sample, over its number of states, lies with a probability of 95 %
+    /// if the filter is consistent.
+    pub fn inside(states: usize) -> [f64; 2] {
+        chi_square(states).map(|bound| bound / states as f64)
     }
 
     /// Returns the interval (s) in which the metrics assess the estimator.

@@ -261,6 +261,8 @@ impl Track {
                 amplitude_sd_rad,
             }
         });
+        let [states, measurements] = filter.dimensions();
+        let nees = if lent { filter.nees_beside() } else { filter.nees(&self.truth(t, state, filter)) };
         Some(record::Estimate {
             dominant: mode as u64,
             frequency_rad_s: filter.dominant().frequency,
@@ -273,9 +275,9 @@ impl Track {
             ratio_rate_sd_1_s: sd(1),
             modes: if lent { Vec::new() } else { modes.collect() },
             innovation_rad: told.innovation,
-            nis: told.nis.unwrap_or(0.0),
+            nis: told.nis.unwrap_or(0.0) / measurements,
             measured: told.nis.is_some().into(),
-            nees: if lent { filter.nees_beside() } else { filter.nees(&self.truth(t, state, filter)) },
+            nees: nees / states,
             gated: filter.is_gated().into(),
             lock: (!filter.is_lost()).into(),
         })

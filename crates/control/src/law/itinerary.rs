@@ -155,6 +155,16 @@ impl Itinerary {
             .is_some_and(|leg| leg.frame.turns() || now.since(leg.begins).seconds() < leg.path.duration())
     }
 
+    /// Whether the target moves within its frame at an instant, from one attitude to another.
+    pub fn slews(&self, now: Instant) -> bool {
+        self.leg(now).is_some_and(|leg| now.since(leg.begins).seconds() < leg.path.duration())
+    }
+
+    /// Whether it ever does.
+    pub fn has_slews(&self) -> bool {
+        self.legs.iter().any(|leg| leg.path.duration() > 0.0)
+    }
+
     /// Checks the targets: frames that are not defined, inconsistent keys, or a start before the end of the previous
     /// slew. Returns the first such key and the reason.
     pub fn fault(targets: &[Target], sky: &Sky, modes: &[Mode]) -> Option<Fault> {

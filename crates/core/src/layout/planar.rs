@@ -145,7 +145,7 @@ fn estimator(scenario: &Scenario, body: &Planar) -> Vec<LayoutPanel> {
         ),
         plot("deviation", "Its standard deviation (rad/s)", &[("frequency_sd_rad_s", "standard deviation")]),
         LayoutPanel::plot("dominant", "Dominant mode (rad)", dominant(scenario, body)),
-        plot("nis", "NIS and NEES", &[("nis", "NIS"), ("nees", "NEES")]),
+        plot("nis", "NIS and NEES (1 if consistent)", &[("nis", "NIS"), ("nees", "NEES")]),
         LayoutPanel::states(
             "lock",
             "Lock and gate",

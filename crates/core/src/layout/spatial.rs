@@ -186,8 +186,7 @@ fn filter() -> Vec<LayoutPanel> {
         };
         AXES.into_iter().enumerate().flat_map(axis).collect::<Vec<_>>()
     };
-    let consistency =
-        vec![line("/attitude_filter.nees", "NEES, about 6"), line("/attitude_filter.nis", "NIS, about 3")];
+    let consistency = vec![line("/attitude_filter.nees", "NEES"), line("/attitude_filter.nis", "NIS")];
     vec![
         LayoutPanel::plot(
             "angles",
@@ -199,7 +198,7 @@ fn filter() -> Vec<LayoutPanel> {
             "Errors of the gyro's bias (rad/s)",
             beside("bias_error_rad_s", "bias_sd_rad_s"),
         ),
-        LayoutPanel::plot("consistency", "Consistency", consistency),
+        LayoutPanel::plot("consistency", "NEES and NIS (1 if consistent)", consistency),
     ]
 }
 

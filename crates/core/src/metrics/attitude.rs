@@ -76,7 +76,7 @@ impl AttitudeMetrics {
             self.count.1 += 1;
             self.nis += estimate.nis;
             let [low, high] = if estimate.numbers == 2 { INSIDE_OF_TWO } else { INSIDE };
-            self.inside += u64::from((low..=high).contains(&estimate.nis));
+            self.inside += u64::from((low..=high).contains(&(estimate.nis * AttitudeEstimate::MEASUREMENTS)));
         }
     }
 
@@ -96,8 +96,8 @@ impl AttitudeMetrics {
             return Vec::new();
         }
         let mut told = vec![
-            (&NEES_MEAN, Value::Number(self.nees / all / 6.0)),
-            (&NIS_MEAN, Value::Number(self.nis / measured / 3.0)),
+            (&NEES_MEAN, Value::Number(self.nees / all)),
+            (&NIS_MEAN, Value::Number(self.nis / measured)),
             (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
             (&ATTITUDE_ERROR, attitude),
             (&BIAS_ERROR, bias),

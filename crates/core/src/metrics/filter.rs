@@ -20,7 +20,6 @@ const INSIDE: [[f64; 2]; 2] =
 #[derive(Clone, Debug)]
 pub struct FilterMetrics {
     assess: [f64; 2],
-    states: f64,
     measurements: usize,
     /// Number of samples, and number of those that were not dropped.
     count: (u64, u64),
@@ -39,7 +38,6 @@ impl FilterMetrics {
         let estimator = scenario.estimator.as_ref().filter(|estimator| estimator.filters())?;
         Some(Self {
             assess: estimator.assess(),
-            states: estimator.states(scenario.mode_count()) as f64,
             measurements: 1 + usize::from(scenario.sensor.rate_noise(0).is_some()),
             count: (0, 0),
             nees: 0.0,
@@ -83,7 +81,7 @@ impl FilterMetrics {
             let [low, high] = INSIDE[self.measurements - 1];
             self.count.1 += 1;
             self.nis += estimate.nis;
-            self.inside += u64::from((low..=high).contains(&estimate.nis));
+            self.inside += u64::from((low..=high).contains(&(estimate.nis * self.measurements as f64)));
         }
     }
 
@@ -93,8 +91,8 @@ impl FilterMetrics {
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
         let largest = if self.count.0 > 0 { self.largest } else { f64::NAN };
         [
-            (&NEES_MEAN, Value::Number(self.nees / all / self.states)),
-            (&NIS_MEAN, Value::Number(self.nis / measured / self.measurements as f64)),
+            (&NEES_MEAN, Value::Number(self.nees / all)),
+            (&NIS_MEAN, Value::Number(self.nis / measured)),
             (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
             (&FREQUENCY_ERROR_RMS, Value::Number(f64::sqrt(self.square / all))),
             (&FREQUENCY_ERROR_MAX, Value::Number(largest)),

@@ -118,10 +118,21 @@ metrics! {
     TIME_OUTSIDE = "time_outside_s", "s", "Time outside goal_band_rad since the start of the goal";
     RATE_END = "rate_end_rad_s", "rad/s",
         "Rigid rate of a body with magnetorquers at the end of the run";
-    MOMENTUM_PEAK = "wheel_momentum_peak_nm_s", "N m s",
-        "Largest total momentum of wheels that are unloaded by magnetorquers";
-    MOMENTUM_END = "wheel_momentum_end_nm_s", "N m s",
-        "Total momentum of wheels that are unloaded by magnetorquers, at the end of the run";
+    MOMENTUM_PEAK = "wheel_momentum_peak_nm_s", "N m s", "Largest total momentum of the wheels, at the control cycles";
+    MOMENTUM_END = "wheel_momentum_end_nm_s", "N m s", "Total momentum of the wheels at the last cycle";
+    WHEEL_SPEED = "wheel_speed_peak_rad_s", "rad/s",
+        "Largest speed of any wheel relative to the body, at the control cycles";
+    WHEEL_MOMENTUM = "one_wheel_momentum_peak_nm_s", "N m s", "Largest momentum of any single wheel, at the control cycles";
+    TORQUE_SHARE = "wheel_torque_limit_share", "",
+        "Fraction of the control cycles that begin with the motor of any wheel at its torque limit";
+    MOMENTUM_SHARE = "wheel_momentum_limit_share", "",
+        "Fraction of the control cycles that begin with any wheel at its limit of momentum or speed";
+    MOMENT_SHARE = "moment_limit_share", "",
+        "Fraction of the control cycles that begin with any magnetorquer at its largest magnetic moment";
+    ACTUATOR_END = "actuator_end", "",
+        "Wheels and magnetorquers in the last tenth of the run: cycling if a wheel alternates between its torque limits at least four times, is at each in over 2.5 % of the cycles, and in the second half over half as often as in the first; saturated if one is at the same limit in over half of the cycles; else free";
+    LATE_SHARE = "actuator_limit_late_share", "",
+        "Fraction of the control cycles in the last tenth of the run with any wheel or magnetorquer at a limit";
     GIMBAL_RATE = "gimbal_rate_peak_rad_s", "rad/s", "Largest rate of a gimbal of the control moment gyros";
     SINGULARITY = "singularity_min", "",
         "Smallest singularity measure of the control moment gyros at their commands: 0 where they give no torque in some direction";
@@ -146,6 +157,10 @@ metrics! {
     LOCK_LOST = "lock_lost", "", "1 if the filter has lost lock at the end of the run, else 0";
     LOCK_LOST_AT = "lock_lost_at_s", "s", "Time at which the filter lost lock for good; null if it has lock at the end of the run";
     FUEL = "fuel_kg", "kg", "Propellant used by the jets";
+    FUEL_AXES = "fuel_axes_kg", "kg",
+        "Propellant used by the jets about x, y and z, if groups fire them and none can fail";
+    FUEL_THRUSTERS = "fuel_thrusters_kg", "kg",
+        "Propellant used by each thruster, in the order of the scenario, if each is commanded individually or can fail";
     FIRINGS = "firings", "", "Number of jet pulses on all axes";
     FIRING_CYCLES = "firing_cycles", "", "Number of control cycles in which any jet fires";
     ZERO_CROSSINGS = "wheel_zero_crossings", "", "Number of zero crossings of the speed of wheels with friction, including reversals after sticking";
@@ -165,6 +180,10 @@ metrics! {
         "Root mean square elastic rate at the gyro (norm over three axes), over the cycles of the last 200 s";
     POINTING_END = "pointing_error_end_rad", "rad",
         "Pointing error (norm over three axes) at the last cycle";
+    SLEW_PEAK = "slew_error_peak_rad", "rad",
+        "Largest pointing error (norm over three axes) at the control cycles of slews: while a target moves from one attitude to another; null without such cycles";
+    SLEW_RMS = "slew_error_rms_rad", "rad",
+        "Root mean square pointing error (norm over three axes) over the control cycles of slews; null without such cycles";
     POINTING_RMS = "pointing_rms_rad", "rad",
         "Root mean square pointing error over the control cycles in reference.pointing.window";
     REQUIREMENT = "requirement", "",

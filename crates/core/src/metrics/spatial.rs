@@ -2,11 +2,13 @@
 
 use super::goal::{self, Verdict};
 use super::{
-    ACCELERATION, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES, FIRINGS,
-    FRICTION_HEAT, FUEL, GIMBAL_RATE, GYRO_MOMENTUM_END, GYRO_MOMENTUM_PEAK, MOMENTUM_END, MOMENTUM_PEAK,
-    MetricValue, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, TORQUE_ERROR, VISIBLE_END,
-    VISIBLE_PEAK, Value, WHEEL_STOPS, ZERO_CROSSINGS,
+    ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES,
+    FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
+    GYRO_MOMENTUM_PEAK, LATE_SHARE, MOMENT_SHARE, MOMENTUM_END, MOMENTUM_PEAK, MOMENTUM_SHARE, MetricValue,
+    POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, SLEW_PEAK, SLEW_RMS, TORQUE_ERROR,
+    TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, Value, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS, ZERO_CROSSINGS,
 };
+use crate::actuator::Saturation;
 use crate::quantity::Positive;
 use crate::record::{Accelerations, Sliding, SpatialCycle, Steered, WheelEvent};
 use crate::scenario::{Pointing, Scenario};
@@ -31,6 +33,8 @@ pub struct SpatialMetrics {
     ways: Vec<Option<Sliding>>,
     heat: f64,
     fuel: f64,
+    /// The same by axis or by thruster, and whether by thruster.
+    fuels: (Vec<f64>, bool),
     /// Number of pulses, and number of cycles with any.
     firings: (u64, u64),
     /// Elastic energy: initial, largest, and last (J).
@@ -42,13 +46,17 @@ pub struct SpatialMetrics {
     /// Sum of the squared elastic rates of late cycles (rad²/s²), and the number of these cycles.
     square: (f64, u64),
     error: f64,
-    /// True if there are magnetorquers, and true if they unload wheels.
-    magnetic: [bool; 2],
+    /// Whether there are magnetorquers.
+    magnetic: bool,
     /// Last rigid rate (rad/s); largest and last momentum of the wheels (N m s).
     rate: f64,
     stored: [f64; 2],
     /// Values of control moment gyros.
     steered: Option<Steered>,
+    saturation: Saturation,
+    /// Of slews, the largest error (rad), the sum of squares (rad²), and how many cycles; whether there are any.
+    slews: (f64, f64, u64),
+    has_slews: bool,
     /// Pointing requirement, sum of the squared errors that count (rad²), and their number.
     asked: Option<Pointing>,
     pointing: (f64, u64),
@@ -80,16 +88,17 @@ impl SpatialMetrics {
             ways: vec![None; scenario.study.bearings.len()],
             heat: 0.0,
             fuel: 0.0,
+            fuels: (Vec::new(), scenario.actuator.jets().is_some_and(|(jets, _)| jets.is_by_thruster())),
             firings: (0, 0),
             energy: (f64::NAN, 0.0, f64::NAN),
             visible: (0.0, f64::NAN),
             below: [f64::NAN; 2],
             square: (0.0, 0),
             error: f64::NAN,
-            magnetic: [
-                scenario.actuator.magnetorquers().is_some(),
-                scenario.actuator.magnetorquers().is_some() && scenario.study.wheels.is_some(),
-            ],
+            magnetic: scenario.actuator.magnetorquers().is_some(),
+            saturation: Saturation::new(&scenario.actuator, scenario.duration.seconds()),
+            slews: (f64::NAN, 0.0, 0),
+            has_slews: scenario.study.way.has_slews(),
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
             steered: (!scenario.study.gimbals.is_empty()).then(Steered::unknown),
@@ -103,6 +112,12 @@ impl SpatialMetrics {
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
         let norm = |of: [f64; 3]| of.iter().map(|value| value * value).sum::<f64>();
         self.fuel = cycle.jets.fuel_kg;
+        self.fuels.0.clone_from(&cycle.fuels_kg);
+        self.saturation.see(t, cycle);
+        if cycle.slewing {
+            let square = norm(cycle.error_rad);
+            self.slews = (self.slews.0.max(f64::sqrt(square)), self.slews.1 + square, self.slews.2 + 1);
+        }
         self.heat = cycle.friction_heat_j;
         self.firings.0 += cycle.pulses;
         self.firings.1 += u64::from(cycle.pulses > 0);
@@ -182,13 +197,20 @@ impl SpatialMetrics {
             (&ELASTIC_RATE, Value::Number(f64::sqrt(self.square.0 / self.square.1 as f64))),
             (&POINTING_END, Value::Number(self.error)),
         ];
-        let jets = jets.into_iter().filter(|_| self.jets);
+        let fuels = if self.fuels.1 { &FUEL_THRUSTERS } else { &FUEL_AXES };
+        let fuels = (fuels, Value::Numbers(self.fuels.0));
+        let jets = jets.into_iter().chain([fuels]).filter(|_| self.jets);
         let friction = friction.into_iter().filter(|_| self.rubs);
-        let [torquers, unload] = self.magnetic;
-        let rate = [(&RATE_END, Value::Number(self.rate))].into_iter().filter(|_| torquers);
+        let rate = [(&RATE_END, Value::Number(self.rate))].into_iter().filter(|_| self.magnetic);
         let stored =
             [(&MOMENTUM_PEAK, Value::Number(self.stored[0])), (&MOMENTUM_END, Value::Number(self.stored[1]))];
-        let stored = stored.into_iter().filter(|_| unload);
+        let stored = stored.into_iter().filter(|_| self.saturation.has_wheels());
+        let slews = [
+            (&SLEW_PEAK, Value::Number(self.slews.0)),
+            // 0/0 of no cycles: no number.
+            (&SLEW_RMS, Value::Number(f64::sqrt(self.slews.1 / self.slews.2 as f64))),
+        ];
+        let slews = slews.into_iter().filter(|_| self.has_slews);
         let steered = self.steered.map(|steered| {
             [
                 (&GIMBAL_RATE, Value::Number(steered.largest_rate_rad_s)),
@@ -213,9 +235,31 @@ impl SpatialMetrics {
             .chain(shaken)
             .chain(rate)
             .chain(stored)
+            .chain(limits(&self.saturation))
             .chain(steered.into_iter().flatten())
+            .chain(slews)
             .chain(pointing)
             .chain(self.verdict.finish(self.end))
             .collect()
     }
+}
+
+/// How wheels and magnetorquers reached their limits.
+fn limits(saturation: &Saturation) -> Vec<MetricValue> {
+    let mut metrics: Vec<MetricValue> = Vec::new();
+    if saturation.has_wheels() {
+        let [speed, momentum] = saturation.peaks();
+        metrics.push((&WHEEL_SPEED, Value::Number(speed)));
+        metrics.push((&WHEEL_MOMENTUM, Value::Number(momentum)));
+    }
+    for (meaning, share) in
+        [&TORQUE_SHARE, &MOMENTUM_SHARE, &MOMENT_SHARE].into_iter().zip(saturation.shares())
+    {
+        metrics.extend(share.map(|share| (meaning, Value::Number(share))));
+    }
+    if let Some(state) = saturation.end_state() {
+        metrics.push((&ACTUATOR_END, Value::Word(state.word())));
+        metrics.push((&LATE_SHARE, Value::Number(saturation.late_share())));
+    }
+    metrics
 }

@@ -2,6 +2,7 @@
 //! a confirmation.
 
 use super::Scenario;
+use super::pace::STEP;
 use crate::actuator::{Actuator, ActuatorTask, Unloads};
 use crate::attitude::vector;
 use crate::body::Spatial;
@@ -34,22 +35,17 @@ const MUCH_MEMORY: f64 = 4e9;
 /// Disk space for logs (bytes) above which a confirmation is needed.
 const MUCH_DISK: f64 = 2e10;
 
-/// Approximate time of a step on an ordinary core (s): constant part, and part per mode.
-const STEP_S: (f64, f64) = (3e-7, 4e-8);
 /// Steps of a relay law per radian of the fastest mode: between runs in batches, which take half as long, and single
 /// runs with damped modes, which take twice as long.
 const RELAY_STRIDES: f64 = 0.1;
-/// Duration of a step of a three-axis rotation, with its iterations over the stages, relative to other steps.
-const PASSES: f64 = 20.0;
-/// What the switchings of a relay law are told by, and as how many steps each counts, whose instant is searched.
-const SWITCHES: &str = "law.relay.strong";
-const SEARCH: f64 = 6.0;
+/// Key to which the switchings of a relay law are attributed.
+pub(super) const SWITCHES: &str = "law.relay.strong";
 /// Evaluations of the motion within an exposure: constant part, and part per radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
 /// Key to which the steps of a rotation are attributed.
-const TURNS: &str = "duration";
-/// Time of a floating-point operation in a matrix product (s).
-const PRODUCT_S: f64 = 1e-9;
+pub(super) const TURNS: &str = "duration";
+/// Number of runs about one axis that take the time of one in SIMD lanes.
+const LANES: f64 = 4.5;
 /// Memory kept for each run of a campaign (bytes).
 const KEPT: f64 = 2e3;
 /// Size of a log message (bytes): constant part, and part per mode; compression leaves two thirds of it.
@@ -105,6 +101,12 @@ impl Cost {
         Self { most, runs, seconds: runs * seconds, memory: memory + runs * KEPT, disk: runs * disk }
     }
 
+    /// Returns the cost of the same runs in SIMD lanes.
+    #[must_use]
+    pub fn in_lanes(self) -> Self {
+        Self { seconds: self.seconds / LANES, ..self }
+    }
+
     /// Returns the larger of two costs, relative to the limits.
     #[must_use]
     pub fn max(self, other: Self) -> Self {
@@ -140,18 +142,9 @@ impl Scenario {
     /// Returns the cost of a run with a log of the given detail, kept in memory or written to a file.
     pub fn cost(&self, log: Option<Detail>, in_memory: bool) -> Cost {
         let modes = self.mode_count() as f64;
-        let step = STEP_S.0 + modes * STEP_S.1;
-        let own = |(key, steps): &(String, f64)| match &self.estimator {
-            _ if *key == TURNS && self.axis_count() == 3 => steps * PASSES * step,
-            _ if *key == SWITCHES => steps * SEARCH * step,
-            // A filter processes every sample, with matrices of the order of its state.
-            Some(filter) if key.starts_with("sensor") && filter.filters() => {
-                steps * (step + filter_work(filter, modes) * PRODUCT_S)
-            }
-            _ => steps * step,
-        };
+        let step = STEP.0 + modes * STEP.1;
         let acts = self.steps();
-        let mut seconds: f64 = acts.iter().map(own).sum();
+        let mut seconds = self.run_seconds(&acts);
         let mut most = acts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let mut room = 0.0;
         for (key, messages) in self.messages(log) {
@@ -324,11 +317,4 @@ impl Scenario {
         }
         messages
     }
-}
-
-/// Returns the number of operations of a filter per sample.
-fn filter_work(filter: &Estimator, modes: f64) -> f64 {
-    let order = 4.0 + 2.0 * modes;
-    let passes = if matches!(filter, Estimator::UnscentedKalman(_)) { 4.0 } else { 2.0 };
-    passes * order * order * order
 }

@@ -16,6 +16,7 @@ mod learning;
 mod log;
 mod meant;
 mod own;
+mod pace;
 mod parts;
 mod plain;
 mod reference;

@@ -59,6 +59,17 @@ impl Events {
         self.journal.tell(now, (LogLevel::Info, "run"), "the end of the run".to_owned(), record)
     }
 
+    /// A part of the run needs attention.
+    pub fn warned(
+        &self,
+        now: Instant,
+        part: &str,
+        line: String,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        self.journal.tell(now, (LogLevel::Warning, part), line, record)
+    }
+
     /// Writes the line of a run that is stopped before its end.
     pub fn left(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         self.journal.tell(now, (LogLevel::Info, "run"), "the run is left before its end".to_owned(), record)

@@ -89,6 +89,11 @@ impl Reference {
         }
     }
 
+    /// Whether the target moves from one attitude to another, of three axes.
+    pub fn slews(&self, now: Instant) -> bool {
+        self.way.as_ref().is_some_and(|way| way.slews(now))
+    }
+
     /// Returns the target attitude towards which a three-axis body turns; angle 0 for one axis.
     pub fn target(&self, now: Instant) -> Orientation {
         match &self.way {

@@ -7,6 +7,7 @@ use super::failing::Failures;
 use super::plant::{Plant, SpatialPlant};
 use super::reference::Reference;
 use super::{Simulation, SimulationError};
+use crate::actuator::Saturation;
 use crate::law::{Cause, Phase};
 use crate::motion::turning::Slip;
 use crate::record::{
@@ -39,6 +40,8 @@ pub struct Telling {
     /// Number of jet pulses that are already recorded.
     pulses: u64,
     next_cycle: Option<Instant>,
+    /// How wheels and magnetorquers reach their limits.
+    saturation: Saturation,
     /// Pending end of the manoeuvre, if any.
     arrival: Option<Arrival>,
     /// Accelerometers of the run, which only the record reads.
@@ -75,6 +78,7 @@ impl Telling {
             slips: Vec::new(),
             pulses: 0,
             next_cycle: None,
+            saturation: Saturation::new(&scenario.actuator, scenario.duration.seconds()),
             arrival: Arrival::new(scenario, &reference.goal),
             accelerometers: Accelerometers::new(scenario, run),
             failures: Failures::new(scenario),
@@ -104,8 +108,11 @@ impl Telling {
         std::mem::replace(&mut self.stage, Stage::After) != Stage::After
     }
 
-    /// Writes the last line of the journal.
+    /// The last lines of the journal.
     pub fn journal_end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
+        if let Some(line) = self.saturation.warning() {
+            self.events.warned(now, "actuators", line, record)?;
+        }
         self.events.end(now, record)
     }
 
@@ -280,12 +287,19 @@ impl Simulation {
             let jets = self.drive.actuator.cycle();
             let [roll_on_s, pitch_on_s, yaw_on_s] = jets.as_ref().map_or([0.0; 3], |cycle| cycle.on);
             let fuel_kg = jets.as_ref().map_or(f64::NAN, |cycle| cycle.fuel);
+            let fuels_kg = jets.as_ref().map_or_else(Vec::new, |cycle| cycle.fuels.clone());
             let pulses = jets.as_ref().map_or(0, |cycle| cycle.pulses);
             let thrusters = jets.map_or_else(Vec::new, |cycle| cycle.each);
             // Jets may have cycles of their own, which are longer.
             let pulses = pulses - std::mem::replace(&mut self.telling.pulses, pulses);
             let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
+            let torquers = self.drive.actuator.magnetic();
+            let moments = torquers.into_iter().flat_map(|torquers| torquers.axes);
             let cycle = SpatialCycle {
+                fuels_kg,
+                slewing: self.reference.slews(now),
+                wheels: self.drive.actuator.wheels(now, (rigid + elastic).into()),
+                moments_am2: moments.map(|axis| axis.moment_am2).collect(),
                 jets: Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg },
                 thrusters,
                 pulses,
@@ -298,6 +312,7 @@ impl Simulation {
                 steered: self.drive.actuator.steered(),
                 friction_heat_j: plant.friction_heat(),
             };
+            self.telling.saturation.see(now.seconds(), &cycle);
             record.record(now, Sample::Cycle(&cycle))?;
             if let Some(written) = self.reference.written(now) {
                 let error = || truth.orientation.beyond(&self.reference.target(now));

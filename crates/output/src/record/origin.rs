@@ -56,14 +56,20 @@ pub fn there(path: &Path, run: &Provenance) -> There {
 pub fn difference(there: &str, here: &str) -> String {
     let (Ok(there), Ok(here)) = (there.parse::<Table>(), here.parse::<Table>()) else { return String::new() };
     let Some((key, there, here)) = first_difference("", &there, &here) else { return String::new() };
-    let short = |value: Option<&Value>| match value {
-        None => "nothing".to_owned(),
-        Some(value @ (Value::Table(_) | Value::Array(_))) if value.to_string().len() > 60 => {
-            "a longer value".to_owned()
-        }
-        Some(value) => value.to_string(),
+    let short = |value: &Value| {
+        let text = value.to_string();
+        let is_long = matches!(value, Value::Table(_) | Value::Array(_)) && text.len() > 60;
+        (!is_long).then_some(text)
     };
-    format!(" (`{key}`: {} before, {} now)", short(there), short(here))
+    match (there, here) {
+        (Some(there), Some(here)) => match (short(there), short(here)) {
+            (Some(there), Some(here)) => format!(" (`{key}`: {there} before, {here} now)"),
+            _ => format!(" (`{key}`: changed)"),
+        },
+        (Some(_), None) => format!(" (`{key}`: removed)"),
+        (None, Some(_)) => format!(" (`{key}`: added)"),
+        (None, None) => String::new(),
+    }
 }
 
 type Difference<'a> = (String, Option<&'a Value>, Option<&'a Value>);

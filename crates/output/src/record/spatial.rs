@@ -1,9 +1,16 @@
 //! Samples of a three-axis body.
 
 use super::{
-    Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Hinges, Jets, Magnetorquers, Orbit,
-    Pointing, Position, Rates, Torques, Vibrations, Wheels,
+    AttitudeEstimate, Bearings, ControlMomentGyros, DrivesMotion, Energy, Envelope, Hinges, Jets,
+    Magnetorquers, Orbit, Pointing, Position, Rates, Torques, Vibrations, Wheel, Wheels,
 };
+
+impl AttitudeEstimate {
+    /// Number of states: attitude and bias.
+    pub const STATES: f64 = 6.0;
+    /// Number of measurements of an attitude; the NIS of a direction is scaled to it.
+    pub const MEASUREMENTS: f64 = 3.0;
+}
 
 /// Cycle of a three-axis loop, after its law has decided.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +19,8 @@ pub struct SpatialCycle {
     pub jets: Jets,
     /// On-time of each thruster (s), if thrusters are commanded individually.
     pub thrusters: Vec<f64>,
+    /// Propellant of the jets about x, y and z, or of each thruster that acts by itself or may fail (kg).
+    pub fuels_kg: Vec<f64>,
     /// Number of pulses that begin.
     pub pulses: u64,
     /// Energy of the elastic modes (J).
@@ -24,6 +33,12 @@ pub struct SpatialCycle {
     pub elastic_rate_rad_s: [f64; 3],
     /// Angles relative to the target (rad).
     pub error_rad: [f64; 3],
+    /// Whether the target moves from one attitude to another.
+    pub slewing: bool,
+    /// Wheels about axes of their own.
+    pub wheels: Vec<Wheel>,
+    /// Magnetic moments of torquers (A m²).
+    pub moments_am2: Vec<f64>,
     /// Heat of the wheels' friction since the start (J); NaN without bearings.
     pub friction_heat_j: f64,
     /// Momentum of the wheels and control moment gyros, in the body's axes (N m s).

@@ -89,8 +89,8 @@ pub fn row((filter, learnt): &Told, truth: &Orientation, bias: [f64; 3]) -> Opti
         q_y: filter.attitude.j,
         q_z: filter.attitude.k,
         axes: [0, 1, 2].map(axis).into(),
-        nees: filter.nees(truth, &bias),
-        nis: told.nis,
+        nees: filter.nees(truth, &bias) / AttitudeEstimate::STATES,
+        nis: told.nis / AttitudeEstimate::MEASUREMENTS,
         numbers: told.numbers,
         measured: learnt.is_some().into(),
     })

@@ -215,8 +215,8 @@ impl Estimate for Tracking {
             q_y: estimate.j,
             q_z: estimate.k,
             axes: [0, 1, 2].map(axis).into(),
-            nees: filter.normalised(&error),
-            nis: self.told.nis,
+            nees: filter.normalised(&error) / AttitudeEstimate::STATES,
+            nis: self.told.nis / AttitudeEstimate::MEASUREMENTS,
             numbers: self.told.numbers,
             measured: self.used.into(),
         })

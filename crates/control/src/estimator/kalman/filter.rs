@@ -132,6 +132,11 @@ impl KalmanFilter {
         &self.noise
     }
 
+    /// Returns the numbers of states and of measurements in a sample.
+    pub fn dimensions(&self) -> [f64; 2] {
+        [self.mean.len() as f64, 1.0 + f64::from(u8::from(self.tuning.rate_noise.is_some()))]
+    }
+
     /// Returns the mean of the state.
     pub fn mean(&self) -> &DVector<f64> {
         &self.mean

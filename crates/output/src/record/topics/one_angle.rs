@@ -244,11 +244,11 @@ rows! {
         modes: Vec<ModeEstimate>,
         /// Measured angle minus the predicted one (rad); 0 if the sample was dropped.
         innovation_rad: f64,
-        /// Normalised innovation squared, summed over the measurements; 0 if the sample was dropped.
+        /// Normalised innovation squared, over the number of measurements: about 1 for a consistent filter; 0 if the sample was dropped.
         nis: f64,
         /// Use of the sample.
         measured: Use,
-        /// Normalised estimation error squared, from the true state; about the number of states for a consistent filter.
+        /// Normalised estimation error squared, from the true state, over the number of states: about 1 for a consistent filter.
         nees: f64,
         /// Whether the amplitude of the dominant mode is large enough to update its frequency.
         gated: Gate,

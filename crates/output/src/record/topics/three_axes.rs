@@ -88,13 +88,13 @@ rows! {
         q_z: f64,
         /// About x, y and z.
         axes: Vec<AxisEstimate>,
-        /// Normalised estimation error squared, of dimension 6.
+        /// Normalised estimation error squared, over its dimension, 6: about 1 for a consistent filter.
         nees: f64,
-        /// Normalised innovation squared, of dimension 3; 0 without a measurement.
+        /// Normalised innovation squared, over its dimension, 3: about 1 for a consistent filter; 0 without a measurement.
         nis: f64,
         /// Whether an attitude was measured.
         measured: Use,
-        /// Dimension of the measurement: 2 for a direction, whose NIS is scaled to dimension 3.
+        /// Dimension of the measurement: 2 for a direction, otherwise 3.
         numbers: u64,
     }
     /// A mode in an attitude filter, after a sample.

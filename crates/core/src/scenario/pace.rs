@@ -1,0 +1,115 @@
+//! The time that runs take on one core, estimated from what acts in them. `benches/costs.py` compares it with measured times: the
+//! constants are those of an ordinary core, to a factor of two for the shipped scenarios.
+
+use super::Scenario;
+use super::cost::{SWITCHES, TURNS};
+use crate::actuator::Firing;
+use crate::estimator::Estimator;
+use crate::law::Law;
+
+/// A time (s), and what each mode adds.
+type Pace = (f64, f64);
+
+/// A step of an integration, or of a relay law between crossings.
+pub const STEP: Pace = (3e-7, 4e-8);
+/// A step of a chain of panels, whose equations are integrated.
+const CHAIN: Pace = (6e-7, 1e-7);
+/// A search for a crossing of a relay law whose modes a wheel or a drift couples.
+const COUPLED_RELAY: Pace = (8e-6, 1.5e-6);
+/// Steps that the search for one switching of a relay law takes.
+const SEARCH: f64 = 6.0;
+/// A sample or a decision of a law about one axis, and one of a wheel's law that no sensor samples.
+const ONE_AXIS: Pace = (6e-7, 3e-7);
+const UNSAMPLED_WHEEL: Pace = (1.2e-6, 6e-7);
+/// A sample or a decision of laws about three axes: of a body at rest, of one that turns, and a step of its turn.
+const AT_REST: Pace = (6e-7, 5e-8);
+const TURNING: Pace = (1.2e-6, 5e-8);
+const TURN: Pace = (2e-7, 0.0);
+/// A sample, a decision or a step of a turn in surroundings that act on the body, with wheels in bearings, and with appendages on hinges.
+const SURROUNDED: Pace = (3e-6, 3e-6);
+const BEARINGS: Pace = (1e-6, 6.5e-7);
+const HINGES: Pace = (7e-6, 7e-6);
+/// A look at the motion within an exposure (s), and a cycle of individually commanded jets.
+const LOOK_S: f64 = 2e-6;
+const ALLOCATION_S: f64 = 5e-6;
+/// A sample of an attitude filter, of a Kalman filter about an axis, and of an adaptive observer.
+const ATTITUDE_FILTER: Pace = (1.2e-6, 0.0);
+const KALMAN: Pace = (1.5e-6, 0.0);
+const ADAPTIVE: Pace = (0.0, 1.5e-7);
+/// An operation with numbers of a matrix (s), and so many of an attitude filter with modes for each cube of its order.
+const PRODUCT_S: f64 = 1e-9;
+const ELASTIC_PRODUCTS: f64 = 25.0;
+
+impl Scenario {
+    /// The time of a run without a log (s), in which these keys act so often.
+    pub(super) fn run_seconds(&self, acts: &[(String, f64)]) -> f64 {
+        let modes = self.mode_count() as f64;
+        let takes = |(base, each): Pace| base + modes * each;
+        let (mut turns, mut looks, mut events, mut windows, mut switchings) = (0.0, 0.0, 0.0_f64, 0.0, 0.0);
+        for (key, count) in acts {
+            match key {
+                _ if *key == TURNS => turns += count,
+                _ if *key == SWITCHES => switchings += count,
+                _ if key.ends_with(".exposure") => looks += count,
+                _ if key.ends_with(".window") => windows += count,
+                // What acts with one period acts at the same instants.
+                _ => events = events.max(*count),
+            }
+        }
+        let filtered = events * self.filter_seconds(modes) + windows * takes(STEP);
+        if self.axis_count() == 3 {
+            let jets = self.actuator.jets();
+            let programmes = jets.is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant);
+            let allocated = if programmes { events * ALLOCATION_S } else { 0.0 };
+            let stride = if self.study.hinges() > 0 {
+                Some(HINGES)
+            } else if self.study.around.is_some() {
+                Some(SURROUNDED)
+            } else {
+                (!self.study.bearings.is_empty()).then_some(BEARINGS)
+            };
+            let moves = match stride {
+                Some(stride) => (events + turns) * takes(stride),
+                None if turns > 0.0 => events * takes(TURNING) + turns * takes(TURN),
+                None => events * takes(AT_REST),
+            };
+            return moves + looks * LOOK_S + allocated + filtered;
+        }
+        let coupled = self.drift.is_some() || self.actuator.wheel().is_some();
+        let moves = match &self.law {
+            _ if self.model.chain().is_some() => turns * takes(CHAIN),
+            Law::Relay(_) if self.study.sampling.is_some() => events * takes(STEP),
+            Law::Relay(_) => {
+                let strides = turns * takes(if coupled { COUPLED_RELAY } else { STEP });
+                strides.max(switchings * SEARCH * takes(STEP))
+            }
+            _ if self.actuator.wheel().is_some() && self.study.sampling.is_none() => {
+                events * takes(UNSAMPLED_WHEEL)
+            }
+            _ => events * takes(ONE_AXIS),
+        };
+        moves + filtered
+    }
+
+    /// The time of a sample of its filter (s).
+    fn filter_seconds(&self, modes: f64) -> f64 {
+        let takes = |(base, each): Pace| base + modes * each;
+        match &self.estimator {
+            Some(Estimator::Attitude(filter)) => {
+                filter.elastic.as_ref().map_or(takes(ATTITUDE_FILTER), |elastic| {
+                    let order = 6.0 + 3.0 * elastic.modes.len() as f64;
+                    ELASTIC_PRODUCTS * order * order * order * PRODUCT_S
+                })
+            }
+            Some(Estimator::Adaptive(_)) => takes(ADAPTIVE),
+            Some(filter) if filter.filters() => {
+                // Matrices of the order of its state.
+                let order = 4.0 + 2.0 * modes;
+                let passes = if matches!(filter, Estimator::UnscentedKalman(_)) { 4.0 } else { 2.0 };
+                let axes = self.axis_count() as f64;
+                axes * (takes(KALMAN) + passes * order * order * order * PRODUCT_S)
+            }
+            _ => 0.0,
+        }
+    }
+}

@@ -1,0 +1,101 @@
+//! Limits of wheels and jets in the metrics, and warnings of runs that end in saturation or in an oscillation.
+
+use flexsc_core::Scenario;
+use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::sim::Simulation;
+
+use crate::util::Dir;
+
+/// A rigid body that its wheels hold at rest; tests append to it.
+fn body(bandwidth: f64, more: &str) -> String {
+    format!(
+        "duration = 400.0\n[spacecraft]\nmass = 100.0\ninertia = [[100, 0, 0], [0, 80, 0], [0, 0, 60]]\nrate = [0, 0, 1e-4]\n\
+         [[sensor]]\ngyro = {{ period = 0.5 }}\n[law.attitude]\nperiod = 0.5\nbandwidth = {bandwidth}\n\
+         [actuator.wheels]\narrangement = \"orthogonal\"\ninertia = 0.02\ntorque = 0.05\nmomentum = 10.0\n{more}"
+    )
+}
+
+fn metrics(text: &str) -> Metrics {
+    let scenario = Scenario::parse("a", text).expect("valid");
+    let mut gather = Gather::new(&scenario);
+    Simulation::new(&scenario, 0).run(&mut gather).expect("a run");
+    gather.finish(&scenario)
+}
+
+fn word(metrics: &Metrics, name: &str) -> &'static str {
+    match metrics.get(name) {
+        Some(Value::Word(word)) => word,
+        other => panic!("{name}: {other:?}"),
+    }
+}
+
+/// The sampled double integrator with gains w² and 2 zeta w is unstable where 2 zeta w T > 2: the wheels then alternate between
+/// their torque limits.
+#[test]
+fn an_unstable_loop_is_told() {
+    let dir = Dir::holding("a.toml", body(4.0, ""));
+    let told = dir.run("simulate a.toml --log events").exits(0);
+    told.says(&["warning", "does not decay", "alternate between their torque limits", "the last 40 s"]);
+    let object = dir.run("simulate a.toml --log none --json").exits(0).json();
+    assert_eq!(object["metrics"]["actuator_end"], "cycling");
+    assert!(object["metrics"]["actuator_limit_late_share"].as_f64().expect("a share") > 0.5);
+    assert!(object["warnings"][0].as_str().expect("a warning").contains("oscillation"));
+    dir.run("export a.mcap --topic /log").exits(0).prints(&["warning", "does not decay", "actuators"]);
+
+    let stable = Dir::holding("a.toml", body(0.1, ""));
+    let object = stable.run("simulate a.toml --log none --json").exits(0).json();
+    assert_eq!(object["metrics"]["actuator_end"], "free");
+    assert!(object["warnings"].is_null());
+}
+
+#[test]
+fn steady_saturation_is_told() {
+    let more = "[[disturbance]]\nabout = \"yaw\"\ntorque = 0.08\n";
+    let of = metrics(&body(0.1, more));
+    assert_eq!(word(&of, "actuator_end"), "saturated");
+    assert!(of.number("wheel_torque_limit_share").expect("a share") > 0.3);
+    let dir = Dir::holding("a.toml", body(0.1, more));
+    dir.run("simulate a.toml --log none").exits(0).says(&[
+        "warning",
+        "ends in saturation",
+        "at the torque limit",
+    ]);
+}
+
+/// Wheels that hold a body against a torque take its impulse: 0.01 N m for 300 s, in 0.02 kg m².
+#[test]
+fn peaks_of_wheels_are_those_of_the_impulse() {
+    let of = metrics(&body(0.2, "[[disturbance]]\nabout = \"yaw\"\ntorque = 0.01\nto = 300.0\n"));
+    let number = |name: &str| of.number(name).expect("a metric");
+    for (name, exact) in [
+        ("one_wheel_momentum_peak_nm_s", 3.0),
+        ("wheel_momentum_peak_nm_s", 3.0),
+        ("wheel_speed_peak_rad_s", 150.0),
+    ] {
+        assert!((number(name) / exact - 1.0).abs() < 0.02, "{name}: {}", number(name));
+    }
+    assert_eq!(number("wheel_torque_limit_share"), 0.0);
+}
+
+#[test]
+fn propellant_is_told_by_axis_or_by_thruster() {
+    for (name, list, count) in [("iss-ringdown", "fuel_axes_kg", 3), ("canted-jets", "fuel_thrusters_kg", 4)]
+    {
+        let dir = Dir::with(&[name]);
+        let object = dir.run(&format!("simulate {name}.toml --log none --json")).exits(0).json();
+        let parts = object["metrics"][list].as_array().expect("a list");
+        let sum: f64 = parts.iter().filter_map(serde_json::Value::as_f64).sum();
+        let whole = object["metrics"]["fuel_kg"].as_f64().expect("a number");
+        assert!(parts.len() >= count && (sum / whole - 1.0).abs() < 1e-12, "{name}: {parts:?} {whole}");
+    }
+}
+
+#[test]
+fn slews_have_errors_of_their_own() {
+    let target = "[[target]]\nfrom = 10.0\nyaw = 0.2\nacceleration = 2e-4\n";
+    let of = metrics(&body(0.2, target));
+    let [peak, rms] =
+        ["slew_error_peak_rad", "slew_error_rms_rad"].map(|name| of.number(name).expect("a metric"));
+    assert!(peak > rms && rms > 0.0 && peak < 0.1, "{peak} {rms}");
+    assert!(metrics(&body(0.2, "")).get("slew_error_peak_rad").is_none());
+}

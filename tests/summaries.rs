@@ -1,0 +1,94 @@
+//! What people read of runs and modes: digits, units, and nothing that does not apply.
+
+use crate::util::Dir;
+
+fn summary(name: &str, more: &str) -> String {
+    let dir = Dir::with(&[name]);
+    dir.run(&format!("simulate {name}.toml --log none {more}")).exits(0).err
+}
+
+fn holds(text: &str, words: &[&str], without: &[&str]) {
+    for word in words {
+        assert!(text.contains(word), "no `{word}` in\n{text}");
+    }
+    for word in without {
+        assert!(!text.contains(word), "`{word}` in\n{text}");
+    }
+}
+
+#[test]
+fn summaries_hold_what_applies_to_the_run() {
+    holds(
+        &summary("half-turn", ""),
+        &["over the whole run", "slews "],
+        &["last 200 s", "in modes that the gyro"],
+    );
+    holds(
+        &summary("wheel-ekf", ""),
+        &["per state", "from 30 to 200 s", "95 % of the samples", "Hz rms"],
+        &["after the manoeuvre", "but for", "off the goal"],
+    );
+    // Its frequencies are known.
+    holds(&summary("slew-wheel-lqg", ""), &["manoeuvre      30 deg in 60 s"], &["frequency error"]);
+    holds(
+        &summary("thruster-phase-plane", ""),
+        &["10 N m given", "40 N m demanded by the law"],
+        &["manoeuvre"],
+    );
+    holds(&summary("iss-ringdown", ""), &["Hz (estimated / true)", "active damping in"], &["as estimated"]);
+}
+
+#[test]
+fn units_are_those_that_are_asked_for() {
+    holds(&summary("earth-observer", ""), &["arcsec", "rpm", " nJ"], &["e-"]);
+    holds(&summary("earth-observer", "--units si"), &["rad/s", "e-"], &["arcsec", "rpm", "deg"]);
+    let dir = Dir::with(&["earth-observer"]);
+    dir.run("modes earth-observer.toml").exits(0).says(&["Hz"]);
+    dir.run("modes earth-observer.toml --units si").exits(0).says(&["rad/s"]);
+    dir.run("modes earth-observer.toml --units feet").exits(2).says(&["feet", "engineering", "si"]);
+}
+
+/// Columns stay apart whatever the size of the numbers.
+#[test]
+fn tables_of_modes_keep_their_columns_apart() {
+    let heavy = "duration = 10\n[spacecraft]\nmass = 3000.0\ninertia = [[3500, 0, 0], [0, 2800, 0], [0, 0, 4000]]\n\
+        [[appendage]]\nname = \"wing\"\nmass = 187.5\ncentre = [12.5, 0, 0]\n\
+        inertia = [[9.0, 0, 0], [0, 9766, 0], [0, 0, 9775]]\nat = [0, 1.2, 0]\n\
+        modes = [{ frequency = 0.5, damping = 0.005, translation = [0, 0, 10.0], rotation = [0, -190.0, 0] }]\n\
+        [law.pd]\nk_p = 1.0\nk_d = 10.0\nperiod = 0.5\n";
+    let dir = Dir::holding("a.toml", heavy);
+    let told = dir.run("modes a.toml").exits(0).err;
+    let row = told.lines().find(|line| line.contains("wing, without first moments")).expect("a mode");
+    // Mode, frequency, period, damping, three masses, three inertias, and four words of the appendage.
+    assert_eq!(row.split_whitespace().count(), 14, "{told}");
+    let damped = dir.run("damping --frequency 0.1:100000:3 --acceleration 0.1 --period 1e-6").exits(0).err;
+    for row in damped.lines().skip(3) {
+        assert_eq!(row.split_whitespace().count(), 9, "{damped}");
+    }
+}
+
+#[test]
+fn a_log_of_other_settings_is_refused_in_plain_words() {
+    let dir = Dir::with(&["wheel-ekf"]);
+    dir.run("simulate wheel-ekf.toml").exits(0);
+    let other = "simulate wheel-ekf.toml --set sensor.sampled.faults=[{stuck={from=60}}]";
+    let told = dir.run(other).exits(2).err;
+    holds(&told, &["holds a run with other settings (`sensor.sampled.faults`: added)"], &["a longer value"]);
+}
+
+#[test]
+fn a_check_estimates_the_time() {
+    let dir = Dir::with(&["earth-observer"]);
+    dir.run("check earth-observer.toml").exits(0).says(&["accepted", "a run takes about", "ms on one core"]);
+    let object = dir.run("check earth-observer.toml --json").exits(0).json();
+    assert!(object["estimate_s"].as_f64().expect("a time") > 0.0);
+}
+
+/// A drift couples the modes: 1.8e10 s take days, and are not begun without a yes.
+#[cfg(target_os = "linux")]
+#[test]
+fn a_run_of_days_needs_a_yes() {
+    let dir = Dir::with(&["wheel-fast-mode"]);
+    let told = dir.run_bounded("simulate wheel-fast-mode.toml --log none --set duration=1.8e10").exits(2).err;
+    holds(&told, &["must be confirmed", "--yes"], &[]);
+}
