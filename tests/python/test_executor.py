@@ -325,7 +325,9 @@ def test_the_death_of_a_scheduler_is_an_error(study: Scenario, tmp_path: Path) -
     try:
         script = [sys.executable, "-c", textwrap.dedent(LONG), address]
         pipe = subprocess.PIPE
-        first = subprocess.Popen(script, cwd=tmp_path, stdout=pipe, stderr=subprocess.DEVNULL, env=_impatient())
+        first = subprocess.Popen(
+            script, cwd=tmp_path, stdout=pipe, stderr=subprocess.DEVNULL, env=_impatient()
+        )
         begun.append(first)
         other = [*command, "-o", "other", "--scheduler", address]
         second = subprocess.Popen(other, cwd=tmp_path, stderr=pipe, env=_impatient())

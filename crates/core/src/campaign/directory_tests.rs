@@ -125,7 +125,7 @@ fn directories_are_merged_if_they_agree() {
     assert_eq!(columns(&merged), columns(&whole));
     let rows = merge.rows().expect("read");
     assert_eq!(rows.columns[0].numbers(), (0..30).map(f64::from).collect::<Vec<_>>());
-    // A run that is another one elsewhere, here the seconds of all runs apart.
+    // A run that is another one elsewhere.
     let tampered = Directory::open(&here[1].0).expect("there");
     let mut other = tampered.work().make(0..8, 1, ()).expect("made");
     if let Some(ColumnCells::Numbers(rates)) = other.columns.get_mut(2) {

@@ -90,9 +90,7 @@ class _Executor(Executor):
 def main(arguments: list[str] | None = None) -> int:
     """Run the missing parts of a campaign directory on the workers of a scheduler."""
     parser = argparse.ArgumentParser("python -m flexsc.dask", description=main.__doc__)
-    parser.add_argument(
-        "--until-stdin-closes", action="store_true", help="end when standard input is closed"
-    )
+    parser.add_argument("--until-stdin-closes", action="store_true", help="end when standard input is closed")
     parser.add_argument("scheduler", help="address of the scheduler, such as tcp://10.0.0.1:8786")
     parser.add_argument("directory", help="directory of a campaign, which all workers reach")
     given = parser.parse_args(arguments)
