@@ -60,7 +60,9 @@ fn links_are_not_followed() {
         std::fs::create_dir(dir.path("out")).expect("made");
         symlink("../victim", dir.path(&format!("out/{name}"))).expect("linked");
         let ran = dir.run(&format!("{CAMPAIGN} --table csv --force"));
-        assert!(matches!(ran.code, Some(1 | 2)), "{name}: {:?} {}", ran.code, ran.err);
+        // The link itself may be replaced.
+        let gone = dir.path(&format!("out/{name}")).symlink_metadata().is_ok_and(|there| there.is_file());
+        assert!(matches!(ran.code, Some(1 | 2)) || gone, "{name}: {:?} {}", ran.code, ran.err);
         assert_eq!(dir.text("victim"), "mine", "{name}");
     }
 }

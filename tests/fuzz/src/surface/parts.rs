@@ -32,13 +32,12 @@ const DIGITS: usize = 16;
 
 /// The files of a whole campaign; the part is the last one.
 pub fn seeds() -> io::Result<Vec<(String, Vec<u8>)>> {
-    let other = io::Error::other;
-    let scenario = Scenario::parse("s.toml", SCENARIO).map_err(other)?;
-    let campaign = Campaign::of(scenario, "s.toml", PointDesign::default()).map_err(other)?;
-    let manifest = Manifest::new(&campaign, 0..RUNS, &Selection::ALL).map_err(other)?;
+    let scenario = Scenario::parse("s.toml", SCENARIO).map_err(io::Error::other)?;
+    let campaign = Campaign::of(scenario, "s.toml", PointDesign::default()).map_err(io::Error::other)?;
+    let manifest = Manifest::new(&campaign, 0..RUNS, &Selection::ALL).map_err(io::Error::other)?;
     let text = manifest.to_toml();
-    let work = Work::of(manifest, Path::new("manifest.toml")).map_err(other)?;
-    let (name, part) = work.part(0..RUNS, 1, ()).map_err(other)?;
+    let work = Work::of(manifest, Path::new("manifest.toml")).map_err(io::Error::other)?;
+    let (name, part) = work.part(0..RUNS, 1, ()).map_err(io::Error::other)?;
     Ok(vec![
         ("s.toml".to_owned(), SCENARIO.into()),
         ("c/manifest.toml".to_owned(), text.into_bytes()),
