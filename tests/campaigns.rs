@@ -331,3 +331,61 @@ fn statistics_are_finite_and_tell_what_they_leave_out() {
     let large = |row: &BTreeMap<String, String>| row["sd"].parse::<f64>().is_ok_and(|sd| sd > 1e180);
     assert!(statistics.iter().any(large), "{statistics:?}");
 }
+
+/// A sweep varies what it is told to, unless the uncertain keys are to be drawn too.
+#[test]
+fn a_sweep_draws_only_if_it_is_asked_to() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    let sweep = "sweep u.toml --set duration=100 --table csv --vary law.relay.weak=1e-6:2e-6:3";
+    dir.run(&format!("{sweep} -o kept")).exits(0).says(&["note: the [uncertain] keys keep their values"]);
+    let columns =
+        |name: &str| dir.text(&format!("{name}/runs.csv")).lines().next().expect("a header").to_owned();
+    assert!(columns("kept").starts_with("run,seed,law.relay.weak,switchings"), "{}", columns("kept"));
+    dir.run(&format!("{sweep} -o drawn --uncertain")).exits(0);
+    assert!(columns("drawn").starts_with("run,seed,law.relay.weak,body.planar.rate,law.relay.k_t,"));
+    let rates: std::collections::BTreeSet<String> =
+        table(&dir, "drawn/runs.csv").iter().map(|row| row["body.planar.rate"].clone()).collect();
+    assert_eq!(rates.len(), 3);
+    // The value of a swept key is what the sweep says, whether or not it is uncertain.
+    let gains =
+        "sweep u.toml --set duration=100 --table csv --vary law.relay.k_t=0.2,0.25 --uncertain -o gains";
+    dir.run(gains).exits(0);
+    let gains: Vec<String> =
+        table(&dir, "gains/runs.csv").iter().map(|row| row["law.relay.k_t"].clone()).collect();
+    assert_eq!(gains, ["0.2", "0.25"]);
+    dir.write("plain.toml", UNCERTAIN.split("[uncertain]").next().expect("a scenario"));
+    dir.run("sweep plain.toml --vary law.relay.k_t=0.2,0.25 --uncertain")
+        .exits(2)
+        .says(&["no [uncertain] keys"]);
+}
+
+/// One key has a curve and two have a map, drawn keys or not; the terminal has the metrics point by point.
+#[test]
+fn a_sweep_is_shown_over_its_keys() {
+    let dir = Dir::holding("u.toml", UNCERTAIN);
+    let sweep = "sweep u.toml --set duration=200 --uncertain --vary law.relay.weak=1e-6:2e-6:30";
+    let ran = dir.run(&format!("{sweep} -o one")).exits(0).says(&[
+        "law.relay.weak",
+        "... 14 more points",
+        "0.000001",
+    ]);
+    assert!(!ran.err.contains(" sd ") && !ran.err.contains("95 %"), "{}", ran.err);
+    let rows = ran.err.lines().skip_while(|line| !line.contains("law.relay.weak")).count();
+    assert!(rows > 17, "{}", ran.err);
+    dir.run("plot one --format svg -o figures").exits(0);
+    assert!(dir.has("figures/u-curve.svg"), "{:?}", dir.names("figures"));
+    dir.run(&format!("{sweep} --vary law.relay.k_t=0.3,0.31 -o two")).exits(0).says(&["law.relay.k_t"]);
+    dir.run("plot two --format svg -o maps").exits(0);
+    assert!(dir.names("maps").iter().all(|name| name.starts_with("u-region-")), "{:?}", dir.names("maps"));
+}
+
+/// A campaign counts what meets its goal, with the interval of Wilson's score.
+#[test]
+fn a_campaign_counts_what_meets_its_goal() {
+    let dir = Dir::with(&["attitude-hold"]);
+    dir.run("simulate attitude-hold.toml --set duration=60 --runs 8").exits(0).says(&[
+        "goal",
+        " of 8 met (",
+        " %, 95 % interval ",
+    ]);
+}

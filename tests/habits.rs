@@ -95,10 +95,8 @@ fn statistics_of_a_sweep_leave_out_what_was_swept() {
     let said = |vary: &str| {
         dir.run(&format!("sweep relay-fixed.toml --set duration=400 --vary {vary}")).exits(0).err
     };
-    let has = |text: &str, name: &str| text.lines().any(|line| line.split_whitespace().next() == Some(name));
     let swept = said("law.relay.k_t=0.30:0.34:3");
-    assert!(!has(&swept, "gain_initial") && has(&swept, "duty"), "{swept}");
-    assert!(has(&said("law.relay.weak=1e-6:2e-6:3"), "gain_initial"));
+    assert!(!swept.contains("gain_") && swept.contains("duty"), "{swept}");
 }
 
 #[test]

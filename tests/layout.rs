@@ -196,7 +196,7 @@ fn run(scenario: &str, options: &str) {
         dir.run(&format!("simulate {scenario}.toml --log {detail} {options}")).exits(0);
         let name = format!("{scenario}.mcap");
         let layout = attached(&dir.read(&name));
-        dir.run(&format!("layout {name} -o layout.json")).exits(0);
+        dir.run(&format!("layout {name} -o layout.json --force")).exits(0);
         let written = dir.text("layout.json");
         let same = without_limits(&written) == serde_json::from_str::<Value>(&layout).expect("JSON");
         assert!(same, "{scenario} {detail}: attached and written differ");
@@ -229,7 +229,7 @@ fn layouts_show_what_logs_have() {
 fn small_values_have_axes_of_their_own() {
     let dir = Dir::with(&["relay-fixed", "rotation-robust"]);
     let plots = |scenario: &str| -> BTreeMap<String, Option<[f64; 2]>> {
-        dir.run(&format!("layout {scenario}.toml -o layout.json")).exits(0);
+        dir.run(&format!("layout {scenario}.toml -o layout.json --force")).exits(0);
         let layout: Value = serde_json::from_str(&dir.text("layout.json")).expect("JSON");
         let panels = layout["configById"].as_object().expect("panels").iter();
         let limits = |config: &Value| Some([config["minYValue"].as_f64()?, config["maxYValue"].as_f64()?]);

@@ -35,7 +35,9 @@ fn topics_are_exported() {
     let rows: Vec<Json> = lines.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
     assert_eq!(rows.len(), 2719);
     assert!(rows.iter().all(|row| row["time_s"].is_f64() && row["state"].is_string()));
-    dir.run("export relay-fixed.mcap --topic /command -o missing/x.csv").exits(1).says(&["missing/x.csv"]);
+    dir.run("export relay-fixed.mcap --topic /command -o relay-fixed.toml/x.csv")
+        .exits(1)
+        .says(&["relay-fixed.toml"]);
 }
 
 /// A log is made anew from the scenario that it holds.

@@ -44,6 +44,8 @@ mod failures;
 mod filters;
 mod forces;
 mod foreign;
+#[cfg(feature = "full")]
+mod foreign_campaigns;
 mod foreign_logs;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
@@ -77,6 +79,7 @@ mod paper_figures;
 mod parts;
 #[cfg(all(unix, feature = "parquet"))]
 mod parts_killed;
+mod places;
 mod plan;
 mod plan_figures;
 mod plants;

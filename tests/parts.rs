@@ -94,7 +94,7 @@ fn what_does_not_fit_changes_nothing() {
             "simulate u.toml --runs 20 --replicas 2 -o out",
             "another campaign (nothing before, 2 runs of each point now)",
         ),
-        ("sweep u.toml --vary duration=1,2,3 -o out", "duration = [1.0, 2.0, 3.0] now"),
+        ("sweep u.toml --uncertain --vary duration=1,2,3 -o out", "duration = [1.0, 2.0, 3.0] now"),
         ("simulate u.toml --runs 10 -o out", "holds 20 runs of this campaign, and 10 would replace them"),
         ("simulate u.toml --runs 20 --table csv -o out", "holds a campaign as Parquet files"),
     ] {
@@ -175,7 +175,12 @@ fn parts_of_several_machines_are_merged() {
     for (part, runs) in [("a", "0:300"), ("b", "300:400"), ("c", "400:1000"), ("all", "0:1000")] {
         dir.run(&format!("simulate u.toml --set duration=100 --runs {runs} -o {part}")).exits(0);
     }
-    dir.run("merge a c -o merged").exits(0).says(&["a: 300 runs", "c: 600 runs", "900 runs, 100 missing"]);
+    dir.run("merge a c -o merged").exits(1).says(&[
+        "a: 300 runs",
+        "c: 600 runs",
+        "900 runs, 100 missing",
+        "runs 300:400 are missing",
+    ]);
     dir.run("merge b a -o merged").exits(0).says(&["b: 100 runs", "a: 0 runs", "1000 runs, 0 missing"]);
     assert!(rows(&dir.path("merged")) == rows(&dir.path("all")));
     let statistics = |name: &str| dir.text(&format!("{name}/statistics.csv"));

@@ -194,3 +194,28 @@ def test_a_directory_that_is_gone_is_an_error(tmp_path: Path) -> None:
     shutil.rmtree(tmp_path / "out")
     with pytest.raises(FileNotFoundError, match="no longer exists"):
         table["duty"]
+
+
+def test_a_sweep_draws_only_if_it_is_asked_to(sampled: Scenario) -> None:
+    drawn = {"uncertain": {"law.relay.k_t": {"uniform": [0.3, 0.32]}}}
+    study = Scenario({**sampled.with_("duration", 100.0).to_dict(), **drawn}, "study")
+    values = [1e-6, 2e-6, 3e-6]
+    table = flexsc.sweep(study, "law.relay.weak", values)
+    assert table.keys == ["law.relay.weak"]
+    table = flexsc.sweep(study, "law.relay.weak", values, uncertain=True)
+    assert table.keys == ["law.relay.weak", "law.relay.k_t"]
+    assert len(set(table["law.relay.k_t"].tolist())) == 3
+
+
+def test_arguments_of_other_types_are_named(tmp_path: Path, fixed: Scenario) -> None:
+    for call in (
+        lambda: flexsc.campaign(100),  # type: ignore[arg-type]
+        lambda: flexsc.campaign("m.toml"),  # type: ignore[arg-type]
+        lambda: flexsc.sweep("m.toml", "duration", [1.0]),  # type: ignore[arg-type]
+        lambda: flexsc.rigid_cycles("x"),  # type: ignore[arg-type]
+        lambda: flexsc.write_scenario("x", tmp_path / "x.toml"),  # type: ignore[arg-type]
+    ):
+        with pytest.raises(TypeError, match=r"scenario must be a flexsc\.Scenario, got"):
+            call()
+    with pytest.raises(TypeError, match=r"runs must be an integer or a range, got 1000\.0"):
+        flexsc.campaign(fixed, runs=1e3)  # type: ignore[arg-type]

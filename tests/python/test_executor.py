@@ -134,8 +134,14 @@ def test_places_that_fsspec_knows(study: Scenario, whole: Table, tmp_path: Path)
         same(whole, flexsc.campaign(study, 600, out=out, executor=pool))
         with pytest.raises(ValueError, match="another campaign"):
             flexsc.campaign(study.with_("duration", 700.0), 600, out=out, executor=pool)
-        with pytest.raises(ValueError, match="has runs 0:600"):
+        # More runs continue it, as in a directory.
+        more = flexsc.campaign(study, 700, out=out, executor=pool)
+        assert len(more) == 700
+        assert (more["switchings"][:600] == whole["switchings"]).all()
+        files.rm_file("/bucket/study/manifest.toml")
+        with pytest.raises(ValueError, match="its campaign is unknown"):
             flexsc.campaign(study, 700, out=out, executor=pool)
+        flexsc.campaign(study, 700, out=out, executor=pool, force=True)
         fewer = flexsc.campaign(study.with_("duration", 700.0), 20, out=out, executor=pool, force=True)
         assert len(fewer) == 20
     with processes(2) as pool:
@@ -275,3 +281,107 @@ def test_the_command_hands_a_campaign_to_a_scheduler(study: Scenario, whole: Tab
     )
     assert ran.returncode == 2
     assert b"leave out --json" in ran.stderr
+
+
+def _scheduler(path: Path) -> tuple[list[subprocess.Popen[bytes]], str]:
+    """Start a scheduler and a worker, each a process of its own; the scheduler is the first."""
+    told = path / "scheduler.json"
+    command = [sys.executable, "-m", "dask"]
+    options = ("--scheduler-file", str(told), "--no-dashboard")
+    begun = [
+        subprocess.Popen(
+            [*command, *arguments, *options], cwd=path, stderr=subprocess.DEVNULL, env=_impatient()
+        )
+        for arguments in (("scheduler", "--host", "127.0.0.1", "--port", "0"), ("worker", "--no-nanny"))
+    ]
+    deadline = time.monotonic() + 60.0
+    while not told.exists() and time.monotonic() < deadline:
+        time.sleep(0.1)
+    return begun, json.loads(told.read_text())["address"]
+
+
+def _impatient() -> dict[str, str]:
+    """An environment in which Dask waits 3 s, not 30 s, for a scheduler to come back."""
+    return {**os.environ, "DASK_DISTRIBUTED__COMM__TIMEOUTS__CONNECT": "3s"}
+
+
+LONG = """
+    import sys, flexsc, flexsc.dask
+    from distributed import Client
+    with Client(sys.argv[1]) as client:
+        study = flexsc.Scenario.load("study.toml").with_("duration", 20000.0)
+        try:
+            flexsc.dask.campaign(client, study, 100_000, out="out", task_s=0.2)
+        except OSError as error:
+            print(error)
+"""
+
+
+def test_the_death_of_a_scheduler_is_an_error(study: Scenario, tmp_path: Path) -> None:
+    pytest.importorskip("distributed")
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    begun, address = _scheduler(tmp_path)
+    command = [command_path(), "simulate", "study.toml", "--runs", "100000", "--set", "duration=20000"]
+    try:
+        script = [sys.executable, "-c", textwrap.dedent(LONG), address]
+        pipe = subprocess.PIPE
+        first = subprocess.Popen(
+            script, cwd=tmp_path, stdout=pipe, stderr=subprocess.DEVNULL, env=_impatient()
+        )
+        begun.append(first)
+        other = [*command, "-o", "other", "--scheduler", address]
+        second = subprocess.Popen(other, cwd=tmp_path, stderr=pipe, env=_impatient())
+        begun.append(second)
+        for out in ("out", "other"):
+            deadline = time.monotonic() + 60.0
+            while not list(tmp_path.glob(f"{out}/runs/*.parquet")) and time.monotonic() < deadline:
+                time.sleep(0.02)
+        begun[0].kill()
+        told, _ = first.communicate(timeout=60)
+        assert b"connection to the scheduler is lost" in told
+        _, told = second.communicate(timeout=60)
+        assert second.returncode == 2
+        assert b"connection to the scheduler is lost" in told
+    finally:
+        for process in begun:
+            process.kill()
+            process.wait()
+    # The directory is free.
+    shorter = flexsc.read_campaign(tmp_path / "out")
+    assert 0 < len(shorter) < 100_000
+    for out in ("out", "other"):
+        force = [command_path(), "simulate", "study.toml", "--runs", "1", "-o", out, "--force"]
+        ran = subprocess.run(force, cwd=tmp_path, capture_output=True, check=False)
+        assert ran.returncode == 0, ran.stderr.decode()
+
+
+@pytest.mark.parametrize("signal_number", [signal.SIGTERM, signal.SIGKILL])
+def test_a_command_that_ends_takes_its_python_along(
+    study: Scenario, tmp_path: Path, signal_number: signal.Signals
+) -> None:
+    pytest.importorskip("distributed")
+    (tmp_path / "study.toml").write_text(study.to_toml())
+    begun, address = _scheduler(tmp_path)
+    command = [command_path(), "simulate", "study.toml", "--runs", "100000", "--set", "duration=20000"]
+    command += ["-o", "out", "--scheduler", address]
+    try:
+        handed = subprocess.Popen(command, cwd=tmp_path, stderr=subprocess.DEVNULL, env=_impatient())
+        begun.append(handed)
+        deadline = time.monotonic() + 60.0
+        while not list(tmp_path.glob("out/runs/*.parquet")) and time.monotonic() < deadline:
+            time.sleep(0.02)
+        handed.send_signal(signal_number)
+        assert handed.wait(timeout=10) == (130 if signal_number == signal.SIGTERM else -signal.SIGKILL)
+        # Its Python held the lock.
+        again = [command_path(), "simulate", "study.toml", "--runs", "1", "-o", "out", "--force"]
+        deadline = time.monotonic() + 10.0
+        while time.monotonic() < deadline:
+            ran = subprocess.run(again, cwd=tmp_path, capture_output=True, check=False)
+            if b"another process" not in ran.stderr:
+                break
+            time.sleep(0.2)
+        assert b"another process" not in ran.stderr, ran.stderr.decode()
+    finally:
+        for process in begun:
+            process.kill()
+            process.wait()

@@ -1,30 +1,34 @@
 //! Running a campaign: the row of each run, and the statistics.
 
+pub mod file;
 mod kept;
 mod live;
 pub mod logs;
 pub mod options;
 pub mod parts;
+mod points;
 mod scheduler;
+mod told;
 
 use std::io::Write;
 use std::ops::Range;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::campaign::{Campaign, CampaignRun, Directory, RunError, RunOutcome, Sampling};
+use flexsc_core::campaign::{
+    Campaign, CampaignRun, Directory, Manifest, Rows, RunError, RunOutcome, Sampling, Work,
+};
 use flexsc_core::count::counted;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
-use flexsc_core::statistics::{Gathered, QUANTILES, Statistics};
+use flexsc_core::statistics::Gathered;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
 use crate::failure::Failure;
 use crate::human::Units;
-use crate::number::short;
 use crate::results::print_lines;
 use crate::table::Table;
 use crate::{files, say, stop, summary};
@@ -34,6 +38,8 @@ pub use kept::SCENARIO;
 use live::Live;
 pub use live::{Running, table as table_so_far};
 pub use options::{Kind, Options};
+use points::Points;
+use told::{Told, are_alike, met, verdict, write_statistics};
 
 /// The metrics that are told and drawn of a campaign if none is named: the first of these that vary.
 pub const MAIN: [&str; 23] = [
@@ -69,8 +75,10 @@ pub struct Job<'a> {
     pub range: Range<u64>,
     /// Whether they are a part of a campaign: its tables are then named so.
     pub part: bool,
-    /// The directory of the tables, if any are wanted.
+    /// The directory of the tables, or the file of the rows, if any are wanted.
     pub table: Option<&'a Path>,
+    /// Whether that is a file.
+    pub is_file: bool,
     /// The form of the rows there.
     pub kind: Kind,
     /// The metrics of the rows.
@@ -79,7 +87,7 @@ pub struct Job<'a> {
     pub fail_fast: bool,
     /// What the tables' names begin with, where several campaigns share a directory.
     pub prefix: Option<&'a str>,
-    /// Whether tables of another campaign are replaced.
+    /// Whether tables of another campaign, or another file, are replaced.
     pub force: bool,
     /// Threads.
     pub jobs: Option<u16>,
@@ -93,20 +101,6 @@ pub struct Job<'a> {
     pub plain: bool,
 }
 
-/// What a campaign came to.
-pub struct Told {
-    /// How many runs there are.
-    pub runs: usize,
-    /// Their statistics.
-    pub statistics: Vec<Statistics>,
-    /// How many of them failed, the first of them, and why.
-    pub failed: Option<(u64, u64, String)>,
-    /// The metrics of a run that is alone.
-    pub only: Option<Metrics>,
-    /// Where the rows are.
-    pub table: Option<PathBuf>,
-}
-
 /// Runs a campaign; `work` simulates one run.
 pub fn run(
     study: &Arc<Campaign>,
@@ -116,7 +110,7 @@ pub fn run(
     let began = WallInstant::now();
     let _writing = stop::writing();
     let told = match job.table {
-        Some(path) if job.kind == Kind::Parquet => {
+        Some(path) if job.kind == Kind::Parquet && !job.is_file => {
             let path = job.prefix.map_or_else(|| path.to_owned(), |name| path.join(name));
             parts::run(study, job, &path, work)?
         }
@@ -134,7 +128,7 @@ pub fn run(
             summary::tell(study.scenario(), only, took, job.units);
         } else {
             say!("{name}   {}, {took:.2} s", counted(runs, "run"));
-            tell_statistics(&told.statistics, &study.design().keys(), told.runs);
+            told.say();
         }
         if let Some(path) = &told.table {
             say!("  table          {}", path.display());
@@ -154,7 +148,13 @@ fn table(
 ) -> Result<Told, Failure> {
     let runs = job.range.end - job.range.start;
     let mut table = None;
-    if let Some(dir) = job.table {
+    let mut rows = None;
+    if let Some(path) = job.table.filter(|_| job.is_file) {
+        files::refuse_existing(path, job.force)?;
+        files::make_parent(path)?;
+        rows = Some(Rows::new(study.fields(&job.selection)));
+    }
+    if let Some(dir) = job.table.filter(|_| !job.is_file) {
         let design = study.design();
         if !study.scenario().uncertain.is_empty() && (design.replicas > 1 || design.draws != Sampling::Random)
         {
@@ -177,6 +177,9 @@ fn table(
         study,
         job,
         table: table.as_mut(),
+        rows: rows.as_mut(),
+        shown: points::runs(study, &job.range),
+        points: Rows::new(study.fields(&job.selection)),
         all: Gathered::default(),
         only: None,
         live: Live::new(runs, 0),
@@ -190,7 +193,7 @@ fn table(
     } else {
         study.each(range, threads, work, tell)
     };
-    let Telling { all, only, failed, .. } = telling;
+    let Telling { all, only, failed, points, .. } = telling;
     if let Err(failure) = done {
         return Err(match (&failure, table) {
             (Failure::Interrupted(_) | Failure::Write { .. } | Failure::First { .. }, Some(table)) => {
@@ -199,13 +202,22 @@ fn table(
             _ => failure,
         });
     }
-    let table = table.map(|table| table.finish(study)).transpose()?;
+    let mut table = table.map(|table| table.finish(study)).transpose()?;
     let only = only.filter(|_| all.runs() == 1);
     let (runs, statistics) = (runs as usize, all.finish());
-    if let Some(dir) = job.table {
+    if let Some(dir) = job.table.filter(|_| !job.is_file) {
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
     }
-    Ok(Told { runs, statistics, failed, only, table })
+    if let (Some(path), Some(rows)) = (job.table, &rows) {
+        let manifest = Manifest::new(study, job.range.clone(), &job.selection);
+        let manifest =
+            manifest.map_err(|why| Failure::Arguments(format!("{}: {why}", study.scenario().name)))?;
+        file::write(path, job.kind, &Work::of(manifest, path).map_err(parts::failure)?, rows)?;
+        table = Some(path.to_owned());
+    }
+    let column = |name: &str| -> Result<_, Failure> { Ok(points.column(name).cloned()) };
+    let points = Points::new((study, &job.range), (&statistics, &job.selection), column)?;
+    Ok(Told { runs, statistics, points, failed, only, table })
 }
 
 fn interruption(at: u64) -> Failure {
@@ -243,6 +255,11 @@ struct Telling<'a> {
     study: &'a Campaign,
     job: &'a Job<'a>,
     table: Option<&'a mut Table>,
+    /// The rows of a file.
+    rows: Option<&'a mut Rows>,
+    /// The runs whose points are printed, and their rows.
+    shown: Vec<Range<u64>>,
+    points: Rows,
     all: Gathered,
     only: Option<Metrics>,
     live: Live,
@@ -266,6 +283,12 @@ impl Telling<'_> {
         self.live.add(&outcome);
         if let Some(table) = &mut self.table {
             table.row(self.study, &outcome)?;
+        }
+        if let Some(rows) = &mut self.rows {
+            rows.push(self.study, &outcome);
+        }
+        if self.shown.iter().any(|runs| runs.contains(&outcome.number)) {
+            self.points.push(self.study, &outcome);
         }
         if self.job.json {
             let RunOutcome { number, drawn, metrics, .. } = &outcome;
@@ -315,47 +338,4 @@ pub fn object(
         Err(error) => object["error"] = json!(error.to_string()),
     }
     object
-}
-
-fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failure> {
-    let table = || -> Result<Vec<u8>, csv::Error> {
-        let mut writer = csv::Writer::from_writer(Vec::new());
-        let mut header: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
-        header.extend(QUANTILES.map(|q| format!("q{:02.0}", 100.0 * q)));
-        writer.write_record(header)?;
-        for s in statistics {
-            let mut cells = vec![s.name.to_owned(), s.unit.to_owned(), s.runs.to_string()];
-            let numbers = [s.mean, s.sd].into_iter().chain(s.quantiles);
-            cells.extend(numbers.map(|n| if n.is_finite() { format!("{n:e}") } else { String::new() }));
-            writer.write_record(cells)?;
-        }
-        Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
-    };
-    files::write(path, &table().map_err(|error| Failure::write(path)(error.into()))?)
-}
-
-/// Metrics that repeat a key of the scenario.
-const ECHOES: [(&str, &str); 2] = [("gain_initial", "law.relay.k_t"), ("goal_band_rad", "reference.band")];
-
-/// Whether there are several runs, and every metric has one value in all of them.
-fn are_alike(statistics: &[Statistics]) -> bool {
-    let mut several = statistics.iter().filter(|s| s.runs + s.infinite > 1).peekable();
-    several.peek().is_some() && several.all(|s| s.sd == 0.0 && s.infinite == 0)
-}
-
-/// Prints statistics, but not of metrics that repeat a key that was swept.
-pub fn tell_statistics(statistics: &[Statistics], swept: &[&str], runs: usize) {
-    if runs == 0 {
-        return;
-    }
-    let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
-    say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
-    let is_swept = |s: &Statistics| ECHOES.iter().any(|(name, key)| *name == s.name && swept.contains(key));
-    for s in statistics.iter().filter(|s| s.runs > 0 && !is_swept(s)) {
-        let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
-        say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
-    }
-    for s in statistics.iter().filter(|s| s.infinite > 0) {
-        say!("  {}: too large for a number in {} of {}, left out", s.name, s.infinite, counted(runs, "run"));
-    }
 }

@@ -13,11 +13,11 @@ use serde_json::json;
 use crate::failure::Failure;
 #[cfg(not(feature = "png"))]
 use crate::left_out::Renderer;
+use crate::out::Out;
 use crate::{files, print, say};
 
-/// How files of other programs end: no directory for figures is meant to be called so.
-const OTHERS: [&str; 13] =
-    ["bmp", "eps", "gif", "htm", "html", "jpeg", "jpg", "json", "mcap", "ps", "tif", "tiff", "webp"];
+/// How files of figures end.
+const FIGURES: [&str; 3] = ["svg", "png", "pdf"];
 
 /// Whether a command that prints numbers also draws them.
 #[derive(clap::Args)]
@@ -29,6 +29,9 @@ pub struct Drawing {
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "figures")]
     pub format: Option<Format>,
+    /// Replace a FILE of other content
+    #[arg(long, requires = "figures")]
+    pub force: bool,
 }
 
 impl Drawing {
@@ -38,7 +41,16 @@ impl Drawing {
     /// See [`Target::save`].
     pub fn save(&self, figures: impl FnOnce() -> Vec<Named>) -> Result<(), Failure> {
         let Some(out) = &self.figures else { return Ok(()) };
-        Target::new(Some(out), out, self.format)?.save(&figures(), Style::default(), false)
+        self.target(out, &[])?.save(&figures(), Style::default(), false)
+    }
+
+    /// Checks where figures would go, before there are any; `input` is what they are made from.
+    pub fn check(&self, input: &Path) -> Result<(), Failure> {
+        self.figures.as_ref().map_or(Ok(()), |out| self.target(out, &[input]).map(|_| ()))
+    }
+
+    fn target(&self, out: &Path, inputs: &[&Path]) -> Result<Target, Failure> {
+        Target::new(out, self.format, inputs, self.force)
     }
 }
 
@@ -87,45 +99,29 @@ impl Format {
     }
 }
 
-/// The form that a file's name says.
-fn said(path: &Path) -> Option<Format> {
-    let extension = path.extension()?.to_ascii_lowercase();
-    [Format::Svg, Format::Png, Format::Pdf].into_iter().find(|format| extension == format.extension())
-}
-
-/// Whether a path is that of a figure.
-pub fn is_figure(path: &Path) -> bool {
-    said(path).is_some() && !path.is_dir()
-}
-
 /// Where figures go.
 pub enum Target {
-    /// One file in the form that its name says; several figures make up a sheet.
-    File(PathBuf, Format),
+    /// One file in the form that its name says; several figures make up a sheet. Another file there is replaced, or not.
+    File(PathBuf, Format, bool),
     /// A directory: a file for each figure and form.
     Directory(PathBuf, Format),
 }
 
 impl Target {
-    /// What `-o` and `--format` say, or a directory if there is no `-o`.
-    pub fn new(out: Option<&Path>, otherwise: &Path, format: Option<Format>) -> Result<Self, Failure> {
-        let out = out.unwrap_or(otherwise);
-        let said = if out.is_dir() { None } else { said(out) };
-        let other = out.extension().map(std::ffi::OsStr::to_ascii_lowercase);
-        let other = other.as_deref().and_then(|extension| extension.to_str()).filter(|_| !out.is_dir());
-        if let Some(other) = other.filter(|other| OTHERS.contains(other)) {
-            return Err(Failure::Arguments(format!(
-                "-o {}: figures cannot be written as .{other}\n\nhint: give a file that ends in .svg, .png or .pdf, or a directory",
-                out.display()
-            )));
-        }
-        match (said, format) {
-            (None, format) => Ok(Self::Directory(out.to_owned(), format.unwrap_or(EVERY))),
-            (Some(said), Some(format)) if format != said => Err(Failure::Arguments(format!(
+    /// What `-o`, `--format` and `--force` say; `inputs` are what the figures are made from.
+    pub fn new(out: &Path, format: Option<Format>, inputs: &[&Path], force: bool) -> Result<Self, Failure> {
+        let (out, ending) = match Out::new(out, &FIGURES, inputs)? {
+            Out::File(out, ending) => (out, ending),
+            Out::Directory(out) => return Ok(Self::Directory(out, format.unwrap_or(EVERY))),
+        };
+        let every = [Format::Svg, Format::Png, Format::Pdf];
+        let said = every.into_iter().find(|format| format.extension() == ending).unwrap_or(Format::Svg);
+        match format {
+            Some(format) if format != said => Err(Failure::Arguments(format!(
                 "--format: {} has the extension of another format\n\nhint: give a directory, or leave out --format",
                 out.display()
             ))),
-            (Some(said), _) => Ok(Self::File(out.to_owned(), said)),
+            _ => Ok(Self::File(out, said, force)),
         }
     }
 
@@ -137,7 +133,7 @@ impl Target {
     pub fn save(&self, figures: &[Named], style: Style, json: bool) -> Result<(), Failure> {
         match self {
             Self::Directory(directory, format) => save_each(directory, (*format, style), figures, json),
-            Self::File(path, format) => {
+            Self::File(path, format, force) => {
                 let undrawn = |why| Failure::Draw { path: path.clone(), why };
                 let drawn = figures
                     .par_iter()
@@ -146,9 +142,8 @@ impl Target {
                 let svg = sheet(&drawn.map_err(undrawn)?);
                 let bytes = format.bytes(&svg, &style, &Renderer::default()).map_err(undrawn)?;
                 let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
-                let bytes = [(path.clone(), bytes)];
-                files::write_all(&bytes)?;
-                tell(&bytes[0], &names, json)
+                files::write(path, &bytes, *force)?;
+                tell(&(path.clone(), bytes), &names, json)
             }
         }
     }
@@ -177,7 +172,7 @@ fn save_each(
     let names = figures.iter().flat_map(|(name, _)| format.files().iter().map(move |_| name));
     let names: Vec<&String> = names.collect();
     let all: Vec<_> = drawn.into_iter().flatten().collect();
-    files::write_all(&all)?;
+    files::write_within(&all)?;
     names.into_iter().zip(&all).try_for_each(|(name, file)| tell(file, &[name], json))
 }
 

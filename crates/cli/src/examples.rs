@@ -2,12 +2,13 @@
 
 use std::fmt::Write as _;
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 use flexsc_core::Document;
 use serde_json::json;
 
 use crate::failure::Failure;
+use crate::out::{self, Out};
 use crate::{files, print, say};
 
 /// Lists scenarios by their names.
@@ -79,10 +80,10 @@ pub struct Args {
     /// Examples to copy [default: list all]
     #[arg(value_name = "NAME")]
     names: Vec<String>,
-    /// Directory for the copies
-    #[arg(short, long, alias = "output", value_name = "DIR", default_value = ".")]
+    /// Directory for the copies, created if missing, or FILE.toml for one of them
+    #[arg(short, long, alias = "output", value_name = "DIR|FILE", default_value = ".")]
     out: PathBuf,
-    /// Overwrite existing files
+    /// Replace files of other content
     #[arg(long)]
     force: bool,
     /// Print the list as JSON to stdout
@@ -98,7 +99,7 @@ pub struct NewArgs {
     /// Example to start from
     #[arg(long, value_name = "EXAMPLE", default_value = START)]
     like: String,
-    /// Overwrite an existing file
+    /// Replace a file of other content
     #[arg(long)]
     force: bool,
 }
@@ -122,17 +123,25 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if args.names.is_empty() {
         return list(args.json);
     }
+    let out = Out::new(&args.out, &["toml"], &[])?;
+    if let (Out::File(path, _), [_, _, ..]) = (&out, &args.names[..]) {
+        let why = "cannot contain several examples\n\nhint: give a directory";
+        return Err(Failure::Arguments(format!("-o {}: {why}", path.display())));
+    }
     let copies = args.names.iter().map(|name| {
         let stem = name.strip_suffix(".toml").unwrap_or(name);
-        Ok((args.out.join(format!("{stem}.toml")), text(name)?.as_bytes().to_vec()))
+        let path = match &out {
+            Out::File(path, _) => path.clone(),
+            Out::Directory(path) => path.join(format!("{stem}.toml")),
+        };
+        Ok((path, text(name)?.as_bytes()))
     });
     let copies = copies.collect::<Result<Vec<_>, Failure>>()?;
-    for (path, _) in &copies {
-        refuse_existing(path, args.force)?;
+    for (path, text) in &copies {
+        files::refuse_other(path, text, args.force)?;
     }
-    files::make_directory(&args.out)?;
-    files::write_all(&copies)?;
-    for (path, _) in &copies {
+    for (path, text) in &copies {
+        files::write(path, text, args.force)?;
         say!("{}", path.display());
     }
     Ok(())
@@ -140,25 +149,21 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 pub fn new(args: &NewArgs) -> Result<(), Failure> {
     let text = text(&args.like)?;
-    let path = match args.name.extension() {
-        Some(extension) if extension == "toml" => args.name.clone(),
-        _ => {
+    let path = match out::ending(&args.name) {
+        Some("toml") => args.name.clone(),
+        Some(other) => {
+            let path = args.name.display();
+            return Err(Failure::Arguments(format!("{path}: a scenario ends in .toml, not in .{other}")));
+        }
+        None => {
             let mut name = args.name.clone().into_os_string();
             name.push(".toml");
             PathBuf::from(name)
         }
     };
-    refuse_existing(&path, args.force)?;
-    files::write(&path, text.as_bytes())?;
+    files::write(&path, text.as_bytes(), args.force)?;
     say!("{}: a copy of {}; next: flexsc simulate {}", path.display(), args.like, path.display());
     Ok(())
-}
-
-fn refuse_existing(path: &Path, force: bool) -> Result<(), Failure> {
-    if force || !path.exists() {
-        return Ok(());
-    }
-    Err(Failure::Arguments(format!("{}: already exists\n\nhint: --force overwrites it", path.display())))
 }
 
 /// Prints each name with what the example is about.

@@ -10,8 +10,8 @@ use clap::ValueEnum;
 use flexsc_core::record::{Column, Columns, Log, LogError};
 use serde_json::{Map, Value as Json, json};
 
-use crate::failure::Failure;
-use crate::files;
+use crate::failure::{Failure, shown};
+use crate::{files, out};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -20,15 +20,18 @@ pub struct Args {
     /// Topic, such as /command [default: list the topics of the log]
     #[arg(long, value_name = "TOPIC")]
     topic: Option<String>,
-    /// Format of the table
-    #[arg(long, value_enum, default_value = "csv")]
-    format: Format,
-    /// File to write [default: stdout]
-    #[arg(short, long, value_name = "FILE")]
+    /// Format of the table [default: by the ending of FILE, else csv]
+    #[arg(long, value_enum)]
+    format: Option<Format>,
+    /// File to write, FILE.csv or FILE.jsonl [default: stdout]
+    #[arg(short, long, value_name = "FILE", requires = "topic")]
     out: Option<PathBuf>,
+    /// Replace a FILE of other content
+    #[arg(long, requires = "out")]
+    force: bool,
 }
 
-#[derive(Copy, Clone, ValueEnum)]
+#[derive(Copy, Clone, PartialEq, Eq, ValueEnum)]
 enum Format {
     /// Comma-separated values with a header
     Csv,
@@ -41,20 +44,39 @@ const EMPTY_CELLS: usize = 1 << 24;
 /// ... so many for each full one.
 const EMPTY_PER_FULL: usize = 16;
 
+impl Args {
+    /// The format, which the ending of a file says too.
+    fn form(&self) -> Result<Format, Failure> {
+        let Some(path) = &self.out else { return Ok(self.format.unwrap_or(Format::Csv)) };
+        let ending = out::file(path, &["csv", "jsonl"], &[&self.log])?;
+        let said = if ending == "jsonl" { Format::Jsonl } else { Format::Csv };
+        match self.format {
+            Some(format) if format != said && out::ending(path).is_some() => {
+                Err(Failure::Arguments(format!(
+                    "--format: {} has the ending of another format\n\nhint: leave out --format",
+                    path.display()
+                )))
+            }
+            format => Ok(format.unwrap_or(said)),
+        }
+    }
+}
+
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let format = args.form()?;
     let log = Log::open(&args.log)?;
     let Some(topic) = &args.topic else {
-        return tell(args, |out| writeln!(out, "{}", log.topics().join("\n")));
+        return tell(args, |out| writeln!(out, "{}", shown(&log.topics().join("\n"))));
     };
     let columns = log.columns(topic)?;
     if topic == metrics::TOPIC
-        && let Some(table) = metrics::table(&columns, args.format)
+        && let Some(table) = metrics::table(&columns, format)
     {
         let table = table.map_err(|why| unreadable(&args.log, topic, why.to_string()))?;
         return tell(args, |out| out.write_all(&table));
     }
     let table = flat(&columns).map_err(|why| unreadable(&args.log, topic, why))?;
-    tell(args, |out| match args.format {
+    tell(args, |out| match format {
         Format::Csv => csv(&table, columns.len(), out),
         Format::Jsonl => jsonl(&table, columns.len(), out),
     })
@@ -72,7 +94,7 @@ fn tell(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result
     };
     let mut bytes = Vec::new();
     write(&mut bytes).map_err(Failure::write(path))?;
-    files::write(path, &bytes)
+    files::write(path, &bytes, args.force)
 }
 
 /// A cell of a table.
@@ -189,9 +211,14 @@ fn csv(columns: &[Flat<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()>
         Cell::Count(count) => count.to_string(),
         Cell::Integer(number) => number.to_string(),
     };
-    writer.write_record(columns.iter().map(|column| &column.name))?;
+    // Why a pipe does not take more is told from other errors by its kind.
+    let io = |error: ::csv::Error| match error.into_kind() {
+        ::csv::ErrorKind::Io(error) => error,
+        other => io::Error::other(format!("{other:?}")),
+    };
+    writer.write_record(columns.iter().map(|column| &column.name)).map_err(io)?;
     for row in 0..rows {
-        writer.write_record(columns.iter().map(|column| text(column.cell(row))))?;
+        writer.write_record(columns.iter().map(|column| text(column.cell(row)))).map_err(io)?;
     }
     writer.flush()
 }

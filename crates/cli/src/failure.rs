@@ -68,6 +68,9 @@ pub enum Failure {
     /// A campaign was stopped, and the rows before are kept.
     #[error("{failure}; {} holds the runs before", path.display())]
     Kept { failure: Box<Failure>, path: PathBuf },
+    /// Runs of a campaign are missing.
+    #[error("{0}")]
+    Incomplete(String),
     /// The user asked to stop.
     #[error("interrupted{0}")]
     Interrupted(String),
@@ -166,7 +169,7 @@ fn hint(error: &io::Error) -> &'static str {
 const LONGEST_LINE: usize = 4000;
 
 /// A message as terminals can show it: a long line loses its middle, and control characters are written out.
-fn shown(text: &str) -> String {
+pub fn shown(text: &str) -> String {
     let mut all = String::new();
     for (index, line) in text.split('\n').enumerate() {
         if index > 0 {

@@ -1,5 +1,6 @@
 //! Files that a command writes at once: whole, under the watch of `stop`, and by one process at a time.
 
+use std::fs;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::whole;
@@ -7,19 +8,59 @@ use flexsc_core::whole;
 use crate::failure::Failure;
 use crate::stop;
 
-/// Writes a file.
-pub fn write(path: &Path, bytes: &[u8]) -> Result<(), Failure> {
+/// Writes a file that a user names; its directory is made if it is not there. A file of other content is replaced only with
+/// `force`.
+pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failure> {
+    refuse_other(path, bytes, force)?;
+    make_parent(path)?;
     let _writing = stop::writing();
     whole::write(path, bytes).map_err(Failure::write(path))
 }
 
-/// Writes files that belong together.
-pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+/// Refuses a file that is there with other content, unless it may be replaced: the same command may write it again.
+pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failure> {
+    let there = fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    let is_other = |there: fs::Metadata| {
+        there.len() != bytes.len() as u64 || fs::read(path).is_ok_and(|there| there != bytes)
+    };
+    if !force && there.is_some_and(is_other) {
+        return Err(exists(path, "already exists, with other content"));
+    }
+    Ok(())
+}
+
+/// Refuses a file that is there, unless it may be replaced: before long work whose result would be another one each time.
+pub fn refuse_existing(path: &Path, force: bool) -> Result<(), Failure> {
+    if force || !fs::symlink_metadata(path).is_ok_and(|there| there.is_file() || there.is_symlink()) {
+        return Ok(());
+    }
+    Err(exists(path, "already exists"))
+}
+
+fn exists(path: &Path, why: &str) -> Failure {
+    Failure::Arguments(format!("{}: {why}\n\nhint: --force replaces it", path.display()))
+}
+
+/// Writes files of names that the command chose into a directory, which is made if it is not there. A link or a pipe in the
+/// place of one is refused.
+pub fn write_within(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+    for (path, _) in files {
+        make_parent(path)?;
+        whole::unlinked(path).map_err(Failure::write(path))?;
+    }
     let _writing = stop::writing();
     whole::write_all(files).map_err(|(path, error)| Failure::write(&path)(error))
 }
 
 /// Makes a directory, unless it is there.
 pub fn make_directory(path: &Path) -> Result<(), Failure> {
-    std::fs::create_dir_all(path).map_err(Failure::write(path))
+    fs::create_dir_all(path).map_err(Failure::write(path))
+}
+
+/// Makes the directory of a file, unless it is there.
+pub fn make_parent(path: &Path) -> Result<(), Failure> {
+    match path.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.exists()) {
+        Some(parent) => make_directory(parent),
+        None => Ok(()),
+    }
 }

@@ -8,7 +8,7 @@ use flexsc_core::record::{Detail, Log};
 
 use crate::failure::Failure;
 use crate::logged::logged;
-use crate::{files, print, scenario};
+use crate::{files, out, print, scenario};
 
 /// A log that takes longer on one core (s), or more memory (bytes), is not made: its viewers choose their axes.
 const LONGEST: f64 = 120.0;
@@ -25,9 +25,15 @@ pub struct Args {
     /// The file to write, such as layout.json [default: stdout]
     #[arg(short, long, value_name = "FILE")]
     out: Option<PathBuf>,
+    /// Replace a FILE of other content
+    #[arg(long, requires = "out")]
+    force: bool,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    if let Some(path) = &args.out {
+        out::file(path, &["json"], &[&args.path])?;
+    }
     let layout = if args.path.extension().is_some_and(|extension| extension == "toml") {
         of_scenario(scenario::load(&args.path, &args.set, None)?, &args.path)?
     } else if args.set.is_empty() {
@@ -38,7 +44,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     let layout = layout.to_json();
     match &args.out {
-        Some(path) => files::write(path, layout.as_bytes()),
+        Some(path) => files::write(path, layout.as_bytes(), args.force),
         None => print(layout.as_bytes()),
     }
 }

@@ -27,6 +27,7 @@ mod merge;
 mod modes;
 mod number;
 mod observer;
+mod out;
 mod plan;
 mod plot;
 mod progress;

@@ -9,7 +9,7 @@ use flexsc_core::record::{Log, recover};
 use serde_json::json;
 
 use crate::failure::Failure;
-use crate::{files, print, say};
+use crate::{files, out, print, say};
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -26,6 +26,9 @@ enum Verb {
         /// The log to write [default: the incomplete log's name with -recovered.mcap]
         #[arg(short, long, value_name = "FILE")]
         out: Option<PathBuf>,
+        /// Replace a log of other content
+        #[arg(long)]
+        force: bool,
         /// Print one JSON object on stdout
         #[arg(long)]
         json: bool,
@@ -39,15 +42,13 @@ enum Verb {
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     match &args.verb {
-        Verb::Recover { torn, out, json } => {
+        Verb::Recover { torn, out, force, json } => {
             let name = torn.display().to_string();
             let stem = name.trim_end_matches(".partial").trim_end_matches(".mcap");
             let whole = out.clone().unwrap_or_else(|| PathBuf::from(format!("{stem}-recovered.mcap")));
-            if whole == *torn {
-                return Err(Failure::Arguments(format!("{name}: a log cannot be recovered into itself")));
-            }
+            out::file(&whole, &["mcap"], &[torn])?;
             let (log, saved) = recover(torn)?;
-            files::write(&whole, &log)?;
+            files::write(&whole, &log, *force)?;
             if *json {
                 let object = json!({"file": whole.display().to_string(), "messages": saved});
                 return print(format!("{object}\n").as_bytes());

@@ -1,48 +1,99 @@
-//! `flexsc merge`: parts of one campaign that several machines made, in one directory.
+//! `flexsc merge`: parts of one campaign that several machines made, in one directory or file.
 
 use std::io::Write;
-use std::path::PathBuf;
+use std::ops::Range;
+use std::path::{Path, PathBuf};
 
-use flexsc_core::campaign::{Directory, DirectoryError, MANIFEST};
+use flexsc_core::campaign::{Directory, Merge};
 use flexsc_core::count::counted;
 
-use crate::campaign::{self, parts};
+use crate::campaign::{Kind, file, parts};
 use crate::failure::Failure;
-use crate::{say, stop};
+use crate::out::Out;
+use crate::{files, say, stop};
+
+/// A file of more cells than this would not fit into memory.
+const MOST_CELLS: u64 = 1 << 29;
+/// So many ranges of missing runs are told.
+const TOLD: usize = 8;
 
 #[derive(clap::Args)]
 pub struct Args {
     /// Directories with parts of one campaign
     #[arg(required = true, value_name = "DIR")]
     directories: Vec<PathBuf>,
-    /// Directory for all runs, created if missing
-    #[arg(short, long, value_name = "DIR")]
+    /// Directory for all runs, created if missing, or FILE.csv or FILE.parquet
+    #[arg(short, long, value_name = "DIR|FILE")]
     out: PathBuf,
+    /// Replace another campaign, or a FILE that exists
+    #[arg(long)]
+    force: bool,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
-    let all = args.directories.iter().map(|path| Directory::open(path).map_err(parts::failure));
-    let all = all.collect::<Result<Vec<_>, _>>()?;
-    let mut manifest = all[0].work().manifest.clone();
-    // All are of one campaign before anything is written.
-    for other in &all {
-        let there = &other.work().manifest;
-        if let Some(difference) = there.difference(&manifest) {
-            let path = other.path().join(MANIFEST);
-            return Err(parts::failure(DirectoryError::Other { path, difference }));
+    let out = Out::new(&args.out, &["csv", "parquet"], &[])?;
+    let open = |path: &Path| Directory::open(path).map_err(parts::failure);
+    let mut all = args.directories.iter().map(|path| open(path)).collect::<Result<Vec<_>, _>>()?;
+    // What is there comes first, unless it is another campaign, to be replaced.
+    let mut is_first = false;
+    if let Out::Directory(path) = &out
+        && Directory::is_one(path)
+    {
+        let there = open(path)?;
+        let differs = there.work().manifest.difference(&all[0].work().manifest).is_some();
+        if !(args.force && differs) {
+            all.insert(0, there);
+            is_first = true;
         }
-        manifest.from = manifest.from.min(there.from);
-        manifest.to = manifest.to.max(there.to);
     }
+    let merge = Merge::new(&all).map_err(parts::failure)?;
+    let missing = merge.missing();
+    let tell_taken = || {
+        for (directory, taken) in all.iter().zip(merge.taken()).skip(usize::from(is_first)) {
+            say!("{}: {}", directory.path().display(), counted(taken, "run"));
+        }
+    };
     let _writing = stop::writing();
-    let into = Directory::create(&args.out, manifest, false).map_err(parts::failure)?;
-    for other in &all {
-        let new = into.take(other).map_err(parts::failure)?;
-        say!("{}: {}", other.path().display(), counted(new, "run"));
+    match &out {
+        Out::File(path, ending) => {
+            if !missing.is_empty() {
+                return Err(incomplete(&missing, "an incomplete campaign has no file"));
+            }
+            files::refuse_existing(path, args.force)?;
+            let runs = merge.manifest().runs();
+            if (runs.end - runs.start).saturating_mul(merge.work().fields().len() as u64) > MOST_CELLS {
+                let why = "has too many rows for one file\n\nhint: give a directory";
+                return Err(Failure::Arguments(format!("{}: {why}", path.display())));
+            }
+            let kind = if *ending == "csv" { Kind::Csv } else { Kind::Parquet };
+            let rows = merge.rows().map_err(parts::failure)?;
+            file::write(path, kind, merge.work(), &rows)?;
+            tell_taken();
+            say!("{}: {}", path.display(), counted(rows.len(), "run"));
+        }
+        Out::Directory(path) => {
+            let into =
+                Directory::create(path, merge.manifest().clone(), args.force).map_err(parts::failure)?;
+            merge.write(&into, is_first).map_err(parts::failure)?;
+            tell_taken();
+            let left: u64 = missing.iter().map(|runs| runs.end - runs.start).sum();
+            let told = parts::told(&into, &merge.manifest().runs())?;
+            say!("{}: {}, {left} missing", path.display(), counted(told.runs, "run"));
+            told.say();
+            if !missing.is_empty() {
+                return Err(incomplete(
+                    &missing,
+                    &format!("merge their directory into {} too", path.display()),
+                ));
+            }
+        }
     }
-    let left: u64 = into.missing().map_err(parts::failure)?.iter().map(|runs| runs.end - runs.start).sum();
-    let told = parts::told(&into)?;
-    say!("{}: {}, {left} missing", args.out.display(), counted(told.runs, "run"));
-    campaign::tell_statistics(&told.statistics, &into.work().campaign.design().keys(), told.runs);
     Ok(())
+}
+
+fn incomplete(missing: &[Range<u64>], hint: &str) -> Failure {
+    let told: Vec<String> =
+        missing.iter().take(TOLD).map(|runs| format!("{}:{}", runs.start, runs.end)).collect();
+    let more = if missing.len() > TOLD { ", ..." } else { "" };
+    Failure::Incomplete(format!("runs {}{more} are missing\n\nhint: {hint}", told.join(", ")))
 }

@@ -14,10 +14,11 @@ use flexsc_core::record::{Detail, RecordError};
 use flexsc_core::scenario::{Cost, MOST_RUNS};
 
 use crate::campaign::logs::{self, LogDetail, logged};
-use crate::campaign::{self, Options, parts};
+use crate::campaign::{self, Kind, Options, parts};
 use crate::consent::Consent;
 use crate::failure::Failure;
 use crate::human::UnitsArgs;
+use crate::out::Out;
 use crate::progress::Progress;
 use crate::results::print_lines;
 use crate::stop::{self, Stop};
@@ -34,8 +35,9 @@ pub struct Args {
     /// Number of the run to repeat
     #[arg(long, value_name = "N", requires = "from")]
     row: Option<u64>,
-    /// Directory for logs and tables, created if missing [default: the current one, for logs only]
-    #[arg(short, long, value_name = "DIR")]
+    /// Directory for logs and tables, created if missing, or FILE.mcap for the log of one run, or FILE.csv or FILE.parquet
+    /// for the rows of a campaign [default: the current directory, for logs only]
+    #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
     /// Set a key of the scenario, such as law.relay.k_t=0.34
     #[arg(long, value_name = "KEY=VALUE")]
@@ -52,7 +54,7 @@ pub struct Args {
     /// Detail of the logs [default: events; none in a campaign]
     #[arg(long, value_name = "DETAIL")]
     log: Option<LogDetail>,
-    /// Overwrite logs of other settings and tables of other campaigns
+    /// Replace logs of other settings, tables of other campaigns, and a FILE that exists
     #[arg(long)]
     force: bool,
     /// Print one JSON object per run to stdout
@@ -73,6 +75,22 @@ pub struct Args {
 pub struct Runs {
     pub range: Range<u64>,
     part: bool,
+}
+
+/// Where results go.
+struct Place {
+    path: PathBuf,
+    /// The form of a campaign's rows.
+    kind: Kind,
+    /// Whether it is one file.
+    is_file: bool,
+}
+
+impl Place {
+    /// The log of a run.
+    fn log(&self, name: &str) -> PathBuf {
+        if self.is_file { self.path.clone() } else { self.path.join(format!("{name}.mcap")) }
+    }
 }
 
 /// Reads `N` or `LO:HI`.
@@ -107,6 +125,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let count = args.scenarios.len();
         return Err(Failure::Arguments(format!("--live follows one scenario, got {count}")));
     }
+    let place = args.place()?;
     // Every scenario is checked before anything is written.
     let scenarios = args
         .scenarios
@@ -132,15 +151,16 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             Ok(Arc::new(study))
         })
         .collect::<Result<Vec<_>, Failure>>()?;
-    if let Some(out) = &args.out {
-        files::make_directory(out)?;
-    }
+    args.make_room(&place)?;
     let prefixed = studies.len() > 1;
     let mut failures = Vec::new();
     for study in studies {
         let done = match &args.runs {
-            None => single(&study, &itself(&study), args, args.own_log(&study)),
-            Some(runs) => several(&study, args, runs, (prefixed, &selection)),
+            None => {
+                let log = (place.log(&study.scenario().name), args.detail(LogDetail::Events));
+                single(&study, &itself(&study), args, log)
+            }
+            Some(runs) => several(&study, (args, &place), runs, (prefixed, &selection)),
         };
         match done {
             // The other scenarios are run all the same.
@@ -182,45 +202,75 @@ impl Args {
         let run = work.campaign.run(row)?;
         let detail = self.log.unwrap_or(LogDetail::Full).detail();
         self.consent.to(&run.scenario.cost(detail, false))?;
-        if let Some(out) = &self.out {
-            files::make_directory(out)?;
-        }
-        let file = format!("{}-{row}.mcap", run.scenario.name);
-        single(&work.campaign, &run, self, (self.out.as_deref().unwrap_or(Path::new("")).join(file), detail))
+        let place = self.place()?;
+        self.make_room(&place)?;
+        let log = place.log(&format!("{}-{row}", run.scenario.name));
+        single(&work.campaign, &run, self, (log, detail))
     }
 
-    /// The log of a scenario that is run once, and its detail.
-    fn own_log(&self, study: &Campaign) -> (PathBuf, Option<Detail>) {
-        let file = format!("{}.mcap", study.scenario().name);
-        let path = self.out.as_deref().unwrap_or(Path::new("")).join(file);
-        (path, self.log.unwrap_or(LogDetail::Events).detail())
+    /// What a log holds, by default this.
+    fn detail(&self, default: LogDetail) -> Option<Detail> {
+        self.log.unwrap_or(default).detail()
+    }
+
+    /// Where the log of a run goes, or the rows of a campaign.
+    fn place(&self) -> Result<Place, Failure> {
+        let inputs: Vec<&Path> = self.scenarios.iter().map(PathBuf::as_path).collect();
+        let Some(path) = &self.out else {
+            return Ok(Place { path: PathBuf::new(), kind: self.options.table(), is_file: false });
+        };
+        let (kind, is_file) = if self.runs.is_some() {
+            self.options.place(Some(path), &inputs, self.detail(LogDetail::None).is_some())?
+        } else {
+            (self.options.table(), matches!(Out::new(path, &["mcap"], &inputs)?, Out::File(..)))
+        };
+        let several = is_file && self.scenarios.len() > 1;
+        let without = is_file && self.runs.is_none() && self.log == Some(LogDetail::None);
+        for (is, why) in
+            [(several, "is one file, and there are several scenarios"), (without, "--log none writes no log")]
+        {
+            if is {
+                return Err(Failure::Arguments(format!("-o {}: {why}", path.display())));
+            }
+        }
+        Ok(Place { path: path.clone(), kind, is_file })
+    }
+
+    /// Makes the directory of what is written.
+    fn make_room(&self, place: &Place) -> Result<(), Failure> {
+        match (&self.out, place.is_file) {
+            (Some(path), true) => files::make_parent(path),
+            (Some(path), false) => files::make_directory(path),
+            (None, _) => Ok(()),
+        }
     }
 
     /// What the runs of a scenario ask for.
     fn cost(&self, study: &Campaign) -> Result<Cost, Failure> {
         let Some(Runs { range, .. }) = &self.runs else {
-            return Ok(study.scenario().cost(self.log.unwrap_or(LogDetail::Events).detail(), false));
+            return Ok(study.scenario().cost(self.detail(LogDetail::Events), false));
         };
-        let log = self.log.unwrap_or(LogDetail::None).detail();
+        let log = self.detail(LogDetail::None);
         let cost = study.cost(range.end - range.start, log);
         let cost = cost.map_err(|why| Failure::Arguments(format!("--runs {why}")))?;
-        Ok(self.options.cost(cost, self.out.is_some()))
+        Ok(self.options.cost(cost, self.out.is_some() && !self.place()?.is_file))
     }
 }
 
 /// Runs a campaign over a scenario; its tables are named after it where several share a directory.
 fn several(
     study: &Arc<Campaign>,
-    args: &Args,
+    (args, place): (&Args, &Place),
     runs: &Runs,
     (prefixed, selection): (bool, &Selection),
 ) -> Result<(), Failure> {
-    let detail = args.log.unwrap_or(LogDetail::None).detail();
+    let detail = args.detail(LogDetail::None);
     let job = campaign::Job {
         range: runs.range.clone(),
         part: runs.part,
         table: args.out.as_deref(),
-        kind: args.options.table(),
+        is_file: place.is_file,
+        kind: place.kind,
         selection: selection.clone(),
         fail_fast: args.options.fail_fast,
         prefix: prefixed.then_some(study.scenario().name.as_str()),

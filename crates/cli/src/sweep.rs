@@ -2,8 +2,9 @@
 
 mod points;
 
+use std::io::Write;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flexsc_core::Scenario;
@@ -11,13 +12,13 @@ use flexsc_core::campaign::{Campaign, DesignBlock, KeyRange, PointDesign};
 use flexsc_core::count::counted;
 use flexsc_core::record::Detail;
 
-use crate::campaign::Options;
 use crate::campaign::logs::{self, LogDetail};
+use crate::campaign::{Kind, Options};
 use crate::consent::Consent;
 use crate::failure::Failure;
 use crate::human::Units;
 use crate::simulate::{Runs, runs};
-use crate::{campaign, files, scenario};
+use crate::{campaign, files, say, scenario};
 
 /// No sweep has more combinations.
 const MOST_VALUES: u32 = 10_000_000;
@@ -36,8 +37,8 @@ pub struct Args {
     /// Only runs LO to HI - 1 of the sweep
     #[arg(long, value_name = "LO:HI", value_parser = runs)]
     runs: Option<Runs>,
-    /// Directory for the tables, created if missing
-    #[arg(short, long, value_name = "DIR")]
+    /// Directory for the tables, created if missing, or FILE.csv or FILE.parquet for the rows
+    #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
     /// Set a key of the scenario, such as duration=1e4
     #[arg(long, value_name = "KEY=VALUE")]
@@ -48,7 +49,10 @@ pub struct Args {
     /// Number of threads [default: one per core]
     #[arg(long, value_name = "J", value_parser = clap::value_parser!(u16).range(1..=1024))]
     jobs: Option<u16>,
-    /// Overwrite logs of other settings and tables of other campaigns
+    /// Draw the [uncertain] keys too, anew for each point; without it they keep their values
+    #[arg(long)]
+    uncertain: bool,
+    /// Replace logs of other settings, tables of other campaigns, and a FILE that exists
     #[arg(long)]
     force: bool,
     /// Print one JSON object per run to stdout
@@ -107,6 +111,13 @@ impl Args {
         self.log.and_then(LogDetail::detail)
     }
 
+    /// The form of the rows, and whether they go to one file.
+    fn place(&self) -> Result<(Kind, bool), Failure> {
+        let inputs: Vec<&Path> =
+            [&self.scenario].into_iter().chain(&self.points).map(PathBuf::as_path).collect();
+        self.options.place(self.out.as_deref(), &inputs, self.detail().is_some())
+    }
+
     /// The points, and how many they are.
     fn design(&self, uncertain: bool) -> Result<(PointDesign, u64), Failure> {
         let mut blocks = Vec::new();
@@ -148,6 +159,7 @@ impl Args {
 
     /// The sweep over a scenario of this origin, and its runs.
     pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), Failure> {
+        let scenario = if self.uncertain { scenario } else { Campaign::undrawn(scenario) };
         let (design, all) = self.design(!scenario.uncertain.is_empty())?;
         let range = self.runs.as_ref().map_or(0..all, |runs| runs.range.clone());
         if range.end > all {
@@ -157,16 +169,25 @@ impl Args {
         let runs = range.end - range.start;
         let cost =
             study.cost(runs, self.detail()).map_err(|why| Failure::Arguments(format!("--vary: {why}")))?;
-        self.consent.to(&self.options.cost(cost, self.out.is_some()))?;
+        self.consent.to(&self.options.cost(cost, self.out.is_some() && !self.place()?.1))?;
         Ok((study, range))
     }
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let (kind, is_file) = args.place()?;
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
+    if args.uncertain && scenario.uncertain.is_empty() {
+        let path = args.scenario.display();
+        return Err(Failure::Arguments(format!("--uncertain: {path} has no [uncertain] keys")));
+    }
+    let undrawn = !args.uncertain && !scenario.uncertain.is_empty();
     let selection = args.options.selection()?;
     let (study, range) = args.study(scenario, &args.scenario.display().to_string())?;
-    if let Some(out) = &args.out {
+    if undrawn && !args.json {
+        say!("note: the [uncertain] keys keep their values; --uncertain draws them");
+    }
+    if let Some(out) = args.out.as_ref().filter(|_| !is_file) {
         files::make_directory(out)?;
     }
     let detail = args.detail();
@@ -174,7 +195,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         range,
         part: args.runs.is_some(),
         table: args.out.as_deref(),
-        kind: args.options.table(),
+        is_file,
+        kind,
         selection,
         fail_fast: args.options.fail_fast,
         prefix: None,

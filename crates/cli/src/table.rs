@@ -7,7 +7,7 @@ use std::time::{Duration, Instant};
 
 use flexsc_core::campaign::{Campaign, RunOutcome};
 use flexsc_core::metrics::{Metrics, Value};
-use flexsc_core::whole::Partial;
+use flexsc_core::whole::{self, Partial};
 
 use crate::failure::Failure;
 
@@ -35,7 +35,7 @@ pub struct Table {
 
 impl Table {
     pub fn create(path: &Path) -> Result<Self, Failure> {
-        let partial = Partial::create(path).map_err(Failure::write(path))?;
+        let partial = Partial::create_unlinked(path).map_err(Failure::write(path))?;
         let (path, lines, waiting) = (path.to_owned(), Vec::new(), Vec::new());
         let flushed = Instant::now();
         Ok(Self { path, partial, lines, written: 0, any: false, metrics: None, waiting, flushed })
@@ -144,8 +144,10 @@ impl Table {
     fn keep(self, failure: Failure) -> Failure {
         let path = interrupted(&self.path);
         // Of the line that found the disk full there may be a part.
-        let kept =
-            self.any && self.partial.truncate(self.written).is_ok() && self.partial.finish_as(&path).is_ok();
+        let kept = whole::unlinked(&path).is_ok()
+            && self.any
+            && self.partial.truncate(self.written).is_ok()
+            && self.partial.finish_as(&path).is_ok();
         if kept { Failure::Kept { failure: Box::new(failure), path } } else { failure }
     }
 }

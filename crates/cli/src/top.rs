@@ -157,7 +157,8 @@ impl Seen {
         let mut text = format!("{name}   {done} of {}, {} failed", counted(all, "run"), self.failed);
         if let Some((rate, last)) = self.rate() {
             if done < all {
-                if rate > 0.0 {
+                // Parts may have been copied here, or their command may have ended.
+                if directory.is_at_work() && rate > 0.0 {
                     let left = Duration::from_secs_f64(((all - done) as f64 / rate).min(1e12));
                     let _ = write!(text, ", {rate:.1} runs/s, {} left", HumanDuration(left));
                 }

@@ -1,6 +1,10 @@
 //! Campaigns: many runs of one scenario.
 
+#[cfg(feature = "parquet")]
+mod checksum;
 mod commanded;
+#[cfg(feature = "parquet")]
+mod contained;
 mod crew;
 mod design;
 mod directory;
@@ -30,9 +34,10 @@ use crate::sim::{Simulation, SimulationError};
 
 pub use commanded::Commanded;
 pub use design::{DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS, PointDesign};
-pub use directory::{Directory, MANIFEST};
+pub use directory::{Directory, MANIFEST, STATISTICS};
 pub use error::DirectoryError;
 pub use manifest::Manifest;
+pub use merge::Merge;
 pub use parquet::parquet_is_built_in;
 pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, Rows, SECONDS, SEED};
 pub use sampling::Sampling;
@@ -113,6 +118,18 @@ impl Campaign {
     /// Returns the campaign of a scenario over its `[uncertain]` keys and the points of a design.
     pub fn of(mut scenario: Scenario, origin: &str, design: PointDesign) -> Result<Self, ScenarioError> {
         scenario.written.forget_files();
+        // A key with values is not drawn.
+        let varied = design.keys();
+        let tied = scenario
+            .correlated
+            .iter()
+            .flat_map(|group| &group.keys)
+            .find(|key| varied.contains(&key.as_str()));
+        if let Some(key) = tied {
+            let why = format!("varies `{key}`, which `correlated` draws together with other keys");
+            return Err(ScenarioError::Key { origin: origin.to_owned(), key: "design".to_owned(), why });
+        }
+        scenario.written.uncertain.retain(|key, _| !varied.contains(&key.as_str()));
         // Custom parts of a program have no text: runs inherit them.
         let mut table = scenario.table_beside_own_parts();
         // The drawn keys replace the `[uncertain]` table.
@@ -129,8 +146,14 @@ impl Campaign {
         Ok(campaign)
     }
 
-    /// Returns the cost of `runs` runs, each with a log of this detail (`None`: without): at most that of the costliest
-    /// end of the design.
+    /// A scenario whose `[uncertain]` keys keep their own values.
+    pub fn undrawn(mut scenario: Scenario) -> Scenario {
+        scenario.written.uncertain.clear();
+        scenario.written.correlated.clear();
+        scenario
+    }
+
+    /// What so many runs ask for, each with a log of this detail: as much as the costliest of the ends of the design.
     ///
     /// # Errors
     /// More runs than are supported.
@@ -173,9 +196,7 @@ impl Campaign {
     pub fn run(&self, number: u64) -> Result<CampaignRun, ScenarioError> {
         let drawn = self.draw(number);
         if drawn.is_empty() {
-            let mut scenario = self.scenario.clone();
-            scenario.written.uncertain.clear();
-            scenario.written.correlated.clear();
+            let scenario = Self::undrawn(self.scenario.clone());
             return Ok(CampaignRun { number, scenario, drawn });
         }
         let mut keys: Vec<_> = self.keys().zip(drawn.iter().cloned()).collect();

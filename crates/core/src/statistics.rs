@@ -86,6 +86,20 @@ impl Statistics {
     }
 }
 
+/// The 97.5 % quantile of a standard normal number.
+const NORMAL_975: f64 = 1.959_963_984_540_054;
+
+/// The 95 % interval of a probability of which so many of so many trials came out: Wilson's score interval. NaN without a
+/// trial.
+pub fn wilson(met: u64, trials: u64) -> (f64, f64) {
+    let (n, z2) = (trials as f64, NORMAL_975 * NORMAL_975);
+    let part = met as f64 / n;
+    let centre = part + z2 / (2.0 * n);
+    let half = NORMAL_975 * f64::sqrt(part * (1.0 - part) / n + z2 / (4.0 * n * n));
+    let scale = 1.0 + z2 / n;
+    (((centre - half) / scale).max(0.0), ((centre + half) / scale).min(1.0))
+}
+
 /// Returns mean and standard deviation of finite values. If sums or squares are too large for a double, the values are
 /// scaled: the mean always fits, and the standard deviation is NaN if it does not. Equal values have exactly their
 /// value as the mean and no deviation.
@@ -139,6 +153,22 @@ mod tests {
         let told = gathered.finish();
         assert_eq!((told[0].name, told[0].runs, told[0].mean), ("goal", 4, 0.75));
         assert_eq!((told[2].name, told[2].runs, told[2].mean), ("time_outside_s", 4, 13.5 / 4.0));
+    }
+
+    #[test]
+    fn intervals_are_those_of_scipy() {
+        // scipy.stats.binomtest(met, trials).proportion_ci(0.95, "wilson")
+        for (met, trials, low, high) in [
+            (103, 200, 0.446_108_491_927_457_2, 0.583_326_148_281_225),
+            (0, 10, 0.0, 0.277_532_799_862_889_2),
+            (10, 10, 0.722_467_200_137_110_7, 1.0),
+            (7, 20, 0.181_191_824_101_082_06, 0.567_145_723_314_763_9),
+            (999, 1000, 0.994_357_441_402_042_1, 0.999_823_453_629_373_9),
+        ] {
+            let found = wilson(met, trials);
+            assert!((found.0 - low).abs() < 1e-14 && (found.1 - high).abs() < 1e-14, "{found:?}");
+        }
+        assert!(wilson(0, 0).0.is_nan());
     }
 
     #[test]

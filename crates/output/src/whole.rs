@@ -42,7 +42,13 @@ impl Partial {
         Err(busy())
     }
 
-    /// Begins a file as [`create`](Self::create) does, but waits a moment for another process that writes it.
+    /// Begins a file at this very place: a link there is refused, where [`create`](Self::create) writes what it leads to.
+    pub fn create_unlinked(path: &Path) -> io::Result<Self> {
+        unlinked(path)?;
+        Self::create(path)
+    }
+
+    /// Begins a file; if another process writes it, that one has a moment to finish.
     pub fn create_in_time(path: &Path) -> io::Result<Self> {
         let began = Instant::now();
         loop {
@@ -118,9 +124,10 @@ fn sync_directory(of: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes a file that is stored on disk before it is renamed: the previous file stays until the new one is complete,
-/// even through a loss of power.
+/// Writes a file that is on the disk before its name is: what was there stays until the new one is whole, even through a loss
+/// of power. A link is refused.
 pub fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
+    unlinked(path)?;
     let mut partial = Partial::create_in_time(path)?;
     partial.write_all(bytes)?;
     partial.finish_synced().map(|_| ())
@@ -150,6 +157,38 @@ pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), (PathBuf, io::Error
         }
     }
     Ok(())
+}
+
+/// Refuses a path at which there is anything but a file: a link, a pipe, a directory.
+///
+/// Directories may come from others, and what lies in them must not decide where files are written.
+pub fn unlinked(path: &Path) -> io::Result<()> {
+    match fs::symlink_metadata(path) {
+        Ok(there) if there.is_file() => Ok(()),
+        Ok(there) if there.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(_) => Err(in_the_way(path)),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
+        Err(error) => Err(error),
+    }
+}
+
+/// Opens a file for reading: never what a link leads to, nor a pipe, which would have to be waited for.
+///
+/// # Errors
+/// [`io::ErrorKind::InvalidData`] if it is no file; what the file system reports.
+pub fn open(path: &Path) -> io::Result<File> {
+    if fs::symlink_metadata(path)?.is_file() {
+        let mut options = OpenOptions::new();
+        return itself(options.read(true)).open(path);
+    }
+    Err(io::Error::new(io::ErrorKind::InvalidData, "is not a file"))
+}
+
+/// Opens a file for a lock, and makes it if it is not there: never what a link leads to, nor a pipe.
+pub fn open_to_lock(path: &Path) -> io::Result<File> {
+    unlinked(path)?;
+    let mut options = OpenOptions::new();
+    itself(options.create(true).truncate(false).write(true)).open(path)
 }
 
 /// Writes the temporary file with all bytes; `None` for a device, which is not written.
@@ -217,14 +256,18 @@ fn remove_leftover(partial: &Path) -> io::Result<()> {
 /// Opens an existing file itself, without following a link or blocking on a pipe.
 fn open_itself(path: &Path) -> io::Result<File> {
     let mut options = OpenOptions::new();
-    options.write(true);
+    itself(options.write(true)).open(path)
+}
+
+/// Options that follow no link, and wait for nobody at a pipe.
+fn itself(options: &mut OpenOptions) -> &mut OpenOptions {
     #[cfg(unix)]
     {
         use rustix::fs::OFlags;
         let flags = (OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed();
-        std::os::unix::fs::OpenOptionsExt::custom_flags(&mut options, flags);
+        std::os::unix::fs::OpenOptionsExt::custom_flags(options, flags);
     }
-    options.open(path)
+    options
 }
 
 fn lock(file: &File) -> io::Result<()> {

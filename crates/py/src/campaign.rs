@@ -80,7 +80,8 @@ impl Work {
 
 #[pymethods]
 impl Work {
-    /// The work of some runs; `part` is the number of runs of a part, in place of about 4 s of work.
+    /// The work of some runs; `part_s` is the work of a part (s), in place of about 4 s, and `drawn` whether `[uncertain]` keys
+    /// are drawn.
     #[staticmethod]
     #[expect(clippy::too_many_arguments, reason = "the arguments of Python's functions")]
     fn of(
@@ -92,6 +93,7 @@ impl Work {
         metrics: Option<Vec<String>>,
         part_s: Option<f64>,
         yes: bool,
+        drawn: bool,
     ) -> PyResult<Self> {
         let wrong = PyValueError::new_err::<String>;
         let known = Sampling::ALL.into_iter().find(|(name, _)| *name == sampling);
@@ -106,8 +108,9 @@ impl Work {
             ..PointDesign::of(grids.into_iter().map(|(key, values)| Grid { key, values }.into()))
         };
         let selection = metrics.map_or(Ok(Selection::ALL), Selection::of).map_err(wrong)?;
-        let campaign =
-            Campaign::of(scenario.inner.clone(), &scenario.origin, design).map_err(scenario_error)?;
+        let inner = scenario.inner.clone();
+        let inner = if drawn { inner } else { Campaign::undrawn(inner) };
+        let campaign = Campaign::of(inner, &scenario.origin, design).map_err(scenario_error)?;
         let count = runs.1.saturating_sub(runs.0);
         let cost = campaign.cost(count, None).map_err(|why| wrong(format!("runs {why}")))?;
         allowed(&cost, yes)?;
@@ -168,6 +171,15 @@ impl Work {
     fn scenario(&self) -> Scenario {
         let inner = self.0.campaign.scenario().clone();
         Scenario { origin: inner.name.clone(), inner }
+    }
+
+    /// The same campaign, with the runs of another manifest of it too.
+    fn joined(&self, there: &Self) -> PyResult<Self> {
+        let mut manifest = self.on_file()?.manifest.clone();
+        manifest.part = there.0.manifest.part;
+        manifest.from = manifest.from.min(there.0.manifest.from);
+        manifest.to = manifest.to.max(there.0.manifest.to);
+        Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
     }
 
     /// The parts that are missing beside these files.

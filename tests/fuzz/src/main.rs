@@ -1,6 +1,6 @@
-//! A mutation fuzzer of flexsc: scenarios, structures, logs, arguments and what viewers send.
+//! A mutation fuzzer of flexsc: scenarios, structures, logs, parts of campaigns, arguments and what viewers send.
 //!
-//!     cargo run --release -p flexsc-fuzz                         12 s on each of five surfaces
+//!     cargo run --release -p flexsc-fuzz                         12 s on each of six surfaces
 //!     cargo run --release -p flexsc-fuzz -- --seconds 3600       an hour on each
 //!     cargo run --release -p flexsc-fuzz -- --surface logs --inputs 900       the same 900 inputs on any machine
 //!

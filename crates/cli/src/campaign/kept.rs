@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use flexsc_core::campaign::Campaign;
 use flexsc_core::count::counted;
 use flexsc_core::record::difference;
-use flexsc_core::whole::Partial;
+use flexsc_core::whole::{self, Partial};
 
 use super::Job;
 use crate::failure::Failure;
@@ -41,6 +41,7 @@ impl<'a> Kept<'a> {
     /// Writes the scenario, once [`check`](Self::check) lets it; tables of another campaign are removed then.
     pub fn keep(&self) -> Result<(), Failure> {
         let path = self.path(SCENARIO);
+        whole::unlinked(&path).map_err(Failure::write(&path))?;
         let mut partial = Partial::create_in_time(&path).map_err(Failure::write(&path))?;
         if !self.check()? {
             for table in self.tables() {
@@ -64,6 +65,7 @@ impl<'a> Kept<'a> {
         let refused = |path: &Path, why: &str, hint: &str| {
             Err(Failure::Arguments(format!("{}: {why}\n\n{hint}", path.display())))
         };
+        whole::unlinked(path).map_err(Failure::write(path))?;
         let there = match fs::read(path) {
             Ok(there) => String::from_utf8_lossy(&there).into_owned(),
             Err(_) => String::new(),
@@ -138,7 +140,8 @@ fn other(there: &str, here: &str) -> String {
 
 /// The rows of a table; 0 if there is none.
 fn rows(path: &Path) -> u64 {
-    let Ok(mut reader) = csv::Reader::from_path(path) else { return 0 };
+    let Ok(file) = whole::open(path) else { return 0 };
+    let mut reader = csv::Reader::from_reader(file);
     let mut row = csv::ByteRecord::new();
     let mut rows = 0;
     while reader.read_byte_record(&mut row).is_ok_and(|any| any) {

@@ -8,7 +8,7 @@ use flexsc_core::metrics::{Metrics, Value, goal};
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
-use super::MAIN;
+use super::{MAIN, met};
 use crate::number::short;
 use crate::progress::{self, Lines};
 
@@ -57,8 +57,14 @@ impl Running {
 /// The lines of a table of some metrics so far.
 pub fn table(metrics: &[(&str, Running)]) -> String {
     let mut text = String::new();
-    let any: Vec<_> = metrics.iter().filter(|(_, so_far)| so_far.count > 0).collect();
-    if !any.is_empty() {
+    let any = metrics.iter().filter(|(_, so_far)| so_far.count > 0);
+    let (verdicts, any): (Vec<_>, Vec<_>) = any.partition(|(name, _)| goal::NAMES.contains(name));
+    for (name, Running { count, mean, .. }) in verdicts {
+        let _ = writeln!(text, "  {name:32}{:>10}", met(*count, *mean));
+    }
+    if any.is_empty() {
+        text.truncate(text.trim_end().len());
+    } else {
         let _ = write!(
             text,
             "  {:32}{:>10}{:>12}{:>11}{:>11}{:>11}",
@@ -162,7 +168,9 @@ mod tests {
         }
         assert_eq!((running.count, running.mean, running.least, running.most), (4, 3.75, 1.0, 8.0));
         assert!((running.sd() - 3.095_695_936_834_452).abs() < 1e-15);
-        let lines = table(&[("goal", running), ("duty", Running::default())]);
-        assert!(lines.lines().count() == 2 && lines.contains("3.75"), "{lines}");
+        let goal = Running { count: 4, mean: 0.75, ..Running::default() };
+        let lines = table(&[("settling_time_s", running), ("goal", goal), ("duty", Running::default())]);
+        assert!(lines.lines().count() == 3 && lines.contains("3.75"), "{lines}");
+        assert!(lines.contains("3 of 4 met (75 %, 95 % interval 30 to 95)"), "{lines}");
     }
 }

@@ -1,11 +1,14 @@
 //! What campaigns and sweeps have in common on the command line.
 
+use std::path::Path;
+
 use clap::ValueEnum;
 use flexsc_core::campaign::{PointDesign, Sampling, parquet_is_built_in};
 use flexsc_core::metrics::Selection;
 use flexsc_core::scenario::Cost;
 
 use crate::failure::Failure;
+use crate::out::Out;
 
 /// What is held of a campaign in parts (bytes), ...
 const HELD: f64 = 2e8;
@@ -17,7 +20,7 @@ const MOST_REPLICAS: u64 = 1_000_000;
 #[derive(clap::Args, Clone)]
 #[group(skip)]
 pub struct Options {
-    /// Format of the table in DIR [default: parquet; csv in a build without it]
+    /// Format of the table in DIR [default: parquet; csv in a build without it], as the ending of a FILE says by itself
     #[arg(long, value_name = "TABLE", requires = "out")]
     table: Option<Kind>,
     /// Metrics to keep, separated by commas [default: all]
@@ -115,6 +118,28 @@ impl Options {
         match self.table() {
             Kind::Parquet if in_directory => Cost { memory: HELD + cost.runs * HELD_OF_RUN, ..cost },
             _ => cost,
+        }
+    }
+
+    /// The form of the rows, and whether `out` is one file of them; `inputs` are read.
+    ///
+    /// # Errors
+    /// A file of another form, or one where a directory is needed.
+    pub fn place(&self, out: Option<&Path>, inputs: &[&Path], log: bool) -> Result<(Kind, bool), Failure> {
+        let out = out.map(|out| Out::new(out, &["csv", "parquet"], inputs)).transpose()?;
+        let Some(Out::File(path, ending)) = out else { return Ok((self.table(), false)) };
+        let kind = if ending == "csv" { Kind::Csv } else { Kind::Parquet };
+        let refused = |why: &str| {
+            Err(Failure::Arguments(format!("-o {}: {why}\n\nhint: give a directory", path.display())))
+        };
+        if kind == Kind::Parquet {
+            parquet_is_built_in().map_err(|error| Failure::Arguments(format!("-o: {error}")))?;
+        }
+        match () {
+            () if self.table.is_some_and(|table| table != kind) => refused("--table names another format"),
+            () if log => refused("cannot contain the logs of --log"),
+            () if self.scheduler.is_some() => refused("the workers of --scheduler need a directory"),
+            () => Ok((kind, true)),
         }
     }
 

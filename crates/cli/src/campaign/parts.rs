@@ -6,12 +6,14 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, Directory, DirectoryError, MANIFEST, Manifest, Rows, RunError, RunOutcome, Summary,
+    Campaign, CampaignRun, ColumnCells, Directory, DirectoryError, MANIFEST, Manifest, Rows, RunError,
+    RunOutcome, STATISTICS, Summary,
 };
 use flexsc_core::count::counted;
 use flexsc_core::metrics::Metrics;
 
 use super::live::Live;
+use super::points::{self, Points};
 use super::{Job, Told, interruption, object, scheduler, write_statistics};
 use crate::failure::Failure;
 use crate::results::print_lines;
@@ -71,7 +73,7 @@ pub fn run(
         // The lock is of who hands out the runs.
         drop(directory);
         scheduler::make(path, address)?;
-        return told(&Directory::open(path).map_err(failure)?);
+        return told(&Directory::open(path).map_err(failure)?, &job.range);
     }
     let work = Arc::new(work);
     let mut making =
@@ -104,7 +106,7 @@ pub fn run(
         }
     }
     drop(making);
-    told(&directory)
+    told(&directory, &job.range)
 }
 
 /// Ranges that touch one another as one.
@@ -167,9 +169,30 @@ impl Making<'_> {
     }
 }
 
-/// What the rows of a directory come to, with the table of its statistics.
-pub fn told(directory: &Directory) -> Result<Told, Failure> {
+/// What the rows of a directory come to, with the table of its statistics; of a sweep, points of these runs.
+pub fn told(directory: &Directory, range: &Range<u64>) -> Result<Told, Failure> {
     let Summary { runs, failed, statistics } = directory.summary().map_err(failure)?;
-    write_statistics(&directory.path().join("statistics.csv"), &statistics)?;
-    Ok(Told { runs, statistics, failed, only: None, table: Some(directory.path().to_owned()) })
+    write_statistics(&directory.path().join(STATISTICS), &statistics)?;
+    let work = directory.work();
+    let shown = points::runs(&work.campaign, range);
+    let there = directory.parts().map_err(failure)?;
+    let within = |runs: &Range<u64>, part: &Range<u64>| runs.start.max(part.start)..runs.end.min(part.end);
+    let column = |name: &str| -> Result<_, Failure> {
+        let Some(field) = work.fields().iter().find(|field| field.name == name) else { return Ok(None) };
+        let mut all = ColumnCells::of(field.kind);
+        for (runs, part) in shown.iter().flat_map(|runs| there.iter().map(move |part| (runs, part))) {
+            let runs = within(runs, part);
+            if !runs.is_empty() {
+                let cells = directory.columns_of(part, &[name]).map_err(failure)?.remove(0);
+                let from = (runs.start - part.start) as usize;
+                all.append(cells.slice(from..from + (runs.end - runs.start) as usize));
+            }
+        }
+        Ok(Some(all))
+    };
+    // Of points without runs there is nothing to print.
+    let is_whole = directory.missing_of(range.clone()).map_err(failure)?.is_empty();
+    let points = Points::new((&work.campaign, range), (&statistics, &work.selection), column)?;
+    let (points, table) = (points.filter(|_| is_whole), Some(directory.path().to_owned()));
+    Ok(Told { runs, statistics, points, failed, only: None, table })
 }

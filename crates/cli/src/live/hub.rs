@@ -14,9 +14,8 @@ use super::protocol::{self, Level, Request};
 use super::state::State;
 use crate::stop;
 
-/// There are at most so many clients, and so many connections that are being greeted.
+/// There are at most so many clients.
 pub const MOST_CLIENTS: usize = 16;
-const MOST_GREETINGS: usize = 16;
 
 /// What the run and the clients share.
 pub struct Hub {
@@ -24,10 +23,9 @@ pub struct Hub {
     state: Mutex<State>,
     changed: Condvar,
     seats: Arc<AtomicUsize>,
-    doors: Arc<AtomicUsize>,
 }
 
-/// One of the places for clients, or for connections that are being greeted: free again when it is dropped.
+/// One of the places for clients: free again when it is dropped.
 pub struct Seat(Arc<AtomicUsize>);
 
 impl Seat {
@@ -49,18 +47,12 @@ impl Hub {
     pub fn new(name: &str, state: State) -> Self {
         let session = format!("{name}-{}", std::process::id());
         let greeting = protocol::server_info(name, &session);
-        let (seats, doors) = Default::default();
-        Self { greeting, state: Mutex::new(state), changed: Condvar::new(), seats, doors }
+        Self { greeting, state: Mutex::new(state), changed: Condvar::new(), seats: Arc::default() }
     }
 
     /// A place for a client, if there is one.
     pub fn seat(&self) -> Option<Seat> {
         Seat::of(&self.seats, MOST_CLIENTS)
-    }
-
-    /// A place for a connection that is to be greeted, if there is one.
-    pub fn door(&self) -> Option<Seat> {
-        Seat::of(&self.doors, MOST_GREETINGS)
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {

@@ -14,9 +14,10 @@ mod state;
 mod topics;
 mod wire;
 
+use std::collections::VecDeque;
 use std::io::{self, Write};
-use std::net::{TcpListener, ToSocketAddrs};
-use std::sync::Arc;
+use std::net::{Shutdown, TcpListener, TcpStream, ToSocketAddrs};
+use std::sync::{Arc, Weak};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
@@ -35,6 +36,9 @@ use crate::{say, stop};
 
 /// How long clients may take for what is left when the server closes.
 const FLUSH: Duration = Duration::from_secs(5);
+
+/// So many connections may be open that have sent no request yet.
+const MOST_SILENT: usize = 64;
 
 #[derive(clap::Args)]
 #[group(skip)]
@@ -151,19 +155,28 @@ impl Record for Live {
     }
 }
 
-/// Takes in clients, each on a thread of its own, until the hub closes.
+/// Takes in clients, each on a thread of its own, until the hub closes. None waits for another one: where too many connections
+/// have sent no request yet, the oldest of them is closed.
 fn accept(hub: &Arc<Hub>, gate: &Arc<Gate>, listener: &TcpListener) {
+    let mut silent: VecDeque<(Weak<()>, TcpStream)> = VecDeque::new();
     while !hub.closing() {
-        // While too many are being greeted, others wait outside.
-        let next = hub.door().and_then(|door| Some((door, listener.accept().ok()?.0)));
-        let Some((door, stream)) = next else {
+        let Ok((stream, _)) = listener.accept() else {
             thread::sleep(LOOK);
             continue;
         };
-        let (hub, gate) = (hub.clone(), gate.clone());
+        silent.retain(|(greeting, _)| greeting.strong_count() > 0);
+        if silent.len() >= MOST_SILENT
+            && let Some((_, oldest)) = silent.pop_front()
+        {
+            // Its thread ends by that, unless it has ended.
+            let _ = oldest.shutdown(Shutdown::Both);
+        }
+        let Ok(other) = stream.try_clone() else { continue };
+        let (hub, gate, greeting) = (hub.clone(), gate.clone(), Arc::new(()));
+        silent.push_back((Arc::downgrade(&greeting), other));
         thread::spawn(move || {
             let greeted = client::greet(&hub, &gate, stream);
-            drop(door);
+            drop(greeting);
             if let Some((socket, _seat)) = greeted {
                 client::serve(&hub, socket);
             }

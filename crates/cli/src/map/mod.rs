@@ -11,9 +11,10 @@ use flexsc_core::count::counted;
 use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
 
-use crate::drawing::{Drawing, Format, is_figure};
+use crate::drawing::{Drawing, Format};
 use crate::failure::Failure;
 use crate::grid::Even;
+use crate::out::Out;
 use crate::results::{Results, show};
 use crate::sampled::{Settled, sampled};
 use crate::{files, print, say, scenario};
@@ -33,8 +34,8 @@ pub struct Args {
     /// Gain of the extra loop [default: the scenario's]
     #[arg(long, value_name = "GAIN", allow_hyphen_values = true)]
     gain: Option<f64>,
-    /// CSV file for the table, or FILE.svg, .png or .pdf for the map [default: print the table]
-    #[arg(short, long, alias = "output", value_name = "FILE", conflicts_with = "json")]
+    /// Table as FILE.csv, or the map as FILE.svg, .png or .pdf, or in a directory, created if missing [default: print the table]
+    #[arg(short, long, alias = "output", value_name = "FILE|DIR", conflicts_with = "json")]
     out: Option<PathBuf>,
     /// Plot the map: directory, created if missing, or one FILE.svg, .png or .pdf
     #[arg(long, value_name = "DIR|FILE")]
@@ -42,6 +43,9 @@ pub struct Args {
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "figures")]
     format: Option<Format>,
+    /// Replace a FILE of other content
+    #[arg(long)]
+    force: bool,
 }
 
 /// A map.
@@ -85,14 +89,24 @@ impl Results for Mapped {
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let drawing =
+        |figures: Option<&PathBuf>, format| Drawing { figures: figures.cloned(), format, force: args.force };
+    let also = drawing(args.figures.as_ref(), args.format);
+    let input = args.scenario.scenario.as_path();
+    also.check(input)?;
+    let Some(out) = &args.out else {
+        return show(&args.results(&args.scenario.load()?)?, Some(&also), args.scenario.json);
+    };
+    let out = Out::new(out, &["csv", "svg", "png", "pdf"], &[input])?;
     let mapped = args.results(&args.scenario.load()?)?;
-    let drawing = Drawing { figures: args.figures.clone(), format: args.format };
-    let Some(path) = &args.out else { return show(&mapped, Some(&drawing), args.scenario.json) };
-    drawing.save(|| mapped.figures())?;
-    if is_figure(path) {
-        return Drawing { figures: Some(path.clone()), format: None }.save(|| mapped.figures());
-    }
-    files::write(path, csv(&mapped.cells).as_bytes())?;
+    also.save(|| mapped.figures())?;
+    let path = match &out {
+        Out::File(path, "csv") => path,
+        Out::File(path, _) | Out::Directory(path) => {
+            return drawing(Some(path), None).save(|| mapped.figures());
+        }
+    };
+    files::write(path, csv(&mapped.cells).as_bytes(), args.force)?;
     let Mapped { name, cells, .. } = &mapped;
     let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();
     say!("{name}   {}, {stable} stable, in {}", counted(cells.len(), "cell"), path.display());

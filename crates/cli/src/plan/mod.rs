@@ -40,6 +40,9 @@ pub struct Args {
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "figures")]
     format: Option<Format>,
+    /// Replace a FILE of other content
+    #[arg(long, requires = "figures")]
+    force: bool,
     /// Coordinate to compare and to plot: `angle` or an output [default: the last output]
     #[arg(long, alias = "output", value_name = "NAME", requires = "views")]
     coordinate: Option<String>,
@@ -91,8 +94,9 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    let drawing = Drawing { figures: args.figures.clone(), format: args.format, force: args.force };
+    drawing.check(&args.scenario.scenario)?;
     let results = args.results(args.scenario.load()?)?;
-    let drawing = Drawing { figures: args.figures.clone(), format: args.format };
     show(&*results, Some(&drawing), args.scenario.json)
 }
 

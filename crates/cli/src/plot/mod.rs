@@ -70,6 +70,9 @@ pub struct Args {
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum)]
     format: Option<Format>,
+    /// Replace a FILE of other content
+    #[arg(long, requires = "out")]
+    force: bool,
     /// Width of each figure on paper, such as 85 for one column [default: 800 px]
     #[arg(long, value_name = "MM")]
     width: Option<f64>,
@@ -181,7 +184,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Arguments(format!("--{option}: {path} is not the directory of a campaign")));
     }
     let beside = args.path.parent().unwrap_or(Path::new(""));
-    let target = Target::new(args.out.as_deref(), beside, args.format)?;
+    let logs: Vec<&Path> = std::iter::once(&args.path).chain(&args.others).map(PathBuf::as_path).collect();
+    let target = Target::new(args.out.as_deref().unwrap_or(beside), args.format, &logs, args.force)?;
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
     let figures = if args.others.is_empty() { args.own(&args.path, &args.what)? } else { args.together()? };
     let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{}", what.name()), figure));

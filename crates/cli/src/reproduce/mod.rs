@@ -19,6 +19,7 @@ use indicatif::ProgressBar;
 use rayon::prelude::*;
 
 use crate::failure::Failure;
+use crate::out::Out;
 use crate::{files, progress, say, stop};
 use laboratory::Programme;
 
@@ -27,12 +28,15 @@ pub struct Args {
     /// The paper [default: all of them]
     #[arg(value_enum)]
     paper: Option<Paper>,
-    /// Directory for papers.html, made if it is not there
-    #[arg(short, long, value_name = "DIR")]
+    /// Page to write: FILE.html, or papers.html in a directory, created if missing
+    #[arg(short, long, value_name = "DIR|FILE")]
     out: PathBuf,
     /// Also write the same as papers.md of the documentation, with its figures images/NAME.svg, into this directory
     #[arg(long, value_name = "DIR")]
     docs: Option<PathBuf>,
+    /// Replace a FILE that exists
+    #[arg(long)]
+    force: bool,
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -44,12 +48,18 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             "--docs: {page} has a section of each paper: leave PAPER out"
         )));
     }
-    for directory in std::iter::once(&args.out).chain(&args.docs) {
-        files::make_directory(directory)?;
-    }
+    let out = match Out::new(&args.out, &["html"], &[])? {
+        Out::Directory(out) => out.join("papers.html"),
+        Out::File(out, _) => {
+            files::refuse_existing(&out, args.force)?;
+            out
+        }
+    };
+    files::make_parent(&out)?;
+    args.docs.as_ref().map_or(Ok(()), |docs| files::make_directory(docs))?;
     // Two minutes of computing are not for nothing.
-    find_room(&args.out, "papers.html")?;
-    args.docs.as_ref().map_or(Ok(()), |docs| find_room(docs, "papers.md"))?;
+    find_room(&out)?;
+    args.docs.as_ref().map_or(Ok(()), |docs| find_room(&docs.join("papers.md")))?;
     let papers = args.paper.as_ref().map_or(Paper::value_variants(), std::slice::from_ref);
     let bar = progress::spinner();
     let filled = papers.par_iter().map(|paper| fill(*paper, &bar)).collect::<Result<Vec<_>, _>>();
@@ -61,7 +71,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         filled?.into_iter().map(|filled| (filled.section, filled.markdown)).unzip();
     let took = began.elapsed().as_secs_f64();
     let page = html::page(&sections, took, rayon::current_num_threads());
-    let mut pages = vec![(args.out.join("papers.html"), page.into_bytes())];
+    let mut pages = vec![(out, page.into_bytes())];
     if let Some(docs) = &args.docs {
         pages.push((docs.join("papers.md"), documentation(&markdown).into_bytes()));
         let images = docs.join("images");
@@ -73,7 +83,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             }),
         );
     }
-    files::write_all(&pages)?;
+    files::write_within(&pages)?;
     for (path, bytes) in pages.iter().take(1 + args.docs.iter().count()) {
         say!("{} ({:.0} kB)", path.display(), bytes.len() as f64 / 1e3);
     }
@@ -100,18 +110,19 @@ fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
 /// Room that a page with its figures takes (bytes); it is some 2 MB.
 const ROOM: usize = 16 << 20;
 
-/// Makes sure that a page can be written into a directory: the file there may be replaced, and there is room.
-fn find_room(directory: &Path, page: &str) -> Result<(), Failure> {
-    let path = directory.join(page);
-    if let Ok(there) = std::fs::metadata(&path) {
+/// Makes sure that a page can be written: the file there may be replaced, and there is room.
+fn find_room(path: &Path) -> Result<(), Failure> {
+    if let Ok(there) = std::fs::metadata(path) {
         let kind = match there.is_file() {
             true if there.permissions().readonly() => Some(ErrorKind::PermissionDenied),
             false if there.is_dir() => Some(ErrorKind::IsADirectory),
             _ => None,
         };
-        kind.map_or(Ok(()), |kind| Err(Failure::write(&path)(kind.into())))?;
+        kind.map_or(Ok(()), |kind| Err(Failure::write(path)(kind.into())))?;
     }
-    let room = directory.join(format!("{page}.room.{}", std::process::id()));
+    let mut room = path.as_os_str().to_owned();
+    room.push(format!(".room.{}", std::process::id()));
+    let room = PathBuf::from(room);
     let made = OpenOptions::new().write(true).create_new(true).open(&room);
     let filled = made.and_then(|mut file| {
         let block = vec![0; 1 << 20];
@@ -122,6 +133,6 @@ fn find_room(directory: &Path, page: &str) -> Result<(), Failure> {
     let _ = std::fs::remove_file(&room);
     filled.map_err(|source| {
         let why = format!("{source} ({} MB are looked for before it is computed)", ROOM >> 20);
-        Failure::write(&path)(std::io::Error::new(source.kind(), why))
+        Failure::write(path)(std::io::Error::new(source.kind(), why))
     })
 }

@@ -125,6 +125,7 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<(), Failure> {
+    args.drawing.check(&args.scenario.scenario)?;
     let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {
         // Where there is none, nothing is drawn.

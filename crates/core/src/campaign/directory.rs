@@ -3,11 +3,14 @@
 //!
 //! ```text
 //! manifest.toml                               Manifest: version, scenario, design, runs, hash
-//! runs/part-0000000000-0000002048.parquet     one row per run; written to a temporary file, synced and renamed
-//! .lock                                       locked by the writing command, released by the kernel on its death
+//! runs/part-0000000000-0000002048.parquet     a row a run, and a checksum; each written beside its place, synced and renamed
+//! .lock                                       held by the command at work there, released by the kernel on its death
+//! statistics.csv                              of all rows, written by the command
 //! ```
 //!
-//! Example of a worker, such as a process of Dask:
+//! A directory may come from somebody else: nothing in it is followed elsewhere or waited for, be it a link or a pipe.
+//!
+//! What a worker needs, such as a process of Dask:
 //!
 //! ```text
 //! let campaign = Directory::open(path)?;           // or Work::of(manifest text), without any file system
@@ -19,10 +22,14 @@
 //! Where parts go to a bucket, [`Work::part`] gives a part's name and bytes. [`Directory::create`] makes or continues a
 //! directory, and holds its lock; workers need none.
 
+use std::collections::BTreeMap;
 use std::fs::{self, File, TryLockError};
-use std::io;
+use std::io::{self, Read};
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, PoisonError};
+use std::thread;
+use std::time::{Duration, SystemTime};
 
 use super::error::{DirectoryError, io_of, unread, wrong};
 use super::manifest::{LARGEST, Manifest};
@@ -37,8 +44,20 @@ use crate::whole::{self, Partial};
 pub const MANIFEST: &str = "manifest.toml";
 /// Name of the directory of the parts.
 pub const RUNS: &str = "runs";
+/// The table of the statistics of all rows.
+pub const STATISTICS: &str = "statistics.csv";
+/// How that table begins.
+const STATISTICS_BEGIN: &[u8] = b"metric,unit,runs,mean,sd,";
 /// Name of the file that the writing command locks.
 const LOCK: &str = ".lock";
+/// Who only looks whether the lock is held has it for a moment: so often, and after such a time, it is tried again.
+const ATTEMPTS: u32 = 10;
+const MOMENT: Duration = Duration::from_millis(20);
+/// What helps where a part is damaged.
+const AGAIN: &str = "delete this file and repeat the command: its runs are computed again";
+
+/// A part's first run and the one after its last, and the size and the time of its file.
+type Whole = BTreeMap<(u64, u64), (u64, Option<SystemTime>)>;
 
 /// Directory of a campaign.
 #[derive(Debug)]
@@ -47,6 +66,8 @@ pub struct Directory {
     work: Work,
     /// Lock file, held by the writing command for the lifetime of this value.
     _lock: Option<File>,
+    /// Parts whose checksums were compared.
+    whole: Mutex<Whole>,
 }
 
 impl Directory {
@@ -56,12 +77,14 @@ impl Directory {
         let place = path.join(MANIFEST);
         let manifest =
             read(&place)?.ok_or_else(|| wrong(path, format!("is not a campaign: it has no {MANIFEST}")))?;
-        Ok(Self { path: path.to_owned(), work: Work::of(manifest, &place)?, _lock: None })
+        let work = Work::of(manifest, &place)?;
+        within(path)?;
+        Ok(Self { path: path.to_owned(), work, _lock: None, whole: Mutex::default() })
     }
 
     /// Returns true if a directory is that of a campaign.
     pub fn is_one(path: &Path) -> bool {
-        path.join(MANIFEST).is_file()
+        fs::symlink_metadata(path.join(MANIFEST)).is_ok_and(|there| there.is_file())
     }
 
     /// Creates a directory, or continues an existing one of the same campaign with these runs too, or with `force`
@@ -71,11 +94,10 @@ impl Directory {
     /// Another campaign, which is not to be replaced; another process that is writing the directory.
     pub fn create(path: &Path, mut manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
         parquet_is_built_in().map_err(unread(path))?;
-        let within = path.join(RUNS);
-        fs::create_dir_all(&within).map_err(io_of(&within))?;
-        let place = path.join(MANIFEST);
+        let (runs, place) = (within(path)?, path.join(MANIFEST));
         // Checked before anything is changed, and again under the lock.
         fitting(path, &place, &manifest, force)?;
+        fs::create_dir_all(&runs).map_err(io_of(&runs))?;
         let lock = lock(path)?;
         let there = fitting(path, &place, &manifest, force)?;
         let fits = there.as_ref().is_some_and(|there| there.difference(&manifest).is_none());
@@ -90,7 +112,7 @@ impl Directory {
             manifest.to = manifest.to.max(there.to);
         }
         let work = Work::of(manifest, &place)?;
-        let directory = Self { path: path.to_owned(), work, _lock: Some(lock) };
+        let directory = Self { path: path.to_owned(), work, _lock: Some(lock), whole: Mutex::default() };
         directory.write_manifest()?;
         directory.remove_leftovers()?;
         for runs in directory.parts()? {
@@ -115,6 +137,12 @@ impl Directory {
             return Ok(());
         }
         whole::write_synced(&place, text.as_bytes()).map_err(io_of(&place))
+    }
+
+    /// Whether a process of this machine writes it now.
+    pub fn is_at_work(&self) -> bool {
+        let file = whole::open(&self.path.join(LOCK));
+        file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
     }
 
     /// Returns the path of the directory.
@@ -184,13 +212,24 @@ impl Directory {
 
     /// Returns columns of a part.
     pub fn columns_of(&self, runs: &Range<u64>, names: &[&str]) -> Result<Vec<ColumnCells>, DirectoryError> {
-        let path = self.file(runs);
         let reading = self.reading(runs)?;
-        let column = |name: &&str| {
-            let column = reading.column(name).map_err(unread(&path))?;
-            column.ok_or_else(|| wrong(&path, format!("has no column `{name}`")))
-        };
-        names.iter().map(column).collect()
+        names.iter().map(|name| self.column_of(&reading, runs, name)).collect()
+    }
+
+    /// A column of a part that is open.
+    pub(super) fn column_of(
+        &self,
+        reading: &Reading,
+        runs: &Range<u64>,
+        name: &str,
+    ) -> Result<ColumnCells, DirectoryError> {
+        let path = self.file(runs);
+        let column = reading.column(name).map_err(damaged(&path))?;
+        let column = column.ok_or_else(|| wrong(&path, format!("has no column `{name}`")))?;
+        if column.len() as u64 == runs.end - runs.start {
+            return Ok(column);
+        }
+        Err(wrong(&path, format!("is damaged (`{name}` has {} rows); {AGAIN}", column.len())))
     }
 
     /// Returns the path of a part's file.
@@ -198,10 +237,15 @@ impl Directory {
         self.path.join(RUNS).join(part::name(runs))
     }
 
-    /// Opens a part, and checks that it belongs to this campaign.
+    /// Opens a part, which must be one of this campaign, and whole.
     pub(super) fn reading(&self, runs: &Range<u64>) -> Result<Reading, DirectoryError> {
         let path = self.file(runs);
-        let reading = Reading::open(&path).map_err(unread(&path))?;
+        let file = fs::symlink_metadata(&path).map_err(unread(&path))?;
+        let (part, seen) = ((runs.start, runs.end), (file.len(), file.modified().ok()));
+        let known = || self.whole.lock().unwrap_or_else(PoisonError::into_inner);
+        let is_whole = known().get(&part) == Some(&seen);
+        let reading = Reading::open(&path, is_whole).map_err(damaged(&path))?;
+        known().insert(part, seen);
         if reading.note(NOTE).as_deref() != Some(self.work.manifest.hash.as_str()) {
             return Err(wrong(&path, format!("is not a part of the campaign of {MANIFEST}")));
         }
@@ -227,7 +271,7 @@ impl Directory {
 
 /// Returns the existing manifest, if any.
 fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
-    match fs::metadata(place) {
+    match fs::symlink_metadata(place) {
         Err(error) if is_none(&error) => return Ok(None),
         Err(error) => return Err(unread(place)(error)),
         Ok(there) if !there.is_file() || there.len() > LARGEST => {
@@ -246,7 +290,11 @@ fn fitting(
     here: &Manifest,
     force: bool,
 ) -> Result<Option<Manifest>, DirectoryError> {
-    let Some(there) = read(place)? else {
+    let there = read(place)?;
+    if !force {
+        statistics_fit(path, there.is_some())?;
+    }
+    let Some(there) = there else {
         return match parts(path)?.first().filter(|_| !force) {
             Some(runs) => {
                 Err(wrong(&path.join(RUNS).join(part::name(runs)), "exists, but its campaign is unknown"))
@@ -260,6 +308,43 @@ fn fitting(
     match there.difference(here) {
         Some(difference) => Err(DirectoryError::Other { path: place.to_owned(), difference }),
         None => Ok(Some(there)),
+    }
+}
+
+/// Refuses a table of the name of the statistics that no command wrote.
+fn statistics_fit(path: &Path, is_campaign: bool) -> Result<(), DirectoryError> {
+    let place = path.join(STATISTICS);
+    let mut begin = Vec::new();
+    match whole::open(&place) {
+        Ok(file) => {
+            file.take(STATISTICS_BEGIN.len() as u64).read_to_end(&mut begin).map_err(unread(&place))?
+        }
+        Err(error) if is_none(&error) => return Ok(()),
+        Err(error) => return Err(unread(&place)(error)),
+    };
+    if !is_campaign {
+        return Err(wrong(&place, "exists, but its campaign is unknown"));
+    }
+    if begin != STATISTICS_BEGIN {
+        return Err(wrong(&place, "exists, and flexsc did not write it"));
+    }
+    Ok(())
+}
+
+/// The directory of the parts within another, which is there or can be made.
+fn within(path: &Path) -> Result<PathBuf, DirectoryError> {
+    let runs = path.join(RUNS);
+    match fs::symlink_metadata(&runs) {
+        Ok(there) if !there.is_dir() => Err(wrong(&runs, "is in the way: it is not a directory")),
+        _ => Ok(runs),
+    }
+}
+
+/// A part that cannot be read: it is damaged, and can be made again.
+fn damaged(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
+    |source| match source.kind() {
+        io::ErrorKind::InvalidData => wrong(path, format!("is damaged ({source}); {AGAIN}")),
+        _ => unread(path)(source),
     }
 }
 
@@ -291,13 +376,15 @@ fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
 
 fn lock(path: &Path) -> Result<File, DirectoryError> {
     let place = path.join(LOCK);
-    let file =
-        File::options().create(true).truncate(false).write(true).open(&place).map_err(io_of(&place))?;
-    match file.try_lock() {
-        Ok(()) => Ok(file),
-        Err(TryLockError::WouldBlock) => Err(DirectoryError::Busy { path: path.to_owned() }),
-        Err(TryLockError::Error(error)) => Err(io_of(&place)(error)),
+    let file = whole::open_to_lock(&place).map_err(io_of(&place))?;
+    for _ in 0..ATTEMPTS {
+        match file.try_lock() {
+            Ok(()) => return Ok(file),
+            Err(TryLockError::WouldBlock) => thread::sleep(MOMENT),
+            Err(TryLockError::Error(error)) => return Err(io_of(&place)(error)),
+        }
     }
+    Err(DirectoryError::Busy { path: path.to_owned() })
 }
 
 #[cfg(all(test, feature = "parquet"))]

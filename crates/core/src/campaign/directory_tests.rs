@@ -1,8 +1,8 @@
 //! Tests of directories: parts by any workers in any order, manifests that fit or not, locks.
 
 use super::*;
-use crate::campaign::Campaign;
 use crate::campaign::design::{DesignBlock, PointDesign};
+use crate::campaign::{Campaign, Merge};
 use crate::metrics::Selection;
 
 const SCENARIO: &str = r#"
@@ -116,11 +116,46 @@ fn directories_are_merged_if_they_agree() {
         [(0, 0..30), (1, 0..16), (2, 8..30), (3, 4..12)].map(|(i, r)| make(&here[i], r));
     let into = Here::new("merged");
     let merged = Directory::create(&into.0, manifest(0..30), false).expect("made");
-    assert_eq!((merged.take(&low).expect("taken"), merged.take(&high).expect("taken")), (16, 14));
+    // Parts that begin elsewhere, runs that several have, and parts that another one has whole.
+    let all = [shifted, low, high];
+    let merge = Merge::new(&all).expect("one campaign");
+    assert_eq!((merge.taken(), merge.missing()), (vec![8, 8, 14], vec![]));
+    merge.write(&merged, false).expect("written");
     assert!(merged.missing().expect("read").is_empty());
     assert_eq!(columns(&merged), columns(&whole));
-    let refused = merged.take(&shifted).expect_err("other parts").to_string();
-    assert!(refused.contains("in another part"), "{refused}");
+    let rows = merge.rows().expect("read");
+    assert_eq!(rows.columns[0].numbers(), (0..30).map(f64::from).collect::<Vec<_>>());
+    // A run that is another one elsewhere.
+    let tampered = Directory::open(&here[1].0).expect("there");
+    let mut other = tampered.work().make(0..8, 1, ()).expect("made");
+    if let Some(ColumnCells::Numbers(rates)) = other.columns.get_mut(2) {
+        rates[5] *= 2.0;
+    }
+    tampered.write(&(0..8), &other).expect("written");
+    let all = [whole, tampered];
+    let refused = Merge::new(&all).expect_err("other rows").to_string();
+    assert!(refused.contains("has other values of `body.planar.rate`"), "{refused}");
+}
+
+/// Single bits at 500 places of a part.
+#[test]
+fn no_flipped_bit_changes_a_number() {
+    let here = Here::new("bits");
+    let directory = Directory::create(&here.0, manifest(0..8), false).expect("made");
+    let path = directory.write_part(0..8, 1, ()).expect("written");
+    let (before, bytes) = (columns(&directory), fs::read(&path).expect("there"));
+    let mut rng = crate::random::Seed { scenario: 5, run: 0 }.stream("bits");
+    for _ in 0..500 {
+        let (place, bit) = (rng.index(bytes.len()), rng.index(8));
+        let mut flipped = bytes.clone();
+        flipped[place] ^= 1 << bit;
+        fs::write(&path, flipped).expect("written");
+        let other = Directory::open(&here.0).expect("there");
+        let refused = other.column("duty").expect_err("damaged").to_string();
+        assert!(refused.contains("is damaged") && refused.contains("delete this file"), "{refused}");
+    }
+    fs::write(&path, &bytes).expect("written");
+    assert_eq!(columns(&Directory::open(&here.0).expect("there")), before);
 }
 
 #[test]

@@ -31,7 +31,7 @@ pub struct Reading(());
 #[expect(clippy::unused_self, reason = "the methods are those of a build with Parquet")]
 impl Reading {
     /// Opens a file.
-    pub fn open(_: &Path) -> io::Result<Self> {
+    pub fn open(_: &Path, _: bool) -> io::Result<Self> {
         Err(left_out())
     }
 

@@ -5,58 +5,156 @@ use std::ops::Range;
 
 use super::directory::{Directory, MANIFEST};
 use super::error::{DirectoryError, io_of, unread, wrong};
-use super::rows::SECONDS;
+use super::manifest::Manifest;
+use super::parquet::Reading;
+use super::part;
+use super::rows::{ColumnCells, Rows, SECONDS};
 use crate::whole;
 
-impl Directory {
-    /// Copies the parts of another directory of the campaign, and returns the number of new runs.
+/// Runs of a part that are taken from a directory: its place among them, its part, and which runs of it.
+#[derive(Clone, Debug)]
+struct Piece {
+    from: usize,
+    part: Range<u64>,
+    runs: Range<u64>,
+}
+
+/// Directories of one campaign, and which of their runs are taken: each run once, from the first that has it.
+#[derive(Debug)]
+pub struct Merge<'a> {
+    all: &'a [Directory],
+    manifest: Manifest,
+    /// In the order of their runs.
+    pieces: Vec<Piece>,
+}
+
+impl<'a> Merge<'a> {
+    /// The merge of directories. Nothing is written yet.
     ///
     /// # Errors
-    /// Another campaign; runs that both directories have with different rows, or in different parts.
-    pub fn take(&self, other: &Self) -> Result<u64, DirectoryError> {
-        let (here, there) = (&self.work().manifest, &other.work().manifest);
-        if let Some(difference) = there.difference(here) {
-            return Err(DirectoryError::Other { path: other.path().join(MANIFEST), difference });
+    /// No directory; directories of several campaigns; a part that is damaged; a run that is another one elsewhere.
+    pub fn new(all: &'a [Directory]) -> Result<Self, DirectoryError> {
+        let Some(first) = all.first() else { return Err(wrong("".as_ref(), "no directory to merge")) };
+        let mut manifest = first.work().manifest.clone();
+        for other in all {
+            let there = &other.work().manifest;
+            if let Some(difference) = there.difference(&manifest) {
+                return Err(DirectoryError::Other { path: other.path().join(MANIFEST), difference });
+            }
+            manifest.from = manifest.from.min(there.from);
+            manifest.to = manifest.to.max(there.to);
         }
-        let own = self.parts()?;
-        let theirs = other.parts()?;
-        // All parts are checked before anything is written.
-        for runs in &theirs {
-            let meets = |own: &&Range<u64>| own.start < runs.end && runs.start < own.end;
-            match own.iter().find(meets) {
-                None => {
-                    other.reading(runs)?;
-                }
-                Some(own) if own == runs => self.same(other, runs)?,
-                Some(own) => {
-                    let why =
-                        format!("has runs that are also in another part of {}", self.file(own).display());
-                    return Err(wrong(&other.file(runs), why));
-                }
+        let mut merge = Self { all, manifest, pieces: Vec::new() };
+        for (from, directory) in all.iter().enumerate() {
+            for part in directory.parts()? {
+                merge.add(from, part)?;
             }
         }
-        let mut new = 0;
-        for runs in theirs.iter().filter(|runs| !own.contains(runs)) {
-            let (from, to) = (other.file(runs), self.file(runs));
-            let bytes = fs::read(&from).map_err(unread(&from))?;
-            whole::write_synced(&to, &bytes).map_err(io_of(&to))?;
-            new += runs.end - runs.start;
-        }
-        Ok(new)
+        Ok(merge)
     }
 
-    /// Checks that a part has the same rows in both directories, except for the times of the runs.
-    fn same(&self, other: &Self, runs: &Range<u64>) -> Result<(), DirectoryError> {
-        let (own, theirs) = (self.reading(runs)?, other.reading(runs)?);
-        let path = other.file(runs);
-        let fields = self.work().fields().iter().filter(|field| field.name != SECONDS);
-        for field in fields {
-            let (own, theirs) = (own.column(&field.name), theirs.column(&field.name));
-            if own.map_err(unread(&path))? != theirs.map_err(unread(&path))? {
-                let why = format!("has other values of `{}` than {}", field.name, self.path().display());
-                return Err(wrong(&path, why));
+    fn add(&mut self, from: usize, part: Range<u64>) -> Result<(), DirectoryError> {
+        // Whole, whether or not it is needed.
+        drop(self.all[from].reading(&part)?);
+        let first = self.pieces.partition_point(|piece| piece.runs.end <= part.start);
+        let last = self.pieces.partition_point(|piece| piece.runs.start < part.end);
+        let there: Vec<Range<u64>> =
+            self.pieces[first..last].iter().map(|piece| piece.runs.clone()).collect();
+        for piece in &self.pieces[first..last] {
+            self.compare(piece, from, &part)?;
+        }
+        let gaps = part::without(part.clone(), &there);
+        let new = gaps.into_iter().map(|runs| Piece { from, part: part.clone(), runs });
+        self.pieces.extend(new);
+        self.pieces.sort_by_key(|piece| piece.runs.start);
+        Ok(())
+    }
+
+    /// Compares the runs that a piece and a part have in common, but for the time they took.
+    fn compare(&self, piece: &Piece, from: usize, part: &Range<u64>) -> Result<(), DirectoryError> {
+        let (one, other) = (&self.all[piece.from], &self.all[from]);
+        let runs = piece.runs.start.max(part.start)..piece.runs.end.min(part.end);
+        let (of_one, of_other) = (one.reading(&piece.part)?, other.reading(part)?);
+        for field in self.work().fields().iter().filter(|field| field.name != SECONDS) {
+            let left = cells(one, &of_one, &piece.part, (&field.name, &runs))?;
+            if left != cells(other, &of_other, part, (&field.name, &runs))? {
+                let why = format!("has other values of `{}` than {}", field.name, one.path().display());
+                return Err(wrong(&other.file(part), why));
             }
         }
         Ok(())
     }
+
+    /// What makes the rows of all directories.
+    pub fn work(&self) -> &super::Work {
+        self.all[0].work()
+    }
+
+    /// The manifest of all runs.
+    pub fn manifest(&self) -> &Manifest {
+        &self.manifest
+    }
+
+    /// How many runs are taken from each directory.
+    pub fn taken(&self) -> Vec<u64> {
+        let mut taken = vec![0; self.all.len()];
+        for piece in &self.pieces {
+            taken[piece.from] += piece.runs.end - piece.runs.start;
+        }
+        taken
+    }
+
+    /// The runs that no directory has.
+    pub fn missing(&self) -> Vec<Range<u64>> {
+        let there: Vec<Range<u64>> = self.pieces.iter().map(|piece| piece.runs.clone()).collect();
+        part::without(self.manifest.runs(), &there)
+    }
+
+    /// The rows of all runs, in order.
+    pub fn rows(&self) -> Result<Rows, DirectoryError> {
+        let mut rows = self.work().rows();
+        for piece in &self.pieces {
+            for (column, more) in rows.columns.iter_mut().zip(self.of(piece)?.columns) {
+                column.append(more);
+            }
+        }
+        Ok(rows)
+    }
+
+    fn of(&self, piece: &Piece) -> Result<Rows, DirectoryError> {
+        let directory = &self.all[piece.from];
+        let reading = directory.reading(&piece.part)?;
+        let mut rows = self.work().rows();
+        rows.columns = rows
+            .fields
+            .iter()
+            .map(|field| cells(directory, &reading, &piece.part, (&field.name, &piece.runs)))
+            .collect::<Result<_, _>>()?;
+        Ok(rows)
+    }
+
+    /// Writes the runs into a directory that has those of the first one already, if `is_first`.
+    pub fn write(&self, into: &Directory, is_first: bool) -> Result<(), DirectoryError> {
+        for piece in self.pieces.iter().filter(|piece| !is_first || piece.from > 0) {
+            if piece.part != piece.runs {
+                into.write(&piece.runs, &self.of(piece)?)?;
+                continue;
+            }
+            let (from, to) = (self.all[piece.from].file(&piece.part), into.file(&piece.runs));
+            let bytes = fs::read(&from).map_err(unread(&from))?;
+            whole::write_synced(&to, &bytes).map_err(io_of(&to))?;
+        }
+        Ok(())
+    }
+}
+
+/// The cells of a column in some runs of a part.
+fn cells(
+    directory: &Directory,
+    reading: &Reading,
+    part: &Range<u64>,
+    (name, runs): (&str, &Range<u64>),
+) -> Result<ColumnCells, DirectoryError> {
+    let column = directory.column_of(reading, part, name)?;
+    Ok(column.slice((runs.start - part.start) as usize..(runs.end - part.start) as usize))
 }

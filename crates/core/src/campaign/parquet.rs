@@ -1,7 +1,7 @@
 //! Rows as a Parquet file, written and read: one row group, compressed by zstd.
 
 use std::fs::File;
-use std::io;
+use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 
@@ -9,13 +9,16 @@ use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type a
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::metadata::KeyValue;
+use parquet::file::metadata::{ColumnChunkMetaData, KeyValue, RowGroupMetaData};
 use parquet::file::properties::{EnabledStatistics, WriterProperties};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
+use super::checksum;
+use super::contained::contained;
 use super::rows::{ColumnCells, ColumnHeading, ColumnKind, Rows};
+use crate::whole;
 
 /// Compression level of zstd: higher ones gain nothing for numbers.
 const LEVEL: i32 = 3;
@@ -23,6 +26,8 @@ const LEVEL: i32 = 3;
 const FIRST: usize = 256;
 /// Largest number of rows of a part.
 pub const MOST_ROWS: usize = 1 << 24;
+/// Nor more bytes.
+const MOST_BYTES: u64 = 1 << 30;
 
 fn other(error: ParquetError) -> io::Error {
     match error {
@@ -74,13 +79,19 @@ pub fn parquet_is_built_in() -> io::Result<()> {
 
 /// Returns the content of a file with these rows and metadata.
 pub fn encode(rows: &Rows, notes: &[(&str, String)]) -> io::Result<Vec<u8>> {
-    written(rows, notes).map_err(other)
+    let mut bytes = written(rows, notes).map_err(other)?;
+    if !checksum::fill(&mut bytes) {
+        return Err(io::Error::new(io::ErrorKind::InvalidData, "has no place for its checksum"));
+    }
+    Ok(bytes)
 }
 
 fn written(rows: &Rows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
     let fields = rows.fields.iter().map(field_type).collect::<Result<Vec<_>, _>>()?;
     let schema = Type::group_type_builder("campaign").with_fields(fields).build()?;
-    let notes = notes.iter().map(|(name, text)| KeyValue::new((*name).to_owned(), text.clone())).collect();
+    let blank = (checksum::NAME, checksum::BLANK.to_owned());
+    let notes = notes.iter().chain([&blank]);
+    let notes = notes.map(|(name, text)| KeyValue::new((*name).to_owned(), text.clone())).collect();
     let mut properties = WriterProperties::builder()
         .set_compression(Compression::ZSTD(ZstdLevel::try_new(LEVEL)?))
         .set_created_by(format!("flexsc {}", env!("CARGO_PKG_VERSION")))
@@ -155,13 +166,52 @@ fn write_column<W: io::Write + Send>(
     writer.close()
 }
 
+/// What the library makes of a file.
+fn parsed<T>(read: impl FnOnce() -> Result<T, ParquetError>) -> io::Result<T> {
+    match contained(read) {
+        Some(done) => done.map_err(other),
+        None => Err(io::Error::new(io::ErrorKind::InvalidData, "no reader makes sense of it")),
+    }
+}
+
 /// Parquet file that is read.
 pub struct Reading(SerializedFileReader<File>);
 
 impl Reading {
-    /// Opens a file, and reads its metadata.
-    pub fn open(path: &Path) -> io::Result<Self> {
-        SerializedFileReader::new(File::open(path)?).map(Self).map_err(other)
+    /// Opens a file, and reads what it holds about itself; unless it is known to be whole, its checksum is compared.
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::InvalidData`] of a damaged file; what the file system reports.
+    pub fn open(path: &Path, is_whole: bool) -> io::Result<Self> {
+        let mut file = whole::open(path)?;
+        let length = file.metadata()?.len();
+        let damaged = |why: &str| Err(io::Error::new(io::ErrorKind::InvalidData, why));
+        if length > MOST_BYTES {
+            return damaged("larger than any part");
+        }
+        if !is_whole {
+            let mut bytes = Vec::new();
+            let _ = file.read_to_end(&mut bytes)?;
+            if !checksum::is_right(&bytes) {
+                return damaged("its checksum is wrong");
+            }
+        }
+        let reader = parsed(|| SerializedFileReader::new(file))?;
+        // The reader takes the places of columns on trust.
+        let within = |column: &ColumnChunkMetaData| {
+            let start = column.dictionary_page_offset().unwrap_or(column.data_page_offset());
+            let end = start.checked_add(column.compressed_size());
+            let first = column.data_page_offset();
+            start >= 0
+                && first >= start
+                && column.compressed_size() >= 0
+                && column.num_values() >= 0
+                && end.is_some_and(|end| first <= end && end.cast_unsigned() <= length)
+        };
+        if !reader.metadata().row_groups().iter().flat_map(RowGroupMetaData::columns).all(within) {
+            return damaged("a column lies outside of the file");
+        }
+        Ok(Self(reader))
     }
 
     /// Returns a value of the metadata.
@@ -194,7 +244,7 @@ impl Reading {
 
     /// Returns a column; `None` if the file has no such column.
     pub fn column(&self, name: &str) -> io::Result<Option<ColumnCells>> {
-        self.read(name).map_err(other)
+        parsed(|| self.read(name))
     }
 
     fn read(&self, name: &str) -> Result<Option<ColumnCells>, ParquetError> {
@@ -299,7 +349,7 @@ mod tests {
         ];
         let rows = Rows { fields: Arc::new(fields), columns };
         let file = tempfile(&encode(&rows, &[("a", "b".to_owned())]).expect("encoded"));
-        let reading = Reading::open(&file).expect("a file");
+        let reading = Reading::open(&file, false).expect("a file");
         assert_eq!((reading.rows(), reading.note("a").as_deref()), (3, Some("b")));
         assert_eq!(reading.fields(), rows.fields.to_vec());
         for field in rows.fields.iter() {
@@ -307,8 +357,29 @@ mod tests {
         }
         assert_eq!(reading.column("other").expect("read"), None);
         std::fs::write(&file, b"PAR1 and no more").expect("written");
-        assert!(Reading::open(&file).is_err());
+        assert!(Reading::open(&file, false).is_err());
         std::fs::remove_file(file).expect("removed");
+    }
+
+    /// Every byte of the footer with other values, under a checksum that is right.
+    #[test]
+    fn forged_files_are_errors() {
+        let fields = [ColumnHeading { name: "x".to_owned(), unit: "", kind: ColumnKind::Numbers }];
+        let columns = vec![ColumnCells::Numbers(vec![0.1, f64::NAN, 7.0])];
+        let rows = Rows { fields: Arc::new(fields), columns };
+        let whole = encode(&rows, &[]).expect("encoded");
+        let place = std::env::temp_dir().join(format!("flexsc-forged-{}.parquet", std::process::id()));
+        for at in 4..whole.len() - 4 {
+            for other in [whole[at] ^ 1, whole[at] ^ 0x40, 0x00, 0x7f, 0xff] {
+                let mut bytes = whole.clone();
+                bytes[at] = other;
+                checksum::fill(&mut bytes);
+                std::fs::write(&place, bytes).expect("written");
+                // What it says, it says without a panic.
+                let _ = Reading::open(&place, false).and_then(|reading| reading.column("x"));
+            }
+        }
+        std::fs::remove_file(place).expect("removed");
     }
 
     fn tempfile(bytes: &[u8]) -> std::path::PathBuf {

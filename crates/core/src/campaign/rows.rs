@@ -1,5 +1,6 @@
 //! Rows of a campaign's table, one for each run, held as typed columns.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use toml::Value as Drawn;
@@ -129,6 +130,19 @@ impl ColumnCells {
     /// Returns true if there is no cell.
     pub fn is_empty(&self) -> bool {
         self.len() == 0
+    }
+
+    /// Some of the cells; none beyond the last one.
+    pub fn slice(self, rows: Range<usize>) -> Self {
+        fn cut<T>(cells: Vec<T>, rows: Range<usize>) -> Vec<T> {
+            cells.into_iter().skip(rows.start).take(rows.len()).collect()
+        }
+        match self {
+            Self::Integers(cells) => Self::Integers(cut(cells, rows)),
+            Self::Numbers(cells) => Self::Numbers(cut(cells, rows)),
+            Self::Words(cells) => Self::Words(cut(cells, rows)),
+            Self::Lists(cells) => Self::Lists(cut(cells, rows)),
+        }
     }
 
     /// Returns the number of cells that are not null.

@@ -40,6 +40,7 @@ from flexsc._simulators import Simulators
 from flexsc._table import Table
 from flexsc._topic import Topic
 from flexsc._units import Metrics
+from flexsc._values import checked as _checked
 from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
 
 if TYPE_CHECKING:
@@ -163,7 +164,7 @@ def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
     >>> round(told["cycles"][0]["period_s"], 2)
     44.14
     """
-    told: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(scenario._native))
+    told: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(_checked(scenario)._native))
     return told
 
 

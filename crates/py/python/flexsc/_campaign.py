@@ -11,7 +11,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from flexsc import _native as engine
 from flexsc._scenario import Scenario
 from flexsc._table import Table
-from flexsc._values import run_number
+from flexsc._values import checked, run_number
 
 if TYPE_CHECKING:
     from concurrent.futures import Executor
@@ -78,13 +78,14 @@ def campaign(
     >>> round(table.statistics()["duty"]["mean"], 3)
     0.041
     """
-    numbers = runs if isinstance(runs, range) else range(index(runs))
+    numbers = runs if isinstance(runs, range) else range(_whole("runs", runs))
     if numbers.step != 1 or not numbers:
         raise ValueError(f"runs must be a number of runs, or a non-empty range of step 1, got {runs!r}")
     if not task_s > 0.0:
         raise ValueError(f"task_s must be a positive number, got {task_s}")
     if index(replicas) < 1:
         raise ValueError(f"replicas must be at least 1, got {replicas}")
+    checked(scenario)
     if seed is not None:
         scenario = scenario.with_("seed", seed)
     span = (run_number(numbers.start), run_number(numbers.stop))
@@ -92,7 +93,7 @@ def campaign(
         jobs = 1
     names = None if metrics is None else list(metrics)
     part_s = None if executor is None else task_s
-    work = engine.Work.of(scenario._native, span, [], sample, replicas, names, part_s, yes)
+    work = engine.Work.of(scenario._native, span, [], sample, replicas, names, part_s, yes, True)
     if out is None and executor is None and progress is None:
         return _made(work, jobs)
     if executor is not None and out is None and scenario.parts:
@@ -115,6 +116,7 @@ def sweep(
     *,
     metrics: Sequence[str] | None = None,
     replicas: int = 1,
+    uncertain: bool = False,
 ) -> Table:
     """Simulate a scenario once per value of a key, or per combination of the values of several keys.
 
@@ -130,6 +132,7 @@ def sweep(
         yes: Run even if the estimate is more than 10 h on one core, 4 GB of memory or 20 GB of logs.
         metrics: The metrics in the table; if omitted, all of them.
         replicas: Number of runs per point, in sequence, which differ only in their noise.
+        uncertain: Draw the `[uncertain]` keys too, anew for each point; otherwise they keep their values.
 
     Raises:
         ScenarioError: There is no such key, it does not accept the first or the last value, or a value is not
@@ -143,6 +146,7 @@ def sweep(
     """
     import numpy as np
 
+    checked(scenario)
     if isinstance(key, str) == (values is None):
         raise ValueError("values must be given with a single key, and with no mapping of keys")
     grids = []
@@ -161,7 +165,7 @@ def sweep(
     if jobs is None and scenario.parts:
         jobs = 1
     names = None if metrics is None else list(metrics)
-    work = engine.Work.of(scenario._native, (0, runs), grids, "random", replicas, names, None, yes)
+    work = engine.Work.of(scenario._native, (0, runs), grids, "random", replicas, names, None, yes, uncertain)
     return _made(work, jobs)
 
 
@@ -203,6 +207,14 @@ def _checked(table: Table) -> Table:
             f"{name}: {count} of {count} runs failed; run {table['run'][0]}: {errors[0]}"
         )
     return table
+
+
+def _whole(name: str, number: object) -> int:
+    """Check an integer; a float with the value of one is named as such."""
+    try:
+        return index(number)  # type: ignore[arg-type]
+    except TypeError:
+        raise TypeError(f"{name} must be an integer or a range, got {number!r}") from None
 
 
 def _threads(jobs: int | None) -> int:

@@ -24,6 +24,8 @@ Span = tuple[int, int]
 _AGAIN = 10
 # What schedulers call such an end. Names, so that none of them has to be installed.
 _GIVEN_UP = {"KilledWorker", "FutureCancelledError", "CancelledError", "LostWorkerError"}
+# How often it is looked whether an executor still lives (s).
+_LOOK = 1.0
 # A task has at most so many parts: what is lost with a worker.
 _MOST_PARTS = 64
 _MANIFEST = "manifest.toml"
@@ -75,13 +77,14 @@ class Remote:
             difference = work.difference(there)
             if difference is not None:
                 raise ValueError(f"{self.name}: contains another campaign ({difference})")
-            if there.runs != work.runs:
-                was, now = there.runs, work.runs
-                raise ValueError(
-                    f"{self.name}: has runs {was[0]}:{was[1]} of this campaign, not {now[0]}:{now[1]}"
-                )
-            return there
-        for name in _names(files, f"{root}/{_RUNS}"):
+            whole = work.joined(there)
+            if whole.runs != there.runs:
+                _put(files, at, whole.manifest.encode())
+            return whole
+        parts = [name for name in _names(files, f"{root}/{_RUNS}") if name.startswith("part-")]
+        if parts and not force:
+            raise ValueError(f"{self.name}/{_RUNS}/{parts[0]}: exists, but its campaign is unknown")
+        for name in parts:
             files.rm_file(f"{root}/{_RUNS}/{name}")
         _put(files, at, work.manifest.encode())
         return work
@@ -200,7 +203,11 @@ def hand_out(
                 size = min(max(size, 1), _MOST_PARTS, max(len(waiting) // most, 1))
                 parts, tries = [waiting.pop() for _ in range(min(size, len(waiting)))], 0
             out[executor.submit(*task(parts))] = (parts, tries)
-        for future in wait(out, return_when=FIRST_COMPLETED).done:
+        ended = wait(out, _LOOK, FIRST_COMPLETED).done
+        if not ended:
+            # The tasks of a dead executor end with nothing.
+            getattr(executor, "check", lambda: None)()
+        for future in ended:
             parts, tries = out.pop(future)
             try:
                 took, told = future.result()

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import json
+import os
 import re
 from collections.abc import Callable, Mapping
 from datetime import date, datetime, time
 from operator import index
 from typing import TYPE_CHECKING, Any
 
+from flexsc import _native as engine
 from flexsc._native import ScenarioError
 from flexsc._part import Part
 
@@ -16,6 +18,7 @@ if TYPE_CHECKING:
     import numpy.typing as npt
 
     from flexsc._native import _Column
+    from flexsc._scenario import Scenario
 
 # No scenario is nested deeper; a dictionary may hold itself.
 _DEEPEST = 16
@@ -158,6 +161,14 @@ def objects(items: list[Any]) -> npt.NDArray[Any]:
     for place, item in enumerate(items):
         array[place] = item
     return array
+
+
+def checked(scenario: Scenario) -> Scenario:
+    """Check that an argument is a scenario."""
+    if not isinstance(getattr(scenario, "_native", None), engine.Scenario):
+        hint = ": Scenario.load reads a file" if isinstance(scenario, (str, os.PathLike)) else ""
+        raise TypeError(f"scenario must be a flexsc.Scenario, got {scenario!r}{hint}")
+    return scenario
 
 
 def run_number(number: int) -> int:

@@ -6,11 +6,14 @@ The extra `flexsc[dask]` installs the dependencies. flexsc must also be installe
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 import time
+from _thread import interrupt_main
 from collections.abc import Callable
 from concurrent.futures import Executor, Future
 from importlib import import_module
+from threading import Thread
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
@@ -69,6 +72,15 @@ class _Executor(Executor):
         task.add_done_callback(done)
         return told
 
+    def check(self) -> None:
+        """Raise an error if the scheduler is lost: its tasks never end.
+
+        A client waits for its scheduler to come back, for `distributed.comm.timeouts.connect`, and closes.
+        """
+        status = self._client.status
+        if status not in ("running", "connecting", "newly-created"):
+            raise OSError("the connection to the scheduler is lost: the same call continues the campaign")
+
     def shutdown(self, wait: bool = True, *, cancel_futures: bool = False) -> None:
         """Cancel the unfinished tasks; the client stays open."""
         for task in list(self._kept):
@@ -78,6 +90,7 @@ class _Executor(Executor):
 def main(arguments: list[str] | None = None) -> int:
     """Run the missing parts of a campaign directory on the workers of a scheduler."""
     parser = argparse.ArgumentParser("python -m flexsc.dask", description=main.__doc__)
+    parser.add_argument("--until-stdin-closes", action="store_true", help="end when standard input is closed")
     parser.add_argument("scheduler", help="address of the scheduler, such as tcp://10.0.0.1:8786")
     parser.add_argument("directory", help="directory of a campaign, which all workers reach")
     given = parser.parse_args(arguments)
@@ -86,6 +99,8 @@ def main(arguments: list[str] | None = None) -> int:
     except ImportError:
         print("error: a Dask scheduler needs dask: pip install 'flexsc[dask]'", file=sys.stderr)
         return 2
+    if given.until_stdin_closes:
+        Thread(target=_end_with_stdin, daemon=True).start()
     work = engine.Directory.open(given.directory).work
     began = time.monotonic()
 
@@ -93,10 +108,26 @@ def main(arguments: list[str] | None = None) -> int:
         took = time.monotonic() - began
         print(f"\r{done} of {total} runs, {took:.0f} s", end="", file=sys.stderr, flush=True)
 
-    with distributed.Client(given.scheduler) as client:
-        run(work, Local(given.directory).name, _Executor(client), 0, 1.0, False, progress)
+    try:
+        with distributed.Client(given.scheduler) as client:
+            run(work, Local(given.directory).name, _Executor(client), 0, 1.0, False, progress)
+    except OSError as error:
+        print(f"\nerror: {error}", file=sys.stderr)
+        return 1
+    except KeyboardInterrupt:
+        return 130
     print(file=sys.stderr)
     return 0
+
+
+def _end_with_stdin() -> None:
+    """End this process once whoever started it has ended, or asks for that."""
+    while os.read(0, 4096):
+        pass
+    interrupt_main()
+    # What does not listen to an interrupt is ended all the same; no file is left half written.
+    time.sleep(1.0)
+    os._exit(130)
 
 
 if __name__ == "__main__":

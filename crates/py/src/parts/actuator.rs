@@ -212,8 +212,10 @@ impl Acting {
                 };
                 let count = effort.torques.len();
                 if count != axes || effort.torques.iter().any(|torque| !torque.is_finite()) {
+                    let found =
+                        if count == axes { format!("{:?}", effort.torques) } else { count.to_string() };
                     let why =
-                        format!("command must return a finite torque about each of {axes} axes, got {count}");
+                        format!("command must return a finite torque about each of {axes} axes, got {found}");
                     return Err(PyValueError::new_err(why));
                 }
                 Ok(effort)

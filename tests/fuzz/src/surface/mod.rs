@@ -3,6 +3,7 @@
 mod arguments;
 mod live;
 mod logs;
+mod parts;
 mod records;
 mod results;
 mod scenarios;
@@ -32,6 +33,8 @@ pub enum Surface {
     Arguments,
     /// What viewers send to a live run
     Live,
+    /// Parquet parts of campaigns, to everything that reads them
+    Parts,
 }
 
 /// Maker of the inputs of a surface.
@@ -40,6 +43,7 @@ pub struct Maker {
     seed: u64,
     seeds: Seeds,
     logs: Vec<Vec<u8>>,
+    campaign: Vec<(String, Vec<u8>)>,
 }
 
 /// Material of the inputs.
@@ -84,7 +88,8 @@ impl Maker {
             Surface::Logs | Surface::Arguments => logs::seeds(&seeds)?,
             _ => Vec::new(),
         };
-        Ok(Self { surface, seed, seeds, logs })
+        let campaign = if surface == Surface::Parts { parts::seeds()? } else { Vec::new() };
+        Ok(Self { surface, seed, seeds, logs, campaign })
     }
 
     /// Returns the input of a number.
@@ -94,6 +99,7 @@ impl Maker {
             Surface::Scenarios => scenarios::make(&self.seeds, chance),
             Surface::Structures => structures::make(&self.seeds, chance),
             Surface::Logs => logs::make(&self.logs, &self.seeds, chance),
+            Surface::Parts => parts::make(&self.campaign, chance),
             Surface::Arguments => arguments::make(&self.logs, &self.seeds, chance),
             Surface::Live => live::make(chance),
         }

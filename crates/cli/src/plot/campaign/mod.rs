@@ -31,7 +31,7 @@ const WORST: usize = 3;
 
 pub fn run(args: &Args) -> Result<(), Failure> {
     let directory = args.path.as_path();
-    let target = Target::new(args.out.as_deref(), directory, args.format)?;
+    let target = Target::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
     let files = files(directory)?;
     let mut tables = table::read(directory, &files)?;
     tables.extend(parts::read(directory, &files, &args.metric)?);
@@ -160,8 +160,8 @@ fn drawable(runs: &Runs) -> Vec<What> {
 /// Those of them that are drawn if none is named.
 fn natural(runs: &Runs) -> Vec<What> {
     match runs.swept().len() {
-        1 if runs.drawn().is_empty() => vec![What::Curve],
-        2 if runs.drawn().is_empty() => vec![What::Region],
+        1 => vec![What::Curve],
+        2 => vec![What::Region],
         _ => vec![What::Distribution, What::Scatter],
     }
 }

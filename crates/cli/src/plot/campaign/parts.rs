@@ -67,9 +67,12 @@ pub fn of(
         };
         (texts, column.map_or_else(Vec::new, |column| column.numbers()))
     });
-    let key = |(name, (texts, values)): (&&str, (Texts, Vec<f64>))| {
-        let swept = !scenario.uncertain.contains_key(*name);
-        Key { name: (*name).to_owned(), texts, values, swept }
+    let varied = campaign.design().keys();
+    let key = |(name, (texts, values)): (&&str, (Texts, Vec<f64>))| Key {
+        name: (*name).to_owned(),
+        texts,
+        values,
+        swept: varied.contains(name),
     };
     let keys = keys.iter().zip(columns.by_ref()).map(key).collect();
     let metric = |((_, meaning), (texts, values))| Metric { meaning, texts, values };

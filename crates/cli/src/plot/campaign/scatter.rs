@@ -1,4 +1,4 @@
-//! Figure `scatter`: a metric against each key that was drawn, or else swept, the most telling ones first.
+//! Figure `scatter`: a metric against each key that was swept, or else drawn, the most telling ones first.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
@@ -28,10 +28,10 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     Figure { title, panels, panel_height: 180 }
 }
 
-/// The keys that it shows.
+/// The keys that it shows: those that are swept, else those that are drawn.
 pub fn keys(runs: &Runs) -> Vec<&Key> {
-    let drawn = runs.drawn();
-    if drawn.is_empty() { runs.swept() } else { drawn }
+    let swept = runs.swept();
+    if swept.is_empty() { runs.drawn() } else { swept }
 }
 
 /// Spearman's rank correlation over the pairs of numbers; NaN if either does not vary.

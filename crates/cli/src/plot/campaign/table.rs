@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
 use flexsc_core::metrics::{self, Meaning};
+use flexsc_core::whole;
 
 use crate::campaign::SCENARIO;
 use crate::failure::Failure;
@@ -122,7 +123,7 @@ fn refused(path: &Path, why: &str) -> Failure {
 impl Rows {
     fn read(&mut self, path: &Path) -> Result<(), Failure> {
         let wrong = |error: csv::Error| refused(path, &format!("is not the table of a campaign: {error}"));
-        let mut reader = csv::Reader::from_path(path).map_err(wrong)?;
+        let mut reader = csv::Reader::from_reader(whole::open(path).map_err(|error| wrong(error.into()))?);
         let header: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
         if header.first().map(String::as_str) != Some("run")
             || header.last().map(String::as_str) != Some("error")

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from flexsc import _native as engine
 from flexsc._scenario import Scenario
-from flexsc._values import document, toml
+from flexsc._values import checked, document, toml
 from flexsc.structure._structure import COMPONENTS, Structure, write_modes
 
 
@@ -103,7 +103,7 @@ def write_scenario(scenario: Scenario, path: str | os.PathLike[str]) -> Path:
     >>> modes.name
     'station-modes.csv'
     """
-    values = scenario.to_dict()
+    values = checked(scenario).to_dict()
     if "spacecraft" in values:
         raise ValueError(
             f"{scenario.name}: must have a `[body.spatial]`, got `[spacecraft]`: write `to_toml()` as it is"

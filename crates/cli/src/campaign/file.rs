@@ -1,0 +1,52 @@
+//! The rows of a campaign as one file, CSV or Parquet.
+
+use std::path::Path;
+
+use flexsc_core::campaign::{ColumnCells, RUN, Rows, SECONDS, SEED, Work};
+use serde_json::json;
+
+use super::Kind;
+use crate::failure::Failure;
+use crate::files;
+
+/// Writes rows as one file.
+pub fn write(path: &Path, kind: Kind, work: &Work, rows: &Rows) -> Result<(), Failure> {
+    let bytes = match kind {
+        Kind::Parquet => work.encode(rows).map_err(Failure::write(path))?,
+        Kind::Csv => csv(work, rows).map_err(|error| Failure::write(path)(error.into()))?,
+    };
+    // It was looked for before there were rows.
+    files::write(path, &bytes, true)
+}
+
+fn csv(work: &Work, rows: &Rows) -> Result<Vec<u8>, csv::Error> {
+    let mut writer = csv::Writer::from_writer(Vec::new());
+    // No two campaigns take the same time.
+    let columns: Vec<_> =
+        rows.fields.iter().zip(&rows.columns).filter(|(field, _)| field.name != SECONDS).collect();
+    let keys: Vec<&str> = work.campaign.keys().collect();
+    writer.write_record(columns.iter().map(|(field, _)| &field.name))?;
+    for row in 0..rows.len() {
+        writer.write_record(columns.iter().map(|(field, cells)| {
+            let about = [RUN, SEED].contains(&field.name.as_str()) || keys.contains(&field.name.as_str());
+            cell(cells, row, about)
+        }))?;
+    }
+    Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
+}
+
+/// A cell, as the table in a directory has it: what describes the run as in a scenario, metrics with all digits.
+fn cell(cells: &ColumnCells, row: usize, about: bool) -> String {
+    let text = match cells {
+        ColumnCells::Integers(cells) => cells[row].map(|integer| integer.to_string()),
+        ColumnCells::Numbers(cells) if cells[row].is_nan() => None,
+        ColumnCells::Numbers(cells) if about && cells[row].fract() == 0.0 => {
+            Some(format!("{:.1}", cells[row]))
+        }
+        ColumnCells::Numbers(cells) if about => Some(cells[row].to_string()),
+        ColumnCells::Numbers(cells) => Some(format!("{:e}", cells[row])),
+        ColumnCells::Words(cells) => cells[row].clone(),
+        ColumnCells::Lists(cells) => cells[row].as_ref().map(|list| json!(list).to_string()),
+    };
+    text.unwrap_or_default()
+}

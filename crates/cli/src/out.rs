@@ -1,0 +1,115 @@
+//! Where `-o` leads, by one rule for every command: a path with the ending of a file is that file, any other one a directory.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+use crate::failure::Failure;
+
+/// Endings of files that flexsc or other programs write: no directory is meant to be called so.
+const ENDINGS: [&str; 22] = [
+    "bmp", "csv", "eps", "gif", "htm", "html", "jpeg", "jpg", "json", "jsonl", "mcap", "md", "parquet",
+    "partial", "pdf", "png", "ps", "svg", "tif", "tiff", "toml", "webp",
+];
+
+/// Where results go.
+#[derive(Debug, PartialEq)]
+pub enum Out {
+    /// One file, and which of the accepted endings it has.
+    File(PathBuf, &'static str),
+    /// A directory, in which files have names of their own.
+    Directory(PathBuf),
+}
+
+impl Out {
+    /// Where a path leads that may be a file with one of these endings, or a directory; `inputs` are read for what is written.
+    ///
+    /// # Errors
+    /// A file with another ending, and one that is an input.
+    pub fn new(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Self, Failure> {
+        match at(path, accepted, inputs)? {
+            Some(ending) => Ok(Self::File(path.to_owned(), ending)),
+            None => Ok(Self::Directory(path.to_owned())),
+        }
+    }
+}
+
+/// The ending of a path that must be a file with one of these endings; `inputs` are read for what is written.
+///
+/// # Errors
+/// A file with another ending or none, and one that is an input.
+pub fn file(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<&'static str, Failure> {
+    match at(path, accepted, inputs)? {
+        Some(ending) => Ok(ending),
+        None => Err(Failure::Arguments(format!("-o {}: must end in {}", path.display(), listed(accepted)))),
+    }
+}
+
+/// The accepted ending of a file; none of a directory.
+fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option<&'static str>, Failure> {
+    if let Some(input) = inputs.iter().find(|input| is_same(path, input)) {
+        let (path, input) = (path.display(), input.display());
+        return Err(Failure::Arguments(format!("-o {path}: is the input {input}, which would be lost")));
+    }
+    if path.is_dir() {
+        return Ok(None);
+    }
+    if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+        // A device or a pipe, whatever it is called.
+        return Ok(accepted.first().copied());
+    }
+    let Some(ending) = ending(path) else { return Ok(None) };
+    if let Some(accepted) = accepted.iter().find(|accepted| **accepted == ending) {
+        return Ok(Some(accepted));
+    }
+    let (path, accepted) = (path.display(), listed(accepted));
+    Err(Failure::Arguments(format!(
+        "-o {path}: cannot be written as .{ending}\n\nhint: give a file that ends in {accepted}, or a directory"
+    )))
+}
+
+/// The ending that makes a path one of a file.
+pub fn ending(path: &Path) -> Option<&'static str> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    ENDINGS.into_iter().find(|known| *known == ending)
+}
+
+fn listed(endings: &[&str]) -> String {
+    let all: Vec<String> = endings.iter().map(|ending| format!(".{ending}")).collect();
+    match all.split_last() {
+        Some((last, rest)) if !rest.is_empty() => format!("{} or {last}", rest.join(", ")),
+        _ => all.concat(),
+    }
+}
+
+/// Whether two paths lead to one file: by links of either kind too.
+#[cfg(unix)]
+fn is_same(one: &Path, other: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let file = |path: &Path| fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    let identity = |path: &Path| file(path).map(|file| (file.dev(), file.ino()));
+    identity(one).is_some_and(|one| identity(other) == Some(one))
+}
+
+#[cfg(not(unix))]
+fn is_same(one: &Path, other: &Path) -> bool {
+    let whole = |path: &Path| fs::canonicalize(path).ok().filter(|path| path.is_file());
+    whole(one).is_some_and(|one| whole(other) == Some(one))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn endings_decide() {
+        let of = |path: &str| Out::new(path.as_ref(), &["svg", "csv"], &[]).map_err(|why| why.to_string());
+        assert_eq!(of("a/b.CSV"), Ok(Out::File("a/b.CSV".into(), "csv")));
+        for directory in ["figures", "v1.2", "a.d/b", "x.svg.d", ".svg"] {
+            assert_eq!(of(directory), Ok(Out::Directory(directory.into())), "{directory}");
+        }
+        let refused = of("x.mcap").expect_err("another ending");
+        assert!(refused.contains(".mcap") && refused.contains("ends in .svg or .csv"), "{refused}");
+        let refused = file("x".as_ref(), &["json"], &[]).expect_err("none").to_string();
+        assert_eq!(refused, "-o x: must end in .json");
+    }
+}
