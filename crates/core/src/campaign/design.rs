@@ -13,8 +13,8 @@ pub const MOST_POINTS: u64 = 100_000_000;
 /// Largest number of values in a list or a table, which are held in memory.
 pub const MOST_NUMBERS: usize = 10_000_000;
 
-/// The points of a campaign. With blocks, the points are all combinations of the points of each, counted as numbers
-/// are: those of the last block from point to point. Without, a point is the scenario itself, as often as it is wanted.
+/// The points of a campaign. With blocks, the points are all combinations of the points of each, counted as numbers are: those
+/// of the last block from point to point. Without, a point is the scenario itself, as often as it is wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct PointDesign {

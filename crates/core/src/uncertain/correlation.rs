@@ -9,8 +9,8 @@ use crate::quantity::Finite;
 /// Bound of the rounding errors of a zero variance (`[[1, 1], [1, 1]]` is accepted).
 const ROUNDING: f64 = 1e-12;
 
-/// Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix correlates these
-/// numbers, and each key keeps its own distribution. For normal distributions these are the correlations of the keys.
+/// Correlated keys of `[uncertain]`. Each key is drawn from a standard normal number; the matrix correlates these numbers,
+/// and each key keeps its own distribution. For normal distributions these are the correlations of the keys.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Correlated {
