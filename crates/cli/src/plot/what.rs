@@ -8,9 +8,9 @@ use super::motion::Motion;
 use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
-    accelerations, angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra,
-    frequency, gain, gimbals, hinges, identified, magnetorquers, modes, orbit, outputs, phase_plane,
-    pointing, torque, wheel, wheels,
+    accelerations, angle, attitude_filter, consistency, dead_zone, deflection, drive, drives, envelope,
+    estimate, extra, frequency, gain, gimbals, hinges, identified, magnetorquers, modes, orbit, outputs,
+    phase_plane, pointing, torque, torques, wheel, wheels,
 };
 
 /// A figure.
@@ -18,7 +18,7 @@ use super::{
 pub enum What {
     /// Rate against angle, with the law's switching lines
     PhasePlane,
-    /// Torque; with a switching law, at the end of the run
+    /// Torque; with a switching law, at the end of the run; on three axes by source
     Torque,
     /// Angle of the hub, with its goal and settling time; with a switching law, at the end of the run
     Angle,
@@ -34,6 +34,8 @@ pub enum What {
     Pointing,
     /// Three axes: rates, rigid and at the gyro
     Rates,
+    /// Three axes: deflection of each point of the structure that modes move
+    Deflection,
     /// Three axes: energy of the elastic modes, and propellant
     Energy,
     /// Three axes: position and velocity, where jets or forces move the spacecraft
@@ -89,7 +91,10 @@ impl What {
         let spatial = story.scenario.axis_count() == 3;
         match self {
             Self::PhasePlane => story.switches() && !spatial,
-            Self::Torque | Self::Angle => !spatial,
+            Self::Torque if spatial => torques::of(story),
+            Self::Torque => true,
+            Self::Angle => !spatial,
+            Self::Deflection => deflection::of(story),
             Self::Outputs => !story.scenario.model.outputs().is_empty() && !story.switches(),
             Self::Envelope => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
@@ -126,6 +131,7 @@ impl What {
     pub fn figure(self, story: &Story, motion: &Motion, cycles: &Cycles) -> Option<Figure> {
         Some(match self {
             Self::PhasePlane => phase_plane::figure(story, motion),
+            Self::Torque if story.scenario.axis_count() == 3 => torques::figure(story, cycles),
             Self::Torque if story.switches() => torque::figure(story),
             Self::Torque => drive::figure(story, motion),
             Self::Angle if story.switches() => dead_zone::figure(story, motion),
@@ -137,6 +143,7 @@ impl What {
             Self::Modes => modes::figure(story, motion),
             Self::Pointing => pointing::figure(story, cycles),
             Self::Rates => spatial::rates(story, cycles),
+            Self::Deflection => deflection::figure(story, cycles),
             Self::Energy => spatial::energy(story, cycles),
             Self::Position => spatial::position(story, cycles),
             Self::Jets => spatial::jets(story, cycles),
