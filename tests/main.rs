@@ -90,6 +90,7 @@ mod scene;
 mod several_actuators;
 mod several_sensors;
 mod shaped;
+mod sheets;
 mod spacecraft;
 mod spatial;
 mod state_space;

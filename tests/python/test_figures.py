@@ -79,8 +79,9 @@ def test_axes_are_the_users_own_and_hold_si(run: Result) -> None:
     assert formatter(-4e-4) == "\N{MINUS SIGN}400"
     assert axes.get_title() == ""
     below = plot.draw(run, "envelope", panel=0)
-    assert below.get_xlabel() == "time (ks)"
-    assert below.get_title().startswith("relay-adaptive: envelope")
+    assert below.get_xlabel() == "time (min)"
+    assert [text.get_text() for text in below.get_xticklabels()][:3] == ["0", "10", "20"]
+    assert below.get_title().startswith("Relay adaptive: envelope")
     with pytest.raises(ValueError, match="figure 'angle' has panels 0 to 0, got 1"):
         plot.draw(run, "angle", panel=1)
     with pytest.raises(

@@ -43,7 +43,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
             ),
             Layer::new("", colour::GREY, LayerShape::Line(0.8), level(1.0).to_vec()),
             Layer::new(
-                &format!("moving mean of {window} samples"),
+                &format!("mean of the last {window} samples"),
                 colour::BLUE,
                 LayerShape::Line(1.2),
                 line,

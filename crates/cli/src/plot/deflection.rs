@@ -1,5 +1,5 @@
 //! Figure `deflection` of three axes: by how much the elastic modes move each point of the structure, such as the tip of a
-//! panel, in axes of the hub.
+//! panel, against the first point, in axes of the hub.
 
 use flexsc_core::attitude::Vector;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
@@ -13,18 +13,25 @@ const PANELS: usize = 6;
 /// Colours of the axes.
 const COLOURS: [RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
 
-/// The points that modes move, each with its displacement for a unit of each mode (1/sqrt(kg)). None where drives or hinges
-/// turn the appendages, since modes then have no fixed shapes.
-fn points(story: &Story) -> Vec<(&str, Vec<Vector>)> {
-    let body = story.scenario.model.spatial().filter(|_| story.scenario.study.drives.is_none());
-    let points = body.into_iter().flat_map(|body| {
-        body.points.iter().map(|point| (point.name.as_str(), body.shifts(&point.name, &Vector::zeros())))
-    });
-    points.filter(|(_, shifts)| shifts.iter().any(|shift| shift.norm() > ROUNDING)).collect()
-}
-
 /// A point that a unit of each mode moves by less (1/sqrt(kg)) is part of the hub.
 const ROUNDING: f64 = 1e-9;
+
+/// The points that modes move against the first, each with its displacement for a unit of each mode (1/sqrt(kg)). None where
+/// drives or hinges turn the appendages, since modes then have no fixed shapes.
+fn points(story: &Story) -> Vec<(&str, Vec<Vector>)> {
+    let Some(body) = story.scenario.model.spatial() else { return Vec::new() };
+    if story.scenario.study.drives.is_some() {
+        return Vec::new();
+    }
+    let shifts = |point: &str| body.shifts(point, &Vector::zeros());
+    let first = body.points.first().map_or_else(Vec::new, |point| shifts(&point.name));
+    let against =
+        |point: &str| shifts(point).iter().zip(&first).map(|(shift, first)| shift - first).collect();
+    let points = body.points.iter().map(|point| (point.name.as_str(), against(&point.name)));
+    points
+        .filter(|(_, shifts): &(_, Vec<Vector>)| shifts.iter().any(|shift| shift.norm() > ROUNDING))
+        .collect()
+}
 
 /// Whether there are such points.
 pub fn of(story: &Story) -> bool {
@@ -52,6 +59,6 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let panels = all.iter().take(PANELS).enumerate().map(panel).collect();
     let more = all.len().saturating_sub(PANELS);
     let left = if more > 0 { format!(", points left out: {more}") } else { String::new() };
-    let what = format!("elastic deflection of points, in axes of the hub{left}");
+    let what = format!("elastic deflection, in axes of the hub{left}");
     Figure { title: title(story, &what), panels, panel_height: 160 }
 }

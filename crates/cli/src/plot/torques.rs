@@ -1,4 +1,4 @@
-//! Figure `torque` of three axes: about each axis the torque of the actuators beside that demanded by the law, and the
+//! Figure `torques` of three axes: about each axis the torque of the actuators beside that demanded by the law, and the
 //! disturbances with the environment.
 
 use flexsc_core::attitude::AXES;

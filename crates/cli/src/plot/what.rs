@@ -18,7 +18,7 @@ use super::{
 pub enum What {
     /// Rate against angle, with the law's switching lines
     PhasePlane,
-    /// Torque; with a switching law, at the end of the run; on three axes by source
+    /// Torque; with a switching law, at the end of the run
     Torque,
     /// Angle of the hub, with its goal and settling time; with a switching law, at the end of the run
     Angle,
@@ -34,6 +34,8 @@ pub enum What {
     Pointing,
     /// Three axes: rates, rigid and at the gyro
     Rates,
+    /// Three axes: torques demanded by the law, given by the actuators, and of disturbances
+    Torques,
     /// Three axes: deflection of each point of the structure that modes move
     Deflection,
     /// Three axes: energy of the elastic modes, and propellant
@@ -91,9 +93,8 @@ impl What {
         let spatial = story.scenario.axis_count() == 3;
         match self {
             Self::PhasePlane => story.switches() && !spatial,
-            Self::Torque if spatial => torques::of(story),
-            Self::Torque => true,
-            Self::Angle => !spatial,
+            Self::Torque | Self::Angle => !spatial,
+            Self::Torques => spatial && torques::of(story),
             Self::Deflection => deflection::of(story),
             Self::Outputs => !story.scenario.model.outputs().is_empty() && !story.switches(),
             Self::Envelope => {
@@ -131,7 +132,6 @@ impl What {
     pub fn figure(self, story: &Story, motion: &Motion, cycles: &Cycles) -> Option<Figure> {
         Some(match self {
             Self::PhasePlane => phase_plane::figure(story, motion),
-            Self::Torque if story.scenario.axis_count() == 3 => torques::figure(story, cycles),
             Self::Torque if story.switches() => torque::figure(story),
             Self::Torque => drive::figure(story, motion),
             Self::Angle if story.switches() => dead_zone::figure(story, motion),
@@ -143,6 +143,7 @@ impl What {
             Self::Modes => modes::figure(story, motion),
             Self::Pointing => pointing::figure(story, cycles),
             Self::Rates => spatial::rates(story, cycles),
+            Self::Torques => torques::figure(story, cycles),
             Self::Deflection => deflection::figure(story, cycles),
             Self::Energy => spatial::energy(story, cycles),
             Self::Position => spatial::position(story, cycles),

@@ -1,23 +1,31 @@
 //! The panels of a body with three axes.
 
+use super::Tab;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
 use super::planar::adaptation;
-use super::{Tab, metrics};
 use crate::attitude::AXES;
 use crate::body::Spatial;
 use crate::estimator::Estimator;
 use crate::estimator::attitude::ElasticStates;
+use crate::law::Law;
 use crate::motion::turning::Bearing;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
+
+/// No plot has the energies of more modes.
+const MOST_MODES: usize = 12;
 
 /// The tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     let plot = LayoutPanel::plot;
     let mut motion = vec![
         LayoutPanel::scene(Extent::of(scenario)),
-        plot("error", "Beyond the target (rad)", errors(scenario)),
-        plot("rigid", "Rigid rates (rad/s)", rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", believed")])),
+        plot("error", "Pointing error (rad)", errors(scenario)),
+        plot(
+            "rigid",
+            "Rigid rates (rad/s)",
+            rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", estimated")]),
+        ),
         plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
     ];
     if !scenario.study.jets_alone {
@@ -39,9 +47,8 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     for (index, accelerometer) in scenario.sensor.accelerometers().take(1) {
         let (count, name) = (accelerometer.axis_count(), &scenario.study.sensed_at[index]);
-        let axis = |axis: usize| {
-            line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {}", axis + 1))
-        };
+        let axis =
+            |axis: usize| line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {axis}"));
         let title = format!("Specific force at {name} (m/s²)");
         motion.push(LayoutPanel::plot("accelerations", title, (0..count).map(axis).collect()));
     }
@@ -55,9 +62,8 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     if scenario.study.bearings.iter().any(Bearing::grips) {
         let each = |field: &str| -> Vec<PlotLine> {
-            let of = |wheel: usize| {
-                line(format!("/bearings.wheels[{wheel}].{field}"), format!("wheel {}", wheel + 1))
-            };
+            let of =
+                |wheel: usize| line(format!("/bearings.wheels[{wheel}].{field}"), format!("wheel {wheel}"));
             (0..scenario.study.bearings.len().min(MOST_LINES)).map(of).collect()
         };
         motion.push(plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
@@ -96,7 +102,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     elastic.extend(envelope(scenario));
     if scenario.study.adaptive.is_some() {
-        elastic.push(LayoutPanel::states("trusted", "Observers", channels("trusted")));
+        elastic.push(LayoutPanel::states("trusted", "Observers: lock", channels("trusted")));
     }
     together(scenario, motion, elastic)
 }
@@ -104,9 +110,8 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
 /// The angles of what turns appendages: drives, and hinges.
 fn turning(scenario: &Scenario) -> Vec<LayoutPanel> {
     let lines = |topic: &str, name: &str, count: usize| -> Vec<PlotLine> {
-        let of = |index: usize| {
-            line(format!("/{topic}.{topic}[{index}].angle_rad"), format!("{name} {}", index + 1))
-        };
+        let of =
+            |index: usize| line(format!("/{topic}.{topic}[{index}].angle_rad"), format!("{name} {index}"));
         (0..count.min(MOST_LINES)).map(of).collect()
     };
     let mut panels = Vec::new();
@@ -131,7 +136,7 @@ fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
         return Vec::new();
     }
     let of = |gyro: usize| {
-        line(format!("/control_moment_gyros.gyros[{gyro}].angle_rad"), format!("gimbal {}", gyro + 1))
+        line(format!("/control_moment_gyros.gyros[{gyro}].angle_rad"), format!("gimbal {gyro}"))
     };
     let angles = (0..scenario.study.gimbals.len().min(MOST_LINES)).map(of).collect();
     let measure = vec![line("/control_moment_gyros.singularity", "measure")];
@@ -153,15 +158,8 @@ fn together(scenario: &Scenario, motion: Vec<LayoutPanel>, elastic: Vec<LayoutPa
     if scenario.adaptation.is_some() {
         tabs.push(Tab { title: "Adaptation", panels: adaptation(scenario) });
     }
-    tabs.push(Tab { title: "Log", panels: log(scenario) });
+    tabs.push(Tab { title: "Log", panels: vec![LayoutPanel::log()] });
     tabs
-}
-
-/// The journal, and the metrics.
-fn log(scenario: &Scenario) -> Vec<LayoutPanel> {
-    let mut log = vec![LayoutPanel::log()];
-    log.extend(metrics(scenario));
-    log
 }
 
 /// The envelope with its window means, if there is a monitor.
@@ -181,13 +179,15 @@ fn filter() -> Vec<LayoutPanel> {
             let at = |field: &str| format!("/attitude_filter.axes[{index}].{field}");
             [
                 line(at(field), axis).color(index).thick(),
-                line(at(deviation), format!("{axis}, deviation")).color(index),
+                line(at(deviation), format!("{axis}, standard deviation")).color(index + AXES.len()),
             ]
         };
         AXES.into_iter().enumerate().flat_map(axis).collect::<Vec<_>>()
     };
-    let consistency =
-        vec![line("/attitude_filter.nees", "NEES, about 6"), line("/attitude_filter.nis", "NIS, about 3")];
+    let consistency = vec![
+        line("/attitude_filter.nees", "NEES, 6 if consistent"),
+        line("/attitude_filter.nis", "NIS, 3 if consistent"),
+    ];
     vec![
         LayoutPanel::plot(
             "angles",
@@ -207,15 +207,17 @@ fn filter() -> Vec<LayoutPanel> {
 fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
     let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len()).min(MOST_LINES);
     (0..count)
-        .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {}", wheel + 1)))
+        .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {wheel}")))
         .collect()
 }
 
 fn errors(scenario: &Scenario) -> Vec<PlotLine> {
-    let zone = scenario.study.zones(scenario)[0];
     let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
-    let ends =
-        [("+ dead zone", zone), ("- dead zone", -zone)].into_iter().filter(|(_, value)| value.is_finite());
+    let zone = match scenario.law.about(0) {
+        Law::PhasePlane(law) => Some(law.dead_zone.get()),
+        _ => None,
+    };
+    let ends = zone.into_iter().flat_map(|zone| [("+ dead zone", zone), ("- dead zone", -zone)]);
     errors.chain(ends.map(|(label, value)| line(value.to_string(), label))).collect()
 }
 
@@ -258,7 +260,7 @@ fn energies(scenario: &Scenario, body: &Spatial) -> Vec<PlotLine> {
     let excited = |mode: &usize| push(*mode) / body.modes[*mode].frequency.get();
     let mut modes: Vec<usize> = (0..body.modes.len()).collect();
     modes.sort_by(|a, b| excited(b).total_cmp(&excited(a)));
-    modes.truncate(MOST_LINES - 1);
+    modes.truncate(MOST_MODES);
     modes.sort_unstable();
     let each = modes
         .into_iter()

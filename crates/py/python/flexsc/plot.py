@@ -226,14 +226,25 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
 
 
 def _axis(ax: Axes, side: str, axis: Any, told: dict[str, Any], most: int) -> None:
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
+    from matplotlib.ticker import FuncFormatter
 
     if told["logarithmic"]:
         getattr(ax, f"set_{side}scale")("log")
     else:
-        axis.set_major_locator(MaxNLocator(nbins=most, steps=[1, 2, 5, 10]))
+        axis.set_major_locator(_in_units_of(told["factor"], most))
         axis.set_major_formatter(FuncFormatter(partial(_number, axis, told["factor"])))
     getattr(ax, f"set_{side}lim")(told["low"], told["high"])
+
+
+def _in_units_of(factor: float, most: int) -> Any:
+    """A locator of at most so many ticks at 1, 2 or 5 times a power of ten of a unit."""
+    from matplotlib.ticker import MaxNLocator
+
+    class Locator(MaxNLocator):
+        def tick_values(self, vmin: float, vmax: float) -> Any:
+            return super().tick_values(vmin / factor, vmax / factor) * factor
+
+    return Locator(nbins=most, steps=[1, 2, 5, 10])
 
 
 def _number(axis: Any, factor: float, value: float, _: int | None = None) -> str:
