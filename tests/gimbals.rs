@@ -249,6 +249,6 @@ fn their_summary_and_figure_show_gimbals_and_limits() {
         "singularity measure",
         "momentum (N m s)",
         "limits",
-        "gimbal 3",
+        "gimbal 4",
     ]);
 }

@@ -21,7 +21,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         let own = accelerometer.along.is_empty();
         let layer = |axis: usize| {
             let points: Vec<Point> = rows().map(|(t, row)| (*t, row.axes[axis].measured_m_s2)).collect();
-            let name = if own { ["x", "y", "z"][axis].to_owned() } else { format!("axis {axis}") };
+            let name = if own { ["x", "y", "z"][axis].to_owned() } else { format!("axis {}", axis + 1) };
             Layer::new(&name, COLOURS[axis], LayerShape::Line(0.8), points)
         };
         let axes = if own { 3 } else { accelerometer.along.len() };

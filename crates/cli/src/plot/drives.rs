@@ -38,7 +38,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         cycles.drives.first().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
     let x = time(0.0..story.end);
     let angles = (0..drives)
-        .map(|drive| (format!("drive {drive}"), unwrapped(line(&|row| row.drives[drive].angle_rad))))
+        .map(|drive| (format!("drive {}", drive + 1), unwrapped(line(&|row| row.drives[drive].angle_rad))))
         .collect();
     let highest = |mode: usize| {
         cycles.drives.iter().map(|(_, row)| row.modes[mode].frequency_rad_s).fold(0.0, f64::max)

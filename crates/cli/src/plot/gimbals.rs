@@ -29,7 +29,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         lines.into_iter().enumerate().map(layer).collect()
     };
     let each = |of: fn(&flexsc_core::record::ControlMomentGyro) -> f64| {
-        let gimbal = |index: usize| (format!("gimbal {index}"), line(&|row| of(&row.gyros[index])));
+        let gimbal = |index: usize| (format!("gimbal {}", index + 1), line(&|row| of(&row.gyros[index])));
         named((0..story.scenario.study.gimbals.len()).map(gimbal).collect())
     };
     let values = |layers: &[Layer]| -> Vec<f64> {

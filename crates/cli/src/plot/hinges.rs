@@ -13,7 +13,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let lines = |of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {
         let line =
             |hinge: usize| cycles.hinges.iter().map(|(time, row)| (*time, of(&row.hinges[hinge]))).collect();
-        (0..hinges).map(|hinge| (format!("hinge {hinge}"), line(hinge))).collect()
+        (0..hinges).map(|hinge| (format!("hinge {}", hinge + 1), line(hinge))).collect()
     };
     let x = time(0.0..story.end);
     let angles = alike(x.unnamed(), "angle", "rad", lines(&|hinge| hinge.angle_rad));

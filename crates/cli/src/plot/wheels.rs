@@ -44,7 +44,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
             };
             let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
             layers.extend(lines.into_iter().enumerate().map(|(wheel, points)| {
-                let name = format!("wheel {wheel}");
+                let name = format!("wheel {}", wheel + 1);
                 Layer::new(&name, COLOURS[wheel % COLOURS.len()], LayerShape::Line(1.2), points)
             }));
             Panel::new(x, y, layers)

@@ -47,8 +47,9 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     for (index, accelerometer) in scenario.sensor.accelerometers().take(1) {
         let (count, name) = (accelerometer.axis_count(), &scenario.study.sensed_at[index]);
-        let axis =
-            |axis: usize| line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {axis}"));
+        let axis = |axis: usize| {
+            line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {}", axis + 1))
+        };
         let title = format!("Specific force at {name} (m/s²)");
         motion.push(LayoutPanel::plot("accelerations", title, (0..count).map(axis).collect()));
     }
@@ -62,8 +63,9 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     if scenario.study.bearings.iter().any(Bearing::grips) {
         let each = |field: &str| -> Vec<PlotLine> {
-            let of =
-                |wheel: usize| line(format!("/bearings.wheels[{wheel}].{field}"), format!("wheel {wheel}"));
+            let of = |wheel: usize| {
+                line(format!("/bearings.wheels[{wheel}].{field}"), format!("wheel {}", wheel + 1))
+            };
             (0..scenario.study.bearings.len().min(MOST_LINES)).map(of).collect()
         };
         motion.push(plot("friction", "Friction of the wheels (N m)", each("friction_nm")));
@@ -110,8 +112,9 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
 /// The angles of what turns appendages: drives, and hinges.
 fn turning(scenario: &Scenario) -> Vec<LayoutPanel> {
     let lines = |topic: &str, name: &str, count: usize| -> Vec<PlotLine> {
-        let of =
-            |index: usize| line(format!("/{topic}.{topic}[{index}].angle_rad"), format!("{name} {index}"));
+        let of = |index: usize| {
+            line(format!("/{topic}.{topic}[{index}].angle_rad"), format!("{name} {}", index + 1))
+        };
         (0..count.min(MOST_LINES)).map(of).collect()
     };
     let mut panels = Vec::new();
@@ -136,7 +139,7 @@ fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
         return Vec::new();
     }
     let of = |gyro: usize| {
-        line(format!("/control_moment_gyros.gyros[{gyro}].angle_rad"), format!("gimbal {gyro}"))
+        line(format!("/control_moment_gyros.gyros[{gyro}].angle_rad"), format!("gimbal {}", gyro + 1))
     };
     let angles = (0..scenario.study.gimbals.len().min(MOST_LINES)).map(of).collect();
     let measure = vec![line("/control_moment_gyros.singularity", "measure")];
@@ -207,7 +210,7 @@ fn filter() -> Vec<LayoutPanel> {
 fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
     let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len()).min(MOST_LINES);
     (0..count)
-        .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {wheel}")))
+        .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {}", wheel + 1)))
         .collect()
 }
 

@@ -144,7 +144,7 @@ impl Events {
             (Sliding::Stuck, _) => "slips again",
             _ => "passes through zero speed",
         };
-        let line = format!("wheel {} {what}", event.wheel);
+        let line = format!("wheel {} {what}", event.wheel + 1);
         self.journal.tell(now, (LogLevel::Info, "wheels"), line, record)
     }
 
