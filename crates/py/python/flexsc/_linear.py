@@ -242,8 +242,8 @@ class Linear:
 class Margins:
     """Margins of a loop: how far the commands may be off before the closed loop is unstable.
 
-    They end where a pole is within 1e-8 of the limit of stability, and so are smaller than the true ones. Where a pole
-    lies on the limit at the nominal gain, as of an undamped mode, they may be up to 2e-6 larger.
+    They end where a pole is within 1e-8 of the limit of stability, and so are smaller than the true ones.
+    Where a pole lies on the limit at the nominal gain, as of an undamped mode, they may be up to 2e-6 larger.
 
     >>> flexsc.Scenario.example("rotation-robust").linearise(loop="command").margins().gain_below
     0.0

@@ -33,7 +33,7 @@ def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:
     nominal = beyond(1.0)
     if nominal > _ROUNDING:
         raise ValueError("the closed loop is not stable: it has no margins")
-    # A pole that the loop leaves on the limit, such as an undamped mode, stays there; else margins end short of it.
+    # A pole that the loop leaves on the limit, such as an undamped mode, stays there.
     limit = -_ROUNDING if nominal < -2.0 * _ROUNDING else _ROUNDING
 
     def unstable(factor: complex) -> bool:
