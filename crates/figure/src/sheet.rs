@@ -112,7 +112,7 @@ mod tests {
         let (widths, heights) = (numbers(&sheet, "width"), numbers(&sheet, "height"));
         // The first is the sheet, of two columns.
         assert_eq!(widths[0], 1600);
-        let (x, y) = (numbers(&sheet, " x"), numbers(&sheet, " y"));
+        let (x, y) = (numbers(&sheet, "x"), numbers(&sheet, "y"));
         assert_eq!((x.len(), y.len()), (5, 5), "{sheet}");
         assert!(x.is_sorted() && x[0] == 0 && x[4] == 800);
         let covered: u32 = heights[1..].iter().map(|height| height * 800).sum();
