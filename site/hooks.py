@@ -51,6 +51,8 @@ def on_page_content(content: str, **_: Any) -> str:
         text = text.replace(r"\begin{bmatrix}", r"{\begin{bmatrix}").replace(
             r"\end{bmatrix}", r"\end{bmatrix}}"
         )
-        return convert(text, display=display)
+        drawn = convert(text, display=display)
+        # A wide formula scrolls within its box.
+        return f'<div class="formula">{drawn}</div>' if display == "block" else drawn
 
     return MATH.sub(formula, content)

@@ -1,7 +1,6 @@
 //! Combinations of parts: every combination of law, sensor, estimator and actuator is tried, on one axis and on three.
 //!
-//! Accepted combinations run for 50 s, refused ones name a key and a reason. The table in docs/combinations.md is made
-//! here.
+//! What is accepted runs for 50 s, and what is refused names a key and a reason. The tables in docs/combinations.md are made here.
 
 use std::fmt::Write as _;
 
@@ -58,16 +57,16 @@ const SENSORS: [Kind; 6] = [
 ];
 
 const ESTIMATORS: [Kind; 10] = [
-    ("none", "-", ""),
-    ("envelope", "E", "envelope = { window = 10.0 }"),
-    ("truth", "T", "truth = {}"),
-    ("kalman", "K", "kalman = { angle_noise = 1e-6 }"),
-    ("extended_kalman", "X", "extended_kalman = { angle_noise = 1e-6 }"),
-    ("unscented_kalman", "U", "unscented_kalman = { angle_noise = 1e-6 }"),
-    ("attitude", "Q", "attitude = {}"),
-    ("attitude with modes", "M", "attitude = { elastic = { modes = [0], noise = 1e-6 } }"),
-    ("rigid_rate", "R", "rigid_rate = { correction = 0.05 }"),
-    ("adaptive", "A", "adaptive = {}"),
+    ("none", "", ""),
+    ("envelope", "", "envelope = { window = 10.0 }"),
+    ("truth", "", "truth = {}"),
+    ("kalman", "", "kalman = { angle_noise = 1e-6 }"),
+    ("extended_kalman", "", "extended_kalman = { angle_noise = 1e-6 }"),
+    ("unscented_kalman", "", "unscented_kalman = { angle_noise = 1e-6 }"),
+    ("attitude", "", "attitude = {}"),
+    ("attitude with modes", "", "attitude = { elastic = { modes = [0], noise = 1e-6 } }"),
+    ("rigid_rate", "", "rigid_rate = { correction = 0.05 }"),
+    ("adaptive", "", "adaptive = {}"),
 ];
 
 const ACTUATORS: [Kind; 14] = [
@@ -227,24 +226,24 @@ fn combined(
     Scenario::parse("combination.toml", &text)
 }
 
-/// Returns the table of accepted combinations on a body, and their number; each is run.
-fn table(body: &str) -> (String, usize) {
+/// The tables of what is accepted on a body, one of each law, and how many combinations that are; each is run.
+fn tables(body: &str) -> (String, usize) {
     let mut accepted = 0;
-    let mut table = format!("| law |{}\n|---|", ACTUATORS.map(|kind| format!(" {} |", kind.0)).concat());
-    writeln!(table, "{}", "---|".repeat(ACTUATORS.len())).expect("a text");
+    let mut tables = String::new();
     for law in LAWS {
-        write!(table, "| {} |", law.0).expect("a text");
+        let mut rows = String::new();
         for actuator in ACTUATORS {
-            let mut cell = String::new();
+            let mut row = format!("| {} |", actuator.0);
+            let before = accepted;
             for estimator in ESTIMATORS {
-                let mut with = String::new();
+                row.push(' ');
                 for sensor in SENSORS {
                     match combined(body, law, sensor, estimator, actuator) {
                         Ok(scenario) => {
                             let name = [law.0, sensor.0, estimator.0, actuator.0].join(", ");
                             run(&scenario, &name);
                             accepted += 1;
-                            with += sensor.1;
+                            row += sensor.1;
                         }
                         Err(error) => {
                             let text = error.to_string();
@@ -252,15 +251,25 @@ fn table(body: &str) -> (String, usize) {
                         }
                     }
                 }
-                if !with.is_empty() {
-                    write!(cell, " {}:{with}", estimator.1).expect("a text");
-                }
+                row += if row.ends_with(' ') { "|" } else { " |" };
             }
-            write!(table, "{cell} |").expect("a text");
+            // An actuator that goes with nothing has no row.
+            if accepted > before {
+                rows += &row;
+                rows.push('\n');
+            }
         }
-        table.push('\n');
+        if rows.is_empty() {
+            writeln!(tables, "### {}\n\nNot on this body.\n", law.0).expect("a text");
+            continue;
+        }
+        let head = ESTIMATORS.map(|kind| format!(" {} |", kind.0)).concat();
+        let rule = "---|".repeat(ESTIMATORS.len());
+        writeln!(tables, "### {}\n\n| actuator |{head}\n|---|{rule}\n{rows}", law.0).expect("a text");
     }
-    (table, accepted)
+    tables.truncate(tables.trim_end().len());
+    tables.push('\n');
+    (tables, accepted)
 }
 
 /// Runs a combination to its end, with all that a full log holds.
@@ -281,14 +290,14 @@ fn parts_combine_as_the_documents_say() {
         ("A spacecraft from parts", SPACECRAFT, 3747),
         ("A spacecraft with panels that turn, on a drive and on a hinge", &turning, 3416),
     ];
-    let tables: Vec<_> = std::thread::scope(|scope| {
-        let threads: Vec<_> = bodies.iter().map(|(_, body, _)| scope.spawn(|| table(body))).collect();
+    let all_tables: Vec<_> = std::thread::scope(|scope| {
+        let threads: Vec<_> = bodies.iter().map(|(_, body, _)| scope.spawn(|| tables(body))).collect();
         threads.into_iter().map(|thread| thread.join().expect("a table")).collect()
     });
     let mut made = Vec::new();
-    for ((name, _, least), (table, accepted)) in bodies.iter().zip(tables) {
+    for ((name, _, least), (tables, accepted)) in bodies.iter().zip(all_tables) {
         assert!(accepted >= *least, "{name}: {accepted}");
-        made.push(format!("## {name}\n\n{accepted} of {all} combinations.\n\n{table}"));
+        made.push(format!("## {name}\n\n{accepted} of {all} combinations.\n\n{tables}"));
     }
     let made = made.join("\n");
     let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/combinations.md");

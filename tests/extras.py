@@ -14,8 +14,16 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 RUN = "run = flexsc.Scenario.example('relay-fixed').with_('duration', 600.0).simulate()"
 # What each extra is for. One that has no line is imported beside the package.
+# Without extras, everything that walks through the package works: help, completion, `import *`.
+WALK = (
+    "import contextlib, inspect, io, rlcompleter; from flexsc import *; assert hasattr(flexsc, 'plot'); "
+    "assert dict(inspect.getmembers(flexsc)).keys() == set(dir(flexsc)) == set(flexsc.__all__); "
+    "assert rlcompleter.Completer({'flexsc': flexsc}).complete('flexsc.pl', 0) == 'flexsc.plot'; "
+    "text = io.StringIO(); stack = contextlib.redirect_stdout(text); stack.__enter__(); help(flexsc); "
+    "stack.__exit__(None, None, None); assert 'Simulator' in text.getvalue()"
+)
 USES = {
-    "": f"import flexsc; {RUN}; assert run.at(12.5)",
+    "": f"import flexsc; {RUN}; assert run.at(12.5); {WALK}",
     "plot": f"import flexsc, flexsc.plot; {RUN}; assert flexsc.plot.draw(run, 'angle')",
     "control": "import flexsc; assert flexsc.Scenario.example('rotation-robust').linearise().control()",
     "dask": "import flexsc.dask",

@@ -296,3 +296,53 @@ fn a_long_log_has_some_ten_thousand_instants() {
     let log = Log::open(&dir.path("relay-adaptive.mcap")).expect("a log");
     assert_eq!(log.columns("/tf").expect("frames").len(), 20_001);
 }
+
+/// The layout of a scenario, as JSON.
+fn layout_of(scenario: &str) -> Value {
+    let dir = Dir::with(&[scenario]);
+    dir.run(&format!("layout {scenario}.toml -o layout.json")).exits(0);
+    serde_json::from_str(&dir.text("layout.json")).expect("JSON")
+}
+
+/// Labels, colours, and whether lines join the points, of a plot.
+fn lines(layout: &Value, plot: &str) -> Vec<(String, String, bool)> {
+    let paths = layout["configById"][plot]["paths"].as_array().unwrap_or_else(|| panic!("{plot}"));
+    let text = |path: &Value, key: &str| path[key].as_str().expect("a text").to_owned();
+    let told = |path: &Value| (text(path, "label"), text(path, "color"), path["showLine"] == true);
+    paths.iter().map(told).collect()
+}
+
+#[test]
+fn plots_show_what_the_run_has_and_no_more() {
+    let observer = layout_of("earth-observer");
+    let labels = |layout: &Value, plot: &str| -> Vec<String> {
+        lines(layout, plot).into_iter().map(|line| line.0).collect()
+    };
+    // A PD law has no dead zone; one in the phase plane has.
+    assert_eq!(labels(&observer, "Plot!error"), ["roll", "pitch", "yaw"]);
+    let station = layout_of("iss-manoeuvre");
+    assert_eq!(labels(&station, "Plot!error"), ["roll", "pitch", "yaw", "+ dead zone", "- dead zone"]);
+    // All eight modes, and their sum.
+    assert_eq!(labels(&observer, "Plot!energy").len(), 9);
+    // An error and its deviation can be told apart.
+    let angles = lines(&observer, "Plot!angles");
+    for pair in angles.chunks(2) {
+        assert_ne!(pair[0].1, pair[1].1, "{pair:?}");
+    }
+    assert_eq!(angles[1].0, "roll, standard deviation");
+    // What is empty until the end has a tab of its own.
+    let tabs = observer["configById"]["Tab!run"]["tabs"].as_array().expect("tabs");
+    let titles: Vec<&str> = tabs.iter().map(|tab| tab["title"].as_str().expect("a title")).collect();
+    assert_eq!(titles, ["Motion", "Attitude filter", "Elastic modes", "Log", "Metrics at the end"]);
+    assert_eq!(tabs[3]["layout"], "RosOut!log");
+}
+
+/// Viewers mark each point of a line of few points in black, which hides a line of about as many points as pixels.
+#[test]
+fn curves_of_few_samples_keep_their_colours() {
+    let deployment = layout_of("panel-deployment");
+    assert!(lines(&deployment, "Plot!hinges").iter().all(|line| !line.2));
+    // More points than pixels, and points of a sensor.
+    assert!(lines(&layout_of("earth-observer"), "Plot!rigid").iter().all(|line| line.2));
+    assert!(lines(&deployment, "Plot!angles").iter().all(|line| line.2));
+}

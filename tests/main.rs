@@ -95,6 +95,7 @@ mod scene;
 mod several_actuators;
 mod several_sensors;
 mod shaped;
+mod sheets;
 mod spacecraft;
 mod spatial;
 mod state_space;

@@ -49,7 +49,7 @@ fn every_figure_is_drawn_in_both_forms() {
         let document = Document::parse(&svg).expect("well-formed XML");
         let texts: Vec<_> = document.descendants().filter_map(|node| node.text()).map(str::trim).collect();
         assert!(axes.iter().all(|axis| texts.contains(axis)), "{figure}: {texts:?}");
-        assert!(texts.iter().any(|text| text.starts_with("relay-adaptive: ")), "{figure}");
+        assert!(texts.iter().any(|text| text.starts_with("Relay adaptive: ")), "{figure}");
 
         let root = document.root_element();
         let pixels = |name: &str| root.attribute(name).expect("a size").parse::<u32>().expect("a number");

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from types import SimpleNamespace
 from typing import Any
 
 import flexsc
@@ -9,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 import pytest
 from conftest import shipped
+from flexsc._margins import margins
 from flexsc.parts import Authority, Event
 from scipy.linalg import expm
 from scipy.signal import StateSpace, cont2discrete
@@ -329,3 +331,12 @@ def test_python_control_takes_and_gives_models() -> None:
         for run in (scenario.with_law(discrete), scenario.with_law(lead, 0.5, method="tustin"))
     ]
     np.testing.assert_allclose(runs[0], runs[1], rtol=1e-9, atol=1e-12)
+
+
+def test_margins_are_on_the_safe_side() -> None:
+    # The pole of x + u with u = -k x lies at 1 - k: the loop is stable up to k = 2 exactly.
+    one = np.ones((1, 1))
+    signals = [SimpleNamespace(name="command")]
+    loop = SimpleNamespace(a=one, b=one, c=one, d=0.0 * one, period=1.0, inputs=signals)
+    found = margins(loop, None)
+    assert 2.0 - 1e-7 < found.gain_above < 2.0

@@ -61,3 +61,7 @@ def test_scenarios_and_tables_are_shown(sampled: Scenario) -> None:
     [figure] = figures(table._repr_html_())
     assert "8 runs" in "".join(figure.itertext())
     assert figures(flexsc.campaign(sampled, runs=1)._repr_html_()) == []
+    # Without keys that vary there is no scatter.
+    for same in ("relay-fixed", "wheel-ekf"):
+        plain = flexsc.campaign(shipped(same).with_("duration", 300.0), runs=3)
+        assert "3 runs" in plain._repr_html_()

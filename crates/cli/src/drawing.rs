@@ -135,11 +135,7 @@ impl Target {
             Self::Directory(directory, format) => save_each(directory, (*format, style), figures, json),
             Self::File(path, format, force) => {
                 let undrawn = |why| Failure::Draw { path: path.clone(), why };
-                let drawn = figures
-                    .par_iter()
-                    .map(|(_, figure)| figure.laid_out(&style))
-                    .collect::<Result<Vec<_>, _>>();
-                let svg = sheet(&drawn.map_err(undrawn)?);
+                let svg = sheet(figures.iter().map(|(_, figure)| figure), &style).map_err(undrawn)?;
                 let bytes = format.bytes(&svg, &style, &Renderer::default()).map_err(undrawn)?;
                 let names: Vec<&str> = figures.iter().map(|(name, _)| name.as_str()).collect();
                 files::write(path, &bytes, *force)?;

@@ -53,6 +53,10 @@ const ALIKE: f64 = 10.0;
 /// Names of the three axes of one quantity.
 const DIRECTIONS: [&str; 6] = ["roll", "pitch", "yaw", "x", "y", "z"];
 
+/// Units of a long time: the longest range (s) that each shows, its name and its length (s).
+const TIMES: [(f64, &str, f64); 4] =
+    [(2500.0, "s", 1.0), (10_800.0, "min", 60.0), (345_600.0, "h", 3600.0), (f64::INFINITY, "d", 86_400.0)];
+
 /// SI prefixes, from the smallest.
 const PREFIXES: [(&str, i32); 7] = [("p", -12), ("n", -9), ("µ", -6), ("m", -3), ("", 0), ("k", 3), ("M", 6)];
 
@@ -140,13 +144,23 @@ impl FigureAxis {
                 "M" => format!("{name} (t)"),
                 prefix => format!("{name} ({prefix}g)"),
             },
+            (name, "s") if self.long().is_some() => {
+                format!("{name} ({})", self.long().map_or("s", |unit| unit.0))
+            }
             (name, unit) => format!("{name} ({}{unit})", self.prefix().0),
         }
     }
 
     /// Returns the size of the prefixed unit in the axis' own unit.
     pub fn factor(&self) -> f64 {
-        10_f64.powi(self.prefix().1 - self.own())
+        self.long().map_or_else(|| 10_f64.powi(self.prefix().1 - self.own()), |unit| unit.1)
+    }
+
+    /// The name and the length (s) of the unit of a time that has no prefix.
+    fn long(&self) -> Option<(&'static str, f64)> {
+        let shown = self.range.end - self.range.start;
+        let (_, name, length) = TIMES.into_iter().find(|(most, ..)| shown <= *most)?;
+        (self.unit == "s" && self.scale == Scale::Linear && shown >= 2.5).then_some((name, length))
     }
 
     /// Returns the ticks, about `most` at most.
@@ -189,7 +203,7 @@ impl FigureAxis {
         }
         let size = self.size().max(self.beside) * 10_f64.powi(self.own());
         let half = (self.range.end - self.range.start) / 2.0;
-        // Times are in seconds for ranges up to 2500 s, even if they are late.
+        // A short time has the prefix of its length, however late it is.
         let measure = if self.unit == "s" { half } else { size };
         let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(measure / 10_f64.powi(*power)));
         PREFIXES.iter().find(fits).copied().unwrap_or(("", self.own()))
@@ -253,8 +267,14 @@ mod tests {
         assert_eq!(angle.label(), "angle x (µrad)");
         assert_eq!(texts(&angle, 7), ["−600", "−400", "−200", "0", "200", "400", "600"]);
         let time = FigureAxis::exact("time", "s", 0.0..20_000.0);
-        assert_eq!(time.label(), "time (ks)");
-        assert_eq!(texts(&time, 4), ["0", "5", "10", "15", "20"]);
+        assert_eq!(time.label(), "time (h)");
+        assert_eq!(texts(&time, 6), ["0", "1", "2", "3", "4", "5"]);
+        let minutes = FigureAxis::exact("time", "s", 0.0..4000.0);
+        assert_eq!((minutes.label().as_str(), minutes.factor()), ("time (min)", 60.0));
+        assert_eq!(texts(&minutes, 4), ["0", "20", "40", "60"]);
+        assert_eq!(FigureAxis::exact("time", "s", 0.0..2500.0).label(), "time (s)");
+        assert_eq!(FigureAxis::exact("time", "s", 0.0..1e6).label(), "time (d)");
+        assert_eq!(FigureAxis::exact("pulse", "s", 0.0..0.02).label(), "pulse (ms)");
         let short = FigureAxis::exact("time", "s", 0.0..3.0);
         assert_eq!(texts(&short, 4), ["0", "1", "2", "3"]);
         let late = FigureAxis::exact("time", "s", 19_900.0..20_000.0);

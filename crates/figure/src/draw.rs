@@ -38,11 +38,18 @@ struct Layout {
 }
 
 impl Layout {
-    fn of(figure: &Figure, width: u32) -> Self {
+    /// The layout of a figure of this width, each of whose plots is higher than usual (px).
+    fn of(figure: &Figure, width: u32, higher: u32) -> Self {
         let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
         // Narrow figures are also lower, but less than proportionally.
         let plot = f64::from(figure.panel_height) * part.powf(0.6);
-        Self { width, plot: plot.round() as u32 }
+        Self { width, plot: plot.round() as u32 + higher }
+    }
+
+    /// The height of a figure below a title of so many lines (px).
+    fn height(self, figure: &Figure, lines: usize) -> u32 {
+        let title = TITLE + LINE * (lines.max(1) as u32 - 1);
+        title + figure.panels.iter().map(|panel| self.panel(panel)).sum::<u32>()
     }
 
     /// Returns the width of a plot (px).
@@ -59,7 +66,7 @@ impl Layout {
     fn entries(self, panel: &Panel) -> Vec<(&Layer, (u32, u32))> {
         let (mut row, mut left) = (0, LEFT);
         let mut entries = Vec::new();
-        for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && !layer.points.is_empty()) {
+        for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && layer.is_shown(panel)) {
             let wide = 23 + letters(&layer.name);
             if left > LEFT && left + wide > self.width {
                 (row, left) = (row + 1, LEFT);
@@ -106,13 +113,17 @@ fn title_lines(title: &str, width: u32) -> Vec<String> {
     lines
 }
 
-/// Draws the figure as SVG with a width in pixels.
-pub fn svg(figure: &Figure, width: u32) -> Result<String, Error> {
-    let layout = Layout::of(figure, width);
+/// The height of a figure that is so many pixels wide (px).
+pub fn height(figure: &Figure, width: u32) -> u32 {
+    Layout::of(figure, width, 0).height(figure, title_lines(&figure.title, width).len())
+}
+
+/// The figure as SVG, so many pixels wide, each plot higher than usual by so much (px).
+pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
+    let layout = Layout::of(figure, width, higher);
     let lines = title_lines(&figure.title, width);
     let title = TITLE + LINE * (lines.len().max(1) as u32 - 1);
-    let heights = figure.panels.iter().map(|panel| layout.panel(panel));
-    let height = title + heights.sum::<u32>();
+    let height = layout.height(figure, lines.len());
     let mut svg = String::new();
     {
         let root = SVGBackend::with_string(&mut svg, (width * UNITS, height * UNITS)).into_drawing_area();
@@ -180,8 +191,7 @@ fn draw_panel(area: &Area<'_>, (panel, y): (&Panel, &FigureAxis), layout: Layout
         match layer.shape {
             LayerShape::Line(_) | LayerShape::Dashes => {
                 for piece in pieces(&points, &plot.window) {
-                    let piece =
-                        thin(&piece, &plot.window, 2 * plot.across).into_iter().map(|p| plot.place(p));
+                    let piece = thin(&piece, &plot.window, plot.across).into_iter().map(|p| plot.place(p));
                     draw_line(area, layer, straighten(&piece.collect::<Vec<_>>()))?;
                 }
             }
@@ -275,6 +285,14 @@ fn draw_mark(area: &Area<'_>, layer: &Layer, (x, y): (i32, i32)) -> Result<(), E
 }
 
 impl Layer {
+    /// Whether a panel shows any of it.
+    fn is_shown(&self, panel: &Panel) -> bool {
+        let is_mark = !matches!(self.shape, LayerShape::Line(_) | LayerShape::Dashes | LayerShape::Area(_));
+        let window = Window { x: panel.x.extent(), y: panel.y.extent() };
+        let inside = |(x, y): &Point| window.contains((panel.x.place(*x), panel.y.place(*y)));
+        if is_mark { self.points.iter().any(inside) } else { !self.points.is_empty() }
+    }
+
     fn style(&self) -> ShapeStyle {
         match self.shape {
             LayerShape::Line(width) => stroke(self.colour, width),

@@ -121,7 +121,7 @@ impl Figure {
 
     /// Returns the figure as SVG, laid out for a style but in pixels of the layout: [`Style::sized`] sets its size.
     pub fn laid_out(&self, style: &Style) -> Result<String, String> {
-        draw::svg(self, style.layout_width()).map_err(|error| error.to_string())
+        draw::svg(self, style.layout_width(), 0).map_err(|error| error.to_string())
     }
 }
 

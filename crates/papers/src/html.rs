@@ -37,8 +37,8 @@ pub fn page(sections: &[Section], took: f64, threads: usize) -> String {
     format!(
         "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-         <title>flexsc: what the papers say, and what we measure</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
-         <h1>What the papers say, and what we measure</h1>\n\
+         <title>flexsc: published results and our values</title>\n<style>\n{STYLE}</style>\n</head>\n<body>\n\
+         <h1>Published results and our values</h1>\n\
          <p class=\"about\">Made by <code>flexsc reproduce</code>, version {version}, on {system} ({machine}) with {threads} threads in \
          {took:.1} s. {} verdicts, {known}: {holds} statements hold, {} do not. {figures} figures. Every number under \"we measure\" \
          was computed for this page by the command beside it.</p>\n<ul class=\"contents\">\n{}</ul>\n{}\

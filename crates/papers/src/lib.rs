@@ -69,5 +69,5 @@ pub fn documentation(sections: &[String]) -> String {
     format!("{HEAD}\n{}", sections.join("\n"))
 }
 
-const HEAD: &str = "# What the papers say, and what we measure\n\n\
+const HEAD: &str = "# Published results and our values\n\n\
     <!-- Written by `flexsc reproduce -o . --docs docs` from crates/papers/templates: change it there. -->\n";

@@ -6,6 +6,8 @@ use flexsc_figure::{
     Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, ScalarField, colour,
 };
 
+use crate::plot::readable;
+
 /// The values that the bar tells: finest near 1, where stability ends.
 const EDGES: [f64; 13] = [0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3];
 /// The colours between them: blue where the loop is stable, orange where it is not, darker farther from 1 (after Brewer).
@@ -86,7 +88,7 @@ pub fn figure(name: &str, cells: &[MapCell], own: Point) -> Figure {
         edges: limits[lowest..highest].iter().map(|(_, text)| text.clone()).collect(),
     };
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
-    let title = format!("{name}: stability of the sampled loop");
+    let title = format!("{}: stability of the sampled loop", readable(name));
     Figure { title, panels: vec![panel], panel_height: 420 }
 }
 

@@ -10,6 +10,7 @@ use flexsc_core::manoeuvre::Plan;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour, name_and_unit};
 
 use super::family::{Family, Member};
+use crate::plot::readable;
 
 /// Points of a line, at least and at most.
 const FEWEST: f64 = 1500.0;
@@ -106,7 +107,7 @@ impl Family<'_> {
             Layer::new(name, *colour, LayerShape::Line(1.5), points)
         };
         let layers = below.into_iter().chain(self.members.iter().zip(lines).map(layer)).collect();
-        let title = format!("{}: {what}", self.name);
+        let title = format!("{}: {what}", readable(&self.name));
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 

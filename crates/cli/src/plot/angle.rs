@@ -30,11 +30,16 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         };
         let mut above: Vec<Layer> = arrival(story, &whole).into_iter().collect();
         above.extend([
-            Layer::new("hub", colour::BLACK, LayerShape::Line(1.4), over_time(&motion.angle)),
-            Layer::new("goal of a rigid body", colour::ORANGE, LayerShape::Dashes, over_time(&motion.goal)),
+            Layer::new("angle of the hub", colour::BLACK, LayerShape::Line(1.4), over_time(&motion.angle)),
+            Layer::new("commanded angle", colour::ORANGE, LayerShape::Dashes, over_time(&motion.goal)),
         ]);
         let mut below: Vec<Layer> = arrival(story, &beyond).into_iter().chain(marks(&beyond)).collect();
-        below.push(Layer::new("hub less goal", colour::BLUE, LayerShape::Line(1.2), over_time(&error)));
+        below.push(Layer::new(
+            "angle minus commanded angle",
+            colour::BLUE,
+            LayerShape::Line(1.2),
+            over_time(&error),
+        ));
         vec![Panel::new(x.unnamed(), whole, above), Panel::new(x, beyond, below)]
     } else {
         let whole = FigureAxis::around("angle", "rad", motion.angle.iter().copied());

@@ -4,9 +4,10 @@
 use flexsc_core::record::AxisEstimate;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
+use super::pointing::{decades, norm};
 use super::spatial::{Cycles, panels};
 use super::story::Story;
-use super::{time, title};
+use super::{consistency, time, title};
 
 /// Chi-square of six degrees of freedom lies between these with a probability of 95 %, over six.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
@@ -32,18 +33,33 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     if let Some(last) = panels.last_mut() {
         last.x = last.x.unnamed();
     }
+    let norm_of = |of: fn(&AxisEstimate) -> f64| -> Vec<Point> {
+        cycles
+            .attitude
+            .iter()
+            .map(|(time, row)| (*time, norm([0, 1, 2].map(|axis| of(&row.axes[axis])))))
+            .collect()
+    };
+    let layers = vec![
+        Layer::new("", colour::GREEN, LayerShape::Line(1.4), norm_of(|axis| 3.0 * axis.angle_sd_rad)),
+        Layer::new("", colour::BLUE, LayerShape::Line(1.0), norm_of(|axis| axis.angle_error_rad)),
+    ];
+    let lengths = decades(story, "norm", layers);
+    panels.push(Panel { x: lengths.x.unnamed(), ..lengths });
     let nees: Vec<Point> = cycles.attitude.iter().map(|(time, row)| (*time, row.nees)).collect();
+    let mean = consistency::mean(story, &nees);
     let level = |height: f64| [(0.0, height), (story.end, height)];
     let y = FigureAxis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));
-    let layers = vec![
+    let mut layers = vec![
         Layer::new(
             "95 % of chi-square",
             colour::GREEN,
             LayerShape::Area(0.2),
             band(&level(INSIDE[0]), &level(INSIDE[1])),
         ),
-        Layer::new("NEES", colour::BLUE, LayerShape::Line(1.0), nees),
+        Layer::new("NEES / states", colour::BLUE, LayerShape::Line(1.0), nees),
     ];
+    layers.extend(mean);
     panels.push(Panel::new(time(0.0..story.end), y, layers));
     Figure { title: title(story, "consistency of the attitude filter"), panels, panel_height: 160 }
 }

@@ -47,6 +47,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
                 line,
             ),
         ]);
+        layers.extend(mean(story, &values));
         Panel::new(time(0.0..story.end), y, layers)
     };
     // Innovations of an honest filter are independent from sample to sample. Errors are not: within a window they are nearly
@@ -55,6 +56,21 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let nees = panel("NEES / states", |e| e.nees, states.max(1), 1, false);
     let panels = vec![Panel { x: nis.x.unnamed(), ..nis }, nees];
     Figure { title: title(story, "consistency of the filter"), panels, panel_height: 200 }
+}
+
+/// A line at the mean of the values in the interval in which the metrics assess the filter; none without values.
+pub fn mean(story: &Story, values: &[Point]) -> Option<Layer> {
+    let [from, to] = story.scenario.estimator.as_ref()?.assess();
+    let to = to.min(story.end);
+    let inside = || values.iter().filter(|(time, value)| (from..=to).contains(time) && value.is_finite());
+    let mean = inside().map(|point| point.1).sum::<f64>() / inside().count() as f64;
+    let name = if from > 0.0 || to < story.end {
+        format!("mean {mean:.2} from {from} to {to} s")
+    } else {
+        format!("mean {mean:.2}")
+    };
+    let line = vec![(from, mean), (to, mean)];
+    mean.is_finite().then(|| Layer::new(&name, colour::VERMILLION, LayerShape::Dashes, line))
 }
 
 /// Means over so many samples in a row, each at the last of them. A sample without a value counts in none.

@@ -44,9 +44,9 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let panels = match (rest.is_empty(), executed || acts(planned)) {
         _ if wheel => {
             // No manoeuvre is planned for a wheel; what the law asks of it may be far more than it gives.
-            let mut on_body: Vec<(&str, _, &[f64])> = vec![("of the wheel", colour::BLACK, applied)];
+            let mut on_body: Vec<(&str, _, &[f64])> = vec![("given by the wheel", colour::BLACK, applied)];
             on_body.extend(rest.iter().filter(|(name, ..)| *name == "disturbance").copied());
-            let asked = [("asked of the wheel", colour::BLUE, feedback.as_slice())];
+            let asked = [("demanded by the law", colour::BLUE, feedback.as_slice())];
             vec![panel(x.unnamed(), name, unit, &on_body), panel(x, name, unit, &asked)]
         }
         (true, _) => vec![panel(x, name, unit, &main)],

@@ -18,6 +18,9 @@ const COLOURS: [plotters::style::RGBColor; 7] = [
     colour::GREY,
 ];
 
+/// A frequency that never falls below this part of its highest value is constant.
+const CONSTANT: f64 = 0.999;
+
 /// A panel of a line for each of several things alike.
 pub fn alike(x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>) -> Panel {
     let values: Vec<f64> = lines.iter().flat_map(|(_, points)| points).map(|(_, value)| *value).collect();
@@ -40,7 +43,14 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let highest = |mode: usize| {
         cycles.drives.iter().map(|(_, row)| row.modes[mode].frequency_rad_s).fold(0.0, f64::max)
     };
-    let frequencies = (0..modes)
+    let varies = |mode: &usize| {
+        let lowest = cycles.drives.iter().map(|(_, row)| row.modes[*mode].frequency_rad_s);
+        lowest.fold(f64::INFINITY, f64::min) < CONSTANT * highest(*mode)
+    };
+    let varying: Vec<usize> = (0..modes).filter(varies).collect();
+    let constant = modes - varying.len();
+    let frequencies = varying
+        .into_iter()
         .map(|mode| {
             let most = highest(mode);
             let name = format!("{most:.3} rad/s");
@@ -48,12 +58,17 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         })
         .collect();
     let mut panels = vec![alike(x.unnamed(), "angle", "rad", angles)];
-    if modes > 0 {
+    if modes > constant {
         panels.push(alike(x, "frequency over its highest", "", frequencies));
     } else if let Some(last) = panels.last_mut() {
         last.x = x;
     }
-    Figure { title: title(story, "drives and natural frequencies"), panels, panel_height: 240 }
+    let what = match (modes > constant, constant) {
+        (false, _) => "drives".to_owned(),
+        (true, 0) => "drives and natural frequencies".to_owned(),
+        (true, _) => format!("drives and natural frequencies ({constant} constant ones left out)"),
+    };
+    Figure { title: title(story, &what), panels, panel_height: 240 }
 }
 
 /// A line with a gap where an angle goes on at the other end of its turn.

@@ -15,16 +15,17 @@ pub fn figure(story: &Story) -> Figure {
         of_kind.map(|step| (step.time, step.gain)).collect()
     };
     let kinds = [
-        ("begin", colour::BLACK, LayerShape::Ring),
-        ("keep", colour::GREEN, LayerShape::Disc),
-        ("turn", colour::VERMILLION, LayerShape::Triangle),
-        ("ignore", colour::ORANGE, LayerShape::Square),
-        ("freeze", colour::BLUE, LayerShape::Diamond),
+        ("begin", "first step", colour::BLACK, LayerShape::Ring),
+        ("keep", "better: same direction", colour::GREEN, LayerShape::Disc),
+        ("turn", "worse: new direction", colour::VERMILLION, LayerShape::Triangle),
+        ("ignore", "window ignored", colour::ORANGE, LayerShape::Square),
+        ("freeze", "frozen", colour::BLUE, LayerShape::Diamond),
     ];
     let tunes = story.tunes();
     let y = FigureAxis::around(&format!("gain {tunes}"), "", line.iter().map(|(_, gain)| *gain));
     let mut layers = vec![Layer::new(tunes, colour::BLACK, LayerShape::Line(1.2), line)];
-    let marks = kinds.map(|(decision, colour, shape)| Layer::new(decision, colour, shape, decided(decision)));
+    let marks =
+        kinds.map(|(decision, name, colour, shape)| Layer::new(name, colour, shape, decided(decision)));
     layers.extend(marks.into_iter().filter(|layer| !layer.points.is_empty()));
     let gain = Panel::new(x.unnamed(), y, layers);
     let (name, unit, layer, windows) = learnt(story);

@@ -7,6 +7,7 @@ mod campaign;
 mod columns;
 mod consistency;
 mod dead_zone;
+mod deflection;
 mod drive;
 mod drives;
 mod envelope;
@@ -31,7 +32,9 @@ mod pointing;
 mod smooth;
 mod spatial;
 mod story;
+mod title;
 mod torque;
+mod torques;
 mod what;
 mod wheel;
 mod wheels;
@@ -50,6 +53,8 @@ pub use campaign::{of_columns, of_directory};
 use motion::Motion;
 use spatial::Cycles;
 use story::Story;
+pub use title::readable;
+use title::{short, title};
 pub use what::What;
 
 #[derive(clap::Args)]
@@ -237,28 +242,6 @@ fn drawn_over(
         Some((what, failing::shaded(figure, &story)))
     });
     Ok(drawn.collect())
-}
-
-/// The title of a figure: what it shows, of which run.
-fn title(story: &Story, what: &str) -> String {
-    let scenario = &story.scenario;
-    if !story.switches() {
-        let run = if story.run == 0 { String::new() } else { format!(" (run {})", story.run) };
-        return format!("{}: {what}{run}", scenario.name);
-    }
-    let (first, seed) = (story.start.1, scenario.seed);
-    let last = story.steps.last().map_or(first, |step| step.gain);
-    let moved = if last == first { String::new() } else { format!(" → {}", short(last)) };
-    let run = if story.run == 0 { String::new() } else { format!(", run {}", story.run) };
-    format!("{}: {what} ({} = {}{moved}, seed {seed}{run})", scenario.name, story.tunes(), short(first))
-}
-
-/// A gain with at most four decimals, or digits of a small one.
-fn short(gain: f64) -> String {
-    if gain != 0.0 && gain.abs() < 1e-3 {
-        return format!("{gain:.3e}");
-    }
-    format!("{gain:.4}").trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// The unit of what drives the body.

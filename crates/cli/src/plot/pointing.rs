@@ -5,12 +5,10 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
 use super::spatial::{Cycles, panels};
 use super::story::Story;
-use super::title;
+use super::{time, title};
 
 /// A band that is so many times as wide as the errors does not set the height of a panel.
 const WIDE: f64 = 3.0;
-/// Errors of less than this part of those about another axis are rounding, and are shown at the scale of those.
-const ROUNDING: f64 = 1e-9;
 
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let line = |axis: usize| {
@@ -20,13 +18,9 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     };
     let mut panels = panels(story, "rad", line);
     let of = |panel: &Panel| panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
-    let largest_of_all = panels.iter().map(of).fold(0.0, f64::max);
     for (axis, panel) in panels.iter_mut().enumerate() {
         let [goal, zone] = bands(story, axis);
         let largest = of(panel);
-        if largest < ROUNDING * largest_of_all {
-            panel.y = FigureAxis::around(&panel.y.name, "rad", [-largest_of_all, largest_of_all]);
-        }
         let shown =
             [goal, zone].into_iter().flatten().filter(|half| *half <= WIDE * largest).fold(0.0, f64::max);
         let values: Vec<f64> = panel.layers[0].points.iter().map(|point| point.1).collect();
@@ -55,7 +49,24 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         below.append(&mut panel.layers);
         panel.layers = below;
     }
+    if let Some(last) = panels.last_mut() {
+        last.x = last.x.unnamed();
+    }
+    let length = cycles.over_time(|cycle| norm(cycle.error_rad));
+    panels.push(decades(story, "norm", vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), length)]));
     Figure { title: title(story, "pointing error"), panels, panel_height: 160 }
+}
+
+/// The length of a vector.
+pub fn norm(vector: [f64; 3]) -> f64 {
+    vector.iter().map(|part| part * part).sum::<f64>().sqrt()
+}
+
+/// A panel of angles (rad) over time on a logarithmic axis: a large transient leaves room for what comes after it.
+pub fn decades(story: &Story, name: &str, layers: Vec<Layer>) -> Panel {
+    let y =
+        FigureAxis::decades(name, "rad", layers.iter().flat_map(|layer| &layer.points).map(|point| point.1));
+    Panel::new(time(0.0..story.end), y, layers)
 }
 
 /// Half widths about an axis: of the goal, and of the law's dead zone (rad).

@@ -8,7 +8,7 @@ use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
     Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion,
     ElasticEstimates, Hinges, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialCycle,
-    SpatialMotion, TrackedMode, Tracking, Wheels,
+    SpatialMotion, Torques, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
@@ -19,6 +19,8 @@ use crate::failure::Failure;
 
 /// More marks than these are small.
 const MANY: usize = 100;
+/// What is less than this part of the values about another axis is rounding, and is shown at the scale of those.
+const ROUNDING: f64 = 1e-9;
 
 /// The cycles of a run.
 #[derive(Default)]
@@ -43,6 +45,10 @@ pub struct Cycles {
     pub accelerations: Vec<(f64, Accelerations)>,
     /// Their bearings, if they have any.
     pub bearings: Vec<(f64, Bearings)>,
+    /// Torques on the body, but of jets that act alone.
+    pub torques: Vec<(f64, Torques)>,
+    /// Displacements of the elastic modes (m sqrt(kg)).
+    pub modes: Vec<(f64, Vec<f64>)>,
     /// The drives of appendages, if they have any.
     pub drives: Vec<(f64, DrivesMotion)>,
     /// The hinges of appendages, if they have any.
@@ -98,6 +104,8 @@ impl Record for Cycles {
                 bearings,
                 drives,
                 hinges,
+                torques,
+                vibrations,
                 ..
             }) => {
                 let t = now.seconds();
@@ -106,6 +114,8 @@ impl Record for Cycles {
                 self.orbit.extend(orbit.clone().map(|orbit| (t, orbit)));
                 self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
                 self.position.extend(position.iter().map(|position| (t, position.clone())));
+                self.torques.extend(torques.iter().map(|torques| (t, torques.clone())));
+                self.modes.push((t, vibrations.modes.iter().map(|mode| mode.displacement).collect()));
                 self.drives.extend(drives.iter().map(|drives| (t, drives.clone())));
                 self.hinges.extend(hinges.iter().map(|hinges| (t, hinges.clone())));
                 self.bearings.extend(bearings.iter().map(|bearings| (t, bearings.clone())));
@@ -118,13 +128,23 @@ impl Record for Cycles {
 
 /// A panel for each axis: its lines, by their names and colours.
 pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
-    let panel = |(axis, name): (usize, &&str)| {
-        let (x, layers) = (time(0.0..story.end), lines(axis));
-        let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        let y = FigureAxis::around(name, unit, values.collect::<Vec<_>>());
+    let all = [0, 1, 2].map(lines);
+    let values = |layers: &[Layer]| -> Vec<f64> {
+        layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value).collect()
+    };
+    let size =
+        |layers: &[Layer]| values(layers).into_iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+    let largest = all.iter().map(|layers| size(layers)).fold(0.0, f64::max);
+    let panel = |((axis, name), layers): ((usize, &&str), Vec<Layer>)| {
+        let x = time(0.0..story.end);
+        let y = if size(&layers) < ROUNDING * largest {
+            FigureAxis::around(name, unit, [-largest, largest])
+        } else {
+            FigureAxis::around(name, unit, values(&layers))
+        };
         Panel { x: if axis == 2 { x } else { x.unnamed() }, y, layers, bar: None }
     };
-    AXES.iter().enumerate().map(panel).collect()
+    AXES.iter().enumerate().zip(all).map(panel).collect()
 }
 
 /// Rigid rates, and with their elastic part what a perfect gyro would see.
@@ -134,8 +154,9 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
         let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
         let name = |name| if axis == 0 { name } else { "" };
         vec![
-            Layer::new(name("at the gyro"), colour::SKY, LayerShape::Line(1.0), seen),
-            Layer::new(name("rigid"), colour::BLACK, LayerShape::Line(1.2), rigid),
+            // Where both are one, the wider line shows beside the other.
+            Layer::new(name("at the gyro, with elastic part"), colour::SKY, LayerShape::Line(2.8), seen),
+            Layer::new(name("rigid part"), colour::BLACK, LayerShape::Line(1.0), rigid),
         ]
     };
     Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
@@ -178,12 +199,13 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let below = if fires { x.unnamed() } else { x.clone() };
     let mut energies = panel(below, "elastic energy", "J", elastic);
     // Where both are one, the wider line shows beside the other.
-    energies.layers[0].shape = LayerShape::Line(2.4);
+    energies.layers[0].shape = LayerShape::Line(3.2);
+    energies.layers[0].colour = colour::SKY;
     "all modes".clone_into(&mut energies.layers[0].name);
     let visible = cycles.over_time(|cycle| cycle.visible_energy_j);
     energies.layers.push(Layer::new(
-        "modes that the gyro sees",
-        colour::ORANGE,
+        "modes that move the gyro",
+        colour::VERMILLION,
         LayerShape::Line(1.0),
         visible,
     ));
@@ -193,6 +215,11 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     }
     let what = if fires { "elastic energy and propellant" } else { "elastic energy" };
     Figure { title: title(story, what), panels, panel_height: 220 }
+}
+
+/// Whether a panel of pulses has any.
+fn fires(panel: &Panel) -> bool {
+    panel.layers.iter().any(|layer| matches!(layer.shape, LayerShape::Area(_)) && !layer.points.is_empty())
 }
 
 /// For how long the jets fire in each cycle.
@@ -214,20 +241,22 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
         let zero = vec![(0.0, 0.0), (story.end, 0.0)];
         vec![
             Layer::new("", colour::GREY, LayerShape::Line(0.8), zero),
-            Layer::new(
-                if axis == 0 { "firing time" } else { "" },
-                colour::VERMILLION,
-                LayerShape::Line(0.8),
-                points,
-            ),
+            Layer::new("", colour::VERMILLION, LayerShape::Area(0.35), points.clone()),
+            Layer::new("", colour::VERMILLION, LayerShape::Line(0.8), points),
         ]
     };
-    // One scale for all axes: one whose jets do not fire has none of its own.
+    // One scale for all axes; those about which no jet fires have no panel.
     let longest = cycles.all.iter().flat_map(|(_, cycle)| (0..3).map(|axis| on(cycle, axis).abs()));
     let longest = 1.1 * longest.fold(0.0, f64::max);
     let mut panels = panels(story, "s", line);
     for panel in &mut panels {
         panel.y = FigureAxis::exact(&panel.y.name, "s", -longest..longest);
+    }
+    if panels.iter().any(fires) {
+        panels.retain(fires);
+    }
+    if let Some(last) = panels.last_mut() {
+        last.x = time(0.0..story.end);
     }
     Figure { title: title(story, "firing time of the jets in each cycle"), panels, panel_height: 160 }
 }

@@ -8,9 +8,9 @@ use super::motion::Motion;
 use super::spatial::{self, Cycles};
 use super::story::Story;
 use super::{
-    accelerations, angle, attitude_filter, consistency, dead_zone, drive, drives, envelope, estimate, extra,
-    frequency, gain, gimbals, hinges, identified, magnetorquers, modes, orbit, outputs, phase_plane,
-    pointing, torque, wheel, wheels,
+    accelerations, angle, attitude_filter, consistency, dead_zone, deflection, drive, drives, envelope,
+    estimate, extra, frequency, gain, gimbals, hinges, identified, magnetorquers, modes, orbit, outputs,
+    phase_plane, pointing, torque, torques, wheel, wheels,
 };
 
 /// A figure.
@@ -34,6 +34,10 @@ pub enum What {
     Pointing,
     /// Three axes: rates, rigid and at the gyro
     Rates,
+    /// Three axes: torques demanded by the law, given by the actuators, and of disturbances
+    Torques,
+    /// Three axes: deflection of each point of the structure that modes move
+    Deflection,
     /// Three axes: energy of the elastic modes, and propellant
     Energy,
     /// Three axes: position and velocity, where jets or forces move the spacecraft
@@ -90,6 +94,8 @@ impl What {
         match self {
             Self::PhasePlane => story.switches() && !spatial,
             Self::Torque | Self::Angle => !spatial,
+            Self::Torques => spatial && torques::of(story),
+            Self::Deflection => deflection::of(story),
             Self::Outputs => !story.scenario.model.outputs().is_empty() && !story.switches(),
             Self::Envelope => {
                 story.scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some())
@@ -137,6 +143,8 @@ impl What {
             Self::Modes => modes::figure(story, motion),
             Self::Pointing => pointing::figure(story, cycles),
             Self::Rates => spatial::rates(story, cycles),
+            Self::Torques => torques::figure(story, cycles),
+            Self::Deflection => deflection::figure(story, cycles),
             Self::Energy => spatial::energy(story, cycles),
             Self::Position => spatial::position(story, cycles),
             Self::Jets => spatial::jets(story, cycles),

@@ -6,6 +6,7 @@ use flexsc_core::law::Extra;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, band, colour};
 
 use super::tuning::Tuning;
+use crate::plot::readable;
 
 /// Settling times beyond so many limits are not shown.
 const BEYOND: f64 = 3.0;
@@ -56,7 +57,7 @@ impl Drawn<'_> {
             layers.push(Layer::new("of the scenario", colour::BLACK, LayerShape::Dashes, own));
         }
         layers.push(Layer::new(&self.robust_name(), colour::VERMILLION, LayerShape::Line(1.6), robust));
-        let title = format!("{}: gains of the extra loop", self.tuning.name);
+        let title = format!("{}: gains of the extra loop", readable(&self.tuning.name));
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 
@@ -80,7 +81,7 @@ impl Drawn<'_> {
             Layer::new(&self.robust_name(), colour::VERMILLION, LayerShape::Line(1.6), nominal),
             Layer::new("the same, perturbed", colour::VERMILLION, LayerShape::Dashes, worst),
         ];
-        let title = format!("{}: settling time", self.tuning.name);
+        let title = format!("{}: settling time", readable(&self.tuning.name));
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 

@@ -27,6 +27,33 @@ use panel::LayoutPanel;
 /// Number of panels above which a layout has tabs.
 const MOST_PANELS: usize = 8;
 
+/// A curve of so many points is drawn as points: up to about one for each pixel, viewers mark each point of a line with a
+/// black disc, and that many discs hide the line and its colour.
+const FEW: std::ops::Range<f64> = 100.0..1000.0;
+/// The topics that are told once in each period of the log.
+const AT_EACH_PERIOD: [&str; 20] = [
+    "/attitude",
+    "/bearings",
+    "/control_moment_gyros",
+    "/drives",
+    "/energy",
+    "/envelope",
+    "/goal",
+    "/hinges",
+    "/magnetorquers",
+    "/modes",
+    "/orbit",
+    "/outputs",
+    "/pointing",
+    "/position",
+    "/rate",
+    "/rates",
+    "/torque",
+    "/torques",
+    "/vibrations",
+    "/wheels",
+];
+
 /// Layout of a viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
@@ -45,10 +72,17 @@ struct Tab {
 impl Layout {
     /// Returns the layout of a scenario's logs, with all that they can show.
     pub fn of(scenario: &Scenario) -> Self {
-        let tabs = match scenario.model.axes() {
+        let mut tabs = match scenario.model.axes() {
             Axes::One(body) => planar::tabs(scenario, body),
             Axes::Three(body) => spatial::tabs(scenario, body),
         };
+        tabs.push(Tab { title: "Metrics at the end", panels: metrics(scenario).collect() });
+        let rows = scenario.duration.seconds() / scenario.log_period().seconds();
+        if FEW.contains(&rows) {
+            for panel in tabs.iter_mut().flat_map(|tab| &mut tab.panels) {
+                panel.mark(&|topic| AT_EACH_PERIOD.contains(&topic));
+            }
+        }
         Self { tabs, topics: topics(scenario) }
     }
 

@@ -124,6 +124,14 @@ impl LayoutPanel {
         Self::new("scene", "Scene", Shows::Scene(extent, vec!["/scene", "/plumes"]))
     }
 
+    /// Draws the lines over time of these topics as points.
+    pub fn mark(&mut self, marked: &impl Fn(&str) -> bool) {
+        let Shows::Plot(lines) = &mut self.shows else { return };
+        for line in lines {
+            line.dots |= line.topic().is_some_and(marked);
+        }
+    }
+
     /// Returns the paths on the vertical axis.
     pub fn drawn(&self) -> Vec<&str> {
         match &self.shows {

@@ -1,7 +1,7 @@
 //! Panels of a one-axis body.
 
+use super::Tab;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
-use super::{Tab, metrics};
 use crate::body::{Output, Planar};
 use crate::estimator::Estimator;
 use crate::law::Law;
@@ -26,9 +26,7 @@ pub fn feeds_back(scenario: &Scenario) -> bool {
 
 /// Returns the tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Planar) -> Vec<Tab> {
-    let mut log =
-        vec![LayoutPanel::log(), LayoutPanel::message("arrival", "End of the manoeuvre", "/arrival")];
-    log.extend(metrics(scenario));
+    let log = vec![LayoutPanel::log(), LayoutPanel::message("arrival", "End of the manoeuvre", "/arrival")];
     vec![
         Tab { title: "Motion", panels: motion(scenario, body) },
         Tab { title: "Estimator", panels: estimator(scenario, body) },

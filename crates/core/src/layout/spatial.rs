@@ -1,23 +1,31 @@
 //! Panels of a three-axis body.
 
+use super::Tab;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
 use super::planar::adaptation;
-use super::{Tab, metrics};
 use crate::attitude::AXES;
 use crate::body::Spatial;
 use crate::estimator::Estimator;
 use crate::estimator::attitude::ElasticStates;
+use crate::law::Law;
 use crate::motion::turning::Bearing;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
+
+/// No plot has the energies of more modes.
+const MOST_MODES: usize = 12;
 
 /// Returns the tabs of a scenario.
 pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     let plot = LayoutPanel::plot;
     let mut motion = vec![
         LayoutPanel::scene(Extent::of(scenario)),
-        plot("error", "Beyond the target (rad)", errors(scenario)),
-        plot("rigid", "Rigid rates (rad/s)", rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", believed")])),
+        plot("error", "Pointing error (rad)", errors(scenario)),
+        plot(
+            "rigid",
+            "Rigid rates (rad/s)",
+            rates(&[("rigid_rad_s", ""), ("believed_rad_s", ", estimated")]),
+        ),
         plot("elastic", "Elastic rates at the sensor (rad/s)", rates(&[("elastic_rad_s", "")])),
     ];
     if !scenario.study.jets_alone {
@@ -96,7 +104,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     elastic.extend(envelope(scenario));
     if scenario.study.adaptive.is_some() {
-        elastic.push(LayoutPanel::states("trusted", "Observers", channels("trusted")));
+        elastic.push(LayoutPanel::states("trusted", "Observers: lock", channels("trusted")));
     }
     together(scenario, motion, elastic)
 }
@@ -153,15 +161,8 @@ fn together(scenario: &Scenario, motion: Vec<LayoutPanel>, elastic: Vec<LayoutPa
     if scenario.adaptation.is_some() {
         tabs.push(Tab { title: "Adaptation", panels: adaptation(scenario) });
     }
-    tabs.push(Tab { title: "Log", panels: log(scenario) });
+    tabs.push(Tab { title: "Log", panels: vec![LayoutPanel::log()] });
     tabs
-}
-
-/// Returns the panels of the journal and of the metrics.
-fn log(scenario: &Scenario) -> Vec<LayoutPanel> {
-    let mut log = vec![LayoutPanel::log()];
-    log.extend(metrics(scenario));
-    log
 }
 
 /// Returns the panel of the envelope with its window means; `None` without a monitor.
@@ -181,12 +182,15 @@ fn filter() -> Vec<LayoutPanel> {
             let at = |field: &str| format!("/attitude_filter.axes[{index}].{field}");
             [
                 line(at(field), axis).color(index).thick(),
-                line(at(deviation), format!("{axis}, deviation")).color(index),
+                line(at(deviation), format!("{axis}, standard deviation")).color(index + AXES.len()),
             ]
         };
         AXES.into_iter().enumerate().flat_map(axis).collect::<Vec<_>>()
     };
-    let consistency = vec![line("/attitude_filter.nees", "NEES"), line("/attitude_filter.nis", "NIS")];
+    let consistency = vec![
+        line("/attitude_filter.nees", "NEES per state, 1 if consistent"),
+        line("/attitude_filter.nis", "NIS per component, 1 if consistent"),
+    ];
     vec![
         LayoutPanel::plot(
             "angles",
@@ -211,10 +215,12 @@ fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
 }
 
 fn errors(scenario: &Scenario) -> Vec<PlotLine> {
-    let zone = scenario.study.zones(scenario)[0];
     let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
-    let ends =
-        [("+ dead zone", zone), ("- dead zone", -zone)].into_iter().filter(|(_, value)| value.is_finite());
+    let zone = match scenario.law.about(0) {
+        Law::PhasePlane(law) => Some(law.dead_zone.get()),
+        _ => None,
+    };
+    let ends = zone.into_iter().flat_map(|zone| [("+ dead zone", zone), ("- dead zone", -zone)]);
     errors.chain(ends.map(|(label, value)| line(value.to_string(), label))).collect()
 }
 
@@ -257,7 +263,7 @@ fn energies(scenario: &Scenario, body: &Spatial) -> Vec<PlotLine> {
     let excited = |mode: &usize| push(*mode) / body.modes[*mode].frequency.get();
     let mut modes: Vec<usize> = (0..body.modes.len()).collect();
     modes.sort_by(|a, b| excited(b).total_cmp(&excited(a)));
-    modes.truncate(MOST_LINES - 1);
+    modes.truncate(MOST_MODES);
     modes.sort_unstable();
     let each = modes
         .into_iter()

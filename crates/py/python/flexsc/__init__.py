@@ -121,6 +121,8 @@ __all__ = [
 
 # What is imported when it is first asked for, so that `import flexsc` stays quick.
 _MODULES = ("parts", "plot", "scenario", "structure")
+# Modules that import a package which NumPy does not bring.
+_EXTRAS = ("dask", "gym")
 _LATER = {
     "Linear": "_linear",
     "Margins": "_linear",
@@ -145,11 +147,13 @@ if not TYPE_CHECKING:
             return import_module(f"flexsc.{name}")
         if name in _LATER:
             return getattr(import_module(f"flexsc.{_LATER[name]}"), name)
+        if name in _EXTRAS:
+            raise AttributeError(f"module 'flexsc' has no attribute {name!r} before `import flexsc.{name}`")
         raise AttributeError(f"module 'flexsc' has no attribute {name!r}")
 
 
 def __dir__() -> list[str]:
-    return sorted({*globals(), *__all__})
+    return list(__all__)
 
 
 def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:

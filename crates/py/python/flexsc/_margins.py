@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-# Beyond this distance from the region of stability, poles are unstable and not rounded.
+# Poles this near to the limit of stability are on it, to rounding.
 _ROUNDING = 1e-8
 _LARGEST = 1e4
 
@@ -25,14 +25,20 @@ def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:
         raise ValueError("only an opened loop, with as many outputs as inputs, has margins")
     off = _chosen(opened, inputs)
 
-    def unstable(factor: complex) -> bool:
+    def beyond(factor: complex) -> float:
         back = np.linalg.inv(np.eye(len(off)) + opened.d * np.where(off, factor, 1.0))
         poles = np.linalg.eigvals(opened.a - opened.b * np.where(off, factor, 1.0) @ back @ opened.c)
-        worst = poles.real.max() if opened.period is None else np.abs(poles).max() - 1.0
-        return bool(worst > _ROUNDING)
+        return float(poles.real.max() if opened.period is None else np.abs(poles).max() - 1.0)
 
-    if unstable(1.0):
+    nominal = beyond(1.0)
+    if nominal > _ROUNDING:
         raise ValueError("the closed loop is not stable: it has no margins")
+    # A pole that the loop leaves on the limit, such as an undamped mode, stays there.
+    limit = -_ROUNDING if nominal < -2.0 * _ROUNDING else _ROUNDING
+
+    def unstable(factor: complex) -> bool:
+        return beyond(factor) > limit
+
     down = _first(lambda power: unstable(10.0**-power), 4.0)
     up = _first(lambda power: unstable(10.0**power), np.log10(_LARGEST))
     turns = [_first(lambda phase, way=way: unstable(np.exp(1j * way * phase)), pi) for way in (1, -1)]  # type: ignore[misc]
@@ -60,7 +66,7 @@ def _chosen(opened: Linear, inputs: Sequence[str] | None) -> npt.NDArray[np.bool
 
 
 def _first(unstable: Callable[[float], bool], largest: float) -> float | None:
-    """The first value from 0 on that is unstable, to rounding; none if there is none."""
+    """The last value below the first that is unstable, from 0 on; none if there is none."""
     import numpy as np
 
     stable = 0.0
@@ -70,6 +76,6 @@ def _first(unstable: Callable[[float], bool], largest: float) -> float | None:
             while beyond - stable > 1e-12 * largest:
                 middle = 0.5 * (stable + beyond)
                 stable, beyond = (stable, middle) if unstable(middle) else (middle, beyond)
-            return beyond
+            return stable
         stable = float(value)
     return None

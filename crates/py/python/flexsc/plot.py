@@ -22,16 +22,13 @@ from __future__ import annotations
 import math
 import os
 from functools import partial
-from importlib.util import find_spec
+from importlib import import_module
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, TypeAlias
 
 from flexsc import _native as engine
 from flexsc._result import Log, Result
 from flexsc._table import Table
-
-if find_spec("matplotlib") is None:
-    raise ImportError("flexsc.plot needs Matplotlib: pip install 'flexsc[plot]'")
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -96,7 +93,9 @@ def draw(source: Source, name: str, ax: Axes | None = None, panel: int = 0) -> A
 
     Raises:
         ValueError: There is no such figure or panel.
+        ImportError: Matplotlib is not installed.
     """
+    _need_matplotlib()
     drawn = _figure(source, name)
     panels = drawn.panels()
     if not 0 <= panel < len(panels):
@@ -126,7 +125,9 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
 
     Raises:
         ValueError: There is no such figure.
+        ImportError: Matplotlib is not installed.
     """
+    _need_matplotlib()
     drawn = _figure(source, name)
     panels = drawn.panels()
     if on is None:
@@ -139,6 +140,14 @@ def figure(source: Source, name: str, on: Figure | SubFigure | None = None) -> F
     for ax, panel in zip(axes, panels, strict=True):
         _panel(ax, panel, panel["x"]["label"], drawn.panel_height)
     return on
+
+
+def _need_matplotlib() -> None:
+    """Raise an ImportError with the command that installs Matplotlib, if it is missing."""
+    try:
+        import_module("matplotlib")
+    except ImportError as error:
+        raise ImportError("flexsc.plot needs Matplotlib: pip install 'flexsc[plot]'") from error
 
 
 def _height(panel: dict[str, Any], plot: int) -> int:
@@ -217,14 +226,25 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
 
 
 def _axis(ax: Axes, side: str, axis: Any, told: dict[str, Any], most: int) -> None:
-    from matplotlib.ticker import FuncFormatter, MaxNLocator
+    from matplotlib.ticker import FuncFormatter
 
     if told["logarithmic"]:
         getattr(ax, f"set_{side}scale")("log")
     else:
-        axis.set_major_locator(MaxNLocator(nbins=most, steps=[1, 2, 5, 10]))
+        axis.set_major_locator(_in_units_of(told["factor"], most))
         axis.set_major_formatter(FuncFormatter(partial(_number, axis, told["factor"])))
     getattr(ax, f"set_{side}lim")(told["low"], told["high"])
+
+
+def _in_units_of(factor: float, most: int) -> Any:
+    """A locator of at most so many ticks at 1, 2 or 5 times a power of ten of a unit."""
+    from matplotlib.ticker import MaxNLocator
+
+    class Locator(MaxNLocator):
+        def tick_values(self, vmin: float, vmax: float) -> Any:
+            return super().tick_values(vmin / factor, vmax / factor) * factor
+
+    return Locator(nbins=most, steps=[1, 2, 5, 10])
 
 
 def _number(axis: Any, factor: float, value: float, _: int | None = None) -> str:
@@ -252,6 +272,9 @@ def _layer(ax: Axes, layer: dict[str, Any], order: int) -> Any:
     if shape == "area":
         return _area(ax, layer, order)
     marker, across = _MARKS[shape]
+    (left, right), (low, high) = ax.get_xlim(), ax.get_ylim()
+    if not ((left <= x) & (x <= right) & (low <= y) & (y <= high)).any():
+        return None
     style: dict[str, Any] = {"markersize": across * _POINT, "markeredgewidth": 0.0, "color": colour}
     if shape == "ring":
         style |= {"markerfacecolor": "none", "markeredgecolor": colour, "markeredgewidth": 1.2 * _POINT}

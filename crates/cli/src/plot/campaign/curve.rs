@@ -3,6 +3,7 @@
 use flexsc_core::count::counted;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::super::readable;
 use super::table::{Key, Metric, Runs};
 
 /// So many values are marked each.
@@ -25,6 +26,11 @@ pub fn figure(runs: &Runs, metrics: &[&Metric], key: &Key) -> Figure {
         Panel::new(x, FigureAxis::around(&name, unit, metric.values.iter().copied()), layers)
     };
     let panels = metrics.iter().enumerate().map(panel).collect();
-    let title = format!("{}: metrics over {} ({})", runs.name, key.name, counted(runs.numbers.len(), "run"));
+    let title = format!(
+        "{}: metrics over {} ({})",
+        readable(&runs.name),
+        key.name,
+        counted(runs.numbers.len(), "run")
+    );
     Figure { title, panels, panel_height: 180 }
 }

@@ -5,6 +5,7 @@ use flexsc_core::count::counted;
 use flexsc_core::statistics::quantile;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice};
 
+use super::super::readable;
 use super::table::{Metric, Runs};
 
 /// A histogram has no more bars, and no fewer.
@@ -16,7 +17,9 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let sorted = metric.sorted();
     let (name, unit) = metric.label();
     let bars = bars(&sorted);
-    let x = FigureAxis::around(&name, unit, bars.iter().flat_map(|((from, to), _)| [*from, *to]));
+    let required = runs.required(metric);
+    let ends = bars.iter().flat_map(|((from, to), _)| [*from, *to]);
+    let x = FigureAxis::around(&name, unit, ends.chain(required.iter().map(|(most, _)| *most)));
     // Numbers of runs are whole.
     let highest = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(LOWEST);
     let counts = FigureAxis::from_zero("runs", "", [highest as f64]);
@@ -36,11 +39,16 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let marks = |y: &FigureAxis, named: bool| {
         let line = |q: f64| vec![(quantile(&sorted, q), y.range.start), (quantile(&sorted, q), y.range.end)];
         let name = |name: &str| if named { name.to_owned() } else { String::new() };
-        [
+        let mut marks = vec![
             Layer::new(&name("median"), colour::VERMILLION, LayerShape::Line(1.6), line(0.5)),
             Layer::new(&name("5 and 95 %"), colour::VERMILLION, LayerShape::Dashes, line(0.05)),
             Layer::new("", colour::VERMILLION, LayerShape::Dashes, line(0.95)),
-        ]
+        ];
+        marks.extend(required.as_ref().map(|(most, told)| {
+            let line = vec![(*most, y.range.start), (*most, y.range.end)];
+            Layer::new(&name(told), colour::BLACK, LayerShape::Line(1.6), line)
+        }));
+        marks
     };
     let histogram = [
         Layer::new("", colour::SKY, LayerShape::Area(0.6), outline.clone()),
@@ -57,7 +65,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
 fn title(runs: &Runs, name: &str, count: usize) -> String {
     let without = runs.numbers.len() - count;
     let without = if without > 0 { format!(", {without} without") } else { String::new() };
-    format!("{}: {name} ({}{without})", runs.name, counted(count, "run"))
+    format!("{}: {name} ({}{without})", readable(&runs.name), counted(count, "run"))
 }
 
 /// The bars of a histogram over sorted values: their ends, and how many values are in each. Their width is 2 IQR/n^(1/3)

@@ -12,6 +12,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, c
 use rayon::prelude::*;
 
 use super::super::motion::Motion;
+use super::super::readable;
 use super::super::spatial::Cycles;
 use super::super::story::Story;
 use super::super::time;
@@ -107,7 +108,7 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
     };
     let panels = (0..count).map(panel).collect();
     Ok(Figure {
-        title: format!("{name}: {} over time", counted(paths.len(), "run")),
+        title: format!("{}: {} over time", readable(name), counted(paths.len(), "run")),
         panels,
         panel_height: 180,
     })

@@ -159,11 +159,13 @@ fn drawable(runs: &Runs) -> Vec<What> {
 
 /// Those of them that are drawn if none is named.
 fn natural(runs: &Runs) -> Vec<What> {
-    match runs.swept().len() {
+    let wanted = match runs.swept().len() {
         1 => vec![What::Curve],
         2 => vec![What::Region],
         _ => vec![What::Distribution, What::Scatter],
-    }
+    };
+    let drawable = drawable(runs);
+    wanted.into_iter().filter(|what| drawable.contains(what)).collect()
 }
 
 /// The metrics that are named, or else the main ones that vary.
@@ -173,7 +175,10 @@ fn metrics<'a>(asked: &[String], path: &Path, runs: &'a Runs) -> Result<Vec<&'a 
         // What only repeats a key is left out.
         let tells =
             |metric: &&Metric| metric.varies() && runs.keys.iter().all(|key| key.values != metric.values);
-        let main: Vec<_> = MAIN.into_iter().filter_map(named).filter(tells).collect();
+        // What is required comes first.
+        let required = runs.requirement().map(|(name, _)| name);
+        let others = MAIN.into_iter().filter(|name| Some(*name) != required);
+        let main: Vec<_> = required.into_iter().chain(others).filter_map(named).filter(tells).collect();
         let any = runs.metrics.iter().filter(tells);
         let found: Vec<_> = if main.is_empty() { any.collect() } else { main };
         return Ok(found.into_iter().take(MOST).collect());

@@ -4,6 +4,7 @@ use flexsc_core::count::counted;
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
+use super::super::readable;
 use super::table::{Metric, Runs};
 
 /// So many shades.
@@ -59,7 +60,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
     );
     let bar = Bar { name: classes.axis.label(), colours: viridis(SHADES), edges: classes.texts() };
     let panel = Panel { bar: Some(bar), ..Panel::new(x, y, layers) };
-    let title = format!("{}: {name} ({})", runs.name, counted(runs.numbers.len(), "run"));
+    let title = format!("{}: {name} ({})", readable(&runs.name), counted(runs.numbers.len(), "run"));
     Some(Figure { title, panels: vec![panel], panel_height: 420 })
 }
 

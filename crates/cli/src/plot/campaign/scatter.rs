@@ -2,6 +2,7 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
+use super::super::readable;
 use super::table::{Key, Metric, Runs};
 
 /// So many keys have a panel, at most.
@@ -9,6 +10,7 @@ const PANELS: usize = 4;
 
 pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let (name, unit) = metric.label();
+    let required = runs.required(metric);
     let mut keys: Vec<(f64, &Key)> =
         keys(runs).into_iter().map(|key| (correlation(&key.values, &metric.values), key)).collect();
     let strength = |r: f64| if r.is_nan() { 0.0 } else { r.abs() };
@@ -17,14 +19,20 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let panel = |(r, key): (f64, &Key)| {
         let points: Vec<Point> = key.values.iter().copied().zip(metric.values.iter().copied()).collect();
         let x = FigureAxis::around(&runs.label_of(key), "", key.values.iter().copied());
-        let y = FigureAxis::around(&name, unit, metric.values.iter().copied());
+        let limit = required.as_ref().map(|(most, _)| *most);
+        let y = FigureAxis::around(&name, unit, metric.values.iter().copied().chain(limit));
         let told =
             if r.is_nan() { String::new() } else { format!("rank correlation {r:+.2}").replace('-', "−") };
-        Panel::new(x, y, vec![Layer::new(&told, colour::BLUE, LayerShape::Dot, points)])
+        let mut layers = vec![Layer::new(&told, colour::BLUE, LayerShape::Dot, points)];
+        layers.extend(required.as_ref().map(|(most, told)| {
+            let line = vec![(x.range.start, *most), (x.range.end, *most)];
+            Layer::new(told, colour::BLACK, LayerShape::Line(1.6), line)
+        }));
+        Panel::new(x, y, layers)
     };
     let panels = keys.into_iter().take(PANELS).map(panel).collect();
     let left = if more > 0 { format!(", keys left out: {more}") } else { String::new() };
-    let title = format!("{}: {name} against the keys that vary{left}", runs.name);
+    let title = format!("{}: {name} against the keys that vary{left}", readable(&runs.name));
     Figure { title, panels, panel_height: 180 }
 }
 

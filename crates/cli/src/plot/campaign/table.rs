@@ -212,6 +212,22 @@ impl Runs {
         self.keys.iter().filter(|key| key.swept).collect()
     }
 
+    /// The metric on which the scenario has a requirement, and the largest value allowed.
+    pub fn requirement(&self) -> Option<(&'static str, f64)> {
+        let (scenario, _) = self.scenario.as_ref()?;
+        let most = scenario.reference.pointing.as_ref()?.rms?.get();
+        Some(("pointing_rms_rad", most))
+    }
+
+    /// The largest value allowed of a metric, with its name in a legend: how many of the runs that have a value meet it.
+    pub fn required(&self, metric: &Metric) -> Option<(f64, String)> {
+        let (_, most) = self.requirement().filter(|(name, _)| *name == metric.meaning.name)?;
+        let sorted = metric.sorted();
+        let met = sorted.iter().filter(|value| **value <= most).count();
+        let part = 100.0 * met as f64 / sorted.len().max(1) as f64;
+        Some((most, format!("requirement, met by {met} of {} runs ({part:.0} %)", sorted.len())))
+    }
+
     /// What an axis along a key is called: its name and its unit.
     pub fn label_of(&self, key: &Key) -> String {
         let unit = self.scenario.as_ref().and_then(|(scenario, _)| scenario.unit_of(&key.name));

@@ -1,0 +1,64 @@
+//! Figure `deflection` of three axes: by how much the elastic modes move each point of the structure, such as the tip of a
+//! panel, against the first point, in axes of the hub.
+
+use flexsc_core::attitude::Vector;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
+
+use super::spatial::Cycles;
+use super::story::Story;
+use super::{time, title};
+
+/// So many points have a panel, at most.
+const PANELS: usize = 6;
+/// Colours of the axes.
+const COLOURS: [RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
+
+/// A point that a unit of each mode moves by less (1/sqrt(kg)) is part of the hub.
+const ROUNDING: f64 = 1e-9;
+
+/// The points that modes move against the first, each with its displacement for a unit of each mode (1/sqrt(kg)). None where
+/// drives or hinges turn the appendages, since modes then have no fixed shapes.
+fn points(story: &Story) -> Vec<(&str, Vec<Vector>)> {
+    let Some(body) = story.scenario.model.spatial() else { return Vec::new() };
+    if story.scenario.study.drives.is_some() {
+        return Vec::new();
+    }
+    let shifts = |point: &str| body.shifts(point, &Vector::zeros());
+    let first = body.points.first().map_or_else(Vec::new, |point| shifts(&point.name));
+    let against =
+        |point: &str| shifts(point).iter().zip(&first).map(|(shift, first)| shift - first).collect();
+    let points = body.points.iter().map(|point| (point.name.as_str(), against(&point.name)));
+    points
+        .filter(|(_, shifts): &(_, Vec<Vector>)| shifts.iter().any(|shift| shift.norm() > ROUNDING))
+        .collect()
+}
+
+/// Whether there are such points.
+pub fn of(story: &Story) -> bool {
+    !points(story).is_empty()
+}
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let all = points(story);
+    let last = all.len().min(PANELS).saturating_sub(1);
+    let panel = |(index, (name, shifts)): (usize, &(&str, Vec<Vector>))| {
+        let line = |axis: usize| -> Vec<Point> {
+            let moved = |modes: &[f64]| shifts.iter().zip(modes).map(|(shift, q)| shift[axis] * q).sum();
+            cycles.modes.iter().map(|(time, modes)| (*time, moved(modes))).collect()
+        };
+        let layer = |axis: usize| {
+            let label = if index == 0 { ["x", "y", "z"][axis] } else { "" };
+            Layer::new(label, COLOURS[axis], LayerShape::Line(1.0), line(axis))
+        };
+        let layers: Vec<Layer> = (0..3).map(layer).collect();
+        let values: Vec<f64> = layers.iter().flat_map(|layer| &layer.points).map(|point| point.1).collect();
+        let x = time(0.0..story.end);
+        let x = if index == last { x } else { x.unnamed() };
+        Panel::new(x, FigureAxis::around(name, "m", values), layers)
+    };
+    let panels = all.iter().take(PANELS).enumerate().map(panel).collect();
+    let more = all.len().saturating_sub(PANELS);
+    let left = if more > 0 { format!(", points left out: {more}") } else { String::new() };
+    let what = format!("elastic deflection, in axes of the hub{left}");
+    Figure { title: title(story, &what), panels, panel_height: 160 }
+}

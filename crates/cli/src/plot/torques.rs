@@ -1,0 +1,53 @@
+//! Figure `torques` of three axes: about each axis the torque of the actuators beside that demanded by the law, and the
+//! disturbances with the environment.
+
+use flexsc_core::attitude::AXES;
+use flexsc_core::record::Torque;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
+
+use super::spatial::{Cycles, panels};
+use super::story::Story;
+use super::{time, title};
+
+/// Colours of the axes.
+const COLOURS: [RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
+
+/// Whether a log has torques: pulses of jets that act alone are in the figure `jets`.
+pub fn of(story: &Story) -> bool {
+    !story.scenario.study.jets_alone || story.scenario.environment.is_some()
+}
+
+pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+    let about = |axis: usize, of: fn(&Torque) -> f64| -> Vec<Point> {
+        cycles.torques.iter().map(|(time, row)| (*time, of(&row.axes[axis]))).collect()
+    };
+    // Commands come in steps, which the wider line shows beside what the actuators make of them.
+    let lines = |axis: usize| {
+        let name = |name| if axis == 0 { name } else { "" };
+        let [demanded, given] =
+            [about(axis, |torque| torque.feedback_nm), about(axis, |torque| torque.applied_nm)];
+        vec![
+            Layer::new(name("demanded by the law"), colour::SKY, LayerShape::Line(2.8), demanded),
+            Layer::new(name("given by the actuators"), colour::BLACK, LayerShape::Line(1.0), given),
+        ]
+    };
+    let mut panels = panels(story, "N m", lines);
+    let disturbing: Vec<Vec<Point>> =
+        (0..3).map(|axis| about(axis, |torque| torque.disturbance_nm)).collect();
+    if disturbing.iter().flatten().any(|(_, torque)| *torque != 0.0) {
+        if let Some(last) = panels.last_mut() {
+            last.x = last.x.unnamed();
+        }
+        let values: Vec<f64> = disturbing.iter().flatten().map(|(_, torque)| *torque).collect();
+        let line = |(axis, points): (usize, Vec<Point>)| {
+            Layer::new(AXES[axis], COLOURS[axis], LayerShape::Line(1.2), points)
+        };
+        let layers = disturbing.into_iter().enumerate().map(line).collect();
+        panels.push(Panel::new(
+            time(0.0..story.end),
+            FigureAxis::around("disturbance", "N m", values),
+            layers,
+        ));
+    }
+    Figure { title: title(story, "torques on the body"), panels, panel_height: 160 }
+}
