@@ -54,8 +54,12 @@ impl<'a> Merge<'a> {
     }
 
     fn add(&mut self, from: usize, part: Range<u64>) -> Result<(), DirectoryError> {
-        // Whole, whether or not it is needed.
-        drop(self.all[from].reading(&part)?);
+        // All of it can be read, whether or not it is needed.
+        let directory = &self.all[from];
+        let reading = directory.reading(&part)?;
+        for field in directory.work().fields() {
+            drop(directory.column_of(&reading, &part, &field.name)?);
+        }
         let first = self.pieces.partition_point(|piece| piece.runs.end <= part.start);
         let last = self.pieces.partition_point(|piece| piece.runs.start < part.end);
         let there: Vec<Range<u64>> =
