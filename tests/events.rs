@@ -226,15 +226,13 @@ fn switching_much_faster_than_any_mode_is_an_error() {
     // The quick push of a huge torque; the modes have periods of 14.3 and 8.3 s.
     let shipped = std::fs::read_to_string(format!("{SCENARIOS}/relay-fixed.toml")).expect("shipped");
     let run = |text: &str| Simulation::new(&scenario(text), 0).run(&mut ());
-    for (from, to) in [("strong = 4e-5", "strong = 1e12"), ("hysteresis = 1e-4", "hysteresis = 1e-15")] {
-        let error = run(&shipped.replace(from, to)).expect_err("chatter");
-        assert!(matches!(error, SimulationError::LawChatter { .. }), "{error}");
-        // It is the same error from the loop, which a log of rows at fixed times has from the start on.
-        let mut rows = Trace::new(Detail::Full);
-        let told =
-            Simulation::new(&scenario(&shipped.replace(from, to)), 0).run(&mut rows).expect_err("chatter");
-        assert_eq!(told.to_string(), error.to_string());
-    }
+    let quick = shipped.replace("strong = 4e-5", "strong = 1e12");
+    let error = run(&quick).expect_err("chatter");
+    assert!(matches!(error, SimulationError::LawChatter { .. }), "{error}");
+    // It is the same error from the loop, which a log of rows at fixed times has from the start on.
+    let mut rows = Trace::new(Detail::Full);
+    let told = Simulation::new(&scenario(&quick), 0).run(&mut rows).expect_err("chatter");
+    assert_eq!(told.to_string(), error.to_string());
     // A relay that is a million times as strong switches often, and is none.
     run(&shipped.replace("strong = 4e-5", "strong = 40.0").replace("duration = 20000.0", "duration = 20.0"))
         .expect("a run");

@@ -183,11 +183,16 @@ fn a_scenario_is_read_from_stdin() {
 
 #[test]
 fn what_is_probably_a_mistake_is_remarked() {
-    let dir = Dir::with(&["relay-fixed"]);
-    let text = dir.text("relay-fixed.toml");
-    assert!(!dir.run("check relay-fixed.toml").exits(0).err.contains("remark"));
-    dir.write("d.toml", text.replacen("gain = 0.0213", "gain = 0.0213\ndamping = 5", 1));
-    dir.run("check d.toml").exits(0).says(&["remark: `body.planar.modes[0].damping`", "\"5 %\""]);
+    let dir = Dir::with(&["earth-observer"]);
+    let text = dir.text("earth-observer.toml");
+    assert!(!dir.run("check earth-observer.toml").exits(0).err.contains("remark"));
+    dir.write("d.toml", text.replacen("damping = 0.005", "damping = 5", 1));
+    dir.run("check d.toml").exits(0).says(&["remark: `appendage[0].modes[0].damping`", "\"5 %\""]);
     let json = dir.run("check d.toml --json").exits(0).out;
-    assert!(json.contains("\"remarks\":[{\"key\":\"body.planar.modes[0].damping\""), "{json}");
+    assert!(json.contains("\"key\":\"appendage[0].modes[0].damping\""), "{json}");
+    assert!(text.contains("latency = "), "{text}");
+    let late =
+        text.split("latency = ").nth(1).and_then(|rest| rest.split([',', ' ']).next()).unwrap_or_default();
+    dir.write("l.toml", text.replacen(&format!("latency = {late}"), "latency = 3.3", 1));
+    dir.run("check l.toml").exits(0).says(&["remark: `sensor", "latency` is longer than the period"]);
 }

@@ -78,6 +78,9 @@ fn of_another_language(text: &str, place: usize) -> Option<String> {
     let line = before.rsplit('\n').next().unwrap_or(before);
     let rest = after.lines().next().unwrap_or_default();
     let comment = ["//", "%", "--", "/*"].into_iter().find(|begin| rest.trim_start().starts_with(begin));
+    if rest.contains(" //") {
+        return Some("found `//`; a comment begins with `#`".to_owned());
+    }
     if let Some(begin) = comment.filter(|_| !line.trim_end().ends_with('=')) {
         return Some(format!("found `{begin}`; a comment begins with `#`"));
     }

@@ -80,9 +80,6 @@ fn appendage_itself(appendage: &Appendage) -> Result<(), Fault> {
     if least < -1e-9 * most.abs() || most < 0.0 {
         return Err(Fault::new("inertia", format!("must have no negative moment, got one of {least} kg m²")));
     }
-    if let Some(why) = impossible_moments(&inertia) {
-        return Err(Fault::new("inertia", why));
-    }
     in_metres("at", vector(&appendage.at).norm())?;
     in_metres("centre", vector(&appendage.centre).norm())?;
     extent(&inertia, appendage.mass.get())?;
