@@ -47,6 +47,7 @@ mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;
 mod foreign_logs;
+mod frozen;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
 mod gimbals;
@@ -120,3 +121,4 @@ mod viewer;
 mod waveforms;
 mod wheel;
 mod wheel_figures;
+mod words;

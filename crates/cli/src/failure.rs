@@ -209,7 +209,7 @@ fn coloured(text: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::{LONGEST_LINE, shown};
+    use super::{LONGEST_LINE, shown, without_zeros};
 
     #[test]
     fn numbers_of_many_zeros_have_an_exponent() {
