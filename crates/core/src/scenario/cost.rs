@@ -2,7 +2,7 @@
 //! yes.
 
 use super::Scenario;
-use super::pace::STEP;
+use super::pace::{STEP, TURNS};
 use crate::actuator::{ActuatorTask, Unloads};
 use crate::attitude::vector;
 use crate::body::Spatial;
@@ -40,8 +40,6 @@ const MUCH_DISK: f64 = 2e10;
 const RELAY_STRIDES: f64 = 0.1;
 /// Looks at the motion within an exposure, and more for each radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
-/// What the steps of a rotation are told by.
-pub(super) const TURNS: &str = "duration";
 /// Side by side, so many runs about one axis take the time of one.
 const LANES: f64 = 4.5;
 /// What is kept of a run of a campaign (bytes).
