@@ -215,7 +215,7 @@ fn modes_and_cycles_are_told_as_json() {
     let cycle = dir.run("cycle relay-fixed.toml --json --set law.relay.k_t=0.32").exits(0).json();
     assert_eq!(cycle["k_t"], 0.32);
     assert!(cycle["cycles"][0]["period_s"].as_f64().expect("a number") > 10.0);
-    dir.run("modes relay-fixed.toml").exits(0).says(&["0.44", "rad/s"]);
+    dir.run("modes relay-fixed.toml --units si").exits(0).says(&["0.44", "rad/s"]);
     dir.run("cycle relay-fixed.toml").exits(0).says(&["two-sided cycle", "period"]);
 }
 

@@ -131,7 +131,7 @@ fn long_work_needs_a_yes() {
     );
     let words = [
         "`sensor.sampled.period` makes 2.0e11 steps: about",
-        "h on one core",
+        "on one core",
         "must be confirmed",
         "hint: `--yes` runs it anyway",
     ];

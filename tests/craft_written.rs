@@ -51,8 +51,8 @@ fn modes_shows_parts_and_whole() {
     let dir = Dir::new();
     dir.write("craft.toml", std::fs::read(CRAFT).expect("a scenario"));
     dir.run("check craft.toml").exits(0).says(&["accepted: 100 s, 8 modes"]);
-    let words = ["660 kg", "panel -y", "1.147503", "242.6429", "tip"];
-    dir.run("modes craft.toml").exits(0).says(&words);
+    let words = ["660 kg", "panel -y", "1.148", "242.6429", "tip"];
+    dir.run("modes craft.toml --units si").exits(0).says(&words);
     let json = dir.run("modes craft.toml --json").exits(0).json();
     let at = |key: &str| json.pointer(key).and_then(serde_json::Value::as_f64).expect("a number");
     near(at("/clamped/0/effective_mass_kg/2"), 4.2887 * 4.2887, 1e-12);

@@ -51,15 +51,15 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-sampled", " --runs 5:6", "/command", 0x326e_f6e7_a8ce_d541),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0xfcf2_156a_660f_118d),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
-        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0xe18f_c212_5f78_e08b),
+        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x7626_8091_0fd9_4549),
         ("wheel-friction", " --runs 5:6", "/wheel_events", 0x3139_fe85_ed71_cad5),
-        ("wheel-friction", " --runs 5:6", "/metrics", 0xc1c6_7781_2ea6_1747),
-        ("flexible-boom", " --runs 5:6", "/metrics", 0x43cf_c127_d43c_9db6),
-        ("sun-tracking", " --runs 5:6", "/metrics", 0x26d3_5f4e_3fb9_1268),
+        ("wheel-friction", " --runs 5:6", "/metrics", 0x796b_24e9_9ed7_5dba),
+        ("flexible-boom", " --runs 5:6", "/metrics", 0x8ea7_d667_6b60_9cc5),
+        ("sun-tracking", " --runs 5:6", "/metrics", 0xa270_1531_3030_5c67),
         ("wheels-and-jets", "", "/jets", 0xc855_6861_6347_86f4),
-        ("wheels-and-jets", "", "/metrics", 0xe13f_26c3_7924_6b9e),
+        ("wheels-and-jets", "", "/metrics", 0x8153_843a_2ba9_0b06),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
-        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0x1983_3a5a_603a_25da),
+        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0xcec4_9a0e_80ad_df37),
     ];
     let mut others = Vec::new();
     for (name, runs, topic, expected) in runs {

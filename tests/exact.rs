@@ -220,7 +220,7 @@ fn a_body_without_inertia_is_accelerated() {
     let said = |name: &str| dir.run(&format!("simulate {name}.toml --log none --set duration=20")).exits(0);
     let wheel = said("wheel-fast-mode").says(&["acceleration   at most", "rad/s²"]).err;
     assert!(!wheel.contains("N m") && !wheel.contains("torque"), "{wheel}");
-    said("rotation-kinematic").says(&["acceleration   at most", "rad/s²"]);
+    said("rotation-kinematic").says(&["acceleration   at most", "deg/s²"]);
     said("rotation-sine").says(&["torque         at most", "N m"]);
     dir.run("cycle relay-fixed.toml").exits(0).says(&["rad/s per hour"]);
     let units = |name: &str, metric: &str| {

@@ -1,8 +1,7 @@
 //! Limits of wheels and jets in the metrics, and warnings of runs that end in saturation or in an oscillation.
 
-use flexsc_core::Scenario;
 use flexsc_core::metrics::{Gather, Metrics, Value};
-use flexsc_core::sim::Simulation;
+use flexsc_core::{Scenario, Simulation};
 
 use crate::util::Dir;
 

@@ -373,7 +373,12 @@ fn the_command_tells_of_modes() {
         assert_eq!(told["outputs"][3]["name"], "section_4");
         assert_eq!(told["outputs"][3]["weights"].as_array().map(Vec::len), Some(4));
     }
-    dir.run("modes free.toml").exits(0).says(&["3.330082", "0.913857", "hub free", "output section_4, rad"]);
+    dir.run("modes free.toml --units si").exits(0).says(&[
+        "3.33",
+        "0.9139",
+        "hub free",
+        "output section_4, rad",
+    ]);
     let rigid = dir.run("modes free.toml --set body.panels.keep=0 --json").exits(0).json();
     assert_eq!(rigid["clamped_frequencies_rad_s"], serde_json::json!([]));
     dir.run("modes held.toml").exits(0).says(&["0.913857", "3.330082", "hub held"]);

@@ -2,7 +2,7 @@
 //! a confirmation.
 
 use super::Scenario;
-use super::pace::STEP;
+use super::pace::{STEP, SWITCHES, TURNS};
 use crate::actuator::{Actuator, ActuatorTask, Unloads};
 use crate::attitude::vector;
 use crate::body::Spatial;
@@ -38,12 +38,8 @@ const MUCH_DISK: f64 = 2e10;
 /// Steps of a relay law per radian of the fastest mode: between runs in batches, which take half as long, and single
 /// runs with damped modes, which take twice as long.
 const RELAY_STRIDES: f64 = 0.1;
-/// Key to which the switchings of a relay law are attributed.
-pub(super) const SWITCHES: &str = "law.relay.strong";
 /// Evaluations of the motion within an exposure: constant part, and part per radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
-/// Key to which the steps of a rotation are attributed.
-pub(super) const TURNS: &str = "duration";
 /// Number of runs about one axis that take the time of one in SIMD lanes.
 const LANES: f64 = 4.5;
 /// Memory kept for each run of a campaign (bytes).

@@ -2,10 +2,14 @@
 //! constants are those of an ordinary core, to a factor of two for the shipped scenarios.
 
 use super::Scenario;
-use super::cost::{SWITCHES, TURNS};
 use crate::actuator::Firing;
 use crate::estimator::Estimator;
 use crate::law::Law;
+
+/// The key of the steps of a rotation.
+pub const TURNS: &str = "duration";
+/// Key to which the switchings of a relay law are attributed.
+pub(super) const SWITCHES: &str = "law.relay.strong";
 
 /// A time (s), and what each mode adds.
 type Pace = (f64, f64);
@@ -94,13 +98,13 @@ impl Scenario {
     /// The time of a sample of its filter (s).
     fn filter_seconds(&self, modes: f64) -> f64 {
         let takes = |(base, each): Pace| base + modes * each;
+        if let Some(filter) = self.estimator.as_ref().and_then(Estimator::attitude) {
+            return filter.elastic.as_ref().map_or(takes(ATTITUDE_FILTER), |elastic| {
+                let order = 6.0 + 3.0 * elastic.modes.len() as f64;
+                ELASTIC_PRODUCTS * order * order * order * PRODUCT_S
+            });
+        }
         match &self.estimator {
-            Some(Estimator::Attitude(filter)) => {
-                filter.elastic.as_ref().map_or(takes(ATTITUDE_FILTER), |elastic| {
-                    let order = 6.0 + 3.0 * elastic.modes.len() as f64;
-                    ELASTIC_PRODUCTS * order * order * order * PRODUCT_S
-                })
-            }
             Some(Estimator::Adaptive(_)) => takes(ADAPTIVE),
             Some(filter) if filter.filters() => {
                 // Matrices of the order of its state.
