@@ -46,7 +46,7 @@ fn runs_repeat_to_the_last_bit() {
     let runs = [
         ("relay-adaptive", "", "/command", 0x4886_7bcb_5000_12ea),
         ("relay-adaptive", "", "/adaptation", 0xc5d3_fe5a_3b03_bb60),
-        ("adaptive-bandwidth", "", "/objective", 0x2fcd_8de4_2f12_62c6),
+        ("adaptive-bandwidth", "", "/objective", 0xfa0a_f42e_52d4_2f6c),
         ("relay-wheel", "", "/command", 0x78a2_8188_0e76_c89e),
         ("relay-sampled", " --runs 5:6", "/command", 0x326e_f6e7_a8ce_d541),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0xfcf2_156a_660f_118d),

@@ -73,11 +73,7 @@ impl Looked {
 
     /// Returns the attitude that was reported last.
     fn told(&self) -> Quaternion<f64> {
-        // Errors are twice the vectors of quaternions from the origin.
-        let error = |place: usize| {
-            let half = Vector::from_row_slice(&self.row[place..place + 3]) * 0.5;
-            Quaternion::from_parts((1.0 - half.norm_squared()).sqrt(), half)
-        };
+        let error = |place: usize| rotation(&Vector::from_row_slice(&self.row[place..place + 3]));
         self.hub() * error(self.places[1]).conjugate() * error(self.places[2])
     }
 }

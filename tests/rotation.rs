@@ -6,6 +6,7 @@
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
+use flexsc_core::record::Trace;
 
 use crate::study::{close, metrics, numbers, scenario};
 use crate::traces::{column, traced};
@@ -152,14 +153,20 @@ fn a_zero_order_hold_of_a_short_period_is_ideal() {
     assert!(coarse > 3.0 * ideal, "{coarse:e} {ideal:e}");
 }
 
+/// The times of the rows of a topic (s).
+fn times(trace: &Trace, topic: &str) -> Vec<f64> {
+    let rows = trace.clone().into_columns().find(|(name, _)| *name == topic);
+    rows.and_then(|(_, rows)| rows.numbers("time_s").map(<[f64]>::to_vec)).expect("times")
+}
+
 /// A log with the period of the thrusters has rows at the edges of their pulses: those of a fine one.
 #[test]
 fn no_pulse_is_missing_in_a_coarse_log() {
     let edges = |period: &str| -> Vec<(f64, f64)> {
         let trace = traced(&scenario("rotation-thrusters", &[("log.period", period), ("duration", "14")]));
-        let (times, applied) = (column(&trace, "/torque", "time_s"), column(&trace, "/torque", "applied_nm"));
+        let (times, applied) = (times(&trace, "torque"), column(&trace, "/torque", "applied_nm"));
         assert!(times.windows(2).all(|row| row[0] < row[1]), "each instant has one row");
-        assert_eq!(times.len(), column(&trace, "/attitude", "time_s").len());
+        assert_eq!(times.len(), column(&trace, "/attitude", "angle_rad").len());
         let changes = times.iter().zip(applied).zip(&applied[1..]).zip(&times[1..]);
         changes.filter(|(((_, a), b), _)| a != b).map(|(((_, _), b), at)| (*at, *b)).collect()
     };
@@ -182,7 +189,7 @@ fn thrusters_give_the_planned_impulse_in_pulses() {
         (column(&trace, "/torque", "applied_nm"), column(&trace, "/torque", "feedforward_nm"));
     assert!(applied.iter().all(|torque| [0.0, 600.0].contains(&torque.abs())));
     // Over the first half, the impulse is that of the plan to the shortest pulse and the sampling of this log.
-    let times = column(&trace, "/torque", "time_s");
+    let times = times(&trace, "torque");
     let half = |torque: &[f64]| -> f64 {
         let rows = times.windows(2).zip(torque).filter(|(row, _)| row[1] <= 6.0);
         rows.map(|(row, torque)| torque * (row[1] - row[0])).sum()

@@ -57,7 +57,8 @@ def turn(v):
 
 def beyond(a, b):
     d = times(back(a), b)
-    return 2 * d[1:] * np.sign(d[0])
+    n = np.linalg.norm(d[1:])
+    return 2 * np.arctan2(n, abs(d[0])) / n * d[1:] * np.sign(d[0])
 
 
 def modes(w):

@@ -3,9 +3,10 @@
     pip install numpy scipy
     python3 tests/golden/swung_oracle.py tests/golden
 
-The body is that of two_panels.py. The first panel stands still and has its two modes; the second is rigid and
-swings on a hinge by half a radian, which moves the centre of mass. Momenta are derivatives of T. H' = - w x H,
-p' = - k th - c th' + dT/d th, pi' = -O^2 eta - D eta' + dT/d eta, by DOP853 with a relative tolerance of 1e-13.
+The body is that of two_panels.py. The first panel stands still and has its two modes; the second is rigid
+and swings on a hinge by half a radian, which moves the centre of mass. Momenta are derivatives of T.
+H' = - w x H, p' = - k th - c th' + dT/d th, pi' = -O^2 eta - D eta' + dT/d eta, by DOP853 with a relative
+tolerance of 1e-13.
 
 swung.csv has a line each half second: t, Q (4), w (3), th, th', and the energy of all but the wheel.
 """
@@ -113,9 +114,7 @@ def main():
     folder = Path(sys.argv[1])
     (folder / "swung.toml").write_text(scenario())
     times = np.linspace(0.0, DURATION, 81)
-    run = solve_ivp(
-        rates, (0.0, DURATION), start(), method="DOP853", rtol=1e-13, atol=1e-15, t_eval=times
-    )
+    run = solve_ivp(rates, (0.0, DURATION), start(), method="DOP853", rtol=1e-13, atol=1e-15, t_eval=times)
     assert run.success
     with (folder / "swung.csv").open("w") as out:
         for t, y in zip(run.t, run.y.T, strict=True):

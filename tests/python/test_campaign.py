@@ -154,11 +154,11 @@ def test_a_value_that_is_not_accepted_is_a_row(fixed: Scenario) -> None:
 
 def test_runs_that_all_fail_are_an_error(fixed: Scenario, tmp_path: Path) -> None:
     hopeless = fixed.with_({"body.planar.rate": 1e308, "body.planar.angle": 1e308})
-    why = "relay-fixed: 2 of 2 runs failed; run 3: .*no longer finite"
+    why = r"relay-fixed: 2 of 2 runs failed; run 3: .*no longer finite"
     for out in (None, tmp_path / "out"):
         with pytest.raises(SimulationError, match=why):
             flexsc.campaign(hopeless, range(3, 5), out=out)
-    with pytest.raises(SimulationError, match="relay-fixed: 2 of 2 runs failed; run 0: .*no longer finite"):
+    with pytest.raises(SimulationError, match=r"relay-fixed: 2 of 2 runs failed; run 0: .*no longer finite"):
         flexsc.sweep(hopeless, "law.relay.k_t", [0.31, 0.32])
     # The directory has the rows.
     table = flexsc.read_campaign(tmp_path / "out")

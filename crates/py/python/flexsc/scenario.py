@@ -1383,7 +1383,9 @@ class MagneticField(Part):
     rotation: float | None = None
     """Rotation rate of the planet (rad/s); default: the Earth's. Default: 7.292115e-05."""
     meridian: float | None = None
-    """Angle from the inertial x to the prime meridian at the start (rad). Default: 0.0."""
+    """Angle from the inertial x to the prime meridian at the start (rad); default: that of Greenwich at the
+    scenario's `epoch`, 0 without one.
+    """
 
 
 @dataclass(frozen=True, kw_only=True)
