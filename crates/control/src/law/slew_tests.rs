@@ -117,8 +117,9 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
             for (wheel, speed) in wheels.wheels(now, rate.into()).iter().zip(&row[8..12]) {
                 assert!((wheel.speed_rad_s - speed).abs() < 1e-9, "{t} {}", wheel.speed_rad_s - speed);
             }
-            // It has twice the sine of half the angle, which here differs by less than 1e-13 rad.
-            assert!((angles - three(12)).norm() < 5e-13, "{t} {:e}", (angles - three(12)).norm());
+            // It has twice the vectors of quaternions.
+            let twice = (pose.attitude.conjugate() * attitude).vector() * 2.0;
+            assert!((twice - three(12)).norm() < 5e-13, "{t} {:e}", (twice - three(12)).norm());
         }
         let whole = angles.norm();
         let belief =
