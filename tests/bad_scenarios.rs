@@ -131,7 +131,7 @@ const KEYS: &[Case] = &[
     ("two sensors", Line(26, "period = 0.1\n[sensor.gyro]\nperiod = 0.1"), 25, "sensor", &["`sensor`: exactly one kind", "more than one", "`sampled`, `gyro`"]),
     ("two actuators", Line(28, "[actuator.hold]\nperiod = 0.1\n[actuator.wheel]\ngain = 1.0\n[log]"), 28, "actuator", &["`actuator`: exactly one kind", "more than one", "`hold`, `wheel`"]),
     ("two bodies", Line(9, "displacement = 2.75e-6\n[body.other]\na = 1"), 3, "body", &["`body`: exactly one kind", "more than one", "`planar`, `other`"]),
-    ("a misspelt body beside its modes", Line(3, "[body.planer]"), 3, "body", &["`body`: exactly one kind", "`planer`, `planar`"]),
+    ("a misspelt body beside its modes", Line(3, "[body.planer]"), 3, "planer", &["`body`: `planer` is not known here", "did you mean `planar`?"]),
     ("no kind of law", Lines(&[(11, "[law]"), (12, ""), (13, ""), (14, ""), (15, ""), (16, "")]), 11, "[law]", &["`law`: exactly one kind is needed", "none is given"]),
     ("only the name of a kind", Cut(11, 16, "law = \"relay\""), 1, "\"relay\"", &["`law`", "only the name of a kind", "a table"]),
     ("a sampled sensor without a period", Cut(25, 26, "sensor = \"sampled\"\nduration = 1"), 1, "\"sampled\"", &["`sensor`", "only the name of a kind", "a table"]),

@@ -99,7 +99,7 @@ const CASES: &[Case] = &[
     ("centre = [0.0, 2.0, 0.0]", "centre = [0.0, 2000.0, 0.0]", 8, &["`appendage[0].centre` must be within 1000 m"]),
     ("at = [0.0, 1.0, 0.0]", "at = [0.0, 1500.0, 0.0]", 10, &["`appendage[0].at` must be within 1000 m, got 1500 m: is it in mm?"]),
     ("at = [0.0, 1.0, 0.0]", "turned = { about = [0, 0, 0], by = 1 }", 10, &["`appendage[0].turned.about` must have a length"]),
-    ("at = [0.0, 1.0, 0.0]", "turned = [{ about = [0, 1, 0], by = 1 }, { about = [0, 1, 0], by = 25 }]", 10, &["`appendage[0].turned[1].by` must be an angle of -2 pi to 2 pi, in rad, got 25"]),
+    ("at = [0.0, 1.0, 0.0]", "turned = [{ about = [0, 1, 0], by = 1 }, { about = [0, 1, 0], by = 25 }]", 10, &["`appendage[0].turned[1].by` must be an angle of -2 pi to 2 pi, in rad, or such as \"30 deg\", got 25"]),
     ("at = [0.0, 1.0, 0.0]", "turned = 25.0", 10, &["`appendage[0].turned`", "a turn `{ about = [x, y, z], by = ANGLE }`, or an array of turns"]),
     ("translation = [0.0, 0.0, 3.5]", "translation = [0.0, 0.0, 4.5]", 13, &["`appendage[0].modes[0].translation` must carry no more than the appendage: its effective mass is 20.25 kg, the appendage's mass 20 kg"]),
     ("translation = [0.0, 0.0, 3.5]", "translation = [0.0, 0.0, 3500]", 13, &["`appendage[0].modes[0].translation`", "mass-normalised, in kg and m?"]),

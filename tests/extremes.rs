@@ -10,7 +10,7 @@ use crate::util::{Dir, FLEXSC, SCENARIOS, has_extension};
 
 /// Numbers, and grids of numbers.
 const VALUES: &[&str] = &["0", "-1", "nan", "1e-300", "1e9", "1e20", "1e300", "18446744073709551615"];
-const GRIDS: &[&str] = &["0.5:1e12:5", "1e-300:1e300:5", "1:2:4294967295", "1:1e9:1000"];
+const GRIDS: &[&str] = &["0.5:1e12:5", "1e-300:1e300:5", "1:2:4294967295", "1:1e9:100"];
 /// Verbs that need minutes, or take no numbers.
 const WITHOUT: &[&str] = &["reproduce", "completions", "help"];
 /// Options that wait for others, that ask for long work, or whose values are keys of scenarios.

@@ -15,7 +15,7 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{Attitude, Vector, asymmetry, impossible_moments, tensor, vector};
+use crate::attitude::{Attitude, Vector, asymmetry, tensor, vector};
 use crate::document::Fault;
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
@@ -126,9 +126,6 @@ impl Spatial {
         }
         if tensor.cholesky().is_none() {
             return refused("inertia", "must be positive definite".to_owned());
-        }
-        if let Some(why) = impossible_moments(&tensor) {
-            return refused("inertia", why);
         }
         for (index, point) in self.points.iter().enumerate() {
             if self.points[..index].iter().any(|other| other.name == point.name) {
