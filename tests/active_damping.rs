@@ -336,7 +336,7 @@ fn figures_show_what_was_identified_and_damped() {
         .exits(0)
         .says(&["Hz (estimated / true)", "active damping in"]);
     dir.run("plot iss-ringdown.mcap --format svg -o figures").exits(0);
-    let figures = ["damping", "energy", "jets", "pointing", "rates", "tracking"];
+    let figures = ["damping", "deflection", "energy", "jets", "pointing", "rates", "tracking"];
     assert_eq!(dir.names("figures"), figures.map(|what| format!("iss-ringdown-{what}.svg")));
     let svg = dir.text("figures/iss-ringdown-damping.svg");
     assert!(svg.contains("threshold") && svg.contains("fires"));

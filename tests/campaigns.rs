@@ -284,7 +284,7 @@ fn two_processes_do_not_share_a_table() {
 fn a_killed_campaign_keeps_its_rows() {
     let dir = Dir::with(&["relay-fixed"]);
     // The runs become longer, the last ones by far.
-    let run = dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 --table csv -o out");
+    let run = dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 --table csv -o out --yes");
     let few = dir.start(
         "simulate relay-fixed.toml --set duration=2e6 --runs 100000 --table csv -o few --jobs 1 --yes",
     );

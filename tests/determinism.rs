@@ -51,15 +51,15 @@ fn runs_repeat_to_the_last_bit() {
         ("relay-sampled", " --runs 5:6", "/command", 0x326e_f6e7_a8ce_d541),
         ("relay-sampled", " --runs 5:6", "/envelope_mean", 0xfcf2_156a_660f_118d),
         ("iss-manoeuvre-off", " --runs 5:6", "/jets", 0x99f5_dadc_162c_aa75),
-        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x7626_8091_0fd9_4549),
-        ("wheel-friction", " --runs 5:6", "/wheel_events", 0x3139_fe85_ed71_cad5),
-        ("wheel-friction", " --runs 5:6", "/metrics", 0x796b_24e9_9ed7_5dba),
-        ("flexible-boom", " --runs 5:6", "/metrics", 0x8ea7_d667_6b60_9cc5),
-        ("sun-tracking", " --runs 5:6", "/metrics", 0xa270_1531_3030_5c67),
-        ("wheels-and-jets", "", "/jets", 0xc855_6861_6347_86f4),
-        ("wheels-and-jets", "", "/metrics", 0x8153_843a_2ba9_0b06),
+        ("iss-manoeuvre-off", " --runs 5:6", "/metrics", 0x1032_64f2_e13b_2c5e),
+        ("wheel-friction", " --runs 5:6", "/wheel_events", 0xab1b_b72b_45d7_5b9b),
+        ("wheel-friction", " --runs 5:6", "/metrics", 0x3c6a_9be1_e2b7_ec45),
+        ("flexible-boom", " --runs 5:6", "/metrics", 0x7b02_cae7_d7e8_300e),
+        ("sun-tracking", " --runs 5:6", "/metrics", 0xf806_e519_f43b_9df5),
+        ("wheels-and-jets", "", "/jets", 0x0436_fa26_25e0_b4be),
+        ("wheels-and-jets", "", "/metrics", 0xd958_01be_dd2d_2885),
         ("iss-manoeuvre", " --runs 5:6", "/jets", 0xab49_e5c6_fc46_c039),
-        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0xcec4_9a0e_80ad_df37),
+        ("iss-manoeuvre", " --runs 5:6", "/metrics", 0xfdf4_0a4b_9c16_697f),
     ];
     let mut others = Vec::new();
     for (name, runs, topic, expected) in runs {

@@ -237,10 +237,10 @@ fn their_summary_and_figure_show_gimbals_and_limits() {
     let [rate, measure, off] = ["gimbal_rate_peak_rad_s", "singularity_min", "torque_error_peak_nm"]
         .map(|name| metrics.number(name).expect(name));
     let dir = Dir::with(&["agile-observer"]);
-    dir.run("simulate agile-observer.toml --set duration=45").exits(0).says(&[
-        &format!("  gimbals        at most {rate:.3e} rad/s; "),
-        &format!("singularity measure at least {measure:.3}; "),
-        &format!("torque within {off:.3e} N m of the demand"),
+    dir.run("simulate agile-observer.toml --set duration=45 --units si").exits(0).says(&[
+        &format!("  gimbals        rate at most {rate:.4} rad/s; "),
+        &format!("singularity measure at least {measure:.4}; "),
+        &format!("torque within {off:.5} N m of the demand"),
     ]);
     dir.run("plot agile-observer.mcap --what gimbals --format svg").exits(0);
     let drawing = Drawing::at(&dir, "agile-observer-gimbals.svg");

@@ -141,9 +141,9 @@ mod tests {
     fn a_pipe_gets_a_line_every_thirty_seconds() {
         let mut lines = Lines::new(200, 0, "runs");
         assert_eq!(lines.line(29.9, 17), None);
-        let line = lines.line(30.0, 20).expect("a line");
-        assert_eq!(line, "progress: 20 of 200 runs after 30 s, about 5 min left");
-        assert_eq!(lines.line(31.0, 21), None);
+        let line = lines.line(30.0, 40).expect("a line");
+        assert_eq!(line, "progress: 40 of 200 runs after 30 s, about 2 min left");
+        assert_eq!(lines.line(31.0, 41), None);
         // Nothing is done yet: there is no time left to tell.
         let mut resumed = Lines::new(200, 50, "runs");
         assert_eq!(resumed.line(60.0, 50).expect("a line"), "progress: 50 of 200 runs after 60 s");

@@ -92,6 +92,9 @@ const NORMAL_975: f64 = 1.959_963_984_540_054;
 /// The 95 % interval of a probability of which so many of so many trials came out: Wilson's score interval. NaN without a
 /// trial.
 pub fn wilson(met: u64, trials: u64) -> (f64, f64) {
+    if trials == 0 {
+        return (f64::NAN, f64::NAN);
+    }
     let (n, z2) = (trials as f64, NORMAL_975 * NORMAL_975);
     let part = met as f64 / n;
     let centre = part + z2 / (2.0 * n);

@@ -28,7 +28,7 @@ const UNSAMPLED_WHEEL: Pace = (1.2e-6, 6e-7);
 /// A sample or a decision of laws about three axes: of a body at rest, of one that turns, and a step of its turn.
 const AT_REST: Pace = (6e-7, 5e-8);
 const TURNING: Pace = (1.2e-6, 5e-8);
-const TURN: Pace = (2e-7, 0.0);
+const TURN: Pace = (1.5e-6, 5e-8);
 /// A sample, a decision or a step of a turn in surroundings that act on the body, with wheels in bearings, and with appendages on hinges.
 const SURROUNDED: Pace = (3e-6, 3e-6);
 const BEARINGS: Pace = (1e-6, 6.5e-7);
@@ -74,7 +74,8 @@ impl Scenario {
             };
             let moves = match stride {
                 Some(stride) => (events + turns) * takes(stride),
-                None if turns > 0.0 => events * takes(TURNING) + turns * takes(TURN),
+                // A step that an event ends is part of the event.
+                None if turns > 0.0 => events * takes(TURNING) + (turns - events).max(0.0) * takes(TURN),
                 None => events * takes(AT_REST),
             };
             return moves + looks * LOOK_S + allocated + filtered;
