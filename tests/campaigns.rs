@@ -284,7 +284,8 @@ fn two_processes_do_not_share_a_table() {
 fn a_killed_campaign_keeps_its_rows() {
     let dir = Dir::with(&["relay-fixed"]);
     // The runs become longer, the last ones by far.
-    let run = dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 --table csv -o out --yes");
+    let run =
+        dir.start("sweep relay-fixed.toml --vary duration=1e3:1e10:12 --jobs 2 --table csv -o out --yes");
     let few = dir.start(
         "simulate relay-fixed.toml --set duration=2e6 --runs 100000 --table csv -o few --jobs 1 --yes",
     );
@@ -332,7 +333,7 @@ fn statistics_are_finite_and_tell_what_they_leave_out() {
     assert!(statistics.iter().any(large), "{statistics:?}");
 }
 
-/// A sweep varies what it is told to, unless the uncertain keys are to be drawn too.
+/// A sweep varies only the keys of `--vary`, unless the uncertain keys are to be drawn too.
 #[test]
 fn a_sweep_draws_only_if_it_is_asked_to() {
     let dir = Dir::holding("u.toml", UNCERTAIN);

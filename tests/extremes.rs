@@ -1,4 +1,4 @@
-//! Every option of every verb at values that nobody means: each is refused or answered within seconds of the processor.
+//! Every option of every verb at absurd values: each is refused or answered within seconds of the processor.
 
 use std::process::{Command, Stdio};
 use std::sync::Mutex;
@@ -50,7 +50,7 @@ fn with(arguments: &[String], option: &str, value: &str) -> Vec<String> {
     all
 }
 
-/// Runs a command, and tells how it ended if that is not by itself in time.
+/// Runs a command, and returns how it ended if it did not end by itself in time.
 fn ends(dir: &Dir, arguments: &[String]) -> Option<String> {
     let mut command = Command::new("sh");
     command.args(["-c", &format!("ulimit -t {CPU}; exec \"$0\" \"$@\""), FLEXSC]).args(arguments);

@@ -1,5 +1,5 @@
 //! Directories of campaigns that come from somebody else, or that were damaged: nothing in them leads elsewhere, is waited for
-//! or is believed.
+//! or is trusted.
 #![cfg(unix)]
 
 use std::os::unix::fs::symlink;

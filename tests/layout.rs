@@ -324,7 +324,7 @@ fn plots_show_what_the_run_has_and_no_more() {
     assert_eq!(labels(&station, "Plot!error"), ["roll", "pitch", "yaw", "+ dead zone", "- dead zone"]);
     // All eight modes, and their sum.
     assert_eq!(labels(&observer, "Plot!energy").len(), 9);
-    // An error and its deviation can be told apart.
+    // An error and its deviation are drawn differently.
     let angles = lines(&observer, "Plot!angles");
     for pair in angles.chunks(2) {
         assert_ne!(pair[0].1, pair[1].1, "{pair:?}");

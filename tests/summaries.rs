@@ -1,4 +1,4 @@
-//! What people read of runs and modes: digits, units, and nothing that does not apply.
+//! Summaries of runs and modes: digits, units, and nothing that does not apply.
 
 use crate::util::Dir;
 

@@ -86,7 +86,7 @@ fn all_mistakes_come_at_once() {
     ]);
 }
 
-/// What is written in the place of what: the error that there is, and how many errors there are.
+/// Replacements in a good scenario: a text, the text in its place, and a part of the one error message.
 #[rustfmt::skip] // One case a line.
 const ALONE: &[(&str, &str, &str)] = &[
     ("[law.relay]", "[law.lqr]", "did you mean `state_space`?"),

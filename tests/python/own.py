@@ -109,7 +109,9 @@ def turn(by: Array) -> Array:
 
 def beyond(goal: Array, q: Array) -> Array:
     off = times(goal * [1, -1, -1, -1], q)
-    vector: Array = 2.0 * off[1:] * np.sign(off[0])
+    off = off * np.sign(off[0])
+    half = float(np.arctan2(np.linalg.norm(off[1:]), off[0]))
+    vector: Array = 2.0 * off[1:] / np.sinc(half / np.pi)
     return vector
 
 

@@ -33,15 +33,18 @@ def test_metrics_know_their_units(fixed: Scenario) -> None:
     assert json.loads(json.dumps({"switchings": metrics["switchings"]})) == {"switchings": 81}
 
 
-@pytest.mark.parametrize("name", ["relay-fixed", "rotation-sine", "iss-manoeuvre"])
-def test_runs_are_shown_with_a_figure(name: str) -> None:
+@pytest.mark.parametrize(
+    ("name", "title"),
+    [("relay-fixed", "Relay fixed"), ("rotation-sine", "Rotation sine"), ("iss-manoeuvre", "ISS manoeuvre")],
+)
+def test_runs_are_shown_with_a_figure(name: str, title: str) -> None:
     scenario = shipped(name)
     run = scenario.with_("duration", min(scenario.duration, 300.0)).simulate()
     html = run._repr_html_()
     [figure] = figures(html)
     assert "width:560px" in figure.get("style", "")
     text = " ".join(element.text or "" for element in figure.iter() if element.tag.endswith("text"))
-    assert name in text
+    assert title in text
     # The whole is well-formed, and has a row for each metric and each topic.
     whole = ElementTree.fromstring(f"<div>{html}</div>")
     first = [row[0].text for table in whole.iter("table") for row in table.iter("tr")]

@@ -1,4 +1,4 @@
-//! Running a campaign: the row of each run, and the statistics.
+//! Execution of a campaign: the row of each run, and the statistics.
 
 pub mod file;
 mod kept;
@@ -41,7 +41,7 @@ pub use options::{Kind, Options};
 use points::Points;
 use told::{Told, are_alike, met, verdict, write_statistics};
 
-/// The metrics that are told and drawn of a campaign if none is named: the first of these that vary.
+/// Metrics that are printed and drawn if none is named: the first ones of this list that vary.
 pub const MAIN: [&str; 23] = [
     "goal",
     "envelope_late_mean_rad",
@@ -68,40 +68,40 @@ pub const MAIN: [&str; 23] = [
     "firings",
 ];
 
-/// What of a campaign is run, and what is made of it.
+/// Runs of a campaign to make, and their outputs.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of the command")]
 pub struct Job<'a> {
-    /// The runs.
+    /// Range of the runs.
     pub range: Range<u64>,
-    /// Whether they are a part of a campaign: its tables are then named so.
+    /// True if the runs are only a part of the campaign: the tables are then named by the range.
     pub part: bool,
-    /// The directory of the tables, or the file of the rows, if any are wanted.
+    /// Directory of the tables, or file of the rows, if any.
     pub table: Option<&'a Path>,
-    /// Whether that is a file.
+    /// True if `table` is a file.
     pub is_file: bool,
-    /// The form of the rows there.
+    /// File format of the rows.
     pub kind: Kind,
-    /// The metrics of the rows.
+    /// Selected metrics of the rows.
     pub selection: Selection,
-    /// Whether the first run that fails ends it.
+    /// True if the first failed run ends the campaign.
     pub fail_fast: bool,
-    /// What the tables' names begin with, where several campaigns share a directory.
+    /// Prefix of the tables' names, if several campaigns share a directory.
     pub prefix: Option<&'a str>,
-    /// Whether tables of another campaign, or another file, are replaced.
+    /// True if tables of another campaign, or another file, are replaced.
     pub force: bool,
-    /// Threads.
+    /// Number of threads.
     pub jobs: Option<u16>,
-    /// Whether each run is printed as JSON.
+    /// True if each run is printed as JSON.
     pub json: bool,
-    /// Units of the summary of a run that is alone.
+    /// Units of the summary of a single run.
     pub units: Units,
-    /// The scheduler that makes the runs, if one does.
+    /// Address of the scheduler whose workers make the runs, if any.
     pub scheduler: Option<&'a str>,
-    /// Whether a run is nothing but simulated: many then go side by side.
+    /// True if runs are simulated without a log: many of them are then simulated together in batches.
     pub plain: bool,
 }
 
-/// Runs a campaign; `work` simulates one run.
+/// Runs a campaign; `work` simulates a single run.
 pub fn run(
     study: &Arc<Campaign>,
     job: &Job<'_>,
@@ -140,7 +140,7 @@ pub fn run(
     }
 }
 
-/// Runs a campaign into one table, or none.
+/// Runs a campaign with its rows in one table, or without a table.
 fn table(
     study: &Arc<Campaign>,
     job: &Job<'_>,
@@ -158,7 +158,7 @@ fn table(
         let design = study.design();
         if !study.scenario().uncertain.is_empty() && (design.replicas > 1 || design.draws != Sampling::Random)
         {
-            // Its `scenario.toml` could not repeat a run.
+            // The `scenario.toml` could not repeat a run.
             let why = "--sample and --replicas of a scenario with [uncertain] keys need --table parquet";
             return Err(Failure::Arguments(format!("{why}, or no -o")));
         }
@@ -168,7 +168,7 @@ fn table(
             return Err(Failure::Arguments(format!("{}: {why}\n\n{hint}", dir.display())));
         }
         let kept = Kept::new(dir, job, study);
-        // Before what a killed campaign left is touched, and again by the only process that writes there.
+        // Checked before the files of a killed campaign change, and again as their only writer.
         kept.check()?;
         table = Some(Table::create(&dir.join(job.file("runs")))?);
         kept.keep()?;
@@ -224,7 +224,7 @@ fn interruption(at: u64) -> Failure {
     Failure::Interrupted(format!(" at run {at}"))
 }
 
-/// The outcome of a run, unless its log stopped it.
+/// Returns the outcome of a run, or an error if its log stopped the run.
 fn accepted(outcome: RunOutcome) -> Result<RunOutcome, Failure> {
     match outcome.metrics {
         Err(RunError::Simulation(SimulationError::Record(RecordError::Io(source)))) => {
@@ -250,22 +250,22 @@ impl Job<'_> {
     }
 }
 
-/// The rows of the runs, in order.
+/// Receiver of the runs' rows, in order.
 struct Telling<'a> {
     study: &'a Campaign,
     job: &'a Job<'a>,
     table: Option<&'a mut Table>,
-    /// The rows of a file.
+    /// Rows for a single file.
     rows: Option<&'a mut Rows>,
-    /// The runs whose points are printed, and their rows.
+    /// Runs whose points are printed, and their rows.
     shown: Vec<Range<u64>>,
     points: Rows,
     all: Gathered,
     only: Option<Metrics>,
     live: Live,
-    /// The run whose row is next.
+    /// Number of the next expected run.
     next: u64,
-    /// How many runs failed, and the first of them.
+    /// Number of failed runs, number of the first one, and its error.
     failed: Option<(u64, u64, String)>,
 }
 
@@ -312,7 +312,7 @@ impl Telling<'_> {
     }
 }
 
-/// A run as JSON, with the value of each key that varies.
+/// Returns a run as a JSON object, with the value of each key that varies.
 pub fn object(
     study: &Campaign,
     number: u64,

@@ -1,4 +1,4 @@
-//! `flexsc check`: is a scenario file accepted?
+//! `flexsc check`: validation of scenario files.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -67,7 +67,7 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), Failure>
     Ok(())
 }
 
-/// Tells each mistake with its place, as editors and other programs take it.
+/// Prints each error with its position, in the format that editors and other programs parse.
 fn refused(path: &Path, error: &ScenarioError) -> Result<(), Failure> {
     let mistakes = error.mistakes().into_iter().map(|mistake| {
         json!({

@@ -1,4 +1,4 @@
-//! Work that takes long needs a yes.
+//! Consent of the user to long computations.
 
 use flexsc_core::scenario::Cost;
 
@@ -14,7 +14,7 @@ pub struct Consent {
 }
 
 impl Consent {
-    /// Refuses work that costs too much, unless it is wanted.
+    /// Returns an error if the work costs too much and the user has not consented.
     pub fn to(self, cost: &Cost) -> Result<(), Failure> {
         match cost.excess() {
             Some(why) if !self.yes => {

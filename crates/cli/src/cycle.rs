@@ -12,10 +12,10 @@ use crate::results::{Results, show};
 use crate::say;
 use crate::scenario::Args;
 
-/// So many resonances of each mode are printed.
+/// Number of resonances that are printed for each mode.
 const NEAREST: usize = 3;
 
-/// The limit cycles of a scenario's relay law, and their resonances.
+/// Limit cycles of a scenario's relay law, and their resonances.
 pub struct RelayCycles {
     /// Name of the scenario.
     name: String,
@@ -26,7 +26,7 @@ pub struct RelayCycles {
     resonances: Vec<Resonance>,
 }
 
-/// What a scenario's relay law does on a rigid body.
+/// Computes the limit cycles of a scenario's relay law on a rigid body.
 pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
     let body = scenario.one_angle()?;
     let Law::Relay(law) = &scenario.law else {
@@ -93,7 +93,7 @@ impl Results for RelayCycles {
     }
 }
 
-/// The resonances of each mode that are nearest to a gain, in the order of the gains.
+/// Returns the resonances of each mode that are nearest to the gain `k_t`, in the order of the gains.
 fn nearest(resonances: &[Resonance], k_t: f64) -> Vec<Resonance> {
     let modes = resonances.iter().map(|r| r.mode + 1).max().unwrap_or(0);
     let of_mode = |mode| {

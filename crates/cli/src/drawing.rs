@@ -1,4 +1,4 @@
-//! Figures as files: SVG, PNG or PDF, each by itself or all on one sheet.
+//! Figure files: SVG, PNG or PDF, each figure in a file of its own or all on one sheet.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -16,7 +16,7 @@ use crate::left_out::Renderer;
 use crate::out::Out;
 use crate::{files, print, say};
 
-/// How files of figures end.
+/// File extensions of figures.
 const FIGURES: [&str; 3] = ["svg", "png", "pdf"];
 
 /// Whether a command that prints numbers also draws them.
@@ -35,7 +35,7 @@ pub struct Drawing {
 }
 
 impl Drawing {
-    /// Draws figures if it is asked for.
+    /// Draws the figures if the command was asked to.
     ///
     /// # Errors
     /// See [`Target::save`].
@@ -44,7 +44,7 @@ impl Drawing {
         self.target(out, &[])?.save(&figures(), Style::default(), false)
     }
 
-    /// Checks where figures would go, before there are any; `input` is what they are made from.
+    /// Checks the target of the figures before they exist; `input` is the file that they are made from.
     pub fn check(&self, input: &Path) -> Result<(), Failure> {
         self.figures.as_ref().map_or(Ok(()), |out| self.target(out, &[input]).map(|_| ()))
     }
@@ -67,11 +67,11 @@ pub enum Format {
     Both,
 }
 
-/// All forms that this build can draw.
+/// Every format that this build can draw.
 pub const EVERY: Format = if cfg!(feature = "png") { Format::Both } else { Format::Svg };
 
 impl Format {
-    /// The forms of files, each with its extension.
+    /// Returns the file formats, each with an extension of its own.
     const fn files(self) -> &'static [Self] {
         match self {
             Self::Svg => &[Self::Svg],
@@ -89,7 +89,7 @@ impl Format {
         }
     }
 
-    /// A drawn figure as a file of this form.
+    /// Returns a drawn figure as the bytes of a file in this format.
     fn bytes(self, svg: &str, style: &Style, renderer: &Renderer) -> Result<Vec<u8>, String> {
         match self {
             Self::Svg | Self::Both => Ok(style.sized(svg).into_bytes()),
@@ -99,16 +99,17 @@ impl Format {
     }
 }
 
-/// Where figures go.
+/// Target of figures.
 pub enum Target {
-    /// One file in the form that its name says; several figures make up a sheet. Another file there is replaced, or not.
+    /// A file in the format of its extension, where several figures form a sheet; true replaces another file there.
     File(PathBuf, Format, bool),
-    /// A directory: a file for each figure and form.
+    /// A directory with a file for each figure and format.
     Directory(PathBuf, Format),
 }
 
 impl Target {
-    /// What `-o`, `--format` and `--force` say; `inputs` are what the figures are made from.
+    /// Returns the target given by `-o`, `--format` and `--force`; `inputs` are the files that the figures are made
+    /// from.
     pub fn new(out: &Path, format: Option<Format>, inputs: &[&Path], force: bool) -> Result<Self, Failure> {
         let (out, ending) = match Out::new(out, &FIGURES, inputs)? {
             Out::File(out, ending) => (out, ending),
@@ -125,7 +126,7 @@ impl Target {
         }
     }
 
-    /// Draws figures, each with its name, and writes them; `json` tells of each file on stdout. Nothing is written if one
+    /// Draws and writes named figures; `json` prints an object for each file on stdout. No file is written if a figure
     /// cannot be drawn.
     ///
     /// # Errors
@@ -145,7 +146,7 @@ impl Target {
     }
 }
 
-/// Writes figures into a directory, which is made if it is not there.
+/// Writes figures to a directory, which is created if it does not exist.
 fn save_each(
     directory: &Path,
     (format, style): (Format, Style),
@@ -172,7 +173,7 @@ fn save_each(
     names.into_iter().zip(&all).try_for_each(|(name, file)| tell(file, &[name], json))
 }
 
-/// Tells of a file with these figures.
+/// Prints the path of a written file and the names of its figures.
 fn tell((path, bytes): &(PathBuf, Vec<u8>), figures: &[&str], json: bool) -> Result<(), Failure> {
     if json {
         let object = json!({"file": path.display().to_string(), "figures": figures, "bytes": bytes.len()});

@@ -1,4 +1,4 @@
-//! `flexsc examples` and `flexsc new`: the shipped scenarios, which the command has inside, listed and copied.
+//! `flexsc examples` and `flexsc new`: the scenarios that are built into the command, listed and copied.
 
 use std::fmt::Write as _;
 use std::io::Write;
@@ -11,14 +11,14 @@ use crate::failure::Failure;
 use crate::out::{self, Out};
 use crate::{files, print, say};
 
-/// Lists scenarios by their names.
+/// Lists shipped scenarios by their names.
 macro_rules! shipped {
     ($($name:literal),+ $(,)?) => {
         &[$(($name, include_str!(concat!("../scenarios/", $name, ".toml")))),+]
     };
 }
 
-/// Name and text of each.
+/// Name and text of each shipped scenario.
 pub const EXAMPLES: &[(&str, &str)] = shipped![
     "adaptive-bandwidth",
     "agile-observer",
@@ -71,7 +71,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "wheels-and-jets",
 ];
 
-/// What a new scenario is a copy of, if nothing else is said.
+/// Default template of a new scenario.
 const START: &str = "attitude-hold";
 
 /// Copies of examples.
@@ -104,7 +104,7 @@ pub struct NewArgs {
     force: bool,
 }
 
-/// The text of an example.
+/// Returns the text of an example.
 pub fn text(name: &str) -> Result<&'static str, Failure> {
     let stem = name.strip_suffix(".toml").unwrap_or(name);
     let stem = stem.strip_prefix("scenarios/").unwrap_or(stem);
@@ -166,7 +166,7 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Prints each name with what the example is about.
+/// Prints the name and the description of each example.
 fn list(as_json: bool) -> Result<(), Failure> {
     let mut lines = String::new();
     let widest = EXAMPLES.iter().map(|(name, _)| name.len()).max().unwrap_or(0);

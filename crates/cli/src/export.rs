@@ -39,13 +39,13 @@ enum Format {
     Jsonl,
 }
 
-/// A table of unequal rows within rows has empty cells: at most so many beside ...
+/// Largest number of empty cells in a table with nested rows of unequal lengths, in addition to ...
 const EMPTY_CELLS: usize = 1 << 24;
-/// ... so many for each full one.
+/// ... this number for each full cell.
 const EMPTY_PER_FULL: usize = 16;
 
 impl Args {
-    /// The format, which the ending of a file says too.
+    /// Returns the format, by the option or the file's extension.
     fn form(&self) -> Result<Format, Failure> {
         let Some(path) = &self.out else { return Ok(self.format.unwrap_or(Format::Csv)) };
         let ending = out::file(path, &["csv", "jsonl"], &[&self.log])?;
@@ -86,7 +86,7 @@ fn unreadable(path: &Path, topic: &str, why: String) -> Failure {
     LogError::Undecodable { path: path.to_owned(), topic: topic.to_owned(), why }.into()
 }
 
-/// Writes what is exported where it is wanted.
+/// Writes the exported table to the file or to stdout.
 fn tell(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
     let Some(path) = &args.out else {
         let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
@@ -97,35 +97,35 @@ fn tell(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result
     files::write(path, &bytes, args.force)
 }
 
-/// A cell of a table.
+/// Cell of a table.
 enum Cell<'a> {
     Empty,
     Number(f64),
-    /// A number with more digits than a double has.
+    /// Exact time: whole seconds and femtoseconds, more digits than a double has.
     Exact(u64, u64),
     Count(u64),
     Integer(i64),
     Text(&'a str),
 }
 
-/// A column of a table without nesting.
+/// Column of a table without nesting.
 struct Flat<'a> {
     name: String,
     column: &'a Column,
     cells: Cells<'a>,
 }
 
-/// Which values of a column are its cells.
+/// Mapping from the rows of a table to the values of a column.
 enum Cells<'a> {
-    /// One for each row.
+    /// One value for each row.
     Own,
-    /// The whole seconds and the femtoseconds past them that a time is.
+    /// Exact times: whole seconds, and femtoseconds past them.
     Exact(&'a [u64], &'a [u64]),
-    /// Of each row the value at this place within it; how many there are in each row, and before it.
+    /// Values at one index of nested rows: the index, the number of nested rows in each row, and the number before it.
     Within(usize, &'a [u32], Rc<[usize]>),
 }
 
-/// Columns without nesting: `modes[0].displacement_rad`, and the exact time in place of its parts.
+/// Flattens columns to such as `modes[0].displacement_rad`, with the exact time instead of its two parts.
 fn flat(columns: &Columns) -> Result<Vec<Flat<'_>>, String> {
     let mut flat = Vec::new();
     let parts = (columns.get("time_whole_s"), columns.get("time_fs"));
@@ -147,7 +147,7 @@ fn flat(columns: &Columns) -> Result<Vec<Flat<'_>>, String> {
     Ok(flat)
 }
 
-/// The rows within each row side by side.
+/// Appends a column for each index and field of nested rows.
 fn spread<'a>(
     flat: &mut Vec<Flat<'a>>,
     name: &str,
@@ -211,7 +211,7 @@ fn csv(columns: &[Flat<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()>
         Cell::Count(count) => count.to_string(),
         Cell::Integer(number) => number.to_string(),
     };
-    // Why a pipe does not take more is told from other errors by its kind.
+    // The kind distinguishes a closed pipe from other errors.
     let io = |error: ::csv::Error| match error.into_kind() {
         ::csv::ErrorKind::Io(error) => error,
         other => io::Error::other(format!("{other:?}")),

@@ -1,4 +1,4 @@
-//! What can go wrong, and its exit code.
+//! Errors of the command, and their exit codes.
 
 use std::fmt::Write as _;
 use std::io::{self, Write};
@@ -11,72 +11,72 @@ use flexsc_core::whole::is_busy;
 use flexsc_core::{ScenarioError, SimulationError};
 use thiserror::Error;
 
-/// Why the command did not do what it was asked.
+/// Error of the command.
 #[derive(Debug, Error)]
 pub enum Failure {
-    /// A scenario is not accepted.
+    /// Invalid scenario.
     #[error(transparent)]
     Scenario(#[from] ScenarioError),
-    /// Scenarios are not accepted, and why has been told.
+    /// Invalid scenarios whose errors have been printed.
     #[error("not every scenario is accepted")]
     Told,
-    /// The arguments do not fit each other.
+    /// Arguments that contradict each other.
     #[error("{0}")]
     Arguments(String),
-    /// A log is not accepted.
+    /// Invalid log.
     #[error(transparent)]
     Log(#[from] LogError),
-    /// A run failed.
+    /// Failed run.
     #[error("{name}: {source}")]
     Run { name: String, source: SimulationError },
-    /// Some runs of a campaign failed.
+    /// Campaign with failed runs.
     #[error("{failed} of {} failed; the first: run {number}: {why}", counted(runs, "run"))]
     Runs { failed: u64, runs: u64, number: u64, why: String },
-    /// A run of a campaign failed that was to stop there.
+    /// Failed run that ended its campaign.
     #[error("run {number} failed, and --fail-fast stops there: {why}")]
     First { number: u64, why: String },
-    /// A file could not be written.
+    /// File that could not be written.
     #[error("cannot write {}: {source}", path.display())]
     Write { path: PathBuf, source: io::Error },
-    /// A live run cannot be served.
+    /// Live run that cannot be served.
     #[cfg(feature = "live")]
     #[error("cannot serve at {address}: {source}{}", hint(source))]
     Serve { address: String, source: io::Error },
-    /// A figure could not be drawn.
+    /// Figure that could not be drawn.
     #[error("cannot draw {}: {why}", path.display())]
     Draw { path: PathBuf, why: String },
-    /// A page could not be filled.
+    /// Page that could not be filled.
     #[cfg(feature = "papers")]
     #[error("{0}")]
     Page(String),
-    /// A verdict of the papers' page changed.
+    /// Changed verdicts of the papers' page.
     #[cfg(feature = "papers")]
     #[error("{} not as expected: {}", if .0.len() == 1 { "a verdict is" } else { "verdicts are" }, .0.join("; "))]
     Verdicts(Vec<String>),
-    /// Stdout is closed.
+    /// Closed stdout.
     #[error("cannot write to stdout: {0}")]
     Stdout(io::Error),
-    /// A file is being written by another process.
+    /// File that another process is writing.
     #[error(
         "cannot write {}: another process is writing it\n\nhint: wait until it has ended, or give another path with -o",
         path.display()
     )]
     Busy { path: PathBuf },
-    /// There is no thread to work on.
+    /// Thread that could not be started.
     #[error("cannot start a thread: {0}")]
     Thread(io::Error),
-    /// A campaign was stopped, and the rows before are kept.
+    /// Stopped campaign whose completed rows are kept.
     #[error("{failure}; {} holds the runs before", path.display())]
     Kept { failure: Box<Failure>, path: PathBuf },
-    /// Runs of a campaign are missing.
+    /// Campaign with missing runs.
     #[error("{0}")]
     Incomplete(String),
-    /// The user asked to stop.
+    /// Interruption by the user.
     #[error("interrupted{0}")]
     Interrupted(String),
 }
 
-/// Why a file is not replaced.
+/// Reason why a file must not be replaced.
 #[derive(Debug, Error)]
 #[error("{0}")]
 pub struct Refused(pub String);
@@ -88,7 +88,7 @@ impl From<Refused> for io::Error {
 }
 
 impl Failure {
-    /// A failure to write a file.
+    /// Returns the conversion of an I/O error to a failure to write `path`.
     pub fn write(path: &Path) -> impl FnOnce(io::Error) -> Self + '_ {
         move |source| {
             let path = path.to_owned();
@@ -102,9 +102,9 @@ impl Failure {
         }
     }
 
-    /// Prints what went wrong, and returns the exit code.
+    /// Prints the error, and returns the exit code.
     pub fn tell(&self) -> u8 {
-        // A reader that has enough, such as `head`, is no failure.
+        // A reader that stops early, such as `head`, is not an error.
         if let Self::Stdout(error) = self
             && error.kind() == io::ErrorKind::BrokenPipe
         {
@@ -113,7 +113,7 @@ impl Failure {
         if matches!(self, Self::Told) {
             return self.code();
         }
-        // Colours go to terminals that have them only, and never where NO_COLOR is set.
+        // Only terminals that support colours get them, and not if NO_COLOR is set.
         let _ = anstream::stderr()
             .lock()
             .write_all(coloured(&shown(&without_zeros(&self.to_string()))).as_bytes());
@@ -130,11 +130,11 @@ impl Failure {
     }
 }
 
-/// No number has more zeros in a row.
+/// Longest run of zeros in a number of a message.
 const MOST_ZEROS: usize = 24;
 
-/// A text in which numbers with many zeros have an exponent instead: those that somebody tried may be as large or small as doubles
-/// can be. Lines of a scenario, which are shown behind a bar, stay as they are written.
+/// Replaces numbers with many zeros by their exponential form: quoted input may be as large or small as doubles can be.
+/// Quoted lines of a scenario, behind a bar, stay unchanged.
 pub fn without_zeros(text: &str) -> String {
     let is_shown = |line: &str| {
         line.split_once('|').is_some_and(|(before, _)| before.chars().all(|c| c.is_ascii_digit() || c == ' '))
@@ -163,7 +163,7 @@ fn shortened(text: &str) -> String {
     all + rest
 }
 
-/// What helps where an address is taken.
+/// Returns a hint on how to avoid an address that is in use.
 #[cfg(feature = "live")]
 fn hint(error: &io::Error) -> &'static str {
     if error.kind() == io::ErrorKind::AddrInUse {
@@ -173,10 +173,10 @@ fn hint(error: &io::Error) -> &'static str {
     }
 }
 
-/// No line of a message is longer (characters); what is quoted may be.
+/// Longest line of a message (characters); quotations may be longer.
 const LONGEST_LINE: usize = 4000;
 
-/// A message as terminals can show it: a long line loses its middle, and control characters are written out.
+/// Prepares a message for terminals: shortens long lines in the middle and escapes control characters.
 pub fn shown(text: &str) -> String {
     let mut all = String::new();
     for (index, line) in text.split('\n').enumerate() {
@@ -199,7 +199,7 @@ pub fn shown(text: &str) -> String {
     all
 }
 
-/// What went wrong, with its first word and those of its hints in colours.
+/// Returns an error message with its first word and those of its hints in colours.
 fn coloured(text: &str) -> String {
     let (error, hint) = (AnsiColor::Red.on_default().bold(), AnsiColor::Cyan.on_default().bold());
     let word = |word: &str, style: Style| format!("{style}{word}{style:#}");

@@ -1,4 +1,4 @@
-//! The figures of `flexsc plot` as data, for who draws them elsewhere.
+//! The figures of `flexsc plot` as data, for drawing by other programs.
 
 use std::path::Path;
 
@@ -11,34 +11,34 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour}
 use crate::logged;
 use crate::plot::{self, What};
 
-/// The log of a run under these commands, up to an instant, in memory, with its events.
+/// Returns the log, in memory and with events, of a run under these commands up to an instant.
 ///
 /// # Errors
-/// A run that fails.
+/// A failed run.
 pub fn log_of(run: &CampaignRun, commanded: &Commanded, until: Instant) -> Result<Log, String> {
     logged::of_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
         .map_err(|failure| failure.to_string())
 }
 
-/// The names of the figures that a log has.
+/// Returns the names of the figures that a log has.
 ///
 /// # Errors
-/// A log that is not accepted.
+/// An invalid log.
 pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
     let there = plot::there(log, path).map_err(|failure| failure.to_string())?;
     Ok(there.into_iter().map(What::name).collect())
 }
 
-/// A figure of a log by its name.
+/// Returns a figure of a log by its name.
 ///
 /// # Errors
-/// A figure that the log does not have, and a run that cannot be repeated.
+/// A figure that the log does not have, or a run that cannot be repeated.
 pub fn of_log(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
     plot::figure_of(log, path, name).map_err(|failure| failure.to_string())
 }
 
-/// The figures of a campaign whose columns are at hand, each after its name: of the kind that is named, else the natural
-/// ones; of the metrics that are named, else of the main ones that vary.
+/// Returns named figures of a campaign from its columns: of the given kind, else the default ones; of the given
+/// metrics, else of the main ones that vary.
 ///
 /// # Errors
 /// A figure or a metric that the campaign does not have.
@@ -52,16 +52,16 @@ pub fn of_columns(
     plot::of_columns(work, column, kind, metrics).map_err(|failure| failure.to_string())
 }
 
-/// The figures of the campaigns in a directory, each after its name, as [`of_columns`] has them, and a `fan` of their logs.
+/// Returns named figures of the campaigns in a directory, as [`of_columns`] does, and a `fan` of their logs.
 ///
 /// # Errors
-/// A directory without a campaign, and a figure or a metric that they do not have.
+/// A directory without a campaign, or a figure or a metric that they do not have.
 pub fn of_directory(path: &Path, kind: Option<&str>, metrics: &[String]) -> Result<Vec<Named>, String> {
     let kinds: Vec<What> = kind.map(|kind| What::from_str(kind, false)).transpose()?.into_iter().collect();
     plot::of_directory(path, &kinds, metrics).map_err(|failure| failure.to_string())
 }
 
-/// The natural frequencies of a scenario with what moves them, which tells it from others at a glance; none without modes.
+/// Returns a figure of a scenario's natural frequencies and influences, as an overview; `None` without modes.
 pub fn modes(frequencies: &[f64], weights: &[f64], (name, unit): (&str, &'static str)) -> Option<Figure> {
     if frequencies.is_empty() {
         return None;

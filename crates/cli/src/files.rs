@@ -1,4 +1,4 @@
-//! Files that a command writes at once: whole, under the watch of `stop`, and by one process at a time.
+//! Atomic writing of files: whole, guarded by `stop`, and by one process at a time.
 
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -8,8 +8,7 @@ use flexsc_core::whole;
 use crate::failure::Failure;
 use crate::stop;
 
-/// Writes a file that a user names; its directory is made if it is not there. A file of other content is replaced only with
-/// `force`.
+/// Writes a file that the user named, creating its directory. A file with other content is replaced only with `force`.
 pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failure> {
     refuse_other(path, bytes, force)?;
     make_parent(path)?;
@@ -17,7 +16,7 @@ pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failure> {
     whole::write(path, bytes).map_err(Failure::write(path))
 }
 
-/// Refuses a file that is there with other content, unless it may be replaced: the same command may write it again.
+/// Returns an error if the file exists with other content, unless `force`: the same command may write it again.
 pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failure> {
     let there = fs::metadata(path).ok().filter(fs::Metadata::is_file);
     let is_other = |there: fs::Metadata| {
@@ -29,7 +28,7 @@ pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failur
     Ok(())
 }
 
-/// Refuses a file that is there, unless it may be replaced: before long work whose result would be another one each time.
+/// Returns an error if the file exists, unless `force`: checked before long work whose result differs each time.
 pub fn refuse_existing(path: &Path, force: bool) -> Result<(), Failure> {
     if force || !fs::symlink_metadata(path).is_ok_and(|there| there.is_file() || there.is_symlink()) {
         return Ok(());
@@ -41,8 +40,8 @@ fn exists(path: &Path, why: &str) -> Failure {
     Failure::Arguments(format!("{}: {why}\n\nhint: --force replaces it", path.display()))
 }
 
-/// Writes files of names that the command chose into a directory, which is made if it is not there. A link or a pipe in the
-/// place of one is refused.
+/// Writes files whose names the command chose into a directory, which is created. Links and pipes of such names are
+/// refused.
 pub fn write_within(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
     for (path, _) in files {
         make_parent(path)?;
@@ -52,12 +51,12 @@ pub fn write_within(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
     whole::write_all(files).map_err(|(path, error)| Failure::write(&path)(error))
 }
 
-/// Makes a directory, unless it is there.
+/// Creates a directory if it does not exist.
 pub fn make_directory(path: &Path) -> Result<(), Failure> {
     fs::create_dir_all(path).map_err(Failure::write(path))
 }
 
-/// Makes the directory of a file, unless it is there.
+/// Creates the directory of a file if it does not exist.
 pub fn make_parent(path: &Path) -> Result<(), Failure> {
     match path.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.exists()) {
         Some(parent) => make_directory(parent),

@@ -1,18 +1,18 @@
-//! Grids as the command takes them.
+//! Grids in command-line arguments.
 
 use std::str::FromStr;
 
 use flexsc_core::analysis::sampled_loop::Gains;
 
-/// LO:HI:COUNT, so many numbers from the first to the last, evenly apart: each above 0.
+/// LO:HI:COUNT: `COUNT` evenly spaced numbers from the first to the last, each above 0.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Even(pub Vec<f64>);
 
-/// LO:HI:COUNT of gains, which may have any sign.
+/// LO:HI:COUNT: evenly spaced gains of any sign.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Tried(pub Gains);
 
-/// The most points of a grid.
+/// Largest number of points of a grid.
 const MOST: u32 = 100_000;
 
 impl Even {

@@ -1,14 +1,14 @@
-//! What `--help` says beside the options: the verbs in groups, and two examples of each verb.
+//! Additions to `--help`: the verbs in groups, and two examples of each verb.
 
 use std::fmt::Write as _;
 
 use clap::Command;
 
-/// A verb, and two commands that a user may begin with, each with what it does.
+/// Verb with two example commands and their descriptions.
 type Verb = (&'static str, [(&'static str, &'static str); 2]);
 
-/// The verbs by what they are for. Every example is run by `tests/help.rs`, in this order, in one directory that holds the
-/// shipped scenarios.
+/// Verbs grouped by purpose. `tests/help.rs` runs every example, in this order, in one directory that holds the shipped
+/// scenarios.
 const GROUPS: [(&str, &[Verb]); 4] = [
     (
         "Run",
@@ -237,7 +237,7 @@ const GROUPS: [(&str, &[Verb]); 4] = [
     ),
 ];
 
-/// The command with its verbs in groups, and with the examples of each.
+/// Adds the groups of verbs, and the examples of each, to the help of the command.
 pub fn completed(command: Command) -> Command {
     let mut verbs = String::new();
     for (group, members) in GROUPS {
@@ -285,7 +285,7 @@ mod tests {
         }
     }
 
-    /// In a build with debug assertions the parser panics otherwise.
+    /// The parser panics otherwise in a build with debug assertions.
     #[test]
     fn every_name_of_a_group_of_options_is_taken_once() {
         for verb in Cli::command().get_subcommands() {

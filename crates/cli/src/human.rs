@@ -1,4 +1,4 @@
-//! Numbers for people: four significant digits, in SI units or in units that fit their size.
+//! Numbers for people: four significant digits, in SI units or in units of a suitable size.
 
 use std::f64::consts::TAU;
 
@@ -23,11 +23,11 @@ pub struct UnitsArgs {
     pub units: Units,
 }
 
-/// An angle of a tenth of a degree (rad): smaller ones are in arcsec.
+/// Limit of a tenth of a degree (rad), below which angles are in arcsec.
 const TENTH_DEGREE: f64 = TAU / 3600.0;
-/// An angle of a tenth of an arcsec (rad): smaller ones have prefixes.
+/// Limit of a tenth of an arcsec (rad), below which angles have SI prefixes.
 const TENTH_ARCSEC: f64 = TAU / 12_960_000.0;
-/// Units with prefixes of a thousand, such as mN m.
+/// Units that get SI prefixes in steps of a thousand, such as mN m.
 const PREFIXED: [&str; 9] = ["N m", "N m s", "J", "N", "m", "m/s²", "A m²", "J/(kg m²)", "N m s/rad"];
 const PREFIXES: [(f64, &str); 7] =
     [(1e6, "M"), (1e3, "k"), (1.0, ""), (1e-3, "m"), (1e-6, "µ"), (1e-9, "n"), (1e-12, "p")];
@@ -86,7 +86,7 @@ impl Units {
     }
 }
 
-/// The factor and the unit with the prefix that fits a size; none beyond all prefixes.
+/// Returns the factor and the unit with a suitable prefix for a size; no prefix beyond the known ones.
 fn prefixed(size: f64, unit: &str) -> (f64, String) {
     match PREFIXES.iter().find(|(least, _)| size >= *least) {
         Some((least, prefix)) => (1.0 / least, format!("{prefix}{unit}")),
@@ -124,12 +124,12 @@ pub fn digits(value: f64) -> String {
     format!("{}e{exponent}", trimmed(mantissa))
 }
 
-/// A number without zeros at the end of its decimals.
+/// Removes trailing zeros of the decimals.
 fn trimmed(text: &str) -> &str {
     if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.') } else { text }
 }
 
-/// Rows of text in columns of equal width, two spaces apart, right-aligned but for the last `left` columns.
+/// Formats rows of text as columns of equal width, two spaces apart, right-aligned but for the last `left` columns.
 pub fn columns(rows: &[Vec<String>], left: usize) -> Vec<String> {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {

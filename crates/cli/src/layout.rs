@@ -1,4 +1,4 @@
-//! `flexsc layout`: a viewer layout for a log, or for the logs that a scenario will have.
+//! `flexsc layout`: a viewer layout for a log, or for the future logs of a scenario.
 
 use std::path::{Path, PathBuf};
 
@@ -10,7 +10,7 @@ use crate::failure::Failure;
 use crate::logged::logged;
 use crate::{files, out, print, scenario};
 
-/// A log that takes longer on one core (s), or more memory (bytes), is not made: its viewers choose their axes.
+/// Limits of the time on one core (s) and of the memory (bytes) for making a log; beyond them viewers choose the axes.
 const LONGEST: f64 = 120.0;
 const LARGEST: f64 = 2e9;
 
@@ -49,7 +49,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
 }
 
-/// The layout of the log with a scene that a scenario will have. A run shows how large its values become.
+/// Returns the layout for a scenario's log with a scene; a simulation determines the range of each value.
 fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, Failure> {
     let layout = Layout::of(&scenario).of_detail(Detail::Scene);
     let cost = scenario.cost(Some(Detail::Full), true);

@@ -1,12 +1,12 @@
-//! What this build leaves out, and how to have it.
+//! Features that this build leaves out, and how to get them.
 
 #[cfg(not(feature = "png"))]
 use flexsc_figure::Style;
 
-/// What helps.
+/// Hint of the errors about features that are not built in.
 pub const HINT: &str = "hint: cargo build --release --features full";
 
-/// In place of what renders PNG and PDF.
+/// Placeholder for the renderer of PNG and PDF.
 #[cfg(not(feature = "png"))]
 #[derive(Default)]
 pub struct Renderer {}

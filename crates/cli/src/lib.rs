@@ -1,4 +1,4 @@
-//! The command `flexsc`: one file a verb. Text goes to stderr, data to stdout.
+//! The command `flexsc`: one file for each verb. Text goes to stderr, data to stdout.
 
 mod campaign;
 mod check;
@@ -123,7 +123,7 @@ enum Verb {
     },
 }
 
-/// The parser of the command line, for completions and tests.
+/// Returns the parser of the command line, for completions and tests.
 pub fn command() -> clap::Command {
     help::completed(Cli::command())
 }
@@ -136,7 +136,7 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
     let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
         Err(error) => {
-            // Nothing is left to do if stderr cannot be written.
+            // A failure to write to stderr cannot be reported.
             let _ = error.print();
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }

@@ -1,4 +1,4 @@
-//! `flexsc log`: what is in a log, and saving torn ones.
+//! `flexsc log`: contents of a log, and repair of torn logs.
 
 use std::io::Write;
 use std::path::PathBuf;

@@ -1,4 +1,4 @@
-//! The log of a run in memory, for what is read from logs and not kept.
+//! In-memory log of a run, for results that are read from logs that are not kept.
 
 use std::path::Path;
 
@@ -11,13 +11,13 @@ use crate::failure::Failure;
 use crate::simulate;
 use crate::stop::Stop;
 
-/// The log of a scenario's own run in this detail. `path` is what errors call it.
+/// Returns the log of a scenario's own run in this detail; errors refer to it as `path`.
 pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, Failure> {
     let run = simulate::itself(&Campaign::new(scenario, &path.to_string_lossy(), None)?);
     of_run(&run, &Commanded::default(), Instant::END, path, detail)
 }
 
-/// The log of a run under these commands, up to an instant, in this detail.
+/// Returns the log of a run under these commands, up to an instant, in this detail.
 pub fn of_run(
     run: &CampaignRun,
     commanded: &Commanded,

@@ -1,4 +1,4 @@
-//! `flexsc merge`: parts of one campaign that several machines made, in one directory or file.
+//! `flexsc merge`: merges the parts of a campaign that several machines made, into one directory or file.
 
 use std::io::Write;
 use std::ops::Range;
@@ -12,9 +12,9 @@ use crate::failure::Failure;
 use crate::out::Out;
 use crate::{files, say, stop};
 
-/// A file of more cells than this would not fit into memory.
+/// Largest number of cells in a file, by the memory that it needs.
 const MOST_CELLS: u64 = 1 << 29;
-/// So many ranges of missing runs are told.
+/// Largest number of missing ranges that are printed.
 const TOLD: usize = 8;
 
 #[derive(clap::Args)]
@@ -34,7 +34,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let out = Out::new(&args.out, &["csv", "parquet"], &[])?;
     let open = |path: &Path| Directory::open(path).map_err(parts::failure);
     let mut all = args.directories.iter().map(|path| open(path)).collect::<Result<Vec<_>, _>>()?;
-    // What is there comes first, unless it is another campaign, to be replaced.
+    // The existing target comes first, unless it is another campaign that is replaced.
     let mut is_first = false;
     if let Out::Directory(path) = &out
         && Directory::is_one(path)

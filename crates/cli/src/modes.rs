@@ -1,4 +1,4 @@
-//! `flexsc modes`: a body's elastic modes, whichever way the scenario describes the body.
+//! `flexsc modes`: the elastic modes of a body, for every kind of body in a scenario.
 
 mod spacecraft;
 
@@ -19,7 +19,7 @@ use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario, show};
 use crate::{say, scenario};
 
-/// The largest number of modes for which the weights of outputs are printed beside each other.
+/// Largest number of modes for which the weights of outputs are printed side by side.
 const WEIGHTS: usize = 12;
 
 #[derive(clap::Args)]
@@ -33,18 +33,18 @@ pub struct Args {
     units: UnitsArgs,
 }
 
-/// Influences below this part of the largest are left out.
+/// Influences below this fraction of the largest are not printed.
 const SMALL: f64 = 1e-3;
 
-/// How modes are printed.
+/// Style in which modes are printed.
 #[derive(Copy, Clone)]
 struct Style {
     units: Units,
-    /// Whether small influences are printed too.
+    /// True if small influences are printed too.
     all: bool,
 }
 
-/// The modes of a body with one angle.
+/// Modes of a single-axis body.
 struct Planar {
     /// Name of the scenario.
     name: String,
@@ -52,17 +52,17 @@ struct Planar {
     style: Style,
 }
 
-/// The modes of a spatial body, and what its actuator does to them.
+/// Modes of a three-axis body, and the influence of its actuator on them.
 struct Spatial {
     /// Name of the scenario.
     name: String,
     modes: Influences,
-    /// About which axes jets act; about others a torque of 1 N m is told.
+    /// True for each axis with jets; for the other axes the influence of a torque of 1 N m is printed.
     jets: [bool; 3],
     style: Style,
 }
 
-/// The modes of a scenario's body.
+/// Computes the modes of a scenario's body.
 pub fn results(scenario: &Scenario, args: &Args) -> Box<dyn Results> {
     let name = scenario.name.clone();
     let style = Style { units: args.units.units, all: args.all };
@@ -94,12 +94,12 @@ fn texts(words: &[&str]) -> Vec<String> {
     words.iter().map(|word| (*word).to_owned()).collect()
 }
 
-/// The columns of a mode's frequency, period and damping.
+/// Returns the columns of a mode's frequency, period and damping.
 fn frequency(units: Units, frequency: f64, damping: f64) -> [String; 3] {
     [digits(frequency * units.frequency().0), digits(std::f64::consts::TAU / frequency), digits(damping)]
 }
 
-/// Prints what the actuator of a body with three axes does to its modes.
+/// Prints the influence of a three-axis body's actuator on its modes.
 fn tell_influences(modes: &Influences, jets: [bool; 3], style: Style) {
     let giver = match jets {
         [true, true, true] => "the jets give",

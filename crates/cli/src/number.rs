@@ -1,16 +1,16 @@
-//! Numbers as tables for people have them.
+//! Formatting of numbers in tables for people.
 
-/// A number as `tell` writes it, or that there is none.
+/// Formats a number by `tell`, or as missing.
 pub fn or_none(value: Option<f64>, tell: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "none".to_owned(), tell)
 }
 
-/// A number with so many decimals, or that there is none.
+/// Formats a number with `decimals` decimals, or as missing.
 pub fn fixed(value: Option<f64>, decimals: usize) -> String {
     or_none(value, |value| format!("{value:.decimals$}"))
 }
 
-/// A number with so many decimals, and no sign of one that is rounded to 0.
+/// Formats a number with `decimals` decimals, without the sign of one that is rounded to 0.
 pub fn unsigned_zero(value: f64, decimals: usize) -> String {
     let text = format!("{value:.decimals$}");
     match text.strip_prefix('-') {
@@ -19,7 +19,7 @@ pub fn unsigned_zero(value: f64, decimals: usize) -> String {
     }
 }
 
-/// A number in at most ten characters.
+/// Formats a number in at most ten characters.
 pub fn short(number: f64) -> String {
     if number.is_nan() {
         "-".to_owned()

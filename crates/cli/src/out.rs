@@ -1,30 +1,31 @@
-//! Where `-o` leads, by one rule for every command: a path with the ending of a file is that file, any other one a directory.
+//! Target of `-o`, by one rule for every command: a path with a file extension is a file, any other one a directory.
 
 use std::fs;
 use std::path::{Path, PathBuf};
 
 use crate::failure::Failure;
 
-/// Endings of files that flexsc or other programs write: no directory is meant to be called so.
+/// File extensions that flexsc or other programs write, and with which no directory is expected to be named.
 const ENDINGS: [&str; 22] = [
     "bmp", "csv", "eps", "gif", "htm", "html", "jpeg", "jpg", "json", "jsonl", "mcap", "md", "parquet",
     "partial", "pdf", "png", "ps", "svg", "tif", "tiff", "toml", "webp",
 ];
 
-/// Where results go.
+/// Target of results.
 #[derive(Debug, PartialEq)]
 pub enum Out {
-    /// One file, and which of the accepted endings it has.
+    /// A file, and its extension of the accepted ones.
     File(PathBuf, &'static str),
-    /// A directory, in which files have names of their own.
+    /// A directory, in which the command chooses the file names.
     Directory(PathBuf),
 }
 
 impl Out {
-    /// Where a path leads that may be a file with one of these endings, or a directory; `inputs` are read for what is written.
+    /// Returns the target of a path, a file with an accepted extension or a directory; `inputs` are files that are
+    /// read.
     ///
     /// # Errors
-    /// A file with another ending, and one that is an input.
+    /// A file with another extension, or one that is an input.
     pub fn new(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Self, Failure> {
         match at(path, accepted, inputs)? {
             Some(ending) => Ok(Self::File(path.to_owned(), ending)),
@@ -33,10 +34,10 @@ impl Out {
     }
 }
 
-/// The ending of a path that must be a file with one of these endings; `inputs` are read for what is written.
+/// Returns the extension of a path that must be a file with an accepted one; `inputs` are files that are read.
 ///
 /// # Errors
-/// A file with another ending or none, and one that is an input.
+/// A file with another extension or none, or one that is an input.
 pub fn file(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<&'static str, Failure> {
     match at(path, accepted, inputs)? {
         Some(ending) => Ok(ending),
@@ -44,7 +45,7 @@ pub fn file(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<
     }
 }
 
-/// The accepted ending of a file; none of a directory.
+/// Returns the accepted extension of a file; `None` for a directory.
 fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option<&'static str>, Failure> {
     if let Some(input) = inputs.iter().find(|input| is_same(path, input)) {
         let (path, input) = (path.display(), input.display());
@@ -54,7 +55,7 @@ fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option
         return Ok(None);
     }
     if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
-        // A device or a pipe, whatever it is called.
+        // Devices and pipes may have any name.
         return Ok(accepted.first().copied());
     }
     let Some(ending) = ending(path) else { return Ok(None) };
@@ -67,7 +68,7 @@ fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option
     )))
 }
 
-/// The ending that makes a path one of a file.
+/// Returns the file extension of a path, or `None` for a directory.
 pub fn ending(path: &Path) -> Option<&'static str> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
     ENDINGS.into_iter().find(|known| *known == ending)
@@ -81,7 +82,7 @@ fn listed(endings: &[&str]) -> String {
     }
 }
 
-/// Whether two paths lead to one file: by links of either kind too.
+/// Returns true if two paths denote the same file, also by symbolic or hard links.
 #[cfg(unix)]
 fn is_same(one: &Path, other: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;

@@ -1,4 +1,4 @@
-//! How far a long run or a campaign has come.
+//! Progress of a long run or a campaign.
 
 use std::io::Write;
 use std::time::{Duration, Instant as WallInstant};
@@ -12,12 +12,13 @@ use crate::human::seconds;
 use crate::say;
 use crate::terminal::is_plain;
 
-/// A bar on the terminal over so many steps; invisible elsewhere, and where escape sequences are not wanted.
+/// Returns a progress bar of `steps` steps on the terminal; invisible elsewhere, and where escape sequences are
+/// unwanted.
 pub fn bar(steps: u64, unit: &str) -> ProgressBar {
     bar_from(steps, 0, unit)
 }
 
-/// The same where some of the steps were done before; a message stands below it.
+/// Returns a progress bar of which `done` steps were completed before, with a message below it.
 pub fn bar_from(steps: u64, done: u64, unit: &str) -> ProgressBar {
     if is_plain() {
         return ProgressBar::hidden();
@@ -28,33 +29,33 @@ pub fn bar_from(steps: u64, done: u64, unit: &str) -> ProgressBar {
     ProgressBar::new(steps).with_style(style).with_position(done)
 }
 
-/// Lines on stderr about long work where no bar is visible, such as on a pipe: one every 30 s.
+/// Progress lines on stderr where no bar is visible, such as on a pipe: one every 30 s.
 pub struct Lines {
     began: WallInstant,
     steps: u64,
     unit: &'static str,
-    /// How many steps were done before, and after how many seconds the next line is due.
+    /// Number of steps completed before; below, the time (s) at which the next line is due.
     before: u64,
     due: f64,
 }
 
 impl Lines {
-    /// How often there is a line (s).
+    /// Interval between two lines (s).
     const AGAIN: f64 = 30.0;
 
-    /// Lines about so many steps, of which some were done before.
+    /// Returns the progress lines of `steps` steps, of which `before` were completed before.
     pub fn new(steps: u64, before: u64, unit: &'static str) -> Self {
         Self { began: WallInstant::now(), steps, unit, before, due: Self::AGAIN }
     }
 
-    /// Prints a line if one is due, with so many steps done.
+    /// Prints a line if one is due, with `done` completed steps.
     pub fn show(&mut self, done: u64) {
         if let Some(line) = self.line(self.began.elapsed().as_secs_f64(), done) {
             say!("{line}");
         }
     }
 
-    /// The line after so many seconds, if one is due.
+    /// Returns the line after `elapsed` seconds, if one is due.
     fn line(&mut self, elapsed: f64, done: u64) -> Option<String> {
         if elapsed < self.due {
             return None;
@@ -70,16 +71,16 @@ impl Lines {
     }
 }
 
-/// A line on the terminal with the current activity; invisible where a bar is.
+/// Returns a line on the terminal with the current activity; invisible where a bar is.
 #[cfg(feature = "papers")]
 pub fn spinner() -> ProgressBar {
     if is_plain() { ProgressBar::hidden() } else { ProgressBar::new_spinner() }
 }
 
-/// What a single run counts.
+/// Unit of a single run's progress.
 const UNIT: &str = "simulated seconds";
 
-/// A record that shows how far a single run has come, once it takes longer than half a second.
+/// Record that shows the progress of a single run once it takes longer than half a second.
 pub struct Progress {
     began: WallInstant,
     length: Span,
@@ -89,7 +90,7 @@ pub struct Progress {
 }
 
 impl Progress {
-    /// Progress towards the end of a run of this length.
+    /// Returns the progress of a run of this length.
     pub fn new(length: Span) -> Self {
         let lines = Lines::new(length.seconds() as u64, 0, UNIT);
         Self { began: WallInstant::now(), length, samples: 0, bar: None, lines }
@@ -116,10 +117,10 @@ impl Record for Progress {
 }
 
 impl Progress {
-    /// The run has come to a time (s).
+    /// Shows the progress at a simulated time (s).
     fn see(&mut self, now: f64) {
         self.samples = self.samples.wrapping_add(1);
-        // The wall clock is asked rarely: it costs as much as a sample.
+        // The clock is read rarely: it costs as much as a sample.
         if self.samples.is_multiple_of(4096) {
             if self.bar.is_none() && self.began.elapsed() > Duration::from_millis(500) {
                 self.bar = Some(bar(self.length.seconds() as u64, UNIT));
@@ -144,7 +145,7 @@ mod tests {
         let line = lines.line(30.0, 40).expect("a line");
         assert_eq!(line, "progress: 40 of 200 runs after 30 s, about 2 min left");
         assert_eq!(lines.line(31.0, 41), None);
-        // Nothing is done yet: there is no time left to tell.
+        // No step is completed yet, so that the remaining time is unknown.
         let mut resumed = Lines::new(200, 50, "runs");
         assert_eq!(resumed.line(60.0, 50).expect("a line"), "progress: 50 of 200 runs after 60 s");
     }

@@ -1,4 +1,4 @@
-//! What an analysis comes to: the same numbers and figures for people, for machines and for the pages of `reproduce`.
+//! Results of an analysis: the same numbers and figures for people, for machines and for the pages of `reproduce`.
 
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -7,21 +7,21 @@ use crate::drawing::Drawing;
 use crate::failure::Failure;
 use crate::print;
 
-/// What an analysis comes to.
+/// Results of an analysis.
 pub trait Results {
-    /// What `--json` prints: objects, one a line.
+    /// Returns the objects that `--json` prints, one per line.
     fn json(&self) -> Vec<Json>;
 
-    /// The figures, each with the name of its file; none unless the analysis has any.
+    /// Returns the figures, each with the name of its file; by default none.
     fn figures(&self) -> Vec<Named> {
         Vec::new()
     }
 
-    /// Prints text.
+    /// Prints the results as text.
     fn tell(&self) -> Result<(), Failure>;
 }
 
-/// Draws what the arguments ask for, and prints text or JSON.
+/// Draws the figures if the arguments ask for them, and prints text or JSON.
 pub fn show(results: &dyn Results, drawing: Option<&Drawing>, as_json: bool) -> Result<(), Failure> {
     if let Some(drawing) = drawing {
         drawing.save(|| results.figures())?;
@@ -29,13 +29,13 @@ pub fn show(results: &dyn Results, drawing: Option<&Drawing>, as_json: bool) -> 
     if as_json { print_lines(&results.json()) } else { results.tell() }
 }
 
-/// Prints objects, one a line.
+/// Prints objects, one per line.
 pub fn print_lines(objects: &[Json]) -> Result<(), Failure> {
     let lines: Vec<String> = objects.iter().map(|object| format!("{object}\n")).collect();
     print(lines.concat().as_bytes())
 }
 
-/// An object that begins with its scenario.
+/// Returns an object whose first key is the scenario.
 pub fn of_scenario(name: &str, table: Json) -> Json {
     let mut object = json!({ "scenario": name });
     if let (Some(object), Json::Object(table)) = (object.as_object_mut(), table) {

@@ -1,4 +1,4 @@
-//! A scenario's sampled loop, and what counts as settled in it: what `tune` and `map` share.
+//! Sampled loop of a scenario and its settling criterion, which `tune` and `map` share.
 
 use flexsc_core::analysis::sampled_loop::{Loop, Scaling, SettlingWindow};
 use flexsc_core::document::Fault;
@@ -30,8 +30,8 @@ impl Settled {
         if self.dominant_alone { Scaling::First } else { Scaling::All }
     }
 
-    /// Refuses to close a loop so often, with this shortest period (s) and up to this delay more (s), if that is more than
-    /// can be done, or more than is wanted.
+    /// Returns an error if simulating `times` loops, with this shortest period (s) and up to this additional delay (s),
+    /// is impossible, or too costly without the user's consent.
     pub fn allow(&self, of: &Loop, times: usize, shortest: f64, delay: f64) -> Result<(), Failure> {
         let cost = of.watched(times as f64, self.horizon, shortest, delay);
         self.consent.to(&cost.map_err(|why| Failure::Arguments(format!("--{why}")))?)
@@ -46,7 +46,7 @@ impl Settled {
     }
 }
 
-/// A scenario's loop.
+/// Returns the sampled loop of a scenario, and its law.
 pub fn sampled(scenario: &Scenario) -> Result<(Loop, &Pd), Failure> {
     Ok(Loop::of(scenario).map_err(refused(&scenario.name))?)
 }
@@ -55,7 +55,7 @@ fn refused(name: &str) -> impl FnOnce(Fault) -> ScenarioError + '_ {
     move |Fault { key, why }| ScenarioError::Key { origin: name.to_owned(), key, why }
 }
 
-/// Accepts positive numbers only.
+/// Returns an error unless a number is positive.
 pub fn positive(name: &str, value: f64) -> Result<(), Failure> {
     let fits = value.is_finite() && value > 0.0;
     if fits {

@@ -1,4 +1,4 @@
-//! Which scenario is meant, with which keys set.
+//! Selection of a scenario and its keys by command-line arguments.
 
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use flexsc_core::{Document, LONGEST, Scenario};
 
 use crate::failure::Failure;
 
-/// The largest integer of TOML.
+/// Largest integer of TOML.
 pub const LARGEST_SEED: u64 = i64::MAX as u64;
 
 /// One scenario to analyse.
@@ -25,7 +25,7 @@ pub struct Args {
 }
 
 impl Args {
-    /// The scenario.
+    /// Loads the scenario.
     pub fn load(&self) -> Result<Scenario, Failure> {
         load(&self.scenario, &self.set, None)
     }
@@ -48,7 +48,7 @@ pub fn document(path: &Path) -> Result<Document, Failure> {
     Ok(Document::read_bytes(Path::new("stdin"), text)?)
 }
 
-/// A document's scenario with some keys set.
+/// Returns a document's scenario with some keys set.
 pub fn with(mut document: Document, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
     for text in set {
         let Some((key, value)) = text.split_once('=') else {

@@ -1,4 +1,4 @@
-//! `flexsc schema`: the form of scenarios for editors, and the meaning of metrics and topics.
+//! `flexsc schema`: the JSON Schema of scenarios for editors, and the meaning of metrics and topics.
 
 use flexsc_core::Scenario;
 use flexsc_core::metrics;

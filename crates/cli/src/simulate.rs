@@ -70,30 +70,30 @@ pub struct Args {
     live: crate::live::Args,
 }
 
-/// Which runs of a campaign, and whether it was given as a part.
+/// Range of the runs of a campaign, and true if it was given as a part.
 #[derive(Clone)]
 pub struct Runs {
     pub range: Range<u64>,
     part: bool,
 }
 
-/// Where results go.
+/// Targets of results.
 struct Place {
     path: PathBuf,
-    /// The form of a campaign's rows.
+    /// File format of a campaign's rows.
     kind: Kind,
-    /// Whether it is one file.
+    /// True if the target of the rows is one file.
     is_file: bool,
 }
 
 impl Place {
-    /// The log of a run.
+    /// Returns the path of a run's log.
     fn log(&self, name: &str) -> PathBuf {
         if self.is_file { self.path.clone() } else { self.path.join(format!("{name}.mcap")) }
     }
 }
 
-/// Reads `N` or `LO:HI`.
+/// Parses `N` or `LO:HI`.
 pub fn runs(text: &str) -> Result<Runs, String> {
     let number = |text: &str| {
         text.parse::<u64>().map_err(|_| format!("`{text}` is not a number of runs; give N or LO:HI"))
@@ -126,7 +126,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         return Err(Failure::Arguments(format!("--live follows one scenario, got {count}")));
     }
     let place = args.place()?;
-    // Every scenario is checked before anything is written.
+    // All scenarios are checked before any file is written.
     let scenarios = args
         .scenarios
         .iter()
@@ -163,7 +163,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             Some(runs) => several(&study, (args, &place), runs, (prefixed, &selection)),
         };
         match done {
-            // The other scenarios are run all the same.
+            // The other scenarios are still run.
             Err(failure @ (Failure::Run { .. } | Failure::Runs { .. })) => failures.push(failure),
             done => done?,
         }
@@ -176,7 +176,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// The points of the campaign.
+    /// Returns the point design of the campaign.
     fn design(&self, uncertain: bool) -> Result<PointDesign, Failure> {
         let Some(Runs { range, part }) = &self.runs else { return Ok(PointDesign::default()) };
         let whole = (!part).then(|| range.end.div_ceil(self.options.replicas));
@@ -208,12 +208,12 @@ impl Args {
         single(&work.campaign, &run, self, (log, detail))
     }
 
-    /// What a log holds, by default this.
+    /// Returns the level of detail of the log, with a default.
     fn detail(&self, default: LogDetail) -> Option<Detail> {
         self.log.unwrap_or(default).detail()
     }
 
-    /// Where the log of a run goes, or the rows of a campaign.
+    /// Returns the target of a run's log, or of a campaign's rows.
     fn place(&self) -> Result<Place, Failure> {
         let inputs: Vec<&Path> = self.scenarios.iter().map(PathBuf::as_path).collect();
         let Some(path) = &self.out else {
@@ -236,7 +236,7 @@ impl Args {
         Ok(Place { path: path.clone(), kind, is_file })
     }
 
-    /// Makes the directory of what is written.
+    /// Creates the directory of the results.
     fn make_room(&self, place: &Place) -> Result<(), Failure> {
         match (&self.out, place.is_file) {
             (Some(path), true) => files::make_parent(path),
@@ -245,7 +245,7 @@ impl Args {
         }
     }
 
-    /// What the runs of a scenario ask for.
+    /// Returns the cost of a scenario's runs.
     fn cost(&self, study: &Campaign) -> Result<Cost, Failure> {
         let Some(Runs { range, .. }) = &self.runs else {
             return Ok(study.scenario().cost(self.detail(LogDetail::Events), false));
@@ -257,7 +257,7 @@ impl Args {
     }
 }
 
-/// Runs a campaign over a scenario; its tables are named after it where several share a directory.
+/// Runs the campaign of a scenario; its tables have the scenario's name if several scenarios share a directory.
 fn several(
     study: &Arc<Campaign>,
     (args, place): (&Args, &Place),
@@ -284,12 +284,12 @@ fn several(
     logs::run(study, &job, detail)
 }
 
-/// The scenario itself as a run: no key of it is drawn.
+/// Returns the run of the scenario itself, without drawn keys.
 pub fn itself(study: &Campaign) -> CampaignRun {
     CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() }
 }
 
-/// Makes one run, with its log.
+/// Simulates a single run, with its log.
 fn single(
     study: &Campaign,
     run: &CampaignRun,
@@ -300,7 +300,7 @@ fn single(
     let name = run.scenario.name.clone();
     let mut live = args.live.serve(run)?;
     let began = WallInstant::now();
-    // Who steers a live run types on the line of the bar.
+    // A live run has no bar, since the user types commands on that line.
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
     let record = (Stop, (&mut progress, &mut live));
     let result = match detail {

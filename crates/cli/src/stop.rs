@@ -16,24 +16,24 @@ use crate::failure::Failure;
 
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
-/// How often the flag is looked at.
+/// Polling period of the flag.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long work may take to end by itself once it is asked to stop.
+/// Time for work to end by itself after it is asked to stop.
 const PATIENCE: Duration = Duration::from_millis(50);
-/// The same while files are written.
+/// Time for the writing of files to end after it is asked to stop.
 const PATIENCE_OF_FILES: Duration = Duration::from_secs(2);
-/// How long the last message may take: whoever should read it may not.
+/// Time limit of the last message, whose reader may be blocked.
 const PATIENCE_OF_READERS: Duration = Duration::from_secs(1);
-/// What the main thread of a program has on most systems (bytes).
+/// Stack size of a program's main thread on most systems (bytes).
 const STACK: usize = 8 << 20;
 
-/// How many threads write files, and whether none may begin to because the program ends.
+/// Number of threads that write files, and true if the program is ending, so that no further thread may begin to.
 static FILES: Mutex<(u32, bool)> = Mutex::new((0, false));
 
-/// Files are being written as long as this lives: the program does not end then, but for work that cannot be stopped.
+/// Guard of file writing: while it exists, the program does not end, unless the writing takes too long to stop.
 pub struct Writing(());
 
-/// Begins to write files.
+/// Waits until files may be written, and returns the guard.
 pub fn writing() -> Writing {
     loop {
         let mut files = files();
@@ -42,7 +42,7 @@ pub fn writing() -> Writing {
             return Writing(());
         }
         drop(files);
-        // The program ends.
+        // The program is ending.
         thread::park();
     }
 }
@@ -57,11 +57,11 @@ fn files() -> MutexGuard<'static, (u32, bool)> {
     FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Does a command's work on a thread of its own and returns its exit code.
+/// Runs a command's work on a thread of its own and returns its exit code.
 ///
-/// From now on, the first Ctrl-C, SIGTERM or SIGHUP asks to stop: simulations end with their files finished, and work that
-/// does not look at the flag is left behind. A second one ends the program. A signal that is ignored, as by `nohup` or in
-/// the background of a script, stays so.
+/// From this call on, the first Ctrl-C, SIGTERM or SIGHUP asks to stop: simulations end with finished files, and work
+/// that does not check the flag is abandoned. A second one ends the program. Ignored signals, as by `nohup` or in the
+/// background of a script, stay ignored.
 pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
     static ONCE: Once = Once::new();
     ONCE.call_once(handle);
@@ -75,7 +75,7 @@ pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
     loop {
         match wait.recv_timeout(LOOK) {
             Ok(code) => return code,
-            // It panicked, and said so.
+            // The thread panicked and has printed its message.
             Err(RecvTimeoutError::Disconnected) => match working.join() {
                 Err(panic) => resume_unwind(panic),
                 Ok(_) => return 1,
@@ -94,10 +94,11 @@ pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
     }
 }
 
-/// Tells that the user asked to stop, and returns the exit code. What waits to be read, such as in a pager, holds nothing up.
+/// Reports that the user asked to stop, and returns the exit code. A blocked reader of the output, such as a pager,
+/// does not delay it.
 fn tell_interrupted() -> u8 {
     let (told, wait) = channel();
-    // Without a thread the exit code says it.
+    // Without a thread, only the exit code reports it.
     let _ = thread::Builder::new().spawn(move || told.send(Failure::Interrupted(String::new()).tell()));
     wait.recv_timeout(PATIENCE_OF_READERS).unwrap_or(130)
 }
@@ -108,8 +109,8 @@ fn handle() {
     use signal_hook::flag;
 
     for signal in [SIGINT, SIGTERM, SIGHUP].into_iter().filter(|signal| !is_ignored(*signal)) {
-        // In this order: the first signal finds the flag down, the second one finds it up. Without a handler, a signal ends
-        // the program as it always does.
+        // The order matters: the flag is false at the first signal and true at the second. Without a handler, a signal
+        // ends the program by default.
         let _ = flag::register_conditional_shutdown(signal, 130, Arc::clone(&ASKED))
             .and_then(|_| flag::register(signal, Arc::clone(&ASKED)));
     }
@@ -119,7 +120,7 @@ fn handle() {
 #[expect(unsafe_code, reason = "no crate tells what a signal does without changing it")]
 fn is_ignored(signal: libc::c_int) -> bool {
     let mut present = std::mem::MaybeUninit::<libc::sigaction>::zeroed();
-    // SAFETY: no new action is given; the present one is written to a place of its own, of which zeros are a valid value.
+    // SAFETY: no new action is given; the present one is written to separate memory, of which zeros are a valid value.
     unsafe {
         libc::sigaction(signal, std::ptr::null(), present.as_mut_ptr()) == 0
             && present.assume_init().sa_sigaction == libc::SIG_IGN
@@ -135,23 +136,23 @@ fn handle() {
     });
 }
 
-/// Asks to stop, as Ctrl-C does.
+/// Asks the program to stop, as Ctrl-C does.
 #[cfg(feature = "live")]
 pub fn ask() {
     ASKED.store(true, Ordering::Relaxed);
 }
 
-/// Whether the user asked to stop.
+/// Returns true if the user asked to stop.
 pub fn asked() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
-/// Why a run that had not begun is not made.
+/// Returns the error of a run that was not started because of the interruption.
 pub fn interrupted() -> SimulationError {
     RecordError::Interrupted.into()
 }
 
-/// A record that ends the simulation when the user asks.
+/// Record that ends the simulation when the user asks to stop.
 pub struct Stop;
 
 impl Record for Stop {

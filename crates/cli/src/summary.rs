@@ -1,4 +1,4 @@
-//! The summary of a run for people.
+//! Summary of a run for people.
 
 mod one_axis;
 mod three_axes;
@@ -14,14 +14,14 @@ use flexsc_core::metrics::{Metrics, Value};
 use crate::human::{Units, digits};
 use crate::say;
 
-/// What is printed of a run, and in which units.
+/// Data of a summary and its units.
 struct Summary<'a> {
     scenario: &'a Scenario,
     metrics: &'a Metrics,
     units: Units,
 }
 
-/// Prints the result of a run, which took so many seconds of real time.
+/// Prints the result of a run, which took `took` seconds of real time.
 pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64, units: Units) {
     let (duration, modes) = (scenario.duration.seconds(), scenario.mode_count());
     let head = format!("{}   {duration} s, {}", scenario.name, counted(modes, "mode"));
@@ -45,7 +45,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64, units: Units) {
     }
 }
 
-/// What needs attention in a run.
+/// Returns warnings about a run.
 pub fn warnings(scenario: &Scenario, metrics: &Metrics) -> Vec<String> {
     let mut warnings = Vec::new();
     if let (Some(Value::Word(word)), Some(share)) =
@@ -61,17 +61,17 @@ pub fn warnings(scenario: &Scenario, metrics: &Metrics) -> Vec<String> {
 }
 
 impl Summary<'_> {
-    /// A metric, NaN without one.
+    /// Returns a metric, or NaN without one.
     fn number(&self, name: &str) -> f64 {
         self.metrics.number(name).unwrap_or(f64::NAN)
     }
 
-    /// A metric with its unit.
+    /// Returns a metric with its unit.
     fn quantity(&self, name: &str, unit: &str) -> String {
         self.units.quantity(self.number(name), unit)
     }
 
-    /// The goal; bands about each of three axes (rad), if there are several.
+    /// Prints the goal; `bands` are those about each of three axes (rad), if there are several.
     fn goal(&self, bands: &[f64]) {
         let Some(Value::Word(word)) = self.metrics.get("goal") else { return };
         let (band, outside) = (self.number("goal_band_rad"), self.number("time_outside_s"));
@@ -99,7 +99,7 @@ impl Summary<'_> {
         }
     }
 
-    /// Envelope, adaptation and limit cycle of a relay law.
+    /// Prints the envelope, the adaptation and the limit cycle of a relay law.
     fn switchings(&self) {
         if let Some(Value::Numbers(means)) = self.metrics.get("envelope_window_means_rad")
             && let (Some(first), Some(last)) = (means.first(), means.last())
@@ -124,7 +124,7 @@ impl Summary<'_> {
         }
     }
 
-    /// The number that an adaptation tunes, and its objective if that is not the envelope.
+    /// Prints the tuned parameter of an adaptation, and its objective if it is not the envelope.
     fn adaptation(&self) {
         let Some(adaptation) = &self.scenario.adaptation else { return };
         if self.number("objective_final").is_finite() {
@@ -143,7 +143,7 @@ impl Summary<'_> {
         say!("  {:<14} {first} -> {last}, {end}", adaptation.tunes());
     }
 
-    /// Consistency of a filter: NEES and NIS over the assessed time.
+    /// Returns the consistency of a filter: NEES and NIS over the assessed time.
     fn consistency(&self) -> String {
         let Some(filter) = &self.scenario.estimator else { return String::new() };
         let [from, to] = filter.assess();

@@ -1,4 +1,4 @@
-//! `flexsc sweep`: a scenario once for each point of a design.
+//! `flexsc sweep`: a scenario, run at each point of a design.
 
 mod points;
 
@@ -20,7 +20,7 @@ use crate::human::Units;
 use crate::simulate::{Runs, runs};
 use crate::{campaign, files, say, scenario};
 
-/// No sweep has more combinations.
+/// Largest number of combinations of a sweep.
 const MOST_VALUES: u32 = 10_000_000;
 
 #[derive(clap::Args)]
@@ -67,7 +67,7 @@ pub struct Args {
     consent: Consent,
 }
 
-/// A key and its values.
+/// Key and its values.
 #[derive(Clone)]
 struct Varied {
     key: String,
@@ -106,19 +106,19 @@ fn varied(text: &str) -> Result<Varied, String> {
 }
 
 impl Args {
-    /// What the log of each run holds; none without logs.
+    /// Returns the level of detail of each run's log; `None` without logs.
     fn detail(&self) -> Option<Detail> {
         self.log.and_then(LogDetail::detail)
     }
 
-    /// The form of the rows, and whether they go to one file.
+    /// Returns the file format of the rows, and true if they go to one file.
     fn place(&self) -> Result<(Kind, bool), Failure> {
         let inputs: Vec<&Path> =
             [&self.scenario].into_iter().chain(&self.points).map(PathBuf::as_path).collect();
         self.options.place(self.out.as_deref(), &inputs, self.detail().is_some())
     }
 
-    /// The points, and how many they are.
+    /// Returns the points, and their number.
     fn design(&self, uncertain: bool) -> Result<(PointDesign, u64), Failure> {
         let mut blocks = Vec::new();
         if let Some(path) = &self.points {
@@ -157,7 +157,7 @@ impl Args {
         Ok((design, runs))
     }
 
-    /// The sweep over a scenario of this origin, and its runs.
+    /// Returns the sweep over a scenario of this origin, and the range of its runs.
     pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), Failure> {
         let scenario = if self.uncertain { scenario } else { Campaign::undrawn(scenario) };
         let (design, all) = self.design(!scenario.uncertain.is_empty())?;

@@ -1,4 +1,4 @@
-//! The table of a campaign, `runs.csv`: a row a run.
+//! Table of a campaign, `runs.csv`, with a row for each run.
 
 use std::fs;
 use std::io::{self, Seek, SeekFrom, Write};
@@ -11,23 +11,23 @@ use flexsc_core::whole::{self, Partial};
 
 use crate::failure::Failure;
 
-/// How long finished rows stay in memory: what a killed campaign loses.
+/// Longest time that finished rows stay in memory, and are lost if the campaign is killed.
 const FLUSH: Duration = Duration::from_millis(500);
 
-/// More than this does not stay in memory (bytes).
+/// Largest size of the rows in memory (bytes).
 const BUFFER: usize = 8 << 10;
 
-/// The table of a campaign, under a `.partial` name until it is finished. Dropped before, it is removed.
+/// Table of a campaign, under a `.partial` name until it is finished; an unfinished table is removed on drop.
 pub struct Table {
     path: PathBuf,
     partial: Partial,
-    /// Lines that are yet to be written.
+    /// Lines to write.
     lines: Vec<u8>,
-    /// Bytes of the lines that are written.
+    /// Number of bytes of the written lines.
     written: u64,
-    /// Whether a row is among them, beside the header.
+    /// True if the lines have a row in addition to the header.
     any: bool,
-    /// Names of the metrics, known with the first run that has any; the rows before it wait.
+    /// Names of the metrics, known from the first run that has any; earlier rows wait for it.
     metrics: Option<Vec<&'static str>>,
     waiting: Vec<Vec<String>>,
     flushed: Instant,
@@ -41,7 +41,7 @@ impl Table {
         Ok(Self { path, partial, lines, written: 0, any: false, metrics: None, waiting, flushed })
     }
 
-    /// Hands the rows so far to the system, unless that was done just now.
+    /// Writes the buffered rows to the file unless the last write was within [`FLUSH`].
     pub fn flush_in_time(&mut self) -> Result<(), Failure> {
         if self.flushed.elapsed() >= FLUSH {
             self.flushed = Instant::now();
@@ -51,7 +51,7 @@ impl Table {
     }
 
     fn flush(&mut self) -> Result<(), Failure> {
-        // Over what a write that failed left of a line.
+        // Overwrites a partial line of a failed write.
         let at = self.partial.seek(SeekFrom::Start(self.written));
         at.and_then(|_| self.partial.write_all(&self.lines)).map_err(Failure::write(&self.path))?;
         self.written += self.lines.len() as u64;
@@ -111,30 +111,30 @@ impl Table {
         if self.lines.len() < BUFFER { Ok(()) } else { self.flush() }
     }
 
-    /// Gives the table its name, which is returned.
+    /// Renames the table to its final name, which is returned.
     pub fn finish(mut self, study: &Campaign) -> Result<PathBuf, Failure> {
         if let Err(failure) = self.complete(study) {
             return Err(self.keep(failure));
         }
         self.partial.finish().map_err(Failure::write(&self.path))?;
-        // The rows of a campaign that was stopped before are among those of the whole one.
+        // Rows of an earlier, stopped campaign are among those of the complete one.
         let _ = fs::remove_file(interrupted(&self.path));
         Ok(self.path)
     }
 
-    /// Keeps the rows of a campaign that was stopped by a failure, under a name that says so, if there are any. The failure
-    /// then tells where.
+    /// Keeps the rows of a campaign that was stopped by a failure, if any, under a name that marks them as interrupted.
+    /// The returned failure has their path.
     pub fn interrupt(mut self, study: &Campaign, failure: Failure) -> Failure {
         if self.metrics.is_some() || !self.waiting.is_empty() {
-            // On a full disk, what was written before is kept.
+            // On a full disk, the rows written before are kept.
             let _ = self.complete(study);
         }
         self.keep(failure)
     }
 
-    /// Writes what waits.
+    /// Writes the buffered rows.
     fn complete(&mut self, study: &Campaign) -> Result<(), Failure> {
-        // All runs failed: there are rows without metrics only.
+        // All runs failed: the rows have no metrics.
         if self.metrics.is_none() {
             self.header(study, &Metrics::default())?;
         }
@@ -143,7 +143,7 @@ impl Table {
 
     fn keep(self, failure: Failure) -> Failure {
         let path = interrupted(&self.path);
-        // Of the line that found the disk full there may be a part.
+        // A full disk may have left a partial line.
         let kept = whole::unlinked(&path).is_ok()
             && self.any
             && self.partial.truncate(self.written).is_ok()
@@ -152,13 +152,13 @@ impl Table {
     }
 }
 
-/// The name of the table of a campaign that was stopped: `runs-interrupted.csv`.
+/// Returns the name of the table of a stopped campaign: `runs-interrupted.csv`.
 pub fn interrupted(path: &Path) -> PathBuf {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy();
     path.with_file_name(format!("{stem}-interrupted.csv"))
 }
 
-/// A metric as a cell: a list as JSON, and what is not a number as nothing.
+/// Returns a metric as a cell: a list as JSON, and a value that is not a number as empty.
 fn cell(value: &Value) -> String {
     match value {
         Value::Number(number) if number.is_nan() => String::new(),

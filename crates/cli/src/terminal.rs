@@ -1,15 +1,15 @@
-//! Whether a terminal takes escape sequences.
+//! Support of escape sequences by the terminal.
 
 use std::env::var_os;
 
-/// Whether none are wanted: `NO_COLOR` is set, or the terminal shows them as they are (`TERM=dumb`).
+/// Returns true if escape sequences are unwanted: `NO_COLOR` is set, or the terminal prints them (`TERM=dumb`).
 pub fn is_plain() -> bool {
     is_set("NO_COLOR") || is_dumb()
 }
 
-/// Keeps colours from a terminal that shows escape sequences as they are, unless `CLICOLOR_FORCE` asks for them.
+/// Disables colours on a terminal that prints escape sequences, unless `CLICOLOR_FORCE` is set.
 ///
-/// Where `CI` is set, `anstream` colours every terminal.
+/// `anstream` colours every terminal if `CI` is set.
 pub fn settle_colours() {
     if is_dumb() && !is_set("CLICOLOR_FORCE") {
         anstream::ColorChoice::Never.write_global();

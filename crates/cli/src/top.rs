@@ -1,4 +1,4 @@
-//! `flexsc top`: how far a campaign is that runs elsewhere, how fast, and what its runs come to so far.
+//! `flexsc top`: progress, speed and statistics of a campaign that runs elsewhere.
 
 use std::fmt::Write as _;
 use std::fs;
@@ -19,9 +19,9 @@ use crate::failure::Failure;
 use crate::terminal::is_plain;
 use crate::{print, stop};
 
-/// So many metrics are shown unless some are named.
+/// Largest number of metrics that are shown unless some are named.
 const SHOWN: usize = 8;
-/// The rate is that of the parts of the last minutes (s).
+/// Length of the recent interval over which the rate is computed (s).
 const RECENT_S: f64 = 120.0;
 
 #[derive(clap::Args)]
@@ -43,12 +43,12 @@ pub struct Args {
     json: bool,
 }
 
-/// What was read so far: each part once.
+/// Data of the parts that have been read, each once.
 struct Seen {
     parts: Vec<(Range<u64>, SystemTime)>,
     metrics: Vec<(String, Running)>,
     failed: u64,
-    /// Time of all runs on one core (s).
+    /// Total time of all runs on one core (s).
     seconds: f64,
 }
 
@@ -88,7 +88,7 @@ fn wanted(directory: &Directory) -> u64 {
     runs.end - runs.start
 }
 
-/// The metrics that are shown: those that are named, or the main ones.
+/// Returns the metrics to show: the named ones, or the main ones.
 fn metrics(args: &Args, directory: &Directory) -> Result<Vec<(String, Running)>, Failure> {
     let work = directory.work();
     let numeric = |name: &str| {
@@ -110,7 +110,7 @@ fn metrics(args: &Args, directory: &Directory) -> Result<Vec<(String, Running)>,
 }
 
 impl Seen {
-    /// Reads the parts that are new.
+    /// Reads the new parts.
     fn look(&mut self, directory: &Directory) -> Result<(), Failure> {
         let all = directory.parts().map_err(parts::failure)?;
         let new: Vec<_> =
@@ -138,14 +138,14 @@ impl Seen {
         self.parts.iter().map(|(runs, _)| runs.end - runs.start).sum()
     }
 
-    /// Runs in a second, by the parts written lately, and how long ago the last one was (s).
+    /// Returns the runs per second, by the recently written parts, and the age of the last one (s).
     fn rate(&self) -> Option<(f64, f64)> {
         let now = SystemTime::now();
         let age = |written: &SystemTime| now.duration_since(*written).map_or(0.0, |age| age.as_secs_f64());
         let last = self.parts.iter().map(|(_, written)| age(written)).fold(f64::INFINITY, f64::min);
         let oldest = self.parts.iter().map(|(_, written)| age(written) - last).filter(|age| *age <= RECENT_S);
         let oldest = oldest.fold(0.0, f64::max);
-        // The first of them began before.
+        // The first of the recent parts began earlier.
         let recent = self.parts.iter().filter(|(_, written)| age(written) - last < oldest);
         let runs: u64 = recent.map(|(runs, _)| runs.end - runs.start).sum();
         (last.is_finite()).then_some((if oldest > 0.0 { runs as f64 / oldest } else { f64::NAN }, last))
@@ -157,7 +157,7 @@ impl Seen {
         let mut text = format!("{name}   {done} of {}, {} failed", counted(all, "run"), self.failed);
         if let Some((rate, last)) = self.rate() {
             if done < all {
-                // Parts may have been copied here, or their command may have ended.
+                // The parts may be copies, or their command may have ended.
                 if directory.is_at_work() && rate > 0.0 {
                     let left = Duration::from_secs_f64(((all - done) as f64 / rate).min(1e12));
                     let _ = write!(text, ", {rate:.1} runs/s, {} left", HumanDuration(left));

@@ -153,7 +153,7 @@ impl Campaign {
         scenario
     }
 
-    /// What so many runs ask for, each with a log of this detail: as much as the costliest of the ends of the design.
+    /// Returns the cost of `runs` runs, each with a log of this detail and the cost of the design's costliest end.
     ///
     /// # Errors
     /// More runs than are supported.

@@ -89,8 +89,8 @@ impl Statistics {
 /// The 97.5 % quantile of a standard normal number.
 const NORMAL_975: f64 = 1.959_963_984_540_054;
 
-/// The 95 % interval of a probability of which so many of so many trials came out: Wilson's score interval. NaN without a
-/// trial.
+/// Returns the 95 % interval of the probability of an outcome that `met` of `trials` trials had: Wilson's score
+/// interval. NaN without a trial.
 pub fn wilson(met: u64, trials: u64) -> (f64, f64) {
     if trials == 0 {
         return (f64::NAN, f64::NAN);

@@ -46,7 +46,7 @@ impl Layout {
         Self { width, plot: plot.round() as u32 + higher }
     }
 
-    /// The height of a figure below a title of so many lines (px).
+    /// Returns the height (px) of a figure with a title of `lines` lines.
     fn height(self, figure: &Figure, lines: usize) -> u32 {
         let title = TITLE + LINE * (lines.max(1) as u32 - 1);
         title + figure.panels.iter().map(|panel| self.panel(panel)).sum::<u32>()
@@ -113,12 +113,12 @@ fn title_lines(title: &str, width: u32) -> Vec<String> {
     lines
 }
 
-/// The height of a figure that is so many pixels wide (px).
+/// Returns the height (px) of a figure of this width (px).
 pub fn height(figure: &Figure, width: u32) -> u32 {
     Layout::of(figure, width, 0).height(figure, title_lines(&figure.title, width).len())
 }
 
-/// The figure as SVG, so many pixels wide, each plot higher than usual by so much (px).
+/// Returns the figure as SVG of this width (px), each plot higher than usual by `higher` (px).
 pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
     let layout = Layout::of(figure, width, higher);
     let lines = title_lines(&figure.title, width);

@@ -9,8 +9,8 @@ const PART: f64 = 1e-3;
 /// A body without modes, or with slow ones, has no shorter windows than of such a period (s).
 const SLOWEST: f64 = 1.0;
 
-/// The shortest span (s) of so many switchings that is no chatter, of a body whose fastest mode has this frequency (rad/s), 0 without
-/// modes.
+/// Returns the shortest span (s) of a window of switchings without chatter, for a body whose fastest mode has this
+/// frequency (rad/s), 0 without modes.
 pub fn shortest_window(fastest: f64) -> f64 {
     PART * (std::f64::consts::TAU / fastest).min(SLOWEST)
 }

@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::{Deserialize, Deserializer, Serialize};
 
-/// A number in the shortest form that tells all its digits: with an exponent where zeros would fill a line.
+/// Returns a number in the shortest form with all its digits: with an exponent where zeros would fill a line.
 pub fn shortest(value: f64) -> String {
     let size = value.abs();
     if value == 0.0 || !value.is_finite() || (1e-6..1e16).contains(&size) {

@@ -259,7 +259,7 @@ fn open_itself(path: &Path) -> io::Result<File> {
     itself(options.write(true)).open(path)
 }
 
-/// Options that follow no link, and wait for nobody at a pipe.
+/// Sets the options to follow no link, and not to wait for the other end of a pipe.
 fn itself(options: &mut OpenOptions) -> &mut OpenOptions {
     #[cfg(unix)]
     {

@@ -16,7 +16,7 @@ pub struct Chart {
     /// Names of the axes.
     x: String,
     y: String,
-    /// Unit of the ordinates: `rad`, or one that the name shall tell.
+    /// Unit of the ordinates: `rad`, or another to be shown in the name of the axis.
     #[serde(default)]
     unit: String,
     lines: Vec<Line>,

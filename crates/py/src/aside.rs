@@ -16,7 +16,7 @@ use pyo3::prelude::*;
 pub const LOOK: Duration = Duration::from_millis(20);
 /// How long work may take to end once it is asked to stop: what has not ended then is left behind.
 const PATIENCE: Duration = Duration::from_millis(150);
-/// What a main thread has on most systems (bytes).
+/// Stack of a main thread on most systems (bytes).
 const STACK: usize = 8 << 20;
 
 /// A record that ends its run when Python asks.
@@ -58,7 +58,7 @@ pub fn aside<T: Send + 'static>(
     py.detach(|| {
         let (done, wait) = channel();
         thread::Builder::new().stack_size(STACK).spawn(move || {
-            // Nobody waits any more for what was left behind.
+            // The receiver is gone if the work was left behind.
             let _ = done.send(work(for_work));
         })?;
         let mut raised: Option<(PyErr, WallInstant)> = None;

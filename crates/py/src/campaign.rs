@@ -62,7 +62,7 @@ fn array(py: Python<'_>, column: ColumnCells) -> PyResult<Bound<'_, PyAny>> {
     }
 }
 
-/// What makes the rows of a campaign.
+/// Work that makes the rows of a campaign.
 #[pyclass(frozen, module = "flexsc._native")]
 pub struct Work(pub Arc<Whole>);
 
@@ -173,7 +173,7 @@ impl Work {
         Scenario { origin: inner.name.clone(), inner }
     }
 
-    /// The same campaign, with the runs of another manifest of it too.
+    /// Returns this campaign with the runs of another manifest of it too.
     fn joined(&self, there: &Self) -> PyResult<Self> {
         let mut manifest = self.on_file()?.manifest.clone();
         manifest.part = there.0.manifest.part;

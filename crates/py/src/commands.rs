@@ -1,4 +1,4 @@
-//! What a stepped run was commanded, and how far it got: enough to repeat it.
+//! Commands of a stepped run and the instant that it reached: enough to repeat it.
 
 use flexsc_core::campaign::Commanded;
 use flexsc_core::time::Instant;

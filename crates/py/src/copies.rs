@@ -17,7 +17,7 @@ use crate::aside::{LOOK, Stop};
 use crate::error::scenario_error;
 use crate::stepping::{FieldRow, Simulator, command_limit, command_unit, fields, span, steer};
 
-/// So many copies are given to a thread at once, at least.
+/// Least number of copies that are given to a thread at once.
 const TOGETHER: usize = 8;
 
 /// A run, and why it cannot go on.
@@ -25,7 +25,7 @@ const TOGETHER: usize = 8;
 struct Flight {
     number: u64,
     simulation: Option<Simulation>,
-    /// What it was commanded: nothing where it was, and that is not kept.
+    /// Commands of the run from its start; `None` if they were not kept.
     given: Option<Commanded>,
     failed: Option<String>,
 }
@@ -96,7 +96,7 @@ impl Simulators {
                     each.with_min_len(TOGETHER)
                         .enumerate()
                         .for_each_with(asked, |asked, (index, (flight, row))| on(index, flight, row, asked));
-                    // Nobody waits any more where Python raised.
+                    // The receiver is gone if Python raised.
                     let _ = done.send(());
                 });
                 while let Err(RecvTimeoutError::Timeout) = wait.recv_timeout(LOOK) {

@@ -64,7 +64,7 @@ pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {
         });
         let set =
             each.collect::<PyResult<Vec<_>>>().and_then(|all| raised.value(py).setattr("mistakes", all));
-        // What cannot be told so is an error of its own.
+        // An error while these are written is raised instead.
         set.map_or_else(|error| error, |()| raised)
     })
 }

@@ -141,7 +141,7 @@ impl Scenario {
         scenario.with_keys(vec![("name".to_owned(), toml::Value::from(name).to_string())])
     }
 
-    /// From TOML that nobody wrote, so that no error need point into it.
+    /// Reads generated TOML, into which no error needs to point.
     #[staticmethod]
     fn from_values(text: &str, name: &str) -> PyResult<Self> {
         let document = Document::parse(name, text.to_owned()).map_err(scenario_error)?;
@@ -202,7 +202,7 @@ impl Scenario {
     }
 }
 
-/// What a log of this name holds; nothing for `none`.
+/// Returns the detail of a log of this name; `None` for `none`.
 fn detail(log: &str) -> PyResult<Option<Detail>> {
     match log {
         "none" => Ok(None),
@@ -376,7 +376,7 @@ fn metrics_json() -> String {
     serde_json::Value::Object(metrics::ALL.iter().map(meaning).collect()).to_string()
 }
 
-/// What the metrics of a scenario mean: of a body without inertia some have other units.
+/// Returns the meanings of the metrics of a scenario: of a body without inertia some have other units.
 #[pyfunction]
 fn meanings_json(scenario: &Scenario) -> String {
     let names = metrics::ALL.iter().map(|meaning| meaning.name);

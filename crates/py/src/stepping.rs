@@ -101,7 +101,7 @@ pub struct Simulator {
     unit: &'static str,
     limit: Vec<f64>,
     fields: Vec<LookField>,
-    /// What it was commanded, if that was kept.
+    /// Commands of the run, if they were kept.
     given: Option<Commanded>,
     /// Why it cannot go on.
     failed: Option<String>,
@@ -194,7 +194,7 @@ impl Simulator {
         steer(&mut self.simulation, self.given.as_mut(), &values);
     }
 
-    /// What it was commanded and how far it is; `None` if the commands were not kept.
+    /// Returns the commands of the run and the instant that it has reached; `None` if the commands were not kept.
     fn commands(&self) -> Option<Commands> {
         let until = if self.simulation.is_done() { Instant::END } else { self.simulation.time() };
         Some(Commands { given: self.given.clone()?, until })

@@ -57,7 +57,7 @@ struct Args {
     /// How many inputs each surface gets, however long they take
     #[arg(long, conflicts_with = "seconds")]
     inputs: Option<u64>,
-    /// What inputs follow from
+    /// Seed of the inputs
     #[arg(long, default_value_t = 1)]
     seed: u64,
     /// The number of the first input
@@ -79,10 +79,10 @@ struct Args {
 
 #[derive(Subcommand)]
 enum Within {
-    /// What the fuzzer starts to run inputs
+    /// Process that the fuzzer starts to run inputs
     #[command(hide = true)]
     Worker { surface: Surface, seed: u64, from: u64, to: u64 },
-    /// What the fuzzer starts to run an input again
+    /// Process that the fuzzer starts to run an input again
     #[command(hide = true)]
     Again { directory: PathBuf },
 }

@@ -15,13 +15,13 @@ pub fn write(path: &Path, kind: Kind, work: &Work, rows: &Rows) -> Result<(), Fa
         Kind::Parquet => work.encode(rows).map_err(Failure::write(path))?,
         Kind::Csv => csv(work, rows).map_err(|error| Failure::write(path)(error.into()))?,
     };
-    // It was looked for before there were rows.
+    // The target was checked before the runs were made.
     files::write(path, &bytes, true)
 }
 
 fn csv(work: &Work, rows: &Rows) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
-    // No two campaigns take the same time.
+    // Run times differ from one repetition to the next: they are left out.
     let columns: Vec<_> =
         rows.fields.iter().zip(&rows.columns).filter(|(field, _)| field.name != SECONDS).collect();
     let keys: Vec<&str> = work.campaign.keys().collect();
@@ -35,7 +35,7 @@ fn csv(work: &Work, rows: &Rows) -> Result<Vec<u8>, csv::Error> {
     Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
 }
 
-/// A cell, as the table in a directory has it: what describes the run as in a scenario, metrics with all digits.
+/// Returns a cell as text: values that describe the run as in a scenario, metrics with all digits.
 fn cell(cells: &ColumnCells, row: usize, about: bool) -> String {
     let text = match cells {
         ColumnCells::Integers(cells) => cells[row].map(|integer| integer.to_string()),

@@ -1,4 +1,4 @@
-//! The scenario beside a campaign's tables: any run can be repeated from it, and it identifies the tables.
+//! The scenario file beside a campaign's tables: it identifies them, and any run can be repeated from it.
 
 use std::fs;
 use std::io::Write;
@@ -12,25 +12,25 @@ use flexsc_core::whole::{self, Partial};
 use super::Job;
 use crate::failure::Failure;
 
-/// The file that holds the scenario of a campaign, beside its tables.
+/// Name of the file with a campaign's scenario, beside its tables.
 pub const SCENARIO: &str = "scenario.toml";
-/// How that file begins.
+/// First words of a scenario file that flexsc wrote.
 const MARK: &str = "# What the runs beside it were drawn from, by flexsc";
-/// What helps.
+/// Hint of the errors about files of another campaign.
 const HINT: &str = "hint: give another directory with -o, or use --force to replace what is there";
 
-/// What is kept of a campaign in a directory.
+/// Scenario file of a campaign within a directory.
 pub struct Kept<'a> {
     directory: &'a Path,
-    /// What all names begin with.
+    /// Prefix of all file names.
     prefix: String,
     job: &'a Job<'a>,
-    /// The content of the file.
+    /// Content of the scenario file.
     text: String,
 }
 
 impl<'a> Kept<'a> {
-    /// What is kept of a job of a campaign there.
+    /// Returns the scenario file of a job of the campaign `study` in `directory`.
     pub fn new(directory: &'a Path, job: &'a Job<'a>, study: &Campaign) -> Self {
         let prefix = job.prefix.map_or(String::new(), |name| format!("{name}-"));
         let grids = study.design().describe();
@@ -38,7 +38,7 @@ impl<'a> Kept<'a> {
         Self { directory, prefix, job, text }
     }
 
-    /// Writes the scenario, once [`check`](Self::check) lets it; tables of another campaign are removed then.
+    /// Writes the scenario file if [`check`](Self::check) allows it, and removes the tables of another campaign.
     pub fn keep(&self) -> Result<(), Failure> {
         let path = self.path(SCENARIO);
         whole::unlinked(&path).map_err(Failure::write(&path))?;
@@ -56,10 +56,10 @@ impl<'a> Kept<'a> {
         self.directory.join(format!("{}{name}", self.prefix))
     }
 
-    /// Whether the tables that are there are of this campaign.
+    /// Returns true if the directory's tables are of this campaign.
     ///
     /// # Errors
-    /// They are of another one, or have more runs of this one, and are not to be replaced.
+    /// Tables of another campaign, or with more runs of this one, that must not be replaced.
     pub fn check(&self) -> Result<bool, Failure> {
         let path = &self.path(SCENARIO);
         let refused = |path: &Path, why: &str, hint: &str| {
@@ -103,7 +103,7 @@ impl<'a> Kept<'a> {
         }
     }
 
-    /// The tables that are there, of whole campaigns and of parts.
+    /// Returns the paths of the existing tables, of whole campaigns and of parts.
     fn tables(&self) -> Vec<PathBuf> {
         let entries = fs::read_dir(self.directory).into_iter().flatten().flatten();
         let is_table = |name: &str| {
@@ -121,7 +121,7 @@ impl<'a> Kept<'a> {
     }
 }
 
-/// In what two campaigns differ: scenario, version or what is swept.
+/// Describes the difference of two campaigns: scenario, version or swept keys.
 fn other(there: &str, here: &str) -> String {
     let difference = difference(there, here);
     let comments = |text: &str| -> Vec<String> {
@@ -138,7 +138,7 @@ fn other(there: &str, here: &str) -> String {
     format!(" ({} before, {} now)", not_in(&there, &here), not_in(&here, &there))
 }
 
-/// The rows of a table; 0 if there is none.
+/// Returns the number of rows of a table; 0 without a file.
 fn rows(path: &Path) -> u64 {
     let Ok(file) = whole::open(path) else { return 0 };
     let mut reader = csv::Reader::from_reader(file);

@@ -1,4 +1,4 @@
-//! A campaign at work, on the terminal: how far it is, how fast, and a few statistics of the runs so far.
+//! Progress of a running campaign on the terminal: completed runs, speed, and statistics of a few metrics.
 
 use std::fmt::Write;
 use std::time::{Duration, Instant};
@@ -12,12 +12,12 @@ use super::{MAIN, met};
 use crate::number::short;
 use crate::progress::{self, Lines};
 
-/// So many metrics are shown.
+/// Largest number of metrics in the table.
 const SHOWN: usize = 4;
-/// How often the table is written anew.
+/// Shortest time between two updates of the table.
 const AGAIN: Duration = Duration::from_millis(250);
 
-/// Mean and spread of a metric so far (Welford's recurrence).
+/// Running mean and spread of a metric (Welford's recurrence).
 #[derive(Clone, Debug, Default)]
 pub struct Running {
     count: u64,
@@ -28,7 +28,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// Adds a value; NaN is none.
+    /// Adds a value; NaN is ignored.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
             return;
@@ -43,7 +43,7 @@ impl Running {
         (self.least, self.most) = (self.least.min(value), self.most.max(value));
     }
 
-    /// The statistics as JSON.
+    /// Returns the statistics as JSON.
     pub fn to_json(&self) -> Json {
         let Self { count, mean, least, most, .. } = self;
         json!({"runs": count, "mean": mean, "sd": self.sd(), "least": least, "most": most})
@@ -54,7 +54,7 @@ impl Running {
     }
 }
 
-/// The lines of a table of some metrics so far.
+/// Returns the lines of a table with the statistics of some metrics.
 pub fn table(metrics: &[(&str, Running)]) -> String {
     let mut text = String::new();
     let any = metrics.iter().filter(|(_, so_far)| so_far.count > 0);
@@ -85,7 +85,7 @@ pub fn table(metrics: &[(&str, Running)]) -> String {
     text
 }
 
-/// The value of a metric as a number.
+/// Returns the value of a metric as a number.
 fn number(metrics: &Metrics, name: &str) -> Option<f64> {
     match metrics.get(name)? {
         Value::Count(count) => Some(*count as f64),
@@ -95,7 +95,7 @@ fn number(metrics: &Metrics, name: &str) -> Option<f64> {
     }
 }
 
-/// The bar, and below it the table.
+/// Progress bar with a table of statistics below it.
 pub struct Live {
     bar: ProgressBar,
     lines: Lines,
@@ -105,14 +105,14 @@ pub struct Live {
 }
 
 impl Live {
-    /// A bar over so many runs, of which some are there.
+    /// Creates a bar over `runs` runs, of which `there` were completed before.
     pub fn new(runs: u64, there: u64) -> Self {
         let bar = progress::bar_from(runs, there, "runs");
         let lines = Lines::new(runs, there, "runs");
         Self { bar, lines, metrics: Vec::new(), failed: 0, shown: Instant::now() }
     }
 
-    /// A run has ended.
+    /// Counts a completed run and adds its metrics to the statistics.
     pub fn add(&mut self, outcome: &RunOutcome) {
         self.bar.inc(1);
         match &outcome.metrics {
@@ -135,7 +135,7 @@ impl Live {
         self.show();
     }
 
-    /// Writes the table anew, unless that was done just now.
+    /// Updates the table unless the last update was within [`AGAIN`].
     pub fn show(&mut self) {
         if self.bar.is_hidden() {
             return self.lines.show(self.bar.position());

@@ -1,4 +1,4 @@
-//! Runs with their logs: of one run, and of each run of a campaign beside its rows.
+//! Simulation of runs with their logs: of one run, and of each run of a campaign beside its rows.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -29,7 +29,7 @@ pub enum LogDetail {
 }
 
 impl LogDetail {
-    /// What a log holds; none for no log.
+    /// Returns the level of detail of the log; `None` for no log.
     pub fn detail(self) -> Option<Detail> {
         match self {
             Self::None => None,
@@ -40,7 +40,7 @@ impl LogDetail {
     }
 }
 
-/// Makes the runs of a campaign, with a log of each if a detail is given: NAME-NUMBER.mcap beside its tables.
+/// Runs a campaign; if a detail is given, the log of each run is NAME-NUMBER.mcap beside the tables.
 pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Result<(), Failure> {
     let directory = job.table.map(Path::to_owned).unwrap_or_default();
     let (name, force) = (study.scenario().name.clone(), job.force);
@@ -48,7 +48,7 @@ pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Resu
     run_all(study, job, {
         let (log, selection) = (log.clone(), job.selection.clone());
         move |run| match detail {
-            // No log for the runs that had not begun.
+            // Runs that had not started before the interruption have no log.
             _ if stop::asked() => Err(stop::interrupted().into()),
             None => Ok(Campaign::simulate_for(run, &selection, Stop)?),
             Some(detail) => Ok(selection.of_run(logged(run, &log(run.number), (detail, force), Stop)?.0)),
@@ -65,8 +65,8 @@ pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Resu
     Ok(())
 }
 
-/// Simulates a run into a log file, and returns its size. An interrupted run leaves a finished log, a failed one
-/// too, and one that cannot be written none.
+/// Simulates a run with its log file, and returns the file's size. An interrupted or a failed run leaves a finished
+/// log, and a log that cannot be written leaves no file.
 pub fn logged(
     run: &CampaignRun,
     path: &Path,
@@ -75,7 +75,7 @@ pub fn logged(
 ) -> Result<(Metrics, u64), SimulationError> {
     let provenance = Campaign::provenance(run, detail);
     let mut log = LogFile::create(path, &provenance, detail)?;
-    // Nobody else writes it now.
+    // From here on, this process has the file to itself.
     if let (There::Other(what), false) = (there(path, &provenance), force) {
         let text = format!(
             "{}: {what}\n\nhint: give another directory with -o, or use --force to replace it",
@@ -88,7 +88,7 @@ pub fn logged(
             let bytes = log.finish(&metrics, RunEnd::Complete)?;
             Ok((metrics, bytes))
         }
-        // It is removed.
+        // The incomplete log is removed.
         Err(SimulationError::Record(RecordError::Io(error))) => Err(RecordError::Io(error).into()),
         Err(error) => {
             let interrupted = matches!(error, SimulationError::Record(RecordError::Interrupted));

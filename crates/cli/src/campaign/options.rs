@@ -1,4 +1,4 @@
-//! What campaigns and sweeps have in common on the command line.
+//! Command-line options that campaigns and sweeps have in common.
 
 use std::path::Path;
 
@@ -10,11 +10,11 @@ use flexsc_core::scenario::Cost;
 use crate::failure::Failure;
 use crate::out::Out;
 
-/// What is held of a campaign in parts (bytes), ...
+/// Memory that a campaign with a directory of parts needs (bytes), apart from its runs.
 const HELD: f64 = 2e8;
-/// ... and for each of its runs.
+/// Additional memory per run of such a campaign (bytes).
 const HELD_OF_RUN: f64 = 32.0;
-/// No point is run more often.
+/// Largest number of replicas of a point.
 const MOST_REPLICAS: u64 = 1_000_000;
 
 #[derive(clap::Args, Clone)]
@@ -49,7 +49,7 @@ pub enum Kind {
     Csv,
 }
 
-/// How points are spread, and over how many, if that was told.
+/// Value of `--sample`: the sampling method and, if given, the number of points.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Sample {
     pub sampling: Sampling,
@@ -69,7 +69,7 @@ fn sample(text: &str) -> Result<Sample, String> {
 }
 
 impl Options {
-    /// Whether none is given.
+    /// Returns true if no option is given.
     pub fn are_default(&self) -> bool {
         let Self { table, metrics, fail_fast, sample, replicas, scheduler } = self;
         table.is_none()
@@ -80,15 +80,15 @@ impl Options {
             && scheduler.is_none()
     }
 
-    /// The form of the rows.
+    /// Returns the file format of the rows.
     pub fn table(&self) -> Kind {
         self.table.unwrap_or(if cfg!(feature = "parquet") { Kind::Parquet } else { Kind::Csv })
     }
 
-    /// The scheduler that makes the runs, if one does.
+    /// Returns the address of the scheduler whose workers make the runs; `None` for this process.
     ///
     /// # Errors
-    /// What only this process could do is asked for too.
+    /// Options that the workers of a scheduler cannot satisfy.
     pub fn scheduler(&self, log: bool, json: bool) -> Result<Option<&str>, Failure> {
         let other = [
             ("--table csv", self.table() == Kind::Csv),
@@ -104,7 +104,7 @@ impl Options {
         }
     }
 
-    /// The metrics that are wanted.
+    /// Returns the selected metrics.
     pub fn selection(&self) -> Result<Selection, Failure> {
         if self.table == Some(Kind::Parquet) {
             parquet_is_built_in().map_err(|error| Failure::Arguments(format!("--table: {error}")))?;
@@ -113,7 +113,7 @@ impl Options {
         Selection::of(names).map_err(|why| Failure::Arguments(format!("--metrics: {why}")))
     }
 
-    /// The cost of a campaign: of the rows in parts, little is held in memory.
+    /// Returns the cost of a campaign; with a directory of parts, few rows are held in memory.
     pub fn cost(&self, cost: Cost, in_directory: bool) -> Cost {
         match self.table() {
             Kind::Parquet if in_directory => Cost { memory: HELD + cost.runs * HELD_OF_RUN, ..cost },
@@ -121,10 +121,10 @@ impl Options {
         }
     }
 
-    /// The form of the rows, and whether `out` is one file of them; `inputs` are read.
+    /// Returns the file format of the rows, and true if `out` is one file; `inputs` are files that the command reads.
     ///
     /// # Errors
-    /// A file of another form, or one where a directory is needed.
+    /// A file whose format contradicts `--table`, or a file where a directory is needed.
     pub fn place(&self, out: Option<&Path>, inputs: &[&Path], log: bool) -> Result<(Kind, bool), Failure> {
         let out = out.map(|out| Out::new(out, &["csv", "parquet"], inputs)).transpose()?;
         let Some(Out::File(path, ending)) = out else { return Ok((self.table(), false)) };
@@ -143,18 +143,18 @@ impl Options {
         }
     }
 
-    /// How points are spread.
+    /// Returns the sampling method of the points.
     pub fn sampling(&self) -> Sampling {
         self.sample.map_or(Sampling::Random, |sample| sample.sampling)
     }
 
-    /// How many points `--sample` tells.
+    /// Returns the number of points given by `--sample`.
     pub fn points(&self) -> Option<u64> {
         self.sample.and_then(|sample| sample.points)
     }
 
-    /// A design with these replicas and, where keys are uncertain, these draws; `points` are those of the whole campaign, if
-    /// that is known.
+    /// Completes a design with the replicas and, if keys are uncertain, the method of their draws; `points` is the
+    /// number of points of the whole campaign, if known.
     pub fn complete(
         &self,
         design: PointDesign,

@@ -1,4 +1,4 @@
-//! A campaign as a directory of parts: begun, continued after any stop, and told of.
+//! A campaign as a directory of parts, which can be continued after an interruption, and its results.
 
 use std::io::Write;
 use std::ops::Range;
@@ -19,9 +19,9 @@ use crate::failure::Failure;
 use crate::results::print_lines;
 use crate::{say, stop};
 
-/// What helps where another campaign is in the way.
+/// Hint of the errors about a directory with another campaign.
 const HINT: &str = "hint: give another directory with -o, or use --force to replace what is there";
-/// A failure of a directory, for people.
+/// Converts an error of a campaign's directory to a failure of the command.
 pub fn failure(error: DirectoryError) -> Failure {
     match error {
         DirectoryError::Other { .. } => Failure::Arguments(format!("{error}\n\n{HINT}")),
@@ -33,7 +33,7 @@ pub fn failure(error: DirectoryError) -> Failure {
     }
 }
 
-/// A campaign's directory, begun or continued.
+/// Creates a campaign's directory, or opens it to continue.
 pub fn create(path: &Path, manifest: Manifest, job: &Job<'_>) -> Result<Directory, Failure> {
     let runs = manifest.runs();
     let mut directory = Directory::create(path, manifest, job.force).map_err(failure)?;
@@ -50,7 +50,7 @@ pub fn create(path: &Path, manifest: Manifest, job: &Job<'_>) -> Result<Director
     Ok(directory)
 }
 
-/// Makes the runs of a job that are not there yet.
+/// Makes the missing runs of a job.
 pub fn run(
     study: &Arc<Campaign>,
     job: &Job<'_>,
@@ -70,7 +70,7 @@ pub fn run(
         say!("{}: {} of {} are there", path.display(), all - left, counted(all, "run"));
     }
     if let Some(address) = job.scheduler {
-        // The lock is of who hands out the runs.
+        // The process that hands out the runs needs the lock.
         drop(directory);
         scheduler::make(path, address)?;
         return told(&Directory::open(path).map_err(failure)?, &job.range);
@@ -82,7 +82,7 @@ pub fn run(
         let inside = |part: &&Range<u64>| gap.start <= part.start && part.end <= gap.end;
         let mut parts = missing.iter().filter(inside);
         let work = work.clone();
-        // What the manifest holds is what is run, here as on any other machine.
+        // The runs are those of the manifest, here as on any other machine.
         let campaign = &directory.work().campaign;
         let (range, threads) = (gap.clone(), job.threads());
         let work = move |run: &CampaignRun| work(run);
@@ -109,7 +109,7 @@ pub fn run(
     told(&directory, &job.range)
 }
 
-/// Ranges that touch one another as one.
+/// Merges adjacent ranges.
 fn gaps(parts: &[Range<u64>]) -> Vec<Range<u64>> {
     let mut gaps: Vec<Range<u64>> = Vec::new();
     for part in parts {
@@ -121,16 +121,16 @@ fn gaps(parts: &[Range<u64>]) -> Vec<Range<u64>> {
     gaps
 }
 
-/// The parts that are being made, in order.
+/// Progress of a job: its parts are written in order.
 struct Making<'a> {
     directory: &'a Directory,
     job: &'a Job<'a>,
     live: Live,
-    /// The part whose rows are gathered.
+    /// Runs and rows of the unfinished part.
     part: Option<(Range<u64>, Rows)>,
-    /// The run whose row is next.
+    /// Number of the next expected run.
     next: u64,
-    /// Runs whose parts are written.
+    /// Number of runs in written parts.
     made: u64,
 }
 
@@ -169,7 +169,7 @@ impl Making<'_> {
     }
 }
 
-/// What the rows of a directory come to, with the table of its statistics; of a sweep, points of these runs.
+/// Returns the results of a directory and writes the table of its statistics; of a sweep, with the points in `range`.
 pub fn told(directory: &Directory, range: &Range<u64>) -> Result<Told, Failure> {
     let Summary { runs, failed, statistics } = directory.summary().map_err(failure)?;
     write_statistics(&directory.path().join(STATISTICS), &statistics)?;
@@ -190,7 +190,7 @@ pub fn told(directory: &Directory, range: &Range<u64>) -> Result<Told, Failure> 
         }
         Ok(Some(all))
     };
-    // Of points without runs there is nothing to print.
+    // A sweep with missing runs is not printed point by point.
     let is_whole = directory.missing_of(range.clone()).map_err(failure)?.is_empty();
     let points = Points::new((&work.campaign, range), (&statistics, &work.selection), column)?;
     let (points, table) = (points.filter(|_| is_whole), Some(directory.path().to_owned()));

@@ -1,4 +1,4 @@
-//! A sweep on the terminal: the metrics that vary, point by point.
+//! Table of a sweep on the terminal: the metrics that vary, point by point.
 
 use std::fmt::Write;
 use std::ops::Range;
@@ -10,28 +10,28 @@ use flexsc_core::statistics::Statistics;
 use super::{MAIN, verdict};
 use crate::number::short;
 
-/// So many points are printed at each end of a long sweep, ...
+/// Number of points that are printed at each end of a long sweep.
 const ENDS: u64 = 8;
-/// ... all of a shorter one, ...
+/// Largest number of points of a sweep that is printed completely.
 const ALL: u64 = 24;
-/// ... and none where they have more runs than this.
+/// Largest number of runs of a sweep whose points are printed.
 const MOST_RUNS: u64 = 20_000;
-/// No table is wider (characters), unless one metric is.
+/// Largest width of the table (characters), unless a single metric needs more.
 const WIDTH: usize = 110;
 
-/// Some points of a sweep.
+/// Printed points of a sweep.
 pub struct Points {
-    /// How many points there are.
+    /// Total number of points.
     all: u64,
     replicas: u64,
-    /// Keys and metrics by their names, with a cell for each run that is printed.
+    /// Names of keys and metrics, with a cell for each run that is printed.
     keys: Vec<(String, ColumnCells)>,
     metrics: Vec<(String, ColumnCells)>,
-    /// Metrics that vary too, and for which there was no room.
+    /// Number of varying metrics that the table has no room for.
     more: usize,
 }
 
-/// The runs whose points are printed; none of a campaign that is no sweep.
+/// Returns the runs whose points are printed; empty for a campaign that is not a sweep.
 pub fn runs(study: &Campaign, range: &Range<u64>) -> Vec<Range<u64>> {
     let replicas = study.design().replicas;
     let points = study.design().point(range.start)..study.design().point(range.end - 1) + 1;
@@ -52,7 +52,8 @@ pub fn runs(study: &Campaign, range: &Range<u64>) -> Vec<Range<u64>> {
 }
 
 impl Points {
-    /// The points of these runs; `column` has the cells of the printed ones, none for a name that has no column.
+    /// Returns the points of the runs in a range; `column` returns the cells of the printed runs, `None` for an unknown
+    /// name.
     pub fn new<E>(
         (study, range): (&Campaign, &Range<u64>),
         (statistics, selection): (&[Statistics], &Selection),
@@ -73,7 +74,7 @@ impl Points {
                 more += 1;
                 continue;
             }
-            // What only repeats a key says nothing.
+            // A metric that only repeats a key is redundant.
             let repeats = |cells: &ColumnCells| keys.iter().any(|(_, key)| key.numbers() == cells.numbers());
             let Some(cells) = column(name)?.filter(|cells| !repeats(cells)) else { continue };
             width += cell_width(name);
@@ -83,7 +84,7 @@ impl Points {
         Ok(Some(Self { all, replicas: design.replicas, keys, metrics, more }))
     }
 
-    /// The table.
+    /// Returns the table as text.
     pub fn text(&self) -> String {
         let mut text = String::from("\n ");
         for (name, _) in self.keys.iter().chain(&self.metrics) {
@@ -126,7 +127,7 @@ fn cell_width(name: &str) -> usize {
     name.chars().count().max(10) + 2
 }
 
-/// The metrics to print: those that are selected, or else the main ones that vary, or any that do.
+/// Returns the metrics to print: the selected ones, else the main ones that vary, else any that vary.
 fn chosen<'a>(statistics: &'a [Statistics], selection: &'a Selection) -> Vec<&'a str> {
     let there = |name: &str| statistics.iter().find(|s| s.name == name && s.runs + s.infinite > 0);
     if let Some(names) = selection.names() {
@@ -140,14 +141,14 @@ fn chosen<'a>(statistics: &'a [Statistics], selection: &'a Selection) -> Vec<&'a
     names
 }
 
-/// The value of a key.
+/// Returns the value of a key as text.
 fn value(cells: &ColumnCells, index: usize) -> String {
     let number = cells.numbers().get(index).copied().unwrap_or(f64::NAN);
     let text = format!("{number}");
     if text.len() <= 10 { text } else { short(number) }
 }
 
-/// The value of a metric at a point, of several runs the mean.
+/// Returns the value of a metric at a point as text: the mean over the point's runs.
 fn metric(name: &str, cells: &ColumnCells, runs: Range<usize>) -> String {
     let values: Vec<f64> = cells.numbers()[runs].iter().copied().filter(|value| !value.is_nan()).collect();
     let mean = values.iter().sum::<f64>() / values.len() as f64;

@@ -1,4 +1,4 @@
-//! A campaign's runs on the workers of a Dask scheduler, by the Python package of flexsc.
+//! Distribution of a campaign's runs to the workers of a Dask scheduler, by the Python package of flexsc.
 
 use std::ffi::OsString;
 use std::io;
@@ -10,22 +10,22 @@ use std::time::{Duration, Instant};
 use crate::failure::Failure;
 use crate::stop;
 
-/// A task takes about so long (s): much more than a scheduler needs to hand it out.
+/// Intended duration of a task (s): much longer than the scheduler's overhead.
 pub const TASK_S: f64 = 1.0;
 
-/// How often it is looked whether Python has ended.
+/// Polling period for the end of the Python process.
 const LOOK: Duration = Duration::from_millis(20);
-/// How long it may take to end once it is asked to.
+/// Longest time for the Python process to end after it is asked to.
 const PATIENCE: Duration = Duration::from_millis(1500);
 
-/// Makes what is missing in a directory, which all workers reach, and waits for it.
+/// Makes the missing runs of a directory that all workers can reach, and waits for them.
 pub fn make(directory: &Path, address: &str) -> Result<(), Failure> {
-    // The wheel's own command says which Python it is of.
+    // The command of the Python wheel names its interpreter.
     let python = std::env::var_os("FLEXSC_PYTHON").unwrap_or_else(|| OsString::from("python3"));
     let told = python.to_string_lossy().into_owned();
     let mut command = Command::new(&python);
     command.args(["-m", "flexsc.dask", "--until-stdin-closes", address]).arg(directory);
-    // It ends when its stdin is closed, as it is by the death of this process too.
+    // The process ends when its stdin is closed, which the death of this process does too.
     let status = command.stdin(Stdio::piped()).spawn().and_then(ended);
     let why = match status {
         Ok(status) if status.success() => return Ok(()),
@@ -38,7 +38,7 @@ pub fn make(directory: &Path, address: &str) -> Result<(), Failure> {
     Err(Failure::Arguments(format!("--scheduler {address}: {why}\n\n{hint}")))
 }
 
-/// Waits for the end of Python, or ends it when the user asks to stop.
+/// Waits for the end of the Python process, or ends it when the user asks to stop.
 fn ended(mut child: Child) -> io::Result<ExitStatus> {
     loop {
         if let Some(status) = child.try_wait()? {

@@ -1,4 +1,4 @@
-//! What the runs of a campaign come to: the table of their statistics, and the same on the terminal.
+//! Results of a campaign: the table of statistics as a file, and on the terminal.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -12,23 +12,23 @@ use crate::failure::Failure;
 use crate::number::short;
 use crate::{files, say};
 
-/// What a campaign came to.
+/// Results of a campaign.
 pub struct Told {
-    /// How many runs there are.
+    /// Number of runs.
     pub runs: usize,
-    /// Their statistics.
+    /// Statistics of the metrics.
     pub statistics: Vec<Statistics>,
     /// Points of a sweep.
     pub points: Option<Points>,
-    /// How many of them failed, the first of them, and why.
+    /// Number of failed runs, number of the first failed run, and its error.
     pub failed: Option<(u64, u64, String)>,
-    /// The metrics of a run that is alone.
+    /// Metrics of a single run.
     pub only: Option<Metrics>,
-    /// Where the rows are.
+    /// Path of the rows.
     pub table: Option<PathBuf>,
 }
 
-/// Writes the table of the statistics.
+/// Writes the table of statistics.
 pub fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Failure> {
     let table = || -> Result<Vec<u8>, csv::Error> {
         let mut writer = csv::Writer::from_writer(Vec::new());
@@ -47,14 +47,14 @@ pub fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), Fa
     files::write_within(&[(path.to_owned(), bytes)])
 }
 
-/// Whether there are several runs, and every metric has one value in all of them.
+/// Returns true if there are several runs and every metric has the same value in all of them.
 pub fn are_alike(statistics: &[Statistics]) -> bool {
     let mut several = statistics.iter().filter(|s| s.runs + s.infinite > 1).peekable();
     several.peek().is_some() && several.all(|s| s.sd == 0.0 && s.infinite == 0)
 }
 
 impl Told {
-    /// Prints a sweep point by point, or the statistics of other campaigns.
+    /// Prints the points of a sweep, or the statistics of another campaign.
     pub fn say(&self) {
         if self.runs == 0 {
             return;
@@ -80,7 +80,7 @@ impl Told {
     }
 }
 
-/// How many runs meet a goal, by their number and the fraction that do.
+/// Formats the number of runs that meet a goal, given their fraction.
 pub fn met(runs: u64, fraction: f64) -> String {
     let met = (fraction * runs as f64).round() as u64;
     let (low, high) = wilson(met, runs);
@@ -88,7 +88,7 @@ pub fn met(runs: u64, fraction: f64) -> String {
     format!("{met} of {runs} met ({part} %, 95 % interval {low} to {high})")
 }
 
-/// A verdict in a word.
+/// Returns a verdict as one word.
 pub fn verdict(is_met: bool) -> &'static str {
     if is_met { "met" } else { "missed" }
 }

@@ -1,10 +1,10 @@
-//! The figure of a relay's damping over the frequency of a mode: what is left of its effect, how much gain and what limit
-//! cycle the delay leaves.
+//! Figure of a relay's damping over the frequency of a mode: the remaining part of its effect, the gain, and the limit
+//! cycle that the delay causes.
 
 use flexsc_core::analysis::damping::DampedMode;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-/// Values that lie no further apart are shown in proportion.
+/// Values whose ratio is at most this have a linear axis.
 const NEAR: f64 = 10.0;
 
 fn scaled(name: &str, unit: &'static str, values: Vec<f64>) -> FigureAxis {
@@ -17,7 +17,7 @@ fn scaled(name: &str, unit: &'static str, values: Vec<f64>) -> FigureAxis {
     }
 }
 
-/// The figure; `limit` is the frequency (rad/s) above which the relay drives the modes.
+/// Returns the figure; `limit` is the frequency (rad/s) above which the relay excites the modes.
 pub fn figure(rows: &[DampedMode], limit: f64) -> Figure {
     let (low, high) = (rows.first(), rows.last());
     let range = low.map_or(0.0, |row| row.frequency_rad_s)..high.map_or(1.0, |row| row.frequency_rad_s);

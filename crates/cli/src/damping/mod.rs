@@ -1,4 +1,4 @@
-//! `flexsc damping`: what a relay of thrusters does to elastic modes, over their natural frequency.
+//! `flexsc damping`: the effect of a relay of thrusters on elastic modes, over their natural frequency.
 
 mod figures;
 
@@ -53,17 +53,17 @@ pub struct Args {
     json: bool,
 }
 
-/// What a relay does.
+/// Effect of a relay of thrusters on elastic modes.
 pub struct Effect {
     timing: PulseTiming,
-    /// The frequency above which it drives the modes (rad/s).
+    /// Frequency above which the relay excites the modes (rad/s).
     limit: f64,
     rows: Vec<DampedMode>,
     units: Units,
 }
 
 impl Args {
-    /// What the relay does.
+    /// Computes the effect of the relay on the modes.
     pub fn results(&self) -> Result<Effect, Failure> {
         let timing = PulseTiming {
             period: self.period,
@@ -100,7 +100,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 impl Results for Effect {
     fn json(&self) -> Vec<Json> {
-        // What is infinite is null.
+        // Infinite values are null in JSON.
         vec![json!({"frequency_limit_rad_s": self.limit, "rows": self.rows})]
     }
 

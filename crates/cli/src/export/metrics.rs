@@ -1,4 +1,4 @@
-//! The topic `/metrics` as a table for people: a row for each metric, with its unit and meaning.
+//! Export of the topic `/metrics` as a readable table: a row for each metric, with its unit and meaning.
 
 use flexsc_core::metrics;
 use flexsc_core::record::{Column, Columns};
@@ -6,10 +6,10 @@ use serde_json::{Value as Json, json};
 
 use super::Format;
 
-/// The topic.
+/// Name of the topic.
 pub const TOPIC: &str = "/metrics";
 
-/// A metric, or one element of it.
+/// Row of the table: a metric, or one element of it.
 struct Row<'a> {
     name: String,
     value: Json,
@@ -17,7 +17,7 @@ struct Row<'a> {
     meaning: &'static str,
 }
 
-/// The table; none if the topic is not as it should be.
+/// Returns the table; `None` if the topic has an unexpected structure.
 pub fn table(columns: &Columns, format: Format) -> Option<Result<Vec<u8>, csv::Error>> {
     let rows = rows(columns)?;
     Some(match format {
@@ -39,7 +39,7 @@ fn rows(columns: &Columns) -> Option<Vec<Row<'_>>> {
         let first = names[..place].iter().rposition(|before| before != name).map_or(0, |before| before + 1);
         let is_list = next_is_same || first < place;
         let (value, word) = (*values.get(place)?, words.get(place)?);
-        // Of a list, the first element tells what it is.
+        // In a list, the first element has the description.
         let meaning = metrics::ALL.iter().find(|meaning| meaning.name == name.as_str() && first == place);
         Some(Row {
             name: if is_list { format!("{name}[{}]", place - first) } else { name.clone() },
@@ -60,7 +60,7 @@ fn csv(rows: &[Row<'_>]) -> Result<Vec<u8>, csv::Error> {
     Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
 }
 
-/// A value as it is read: whole numbers without a point, and an empty cell for no number.
+/// Formats a value: integers without a decimal point, and a missing number as an empty cell.
 fn text(value: &Json) -> String {
     match value.as_f64() {
         Some(number) if number != 0.0 && !(1e-4..1e15).contains(&number.abs()) => format!("{number:e}"),

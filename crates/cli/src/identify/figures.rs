@@ -1,15 +1,16 @@
-//! The figure of an adaptive observer's trials: how many runs have found their modes by when, a panel for each set.
+//! Figure of an adaptive observer's trials: the fraction of runs that have identified their modes over time, a panel
+//! for each set.
 
 use flexsc_core::analysis::identification::IdentificationRow;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, RGBColor, colour, steps};
 
 use super::Set;
 
-/// Colours of the parts by which the frequencies are off at the start, in turn.
+/// Colours of the relative frequency errors at the start, cyclic.
 const COLOURS: [RGBColor; 5] =
     [colour::BLUE, colour::GREEN, colour::ORANGE, colour::VERMILLION, colour::BLACK];
 
-/// The figure; a run lasts `whole` seconds.
+/// Returns the figure; a run lasts `whole` seconds.
 pub fn figure(sets: &[Set], whole: f64) -> Figure {
     let x = FigureAxis::exact("time (s)", "", 0.0..whole);
     let panel = |set: &Set| {

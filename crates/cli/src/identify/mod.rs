@@ -1,4 +1,4 @@
-//! `flexsc identify`: how often and how fast an adaptive observer finds elastic modes.
+//! `flexsc identify`: success rate and speed of an adaptive observer's identification of elastic modes.
 
 mod figures;
 
@@ -19,7 +19,7 @@ use crate::number::{fixed, or_none};
 use crate::results::{Results, show};
 use crate::{progress, say};
 
-/// The sets of the study behind \[Timakov14\]'s scenarios, in hertz, and the rate at which each is identified.
+/// Default sets: those of the study behind \[Timakov14\]'s scenarios, in hertz, each with its identification rate.
 const SETS: [(&[(f64, f64)], f64); 6] = [
     (&[(0.2476, 2.89)], 0.02),
     (&[(0.2476, 2.89), (0.6, 3.0)], 0.02),
@@ -67,7 +67,7 @@ pub struct Args {
 #[derive(Clone, Debug)]
 struct Modes(Vec<(f64, f64)>);
 
-/// What was found of a set of modes, from each start.
+/// Results for a set of modes, with a row for each initial error.
 struct Set {
     /// Frequency (rad/s) and influence of each mode.
     modes: Vec<(f64, f64)>,
@@ -75,21 +75,21 @@ struct Set {
 }
 
 impl Set {
-    /// The frequencies in hertz.
+    /// Returns the frequencies in hertz as text.
     fn hertz(&self) -> String {
         let names: Vec<String> = self.modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
         names.join(" + ")
     }
 }
 
-/// What was found of all sets.
+/// Results for all sets.
 pub struct Identified {
     sets: Vec<Set>,
-    /// Runs of a row, and how long each was (s).
+    /// Number of runs in a row, and their duration (s).
     runs: u64,
-    /// See `runs`.
+    /// Duration of each run (s).
     whole: f64,
-    /// The part by which the influences were off.
+    /// Relative error of the influences.
     influence_off: f64,
 }
 
@@ -107,7 +107,7 @@ impl FromStr for Modes {
 }
 
 impl Args {
-    /// What the observer finds.
+    /// Runs the trials of the observer.
     pub fn results(&self) -> Result<Identified, Failure> {
         let shipped =
             SETS.iter().map(|(modes, rate)| (modes.iter().map(|(f, mu)| (TAU * f, *mu)).collect(), *rate));

@@ -1,4 +1,4 @@
-//! A client of a live run: its connection, on a thread of its own.
+//! Connection of a client of a live run, on a thread of its own.
 
 use std::collections::VecDeque;
 use std::net::TcpStream;
@@ -17,10 +17,10 @@ use super::protocol::SUBPROTOCOLS;
 use super::wire::{Wire, is_silence};
 
 const SUBPROTOCOL: &str = "sec-websocket-protocol";
-/// How long a client may take for its request, and to close.
+/// Time limit for a client's request, and for its closing handshake.
 const GREETING: Duration = Duration::from_secs(5);
 const FAREWELL: Duration = Duration::from_secs(1);
-/// Clients only ask: no message of theirs is larger (bytes).
+/// Largest message of a client (bytes): clients send only requests.
 const LARGEST: usize = 64 << 10;
 
 /// Accepts a client, and returns its connection and its seat.
@@ -35,7 +35,7 @@ pub fn greet(hub: &Hub, gate: &Gate, stream: TcpStream) -> Option<(WebSocket<Wir
     Some((socket, seat?))
 }
 
-/// Agrees with a client on the protocol, if it may connect and there is a seat.
+/// Agrees with a client on the protocol if it may connect and a seat is free.
 #[expect(clippy::result_large_err, reason = "the signature is the library's")]
 fn agree(
     hub: &Hub,
@@ -71,10 +71,10 @@ fn agree(
     Ok(response)
 }
 
-/// Serves a client until it goes or is sent away.
+/// Serves a client until it disconnects or is disconnected.
 pub fn serve(hub: &Hub, mut socket: WebSocket<Wire>) {
     let id = hub.join();
-    // A connection that breaks is a client that has gone.
+    // A broken connection is a client that has disconnected.
     let _ = converse(hub, id, &mut socket);
     hub.leave(id);
 }
@@ -90,7 +90,7 @@ fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Erro
         match send(socket, &mut frames) {
             Ok(()) => socket.get_mut().settle(),
             Err(Error::Io(error)) if is_silence(&error) => {
-                // Who does not take what there is, is not listened to: it cannot ask for ever more.
+                // A client that does not read what it was sent may not send requests, which would grow without limit.
                 socket.get_mut().wait()?;
                 continue;
             }
@@ -111,18 +111,18 @@ fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Erro
     }
 }
 
-/// Sends frames; those that are left wait for their turn.
+/// Sends frames; frames that were not sent stay in the queue.
 fn send(socket: &mut WebSocket<Wire>, frames: &mut VecDeque<Frame>) -> Result<(), Error> {
-    // First what the connection took over before: it would take over ever more, without a limit.
+    // Flushed first, since the connection's own buffer would grow without limit.
     socket.flush()?;
-    // A frame is taken over even where the connection has no room for it.
+    // A frame is buffered even if the connection cannot send it now.
     while let Some(frame) = frames.pop_front() {
         socket.write(frame)?;
     }
     socket.flush()
 }
 
-/// Closes the connection, and waits for the client: a connection that is cut while something is on its way may lose it.
+/// Closes the connection and waits for the client, since a connection that is cut may lose data in transit.
 fn part(socket: &mut WebSocket<Wire>, why: Option<CloseFrame>) -> Result<(), Error> {
     let began = WallInstant::now();
     let silent = |result: Result<(), Error>| match result {
@@ -151,7 +151,7 @@ mod tests {
         let mut wire = Wire::new(listener.accept().expect("a client").0, GREETING).expect("set");
         wire.greeted().expect("set");
         let mut socket = WebSocket::from_raw_socket(wire, Role::Server, None);
-        // More than the system holds between the two.
+        // More data than the system buffers between server and client.
         let mut frames: VecDeque<_> = (0..256).map(|_| Frame::binary(vec![0; 1 << 16])).collect();
         let is_full = |sent: Result<(), Error>| matches!(sent, Err(Error::Io(error)) if is_silence(&error));
         assert!(is_full(send(&mut socket, &mut frames)));

@@ -1,4 +1,4 @@
-//! The clock of a live run: how long simulated time has to wait for the wall's clock.
+//! Clock of a live run: it synchronises simulated time with real time.
 
 use std::fmt;
 use std::str::FromStr;
@@ -6,12 +6,12 @@ use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::time::{Instant, Span};
 
-/// How often a held run looks whether it may go on.
+/// Polling period of a held run.
 pub const LOOK: Duration = Duration::from_millis(50);
-/// A run that cannot keep up with its speed does not catch up more than this (s of the wall's clock).
+/// Largest lag (s of real time) that a run which was too slow for its speed catches up with.
 const LARGEST_LAG: f64 = 0.1;
 
-/// How many times faster than real time; infinite without any waiting.
+/// Ratio of simulated time to real time; infinite for a run without any waiting.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Speed(f64);
 
@@ -19,7 +19,7 @@ impl Speed {
     /// Real time.
     pub const REAL: Self = Self(1.0);
 
-    /// A factor.
+    /// Returns the speed of a given factor.
     pub fn factor(factor: f64) -> Result<Self, String> {
         if factor > 0.0 && factor.is_finite() {
             Ok(Self(factor))
@@ -28,12 +28,12 @@ impl Speed {
         }
     }
 
-    /// The factor, if it is finite.
+    /// Returns the factor if it is finite.
     pub fn finite(self) -> Option<f64> {
         self.0.is_finite().then_some(self.0)
     }
 
-    /// So many times this speed.
+    /// Returns this speed multiplied by a factor.
     pub fn times(self, factor: f64) -> Self {
         Self::factor(self.0 * factor).unwrap_or(self)
     }
@@ -61,26 +61,26 @@ impl fmt::Display for Speed {
     }
 }
 
-/// When simulated time may go on.
+/// Clock that decides when simulated time may advance.
 #[derive(Clone, Debug)]
 pub struct Clock {
     begun: bool,
     paused: bool,
     speed: Speed,
-    /// The period of the log, which is what a step goes on by.
+    /// Period of the log, by which a single step advances.
     period: Span,
-    /// The latest instant that was let through, and the first period of the log after it.
+    /// Latest instant that the clock has released, and the first period of the log after it.
     shown: Instant,
     next: Instant,
-    /// How far a paused run may go on.
+    /// Instant up to which a paused run may advance.
     until: Instant,
-    /// Where simulated time would be (s) at an instant of the wall's clock, unless it is held.
+    /// Simulated time (s) that corresponds to the instant `wall` of real time, unless the run is held.
     position: f64,
     wall: WallInstant,
 }
 
 impl Clock {
-    /// A clock that has yet to begin.
+    /// Returns a clock that has not started.
     pub fn new(speed: Speed, period: Span, wall: WallInstant) -> Self {
         Self {
             begun: false,
@@ -95,7 +95,7 @@ impl Clock {
         }
     }
 
-    /// Lets the run begin, if it has not.
+    /// Starts the clock if it has not started.
     pub fn begin(&mut self, wall: WallInstant) {
         if !self.begun {
             self.begun = true;
@@ -103,7 +103,7 @@ impl Clock {
         }
     }
 
-    /// How long to wait before what happens at an instant; no time at all lets it through.
+    /// Returns the time to wait before the instant `at`, or `None` and releases it.
     pub fn wait(&mut self, at: Instant, wall: WallInstant) -> Option<Duration> {
         if !self.begun || (self.paused && at > self.until) {
             return Some(LOOK);
@@ -123,22 +123,22 @@ impl Clock {
         None
     }
 
-    /// Whether the run is paused.
+    /// Returns true if the run is paused.
     pub fn paused(&self) -> bool {
         self.paused
     }
 
-    /// The speed at which the run goes on when it is not paused.
+    /// Returns the speed of the run when it is not paused.
     pub fn speed(&self) -> Speed {
         self.speed
     }
 
-    /// Where the run is, or is held.
+    /// Returns the instant that the run has reached, or at which it is paused.
     pub fn at(&self) -> Instant {
         if self.paused { self.until } else { self.shown }
     }
 
-    /// Pauses.
+    /// Pauses the run.
     pub fn pause(&mut self) {
         if !self.paused {
             self.paused = true;
@@ -146,7 +146,7 @@ impl Clock {
         }
     }
 
-    /// Goes on.
+    /// Resumes the run.
     pub fn resume(&mut self, wall: WallInstant) {
         if self.paused {
             self.paused = false;
@@ -154,13 +154,13 @@ impl Clock {
         }
     }
 
-    /// Goes on to the next period of the log, and pauses there.
+    /// Advances to the next period of the log, and pauses there.
     pub fn step(&mut self) {
         self.pause();
         self.until = if self.until > self.shown { self.until + self.period } else { self.next };
     }
 
-    /// Goes on at another speed.
+    /// Sets the speed.
     pub fn set_speed(&mut self, speed: Speed, wall: WallInstant) {
         if self.speed.finite().is_some() {
             self.advance(wall);
@@ -185,12 +185,12 @@ impl Clock {
 mod tests {
     use super::*;
 
-    /// An instant of simulated time.
+    /// Returns an instant of simulated time.
     fn at(seconds: f64) -> Instant {
         Instant::START + Span::from_seconds(seconds)
     }
 
-    /// A clock that has begun, at a speed, with a period of 0.1 s.
+    /// Returns a started clock of the given speed, with a period of 0.1 s.
     fn clock(speed: &str) -> (Clock, WallInstant) {
         let wall = WallInstant::now();
         let speed = speed.parse().expect("a speed");
@@ -201,7 +201,7 @@ mod tests {
         (clock, wall)
     }
 
-    /// Milliseconds to wait, rounded.
+    /// Returns the milliseconds to wait, rounded.
     fn ms(clock: &mut Clock, seconds: f64, wall: WallInstant) -> Option<u64> {
         clock.wait(at(seconds), wall).map(|time| (time.as_secs_f64() * 1e3).round() as u64)
     }

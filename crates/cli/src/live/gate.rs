@@ -1,7 +1,7 @@
-//! Who may connect: pages of viewers that are known or named, and programs that are no pages.
+//! Access control of a live run: pages of known or allowed viewers may connect, and programs other than browsers.
 //!
-//! Any page that a browser shows may try to connect to this machine, and the browser sends its origin. A page whose
-//! name was made to lead here (DNS rebinding) is known by the host that it asks for.
+//! Any page in a browser may try to connect to this machine, and the browser sends the page's origin. A page whose name
+//! was made to resolve to this machine (DNS rebinding) is detected by the host that it requests.
 
 use std::collections::BTreeSet;
 use std::io::Write;
@@ -20,26 +20,26 @@ const KNOWN: [&str; 4] = [
     "https://lichtblick-suite.github.io",
     "file://",
 ];
-/// So many refused origins are printed on the terminal.
+/// Largest number of refused origins that are printed on the terminal.
 const MOST_TOLD: usize = 8;
 
-/// Who may connect.
+/// Access control by a request's host and origin.
 pub struct Gate {
-    /// The name at which the server serves.
+    /// Host name or address of the server.
     own: String,
-    /// The origins that the user lets in.
+    /// Additional origins that the user allows.
     allowed: Vec<String>,
-    /// The refused origins that were printed.
+    /// Refused origins that have been printed.
     told: Mutex<BTreeSet<String>>,
 }
 
 impl Gate {
-    /// A server at this host and port, for these origins beside those that are known.
+    /// Returns the access control of a server at this address; `allowed` are origins in addition to the known ones.
     pub fn new(address: &str, allowed: &[String]) -> Self {
         Self { own: host(address).to_owned(), allowed: allowed.to_vec(), told: Mutex::default() }
     }
 
-    /// Whether a request may connect, or why not.
+    /// Returns an error with the reason if a request must not connect.
     pub fn admit(&self, headers: &HeaderMap) -> Result<(), String> {
         let only = |name| {
             let mut values = headers.get_all(name).iter();
@@ -59,7 +59,7 @@ impl Gate {
         }
     }
 
-    /// Whether a host can only be this one, and not a name that others could point here.
+    /// Returns true if a host always denotes this machine, and is not a name that others could redirect to it.
     fn is_own(&self, host: &str) -> bool {
         address(host).is_some() || is_localhost(host) || host.eq_ignore_ascii_case(&self.own)
     }
@@ -84,7 +84,7 @@ impl Gate {
     }
 }
 
-/// An origin that a user gives, as browsers write it.
+/// Normalises an origin that the user gives to the form that browsers send.
 pub fn origin(text: &str) -> Result<String, String> {
     let lower = text.trim_end_matches('/').to_ascii_lowercase();
     let named = lower.split_once("://").filter(|(scheme, host)| {
@@ -97,19 +97,19 @@ pub fn origin(text: &str) -> Result<String, String> {
     let Some((scheme, host)) = named else {
         return Err(format!("must be an origin such as https://viewer.example, got `{text}`"));
     };
-    // Browsers leave out the port that goes without saying.
+    // Browsers omit the default port.
     let usual = if scheme == "https" { ":443" } else { ":80" };
     let host = if scheme.starts_with("http") { host.strip_suffix(usual).unwrap_or(host) } else { host };
     Ok(format!("{scheme}://{host}"))
 }
 
-/// A host without its port.
+/// Returns the host of an authority without its port.
 fn host(authority: &str) -> &str {
     let end = authority.rfind(']').map_or(0, |end| end + 1);
     authority[end..].rfind(':').map_or(authority, |colon| &authority[..end + colon])
 }
 
-/// The address that a host is, if it is no name.
+/// Returns the IP address of a host, or `None` for a name.
 fn address(host: &str) -> Option<IpAddr> {
     let inner = host.strip_prefix('[').and_then(|host| host.strip_suffix(']'));
     inner.map_or_else(|| host.parse().ok(), |host| host.parse().ok().map(|v6: Ipv6Addr| v6.into()))

@@ -1,4 +1,4 @@
-//! Where the run and the clients of a live run meet.
+//! State shared by the run and the clients of a live run.
 
 use std::collections::VecDeque;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -14,10 +14,10 @@ use super::protocol::{self, Level, Request};
 use super::state::State;
 use crate::stop;
 
-/// There are at most so many clients.
+/// Largest number of clients.
 pub const MOST_CLIENTS: usize = 16;
 
-/// What the run and the clients share.
+/// State shared by the run and its clients.
 pub struct Hub {
     greeting: Frame,
     state: Mutex<State>,
@@ -25,7 +25,7 @@ pub struct Hub {
     seats: Arc<AtomicUsize>,
 }
 
-/// One of the places for clients: free again when it is dropped.
+/// One of the places for clients, which is free again when this is dropped.
 pub struct Seat(Arc<AtomicUsize>);
 
 impl Seat {
@@ -43,20 +43,20 @@ impl Drop for Seat {
 }
 
 impl Hub {
-    /// A hub for a run of this name.
+    /// Creates a hub for a run of this name.
     pub fn new(name: &str, state: State) -> Self {
         let session = format!("{name}-{}", std::process::id());
         let greeting = protocol::server_info(name, &session);
         Self { greeting, state: Mutex::new(state), changed: Condvar::new(), seats: Arc::default() }
     }
 
-    /// A place for a client, if there is one.
+    /// Returns a place for a client if one is free.
     pub fn seat(&self) -> Option<Seat> {
         Seat::of(&self.seats, MOST_CLIENTS)
     }
 
     fn lock(&self) -> MutexGuard<'_, State> {
-        // What is shared is whole after every statement.
+        // The state is consistent after every statement, so that a poisoned lock can be used.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
@@ -65,7 +65,7 @@ impl Hub {
         woken.unwrap_or_else(PoisonError::into_inner).0
     }
 
-    /// Holds the run until its clock lets an instant through.
+    /// Blocks the run until its clock releases an instant.
     pub fn pace(&self, at: Instant) -> Result<(), RecordError> {
         let mut state = self.lock();
         while let Some(time) = state.clock.wait(at, WallInstant::now()) {
@@ -77,7 +77,7 @@ impl Hub {
         Ok(())
     }
 
-    /// Changes the clock, notifies the clients who follow it, and returns it.
+    /// Changes the clock, notifies the clients that subscribed to it, and returns it.
     pub fn change(&self, change: impl FnOnce(&mut Clock)) -> Clock {
         let mut state = self.lock();
         state.change(change);
@@ -85,18 +85,18 @@ impl Hub {
         state.clock.clone()
     }
 
-    /// A client has come; its number.
+    /// Registers a client, and returns its number.
     pub fn join(&self) -> u64 {
         self.lock().join(self.greeting.clone())
     }
 
-    /// A client has gone.
+    /// Removes a client.
     pub fn leave(&self, id: u64) {
         self.lock().clients.remove(&id);
         self.changed.notify_all();
     }
 
-    /// The next frames that a client is to be sent, and whether they are the last; nothing for one that is sent away.
+    /// Returns the next frames for a client, and true if they are the last; `None` if the client is to be disconnected.
     pub fn frames(&self, id: u64) -> Option<(VecDeque<Frame>, bool)> {
         let mut state = self.lock();
         let closing = state.closing;
@@ -107,7 +107,7 @@ impl Hub {
         Some((frames, last))
     }
 
-    /// Does what a client asks.
+    /// Handles a request of a client.
     pub fn answer(&self, id: u64, frame: &Frame) {
         let mut state = self.lock();
         match Request::read(frame) {
@@ -117,27 +117,27 @@ impl Hub {
         self.changed.notify_all();
     }
 
-    /// The run has ended.
+    /// Marks the run as ended.
     pub fn end(&self) {
         self.lock().ended = true;
     }
 
-    /// Whether the run has ended.
+    /// Returns true if the run has ended.
     pub fn ended(&self) -> bool {
         self.lock().ended
     }
 
-    /// How many clients there are.
+    /// Returns the number of clients.
     pub fn clients(&self) -> usize {
         self.lock().clients.len()
     }
 
-    /// Whether the clients are being sent away.
+    /// Returns true if the clients are being disconnected.
     pub fn closing(&self) -> bool {
         self.lock().closing
     }
 
-    /// Sends the clients what is left, then away, and waits some time for them to go.
+    /// Sends the clients the remaining frames, disconnects them, and waits for at most `at_most`.
     pub fn close(&self, at_most: Duration) {
         let began = WallInstant::now();
         let mut state = self.lock();
@@ -148,7 +148,7 @@ impl Hub {
     }
 }
 
-/// Gives the messages of the run to all clients who subscribed to them. None is lost: the run waits for the slowest.
+/// Record that sends a run's messages to all subscribed clients, without loss: the run waits for the slowest client.
 pub struct Publisher(pub Arc<Hub>);
 
 impl Messages for Publisher {

@@ -1,4 +1,4 @@
-//! What the user types while a run is live: a line is a command.
+//! Keyboard control of a live run: each line is a command.
 
 use std::io::{self, BufRead, IsTerminal, Write};
 use std::sync::Arc;
@@ -9,10 +9,10 @@ use super::clock::{Clock, Speed};
 use super::hub::Hub;
 use crate::{say, stop};
 
-/// What can be typed.
+/// Description of the commands.
 const HELP: &str = "Enter pauses and resumes, `.` steps, `+` and `-` or a factor set the speed, `q` stops";
 
-/// A command.
+/// Command of the user.
 #[derive(Debug, PartialEq)]
 enum Key {
     Toggle,
@@ -50,13 +50,13 @@ impl Key {
     }
 }
 
-/// Listens to the terminal, if there is one.
+/// Reads commands from the terminal, if there is one.
 pub fn listen(hub: Arc<Hub>) {
     if !io::stdin().is_terminal() {
         return;
     }
     say!("  keys           {HELP}");
-    // The thread waits for a line that may never come, and ends with the program.
+    // The thread waits for a line that may never be typed, and ends with the program.
     thread::spawn(move || {
         for line in io::stdin().lock().lines().map_while(Result::ok) {
             match Key::of(&line) {

@@ -23,11 +23,11 @@ pub struct Args {
     allow_origin: Vec<String>,
 }
 
-/// What no run is.
+/// Placeholder for a live run, which cannot exist in this build.
 pub enum Live {}
 
 impl Args {
-    /// An error if a live run is asked for.
+    /// Returns an error if a live run is requested.
     pub fn serve(&self, _: &CampaignRun) -> Result<Option<Live>, Failure> {
         match self.live {
             None => Ok(None),

@@ -1,7 +1,7 @@
 //! `flexsc simulate --live`: a run in real time for viewers that speak the Foxglove WebSocket protocol.
 //!
-//! The run is a record like any other: it is held until its clock lets an instant through, and its messages are those of
-//! a log, byte for byte.
+//! A live run is recorded like any other: the record blocks until the clock releases an instant, and the messages are
+//! those of a log, byte for byte.
 
 mod client;
 mod clock;
@@ -34,10 +34,10 @@ use state::State;
 use crate::failure::Failure;
 use crate::{say, stop};
 
-/// How long clients may take for what is left when the server closes.
+/// Time limit for clients to receive the remaining messages when the server closes.
 const FLUSH: Duration = Duration::from_secs(5);
 
-/// So many connections may be open that have sent no request yet.
+/// Largest number of open connections that have sent no request yet.
 const MOST_SILENT: usize = 64;
 
 #[derive(clap::Args)]
@@ -75,14 +75,14 @@ fn address(text: &str) -> Result<String, String> {
     }
 }
 
-/// A run that viewers follow.
+/// Live run with its server.
 pub struct Live {
     hub: Arc<Hub>,
     messages: Option<Encode<Publisher>>,
 }
 
 impl Args {
-    /// Begins to serve, if asked to.
+    /// Starts the server if a live run is requested.
     pub fn serve(&self, run: &CampaignRun) -> Result<Option<Live>, Failure> {
         let Some(address) = &self.live else { return Ok(None) };
         let failed = |source| Failure::Serve { address: address.clone(), source };
@@ -116,10 +116,10 @@ impl Args {
 }
 
 impl Live {
-    /// Sends the metrics, and continues to serve as long as there are viewers.
+    /// Sends the metrics, and continues to serve while viewers are connected.
     pub fn finish(mut self, metrics: &Metrics) {
         if let Some(messages) = self.messages.take() {
-            // Viewers take what they are given.
+            // Messages to viewers cannot fail.
             let _ = messages.finish(metrics, RunEnd::Complete);
         }
         self.hub.end();
@@ -155,8 +155,8 @@ impl Record for Live {
     }
 }
 
-/// Takes in clients, each on a thread of its own, until the hub closes. None waits for another one: where too many connections
-/// have sent no request yet, the oldest of them is closed.
+/// Accepts clients, each on a thread of its own, until the hub closes. Clients do not wait for each other: of too many
+/// connections without a request, the oldest is closed.
 fn accept(hub: &Arc<Hub>, gate: &Arc<Gate>, listener: &TcpListener) {
     let mut silent: VecDeque<(Weak<()>, TcpStream)> = VecDeque::new();
     while !hub.closing() {
@@ -168,7 +168,7 @@ fn accept(hub: &Arc<Hub>, gate: &Arc<Gate>, listener: &TcpListener) {
         if silent.len() >= MOST_SILENT
             && let Some((_, oldest)) = silent.pop_front()
         {
-            // Its thread ends by that, unless it has ended.
+            // The shutdown ends the connection's thread, unless it has ended.
             let _ = oldest.shutdown(Shutdown::Both);
         }
         let Ok(other) = stream.try_clone() else { continue };

@@ -1,36 +1,36 @@
-//! What a client has yet to be sent, and how much of it there may be.
+//! Queue of the frames for a client, with limits of its size.
 
 use std::collections::VecDeque;
 
-/// The run waits for a client that has so much yet to take (bytes).
+/// Size of the queue (bytes) above which the run waits for the client.
 const FULL: usize = 4 << 20;
-/// What is no message of the run does not wait: a client with so much (bytes) is sent away.
+/// Size (bytes) above which the client is disconnected: frames that are not messages of the run do not wait.
 const OVERFULL: usize = 2 * FULL;
-/// So much is sent at a time (bytes).
+/// Size of a batch of frames (bytes).
 const BATCH: usize = 256 << 10;
-/// What a frame costs beside its content (bytes).
+/// Overhead of a frame in addition to its content (bytes).
 const FRAME: usize = 64;
 
-/// A frame of the protocol.
+/// Frame of the protocol.
 pub type Frame = tungstenite::Message;
 
-/// Frames in their order.
+/// Queue of frames for a client.
 #[derive(Default)]
 pub struct Outbox {
     frames: VecDeque<Frame>,
     bytes: usize,
-    /// Whether it was overfull.
+    /// True if the queue has exceeded [`OVERFULL`].
     overflowed: bool,
 }
 
 impl Outbox {
-    /// Adds a frame.
+    /// Appends a frame.
     pub fn push(&mut self, frame: Frame) {
         if self.overflowed {
             return;
         }
         self.bytes += frame.len() + FRAME;
-        // A single frame may be as large as it is.
+        // A single frame may have any size.
         self.overflowed = self.bytes > OVERFULL && !self.frames.is_empty();
         self.frames.push_back(frame);
         if self.overflowed {
@@ -38,7 +38,7 @@ impl Outbox {
         }
     }
 
-    /// The first frames; nothing if it was overfull.
+    /// Removes and returns the next batch of frames; `None` after an overflow.
     pub fn take(&mut self) -> Option<VecDeque<Frame>> {
         let (mut count, mut bytes) = (0, 0);
         while let Some(frame) = self.frames.get(count).filter(|_| bytes < BATCH) {
@@ -50,12 +50,12 @@ impl Outbox {
         (!self.overflowed).then(|| std::mem::replace(&mut self.frames, rest))
     }
 
-    /// Whether the run has to wait.
+    /// Returns true if the run has to wait.
     pub fn is_full(&self) -> bool {
         self.bytes >= FULL
     }
 
-    /// Whether there is nothing.
+    /// Returns true if the queue is empty.
     pub fn is_empty(&self) -> bool {
         self.frames.is_empty()
     }

@@ -1,4 +1,4 @@
-//! The words of the Foxglove WebSocket protocol, version 1: what the server sends and what clients ask.
+//! Messages of the Foxglove WebSocket protocol, version 1: those of the server, and the requests of clients.
 
 use data_encoding::BASE64;
 use flexsc_core::record::row::Topic;
@@ -7,40 +7,40 @@ use tungstenite::Message;
 
 use super::clock::Clock;
 
-/// The names by which clients ask for this protocol: the SDK's, and the one before it.
+/// Names of the subprotocol: the current one of the SDK, and the former one.
 pub const SUBPROTOCOLS: [&str; 2] = ["foxglove.sdk.v1", "foxglove.websocket.v1"];
-/// The services; their numbers are their places.
+/// Names of the services, whose numbers are their indices.
 const SERVICES: [&str; 3] = ["/pause", "/resume", "/step"];
-/// The parameters.
+/// Names of the parameters.
 pub const PARAMETERS: [&str; 2] = ["/paused", "/speed"];
 
-/// A request names at most so many things.
+/// Largest number of items in a request.
 const MOST_NAMED: usize = 256;
-/// So many characters of a message that is not understood are repeated.
+/// Largest number of characters that are quoted from a message that is not understood.
 const MOST_TOLD: usize = 200;
 
-/// What a client asks.
+/// Request of a client.
 #[derive(Debug, PartialEq)]
 pub enum Request {
-    /// To subscribe to channels: the number of the subscription and that of the channel.
+    /// Subscription to channels: pairs of subscription number and channel number.
     Subscribe(Vec<(u32, u32)>),
-    /// To end these subscriptions.
+    /// End of these subscriptions.
     Unsubscribe(Vec<u32>),
-    /// The values of parameters, all if none is named.
+    /// Query of parameters, all if none is named.
     GetParameters(Vec<String>, Option<Json>),
-    /// To set parameters.
+    /// Change of parameters.
     SetParameters(Vec<(String, Json)>, Option<Json>),
-    /// To subscribe to changes of these parameters.
+    /// Subscription to changes of these parameters.
     Follow(Vec<String>),
-    /// To end that.
+    /// End of the subscription to changes of these parameters.
     Unfollow(Vec<String>),
-    /// A service: its number and that of the call.
+    /// Call of a service: number of the service and number of the call.
     Call(u32, u32),
-    /// What this server does not do.
+    /// Request that this server does not support.
     Other,
 }
 
-/// How a status is shown.
+/// Severity of a status message.
 #[derive(Copy, Clone)]
 pub enum Level {
     Warning = 1,
@@ -48,7 +48,7 @@ pub enum Level {
 }
 
 impl Request {
-    /// Reads what a client sent.
+    /// Parses a message of a client.
     pub fn read(message: &Message) -> Result<Self, String> {
         match message {
             Message::Text(text) => {
@@ -98,12 +98,12 @@ impl Request {
     }
 }
 
-/// The first four bytes as a number.
+/// Returns the first four bytes as a little-endian number.
 fn number(bytes: &[u8]) -> u32 {
     bytes.iter().take(4).rev().fold(0, |number, byte| number << 8 | u32::from(*byte))
 }
 
-/// What the server is and can do.
+/// Returns the message about the server and its capabilities.
 pub fn server_info(name: &str, session: &str) -> Message {
     text(&json!({
         "op": "serverInfo",
@@ -115,17 +115,17 @@ pub fn server_info(name: &str, session: &str) -> Message {
     }))
 }
 
-/// The number of a topic's channel.
+/// Returns the channel number of a topic.
 pub fn channel_of(topic: usize) -> u32 {
     topic as u32 + 1
 }
 
-/// The topic of a channel.
+/// Returns the topic of a channel.
 pub fn topic_of(channel: u32) -> Option<usize> {
     (channel as usize).checked_sub(1)
 }
 
-/// Channels that clients may subscribe to.
+/// Returns the message that advertises channels to clients.
 pub fn advertise<'a>(topics: impl Iterator<Item = (usize, &'a Topic)>) -> Message {
     let channel = |(index, topic): (usize, &Topic)| {
         json!({
@@ -140,7 +140,7 @@ pub fn advertise<'a>(topics: impl Iterator<Item = (usize, &'a Topic)>) -> Messag
     text(&json!({"op": "advertise", "channels": topics.map(channel).collect::<Vec<_>>()}))
 }
 
-/// The services.
+/// Returns the message that advertises the services.
 pub fn advertise_services() -> Message {
     let schema = |name: &str, properties: Json| {
         let schema = json!({"type": "object", "properties": properties});
@@ -168,12 +168,12 @@ pub fn advertise_services() -> Message {
     text(&json!({"op": "advertiseServices", "services": services}))
 }
 
-/// The name of a service.
+/// Returns the name of a service.
 pub fn service(number: u32) -> Option<&'static str> {
     SERVICES.get(number as usize).copied()
 }
 
-/// The answer of a service: what the clock does now.
+/// Returns the response of a service: the state of the clock.
 pub fn service_response(service: u32, call: u32, clock: &Clock) -> Message {
     let state = json!({"paused": clock.paused(), "time_s": clock.at().seconds()});
     let encoding = "json";
@@ -186,12 +186,12 @@ pub fn service_response(service: u32, call: u32, clock: &Clock) -> Message {
     Message::binary(bytes)
 }
 
-/// A service that failed.
+/// Returns the message about a failed service call.
 pub fn service_failure(service: u32, call: u32, why: &str) -> Message {
     text(&json!({"op": "serviceCallFailure", "serviceId": service, "callId": call, "message": why}))
 }
 
-/// A message of a subscription.
+/// Returns the message with data of a subscription.
 pub fn data(subscription: u32, time_ns: u64, data: &[u8]) -> Message {
     let mut bytes = Vec::with_capacity(13 + data.len());
     bytes.push(1);
@@ -201,17 +201,17 @@ pub fn data(subscription: u32, time_ns: u64, data: &[u8]) -> Message {
     Message::binary(bytes)
 }
 
-/// The time, which the messages after this one have.
+/// Returns the message with the time of the following messages.
 pub fn time(time_ns: u64) -> Message {
     let mut bytes = vec![2];
     bytes.extend(time_ns.to_le_bytes());
     Message::binary(bytes)
 }
 
-/// The values of parameters.
+/// Returns the message with the values of parameters.
 pub fn parameter_values(names: &[&str], id: Option<Json>, clock: &Clock) -> Message {
     let value = |name: &&str| match parameter(name, clock) {
-        // Without its type a whole number is an integer to a viewer.
+        // Viewers would read an integral value without a type as an integer.
         value if value.is_f64() => json!({"name": name, "type": "float64", "value": value}),
         value => json!({"name": name, "value": value}),
     };
@@ -232,7 +232,7 @@ fn parameter(name: &str, clock: &Clock) -> Json {
     }
 }
 
-/// A text that viewers show.
+/// Returns a status message that viewers show.
 pub fn status(level: Level, message: &str) -> Message {
     text(&json!({"op": "status", "level": level as u8, "message": message}))
 }

@@ -1,4 +1,4 @@
-//! What of a live run changes: its clock, its topics, and what each client has yet to be sent.
+//! Mutable state of a live run: its clock, its topics, and its clients.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::time::Instant as WallInstant;
@@ -10,50 +10,50 @@ use super::clock::{Clock, Speed};
 use super::outbox::{Frame, Outbox};
 use super::protocol::{self, Level, PARAMETERS, Request};
 
-/// Of the latest instant of a topic, so many messages are kept.
+/// Largest number of messages that are kept of a topic's latest instant.
 const MOST_LATEST: usize = 64;
-/// What is asked for after the end.
+/// Error of requests after the end of the run.
 const ENDED: &str = "the run has ended";
 
-/// What of a live run changes.
+/// Mutable state of a live run.
 pub struct State {
-    /// When the run may go on.
+    /// Clock of the run.
     pub clock: Clock,
-    /// The topics, in the order of [`TOPICS`].
+    /// Topics, in the order of [`TOPICS`].
     topics: Vec<Topic>,
-    /// The time that was sent last (ns).
+    /// Latest time that was sent (ns).
     time_ns: u64,
-    /// The clients by their numbers.
+    /// Clients by their numbers.
     pub clients: BTreeMap<u64, Client>,
-    /// How many clients there have been.
+    /// Number of clients that have joined since the start.
     joined: u64,
-    /// Whether the run has ended.
+    /// True if the run has ended.
     pub ended: bool,
-    /// Whether the clients are being sent away.
+    /// True if the clients are being disconnected.
     pub closing: bool,
 }
 
-/// A topic of the run.
+/// Topic of the run.
 #[derive(Clone, Default)]
 struct Topic {
     advertised: bool,
-    /// Its latest instant and the data of its messages then, for clients that come late.
+    /// Latest instant (ns) and the data of its messages, for clients that subscribe later.
     latest: (u64, Vec<Vec<u8>>),
 }
 
-/// A client.
+/// Client of the run.
 #[derive(Default)]
 pub struct Client {
-    /// What it has yet to be sent.
+    /// Queue of frames for the client.
     pub outbox: Outbox,
-    /// The subscription of each channel.
+    /// Subscription of each channel.
     subscriptions: BTreeMap<u32, u32>,
-    /// The parameters whose changes it subscribes to.
+    /// Parameters whose changes the client subscribes to.
     follows: BTreeSet<String>,
 }
 
 impl State {
-    /// The state of a run whose topics will be these, as indices into [`TOPICS`].
+    /// Returns the state of a run with the expected topics, as indices into [`TOPICS`].
     pub fn new(clock: Clock, topics: impl IntoIterator<Item = usize>) -> Self {
         let mut all = vec![Topic::default(); TOPICS.len()];
         for index in topics {
@@ -63,7 +63,7 @@ impl State {
         Self { clock, topics: all, time_ns: 0, clients, joined: 0, ended: false, closing: false }
     }
 
-    /// A client has come, to be greeted so; its number.
+    /// Registers a client and sends it the greeting; returns its number.
     pub fn join(&mut self, greeting: Frame) -> u64 {
         let advertised = self.topics.iter().enumerate().filter(|(_, topic)| topic.advertised);
         let frames = [
@@ -80,7 +80,7 @@ impl State {
         self.joined
     }
 
-    /// Changes the clock, and notifies the clients who follow it.
+    /// Changes the clock, and notifies the clients that subscribed to it.
     pub fn change(&mut self, change: impl FnOnce(&mut Clock)) {
         let before = (self.clock.paused(), self.clock.speed());
         change(&mut self.clock);
@@ -96,7 +96,7 @@ impl State {
         }
     }
 
-    /// Gives a message to the clients who subscribed to its topic.
+    /// Sends a message to the clients that subscribed to its topic.
     pub fn publish(&mut self, message: Message<'_>) {
         let Message { topic: index, time_ns, data } = message;
         let topic = &mut self.topics[index];
@@ -105,7 +105,7 @@ impl State {
             let frame = protocol::advertise([(index, &TOPICS[index])].into_iter());
             self.clients.values_mut().for_each(|client| client.outbox.push(frame.clone()));
         }
-        // Viewers give a message the time that they received last: it must come first.
+        // Viewers date a message by the time that they received last, which therefore precedes it.
         let moved = std::mem::replace(&mut self.time_ns, time_ns) != time_ns;
         for client in self.clients.values_mut() {
             if moved {
@@ -123,14 +123,14 @@ impl State {
         latest.push(data.to_owned());
     }
 
-    /// Sends a client something.
+    /// Queues a frame for a client.
     pub fn send(&mut self, id: u64, frame: Frame) {
         if let Some(client) = self.clients.get_mut(&id) {
             client.outbox.push(frame);
         }
     }
 
-    /// Does what a client asks.
+    /// Handles a request of a client.
     pub fn answer(&mut self, id: u64, request: Request) {
         match request {
             Request::Subscribe(pairs) => self.subscribe(id, &pairs),
@@ -197,7 +197,7 @@ impl State {
                 continue;
             }
             client.subscriptions.insert(channel, subscription);
-            // What was said before: parameters, and the state of a paused run.
+            // Values that were published before: parameters, and the state of a paused run.
             let (time_ns, latest) = &topic.latest;
             for data in latest {
                 client.outbox.push(protocol::data(subscription, *time_ns, data));

@@ -1,4 +1,4 @@
-//! The topics that a run will have. Viewers must know them before there is a message, or they would miss the first ones.
+//! Prediction of a run's topics: viewers must know them before the first message, or they would miss it.
 
 use std::collections::BTreeSet;
 
@@ -11,11 +11,11 @@ use flexsc_core::record::{Detail, Encode, Message, Messages, Provenance, RecordE
 use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, Simulation};
 
-/// The topics of a run as indices into [`TOPICS`]: those of its first instant, and those of what may happen later.
+/// Returns the expected topics of a run as indices into [`TOPICS`]: of its first instant, and of possible later events.
 pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
     let mut topics = Topics::default();
     if let Ok(mut messages) = Encode::new(&mut topics, from, Detail::Scene) {
-        // A run that fails at its start reports it when it is made.
+        // A run that fails at its start reports the error when it is made.
         let mut simulation = Simulation::new(&run.scenario, run.number);
         simulation.draw(&run.scenario);
         let _ = simulation.run_until(Instant::START, &mut messages);
@@ -25,7 +25,7 @@ pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
     topics.0
 }
 
-/// The topics of what happens within a run or at its end.
+/// Returns the topics of events within a run or at its end.
 fn later(scenario: &Scenario) -> Vec<&'static str> {
     let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
     let topics = [
@@ -47,7 +47,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
     topics.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect()
 }
 
-/// Notes the topics of messages.
+/// Record that collects the topics of messages.
 #[derive(Default)]
 struct Topics(BTreeSet<usize>);
 
@@ -78,7 +78,7 @@ mod tests {
             let from = Campaign::provenance(&run, Detail::Scene);
             let (expected, mut seen) = (expected(&run, &from), Topics::default());
             let mut messages = Encode::new(&mut seen, &from, Detail::Scene).expect("messages");
-            // Long enough for an arrival, the windows of an adaptation, and a wheel that passes through zero.
+            // Long enough for an arrival, the windows of an adaptation, and a zero crossing of a wheel.
             let grips = run.scenario.study.bearings.iter().any(Bearing::grips);
             let seconds = match (run.scenario.adaptation.is_some(), grips) {
                 (true, _) => 1100.0,

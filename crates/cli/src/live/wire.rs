@@ -1,50 +1,50 @@
-//! The connection to a client: what it takes is counted, and what it may keep us waiting for has an end.
+//! Connection to a client with time limits and a count of the bytes sent.
 
 use std::io::{self, ErrorKind, Read, Write};
 use std::net::TcpStream;
 use std::time::{Duration, Instant as WallInstant};
 
-/// How long to listen before looking whether there is something to send.
+/// Time limit of a read, after which the queue of frames is checked.
 const LISTEN: Duration = Duration::from_millis(5);
-/// How long to wait for a client to take something before looking at the time.
+/// Time limit of a write, after which the client's patience limit is checked.
 const PUSH: Duration = Duration::from_millis(50);
-/// A client for whom there is something has to take this much (bytes), or all, in this time.
+/// Least data (bytes) that a client must receive within [`PATIENCE`] while frames are waiting, unless it receives all.
 const LEAST: u64 = 64 << 10;
 const PATIENCE: Duration = Duration::from_secs(10);
 
-/// A connection.
+/// Connection to a client.
 pub struct Wire {
     stream: TcpStream,
-    /// When a greeting that is under way has to be over.
+    /// Deadline of the handshake, while it is in progress.
     until: Option<WallInstant>,
-    /// Bytes that were sent.
+    /// Number of bytes sent.
     sent: u64,
-    /// Since when something waits to be sent, and what was sent by then.
+    /// Time since when data is waiting, and the bytes sent by then.
     waiting: Option<(WallInstant, u64)>,
 }
 
 impl Wire {
-    /// A connection whose greeting may take so long.
+    /// Returns a connection whose handshake must end within `greeting`.
     pub fn new(stream: TcpStream, greeting: Duration) -> io::Result<Self> {
-        // The listener does not block, and on some systems what it accepts inherits that.
+        // The listener is non-blocking, which accepted sockets inherit on some systems.
         stream.set_nonblocking(false)?;
         stream.set_nodelay(true)?;
         Ok(Self { stream, until: Some(WallInstant::now() + greeting), sent: 0, waiting: None })
     }
 
-    /// The greeting is over.
+    /// Ends the handshake phase.
     pub fn greeted(&mut self) -> io::Result<()> {
         self.until = None;
         self.stream.set_read_timeout(Some(LISTEN))?;
         self.stream.set_write_timeout(Some(PUSH))
     }
 
-    /// The client has taken all.
+    /// Notes that the client has received all data.
     pub fn settle(&mut self) {
         self.waiting = None;
     }
 
-    /// The client has not taken all: an error if it has taken too little for too long.
+    /// Notes that data is waiting; returns an error if the client has received too little for too long.
     pub fn wait(&mut self) -> io::Result<()> {
         let now = WallInstant::now();
         let (since, sent) = *self.waiting.get_or_insert((now, self.sent));
@@ -56,7 +56,7 @@ impl Wire {
         Ok(())
     }
 
-    /// What is left of the time for a greeting.
+    /// Returns the time left for the handshake; an error if it is over.
     fn left(&self) -> io::Result<Option<Duration>> {
         let Some(until) = self.until else { return Ok(None) };
         let left = until.saturating_duration_since(WallInstant::now());
@@ -88,7 +88,7 @@ impl Write for Wire {
     }
 }
 
-/// Whether there was only nothing to read, or no room to write.
+/// Returns true if there was only no data to read, or no room to write.
 pub fn is_silence(error: &io::Error) -> bool {
     matches!(error.kind(), ErrorKind::WouldBlock | ErrorKind::TimedOut | ErrorKind::Interrupted)
 }

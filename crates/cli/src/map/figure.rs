@@ -1,4 +1,4 @@
-//! The map of the spectral radius over the frequency of the dominant mode and the period of the samples.
+//! Map of the spectral radius over the frequency of the dominant mode and the sampling period.
 
 use flexsc_core::analysis::sampled_loop::MapCell;
 use flexsc_figure::palette::between;
@@ -8,9 +8,9 @@ use flexsc_figure::{
 
 use crate::plot::readable;
 
-/// The values that the bar tells: finest near 1, where stability ends.
+/// Spectral radii on the colour bar: finest near 1, where stability ends.
 const EDGES: [f64; 13] = [0.7, 0.9, 0.97, 0.99, 0.997, 0.999, 1.0, 1.001, 1.003, 1.01, 1.03, 1.1, 1.3];
-/// The colours between them: blue where the loop is stable, orange where it is not, darker farther from 1 (after Brewer).
+/// Colours between the radii: blue if the loop is stable, orange if not, darker farther from 1 (after Brewer).
 const COLOURS: [RGBColor; 14] = [
     RGBColor(8, 69, 148),
     RGBColor(33, 113, 181),
@@ -28,19 +28,19 @@ const COLOURS: [RGBColor; 14] = [
     RGBColor(140, 45, 4),
 ];
 
-/// So many shades are between two edges.
+/// Number of shades between two edges.
 const SHADES: usize = 3;
-/// No axis of the finer grid has more points.
+/// Largest number of points along an axis of the refined grid.
 const FINE: usize = 160;
-/// How far from 1 radii lie in proportion; farther ones by their logarithms.
+/// Distance from 1 up to which radii have a linear scale; beyond it the scale is logarithmic.
 const NEAR: f64 = 1e-3;
 
-/// The place of a radius on the scale of the map: what is no number lies at its end.
+/// Returns the position of a radius on the colour scale; radii that are not finite lie at its end.
 fn place(radius: f64) -> f64 {
     if radius.is_finite() { ((radius - 1.0) / NEAR).asinh() } else { f64::INFINITY }
 }
 
-/// The limits of the shades by their places, and the text of each that is an edge.
+/// Returns the positions of the limits between shades, with a text for each that is an edge.
 fn limits() -> Vec<(f64, String)> {
     let mut limits: Vec<(f64, String)> = Vec::new();
     for pair in EDGES.windows(2) {
@@ -53,13 +53,14 @@ fn limits() -> Vec<(f64, String)> {
     limits
 }
 
-/// The colour of a shade: 0 lies below all limits.
+/// Returns the colour of a shade: 0 lies below all limits.
 fn shade(index: usize) -> RGBColor {
     let place = if index == 0 { 0.0 } else { 0.5 + (index as f64 - 0.5) / SHADES as f64 };
     between(&COLOURS, place)
 }
 
-/// The map: cells in rows of one frequency each, and where the scenario itself lies, frequency (rad/s) and period (s).
+/// Returns the map; `cells` are in rows of one frequency each, `own` is the scenario's frequency (rad/s) and period
+/// (s).
 pub fn figure(name: &str, cells: &[MapCell], own: Point) -> Figure {
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();
@@ -71,7 +72,7 @@ pub fn figure(name: &str, cells: &[MapCell], own: Point) -> Figure {
     let x = FigureAxis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
     let y = FigureAxis::exact("period of the samples (s)", "", ends(&field.y));
 
-    // The shades that there are.
+    // Only the shades that occur are in the bar.
     let limits = limits();
     let class = |radius: &f64| limits.iter().filter(|(limit, _)| place(*radius) >= *limit).count();
     let classes = || field.values.iter().map(class);
@@ -92,8 +93,8 @@ pub fn figure(name: &str, cells: &[MapCell], own: Point) -> Figure {
     Figure { title, panels: vec![panel], panel_height: 420 }
 }
 
-/// The map in colours. Curves of constant radius do not cross: drawn from the largest to the smallest, each is filled with
-/// the class just within it.
+/// Returns the filled areas of the map. Contours of constant radius do not cross: drawn from the largest to the
+/// smallest, each is filled with the class just within it.
 fn regions(field: &ScalarField, limits: &[(f64, String)], lowest: usize, highest: usize) -> Vec<Layer> {
     let corners = [(0, 0), (1, 0), (1, 1), (0, 1)].map(|(i, j)| {
         let end = |axis: &[f64], last: usize| axis[last * (axis.len() - 1)];
@@ -103,7 +104,7 @@ fn regions(field: &ScalarField, limits: &[(f64, String)], lowest: usize, highest
     for above in lowest + 1..=highest {
         for ring in field.rings(limits[above - 1].0) {
             let area = ring.area();
-            // Of two that coincide, the steeper class comes last.
+            // If two contours coincide, the steeper class comes last.
             let (class, order) = if area > 0.0 { (above, above) } else { (above - 1, limits.len() - above) };
             rings.push((area.abs(), order, class, ring.points));
         }

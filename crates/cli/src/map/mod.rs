@@ -1,4 +1,4 @@
-//! `flexsc map`: stability and settling over the frequency of the dominant mode and the period of the samples.
+//! `flexsc map`: stability and settling over the frequency of the dominant mode and the sampling period.
 
 mod figure;
 
@@ -48,7 +48,7 @@ pub struct Args {
     force: bool,
 }
 
-/// A map.
+/// Map of a scenario's sampled loop.
 pub struct Mapped {
     /// Name of the scenario.
     name: String,
@@ -58,7 +58,7 @@ pub struct Mapped {
 }
 
 impl Args {
-    /// The map of a scenario.
+    /// Computes the map of a scenario.
     pub fn results(&self, scenario: &Scenario) -> Result<Mapped, Failure> {
         let (of, law) = sampled(scenario)?;
         let window = self.settled.window(&of, &scenario.name)?;

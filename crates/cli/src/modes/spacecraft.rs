@@ -1,4 +1,4 @@
-//! The modes of a spacecraft: of its appendages with their roots held, of the whole with its hub free.
+//! Modes of a spacecraft: of its appendages with fixed roots, and of the whole with a free hub.
 
 use std::io::Write;
 
@@ -14,12 +14,12 @@ use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario};
 use crate::say;
 
-/// The modes of a spacecraft, and what its actuator does to them.
+/// Modes of a spacecraft, and the influence of its actuator on them.
 pub struct Spacecraft {
     /// Name of the scenario.
     pub name: String,
     pub parts: ModalParts,
-    /// About which axes jets act; about others a torque of 1 N m is told.
+    /// True for each axis with jets; for the other axes the influence of a torque of 1 N m is printed.
     pub jets: [bool; 3],
     pub style: Style,
 }
@@ -89,7 +89,7 @@ impl Results for Spacecraft {
 }
 
 impl Spacecraft {
-    /// Prints what a torque on the hub does at the points of the spacecraft.
+    /// Prints the effect of a torque on the hub at the points of the spacecraft.
     fn tell_points(&self) {
         let parts = &self.parts;
         let (mut hub, ends): (Vec<_>, Vec<_>) =

@@ -1,27 +1,27 @@
-//! The figure of the recurrence observer's convergence: the regions of its weights with a frozen regressor (\[Timakov14\],
-//! figure 2), and what a sample leaves of an error over the gain of the identification.
+//! Figure of the recurrence observer's convergence: the regions of its weights with a frozen regressor (\[Timakov14\],
+//! figure 2), and the error's contraction per sample over the gain of the identification.
 
 use flexsc_core::analysis::damping::{Convergence, Margin};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, band, colour};
 
 use crate::grid::Even;
 
-/// The least and the largest gain of the second panel, and how many there are.
+/// Least and largest gain of the second panel, and number of gains.
 const GAINS: (f64, f64, u32) = (1e-3, 1.0, 400);
-/// Abscissae of a region.
+/// Number of abscissae of a region.
 const STEPS: u32 = 800;
-/// Colours of the regions, in turn.
+/// Colours of the regions, cyclic.
 const COLOURS: [RGBColor; 5] = [colour::SKY, colour::ORANGE, colour::GREEN, colour::BLUE, colour::VERMILLION];
 
-/// The figure, with a region for each gain.
+/// Returns the figure, with a region for each gain.
 pub fn figure(of: &Convergence, kappas: &[f64], margin: Option<Margin>) -> Figure {
     let title = format!("convergence of the recurrence observer of {:.4} rad/s", of.frequency);
     Figure { title, panels: vec![regions(of, kappas), radii(of, margin)], panel_height: 260 }
 }
 
-/// The regions of W2 and W3, and the observer's own weights.
+/// Returns the panel of the regions of W2 and W3, with the observer's own weights.
 fn regions(of: &Convergence, kappas: &[f64]) -> Panel {
-    // |W1 + W2 - 1| < 1/B holds every region.
+    // The strip |W1 + W2 - 1| < 1/B contains every region.
     let (w1, (_, b)) = (of.weights[0], of.recurrence());
     let (low, high) = (1.0 - w1 - 1.0 / b, 1.0 - w1 + 1.0 / b);
     let step = (high - low) / f64::from(STEPS);
@@ -55,7 +55,7 @@ fn regions(of: &Convergence, kappas: &[f64]) -> Panel {
     Panel::new(x, FigureAxis::around("W3", "", heights), layers)
 }
 
-/// What a sample leaves of an error over W4 V, the regressor turning.
+/// Returns the panel of the error's contraction per sample over W4 V, with a turning regressor.
 fn radii(of: &Convergence, margin: Option<Margin>) -> Panel {
     let (low, high, count) = GAINS;
     let Even(decades) = Even::new(low.log10(), high.log10(), count);

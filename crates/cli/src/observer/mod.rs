@@ -1,4 +1,4 @@
-//! `flexsc observer`: with which weights the recurrence observer of an elastic mode converges.
+//! `flexsc observer`: weights with which the recurrence observer of an elastic mode converges.
 
 mod figures;
 
@@ -46,17 +46,17 @@ pub struct Args {
     json: bool,
 }
 
-/// The region of the frozen observer at one gain.
+/// Convergence region of the observer with a frozen regressor at one gain.
 #[derive(Serialize)]
 struct Region {
     kappa: f64,
-    /// Its area in the plane of W2 and W3.
+    /// Area of the region in the plane of W2 and W3.
     area: f64,
-    /// Whether it holds the weights.
+    /// True if the region contains the observer's weights.
     converges: bool,
 }
 
-/// When an observer converges.
+/// Convergence of a recurrence observer.
 pub struct Convergent {
     of: Convergence,
     regions: Vec<Region>,
@@ -64,7 +64,7 @@ pub struct Convergent {
 }
 
 impl Args {
-    /// When the observer converges.
+    /// Computes the convergence of the observer.
     pub fn results(&self) -> Result<Convergent, Failure> {
         let Ok(weights) = <[f64; 3]>::try_from(self.weights.as_slice()) else {
             let count = self.weights.len();

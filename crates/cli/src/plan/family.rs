@@ -1,5 +1,5 @@
-//! The commands that the figures of a plan overlay: a series with ever more modes suppressed, or a command beside the
-//! rigid bang-bang.
+//! Commands that the figures of a plan overlay: a series with an increasing number of suppressed modes, or a command
+//! and the rigid bang-bang.
 
 use std::borrow::Cow;
 
@@ -8,39 +8,39 @@ use flexsc_core::manoeuvre::{BangBang, Command, Manoeuvre, Plan, Suppression};
 use flexsc_core::time::Span;
 use flexsc_figure::{RGBColor, colour};
 
-/// So many commands at most.
+/// Largest number of commands.
 const MOST: usize = 5;
-/// The colours of p = 0, 1, ...
+/// Colours of p = 0, 1, ...
 const COLOURS: [RGBColor; MOST] =
     [colour::ORANGE, colour::SKY, colour::GREEN, colour::VERMILLION, colour::BLUE];
 
-/// What the figures of a plan show.
+/// Content of the figures of a plan.
 pub struct Family<'a> {
     /// Name of the scenario.
     pub name: &'a str,
-    /// The body.
+    /// Body of the scenario.
     pub body: &'a Planar,
-    /// The planned command.
+    /// Planned command.
     pub plan: &'a Plan,
-    /// Index of the coordinate that is shown, of the hub's angle and the outputs.
+    /// Index of the coordinate that is shown: the hub's angle or an output.
     pub shown: usize,
-    /// The commands, the lowest drawn first.
+    /// Commands in their drawing order.
     pub members: Vec<Member<'a>>,
 }
 
-/// A command of the family.
+/// Command of the family.
 pub struct Member<'a> {
-    /// Its name in the legend.
+    /// Name of the command in the legend.
     pub name: String,
-    /// Its colour.
+    /// Colour of the command's lines.
     pub colour: RGBColor,
-    /// Its plan.
+    /// Plan of the command.
     pub plan: Cow<'a, Plan>,
 }
 
 impl<'a> Family<'a> {
-    /// The family of a plan: the series of its kind with up to as many zeros, or the rigid bang-bang, all in the same time.
-    /// What no plan can be made of is left out.
+    /// Returns the family of a plan: its series with up to as many zeros, or the rigid bang-bang, all in the same time.
+    /// Commands without a feasible plan are left out.
     pub fn new(
         name: &'a str,
         body: &'a Planar,

@@ -1,4 +1,4 @@
-//! How a manoeuvre's command stands in the field of all commands.
+//! Comparison of a manoeuvre's command with all other commands.
 
 use std::io::Write;
 
@@ -11,17 +11,17 @@ use crate::failure::Failure;
 use crate::results::Results;
 use crate::say;
 
-/// The field of a manoeuvre.
+/// Comparison of all commands for a manoeuvre.
 pub struct Field {
     /// Name of the scenario.
     pub name: String,
-    /// The body.
+    /// Body of the scenario.
     pub body: Planar,
-    /// How far off the frequencies may be, relative to them.
+    /// Relative uncertainty of the frequencies.
     pub band: f64,
-    /// Index of the coordinate that the table shows, of the hub's angle and the outputs.
+    /// Index of the coordinate in the table: the hub's angle or an output.
     pub shown: usize,
-    /// What all commands have in common.
+    /// Data that all commands have in common.
     pub common: FieldCommon,
     pub rows: Vec<CommandCost>,
 }

@@ -1,4 +1,4 @@
-//! The figures of a plan: torque, hub angle and an output over time, and what is left over the error of the frequencies
+//! Figures of a plan: torque, hub angle and an output over time, and the residual vibration over the frequency error
 //! (\[Rotation\], figures 3 to 8 and beyond).
 
 use std::f64::consts::TAU;
@@ -12,19 +12,19 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, 
 use super::family::{Family, Member};
 use crate::plot::readable;
 
-/// Points of a line, at least and at most.
+/// Fewest and largest number of points of a line.
 const FEWEST: f64 = 1500.0;
 const MOST: f64 = 20_000.0;
-/// Points of the band of frequencies.
+/// Number of points of the frequency band.
 const BAND: u32 = 401;
-/// So many periods of the slowest mode are shown after the manoeuvre.
+/// Periods of the slowest mode that are shown after the manoeuvre.
 const PERIODS: f64 = 4.0;
 
-/// The figures; `band` is how far off the frequencies may be.
+/// Returns all figures; `band` is the relative uncertainty of the frequencies.
 pub fn all(family: &Family, band: f64) -> Vec<Named> {
     let named = |what: &str, figure| (format!("{}-plan-{what}", family.name), figure);
     let mut all = vec![named("torque", family.torque()), named("angle", family.angle())];
-    // The hub's angle has its own figure.
+    // The hub's angle has a figure of its own.
     if family.shown > 0 {
         all.push(named(&in_a_path(&family.coordinate().0), family.output()));
     }
@@ -32,13 +32,13 @@ pub fn all(family: &Family, band: f64) -> Vec<Named> {
     all
 }
 
-/// A name without what parts directories.
+/// Replaces all characters but letters, digits, `-`, `_` and `.` by `-`.
 fn in_a_path(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
 }
 
 impl Family<'_> {
-    /// Name and unit of the shown coordinate.
+    /// Returns the name and the unit of the shown coordinate.
     fn coordinate(&self) -> (String, String) {
         match self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index)) {
             Some(output) => (output.name.clone(), output.unit.clone()),
@@ -58,7 +58,7 @@ impl Family<'_> {
 
     fn angle(&self) -> Figure {
         let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[0])).collect());
-        // Of some radians milliradians would be long numbers.
+        // Several radians in milliradians would be long numbers.
         let y = FigureAxis::around("hub angle (rad)", "", heights(&lines));
         let (plan, end) = (self.plan, self.end());
         let target = self.body.angle.get() + plan.angle;
@@ -111,27 +111,27 @@ impl Family<'_> {
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 
-    /// A line where the manoeuvre ends.
+    /// Returns a line at the end of the manoeuvre.
     fn arrival(&self, y: &FigureAxis) -> Layer {
         let ends = vec![(self.plan.time, y.range.start), (self.plan.time, y.range.end)];
         Layer::new("", colour::GREY, LayerShape::Dashes, ends)
     }
 
-    /// The end of what is shown (s).
+    /// Returns the end of the shown time (s).
     fn end(&self) -> f64 {
         let slowest = frequencies(self.body).fold(f64::INFINITY, f64::min);
         let after = if slowest.is_finite() { PERIODS * TAU / slowest } else { 0.0 };
         self.plan.time + after.max(0.2 * self.plan.time)
     }
 
-    /// How far apart points are (s) of a line that is so long.
+    /// Returns the spacing of points (s) on a line of duration `length` (s).
     fn step(&self, length: f64) -> f64 {
         let fastest = frequencies(self.body).fold(0.0, f64::max);
         let fine = if fastest > 0.0 { TAU / (24.0 * fastest) } else { length };
         fine.clamp(length / MOST, length / FEWEST)
     }
 
-    /// The hub's angle and the shown coordinate under a plan, exactly.
+    /// Returns the hub's angle and the shown coordinate under a plan, by the exact solution.
     fn motion(&self, plan: &Plan) -> Vec<(f64, [f64; 2])> {
         let end = self.end();
         let count = (end / self.step(end)).ceil();

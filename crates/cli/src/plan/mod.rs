@@ -1,4 +1,4 @@
-//! `flexsc plan`: the plan of a scenario's manoeuvre, its figures, and how it stands in the field.
+//! `flexsc plan`: the plan of a scenario's manoeuvre, its figures, and its comparison with all other commands.
 
 mod family;
 mod field;
@@ -49,7 +49,7 @@ pub struct Args {
 }
 
 impl Args {
-    /// The plan of a scenario's manoeuvre, or the field that it stands in.
+    /// Computes the plan of a scenario's manoeuvre, or its comparison with all other commands.
     pub fn results(&self, scenario: Scenario) -> Result<Box<dyn Results>, Failure> {
         let body = scenario.one_angle()?.clone();
         let (Some(manoeuvre), Some(plan)) = (scenario.manoeuvre.clone(), scenario.plan.clone()) else {
@@ -83,7 +83,7 @@ impl Args {
         Ok(Box::new(Planned { name, body, model, manoeuvre, plan, report, shown }))
     }
 
-    /// The peak torque that is planned for, if one is given.
+    /// Returns the peak torque that is planned for, if given.
     fn limit(&self) -> Result<Option<Positive>, Failure> {
         let Some(peak) = self.peak_torque else { return Ok(None) };
         let limit = Positive::new(peak).ok_or_else(|| {
@@ -101,11 +101,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 fn percent(band: f64) -> f64 {
-    // Free of the last digits that the product with 100 brings.
+    // Rounded, to remove the last digits of the product with 100.
     (band * 1e8).round() / 1e6
 }
 
-/// The index of the coordinate that is shown: the chosen one, else the last output, else the hub's angle.
+/// Returns the index of the shown coordinate: the chosen one, else the last output, else the hub's angle.
 fn chosen(coordinate: Option<&str>, body: &Planar) -> Result<usize, Failure> {
     let names: Vec<&str> =
         std::iter::once("angle").chain(body.outputs.iter().map(|output| output.name.as_str())).collect();

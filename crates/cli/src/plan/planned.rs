@@ -1,4 +1,4 @@
-//! The plan of a manoeuvre, and what it comes to on the body.
+//! Plan of a manoeuvre, and its effect on the body.
 
 use std::io::Write;
 
@@ -13,18 +13,18 @@ use crate::failure::Failure;
 use crate::results::{Results, of_scenario};
 use crate::say;
 
-/// A plan.
+/// Plan of a scenario's manoeuvre.
 pub struct Planned {
     /// Name of the scenario.
     pub name: String,
-    /// The body.
+    /// Body of the scenario.
     pub body: Planar,
-    /// The body that the manoeuvre is planned for.
+    /// Body that the manoeuvre is planned for.
     pub model: Planar,
     pub manoeuvre: Manoeuvre,
     pub plan: Plan,
     pub report: Report,
-    /// Index of the coordinate that figures show, of the hub's angle and the outputs.
+    /// Index of the coordinate in the figures: the hub's angle or an output.
     pub shown: usize,
 }
 
@@ -64,7 +64,7 @@ impl Results for Planned {
         }
         let torque = &report.torque;
         let unit = body.torque_unit();
-        // On a body without inertia an acceleration.
+        // An acceleration for a body without inertia.
         let (peak, start, square, energy) = if body.has_unit_inertia() {
             ("peak", "at the start", "rad²/s³", "J/(kg m²)")
         } else {

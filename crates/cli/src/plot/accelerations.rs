@@ -1,4 +1,4 @@
-//! Figure `accelerations` of a spacecraft: what each accelerometer tells along its axes.
+//! Figure `accelerations` of a spacecraft: the readings of each accelerometer along its axes.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
@@ -8,7 +8,7 @@ use super::{time, title};
 
 const COLOURS: [plotters::style::RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
 
-/// Whether a scenario has accelerometers.
+/// Returns true if a scenario has accelerometers.
 pub fn of(story: &Story) -> bool {
     story.scenario.sensor.accelerometers().next().is_some()
 }

@@ -1,4 +1,4 @@
-//! Figure `angle`: the hub's angle over the run with its goal, how far it is from it, and when it has settled.
+//! Figure `angle`: the hub's angle over the run with its goal, its distance from the goal, and the settling time.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
@@ -6,10 +6,10 @@ use super::motion::Motion;
 use super::story::Story;
 use super::{arrival, time, title};
 
-/// Less than this part of the goal is rounding, and shown as nothing on an axis that ends here (rad).
+/// Errors below this fraction of the goal are rounding errors, and shown as zero on an axis that ends at `SMALL` (rad).
 const ROUNDING: f64 = 1e-13;
 const SMALL: f64 = 2e-9;
-/// The second panel of a body that is brought to angle 0 shows so many bands to each side.
+/// Half height of the second panel for a body that is brought to angle 0, as a multiple of the band.
 const BANDS: f64 = 4.0;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
@@ -61,18 +61,18 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, "angle"), panels, panel_height: 220 }
 }
 
-/// How the distance from the goal dies away, as the metric `settling_time_s` has it.
+/// Settling to the goal, as defined by the metric `settling_time_s`.
 struct Settled {
-    /// What counts as settled (rad).
+    /// Half width of the band in which the angle has settled (rad).
     band: f64,
-    /// When the goal begins (s).
+    /// Start of the goal (s).
     from: f64,
-    /// The last time outside the band (s); none if the run ends outside it.
+    /// Last time outside the band (s); `None` if the run ends outside it.
     at: Option<f64>,
 }
 
 impl Settled {
-    /// None if no band is given after a manoeuvre, which may end anywhere near its goal, or if there is no motion.
+    /// Returns `None` without motion, or if no band is given after a manoeuvre, which may end anywhere near its goal.
     fn of(story: &Story, times: &[f64], error: &[f64]) -> Option<Self> {
         let from = story.scenario.plan.as_ref().map_or(0.0, |plan| plan.time);
         let given = story.scenario.reference.band.map(flexsc_core::quantity::Positive::get);

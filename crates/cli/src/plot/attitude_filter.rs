@@ -1,5 +1,5 @@
-//! Figure `consistency` of three axes: the errors of an attitude filter beside three of its standard deviations, and its
-//! normalised error squared, which is about 1 for each of its states if they fit.
+//! Figure `consistency` of three axes: the errors of an attitude filter with three of its standard deviations, and its
+//! normalised error squared, which is about 1 for each state of a consistent filter.
 
 use flexsc_core::record::AxisEstimate;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
@@ -9,7 +9,7 @@ use super::spatial::{Cycles, panels};
 use super::story::Story;
 use super::{consistency, time, title};
 
-/// Chi-square of six degrees of freedom lies between these with a probability of 95 %, over six.
+/// Bounds of chi-square with six degrees of freedom, divided by six, that contain 95 % of its probability.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
 
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {

@@ -4,13 +4,13 @@ use flexsc_core::record::{Column, Columns, Log};
 
 use crate::failure::Failure;
 
-/// The rows of some topics; none of one that the log does not have.
+/// Returns the columns of some topics; empty for a topic that the log does not have.
 pub fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], Failure> {
     let mut tables = log.tables(&names)?.into_iter();
     Ok(names.map(|_| tables.next().flatten().unwrap_or_default()))
 }
 
-/// The doubles of some columns, row by row.
+/// Returns the doubles of some columns, row by row.
 pub fn rows<'a, const N: usize>(
     columns: &'a Columns,
     names: [&str; N],
@@ -20,7 +20,7 @@ pub fn rows<'a, const N: usize>(
     (0..shortest).map(move |row| columns.map(|column| column[row]))
 }
 
-/// The labels of a column, row by row.
+/// Returns the labels of a column, row by row.
 pub fn labels(columns: &Columns, name: &str) -> Vec<String> {
     let Some(Column::Labels(values, labels)) = columns.get(name) else { return Vec::new() };
     values.iter().map(|value| labels.get(usize::from(*value)).cloned().unwrap_or_default()).collect()

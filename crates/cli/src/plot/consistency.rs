@@ -1,5 +1,5 @@
-//! Figure `consistency`: whether a filter's covariance fits its errors. The normalised innovation squared, over the number
-//! of measurements, and the normalised estimation error squared, over the number of states, are both about 1 if it does.
+//! Figure `consistency`: consistency of a filter's covariance with its errors. The normalised innovation squared per
+//! measurement and the normalised estimation error squared per state are both about 1 if they are consistent.
 
 use flexsc_core::estimator::chi_square;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
@@ -8,9 +8,9 @@ use super::motion::{Estimate, Motion};
 use super::story::Story;
 use super::{lock, time, title};
 
-/// So many samples are averaged, as by the filter itself when it judges whether it follows the body.
+/// Number of samples in an average, as in the filter's own test of lost lock.
 const WINDOW: usize = 50;
-/// Beyond this an axis has decades.
+/// Value above which an axis is logarithmic.
 const FAR: f64 = 10.0;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
@@ -50,15 +50,15 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         layers.extend(mean(story, &values));
         Panel::new(time(0.0..story.end), y, layers)
     };
-    // Innovations of an honest filter are independent from sample to sample. Errors are not: within a window they are nearly
-    // one draw.
+    // Innovations of a consistent filter are independent from sample to sample. Errors are not: within a window they
+    // are nearly a single draw.
     let nis = panel("NIS / measurements", |e| e.nis, measurements, window, true);
     let nees = panel("NEES / states", |e| e.nees, states.max(1), 1, false);
     let panels = vec![Panel { x: nis.x.unnamed(), ..nis }, nees];
     Figure { title: title(story, "consistency of the filter"), panels, panel_height: 200 }
 }
 
-/// A line at the mean of the values in the interval in which the metrics assess the filter; none without values.
+/// Returns a line at the mean of the values over the interval that the metrics assess; `None` without values.
 pub fn mean(story: &Story, values: &[Point]) -> Option<Layer> {
     let [from, to] = story.scenario.estimator.as_ref()?.assess();
     let to = to.min(story.end);
@@ -73,7 +73,7 @@ pub fn mean(story: &Story, values: &[Point]) -> Option<Layer> {
     mean.is_finite().then(|| Layer::new(&name, colour::VERMILLION, LayerShape::Dashes, line))
 }
 
-/// Means over so many samples in a row, each at the last of them. A sample without a value counts in none.
+/// Returns the moving averages over `window` samples, each at its last sample. Samples without a value are skipped.
 fn averages(values: &[Point], window: usize) -> Vec<Point> {
     let mean = |row: &[Point]| {
         let finite = || row.iter().map(|point| point.1).filter(|value| value.is_finite());

@@ -1,4 +1,4 @@
-//! Figure `angle` under a law that switches: the angle at the end of the run, with the dead zone and where the law switched.
+//! Figure `angle` for a switching law: the angle at the end of the run, with the dead zone and the switchings.
 
 use flexsc_core::law::{Law, Sides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};

@@ -1,5 +1,5 @@
-//! Figure `deflection` of three axes: by how much the elastic modes move each point of the structure, such as the tip of a
-//! panel, against the first point, in axes of the hub.
+//! Figure `deflection` of three axes: the displacement of each point of the structure, such as the tip of a panel, by
+//! the elastic modes, relative to the first point, in axes of the hub.
 
 use flexsc_core::attitude::Vector;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
@@ -8,16 +8,16 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// So many points have a panel, at most.
+/// Largest number of points with a panel each.
 const PANELS: usize = 6;
 /// Colours of the axes.
 const COLOURS: [RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
 
-/// A point that a unit of each mode moves by less (1/sqrt(kg)) is part of the hub.
+/// Displacement by a unit of each mode (1/sqrt(kg)) below which a point belongs to the hub.
 const ROUNDING: f64 = 1e-9;
 
-/// The points that modes move against the first, each with its displacement for a unit of each mode (1/sqrt(kg)). None where
-/// drives or hinges turn the appendages, since modes then have no fixed shapes.
+/// Returns the points that modes move relative to the first, each with its displacement for a unit of each mode
+/// (1/sqrt(kg)). Empty if drives or hinges turn the appendages, since modes then have no fixed shapes.
 fn points(story: &Story) -> Vec<(&str, Vec<Vector>)> {
     let Some(body) = story.scenario.model.spatial() else { return Vec::new() };
     if story.scenario.study.drives.is_some() {
@@ -33,7 +33,7 @@ fn points(story: &Story) -> Vec<(&str, Vec<Vector>)> {
         .collect()
 }
 
-/// Whether there are such points.
+/// Returns true if modes move any point relative to the first.
 pub fn of(story: &Story) -> bool {
     !points(story).is_empty()
 }

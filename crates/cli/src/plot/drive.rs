@@ -1,4 +1,4 @@
-//! Figure `torque` of a rotation: what was planned, what the actuator made of it, the law's part and disturbances.
+//! Figure `torque` of a rotation: the planned torque, the actuator's torque, the law's part and disturbances.
 
 use flexsc_core::actuator::Actuator;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
@@ -34,7 +34,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     main.push(("planned", colour::BLACK, planned));
     let mut rest: Vec<(&str, _, &[f64])> = Vec::new();
     if acts(disturbance) {
-        // Lighter than the feedback, also in print without colours.
+        // The disturbance is lighter than the feedback, also in print without colours.
         rest.push(("disturbance", colour::ORANGE, disturbance));
     }
     if acts(feedback) {
@@ -43,7 +43,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let wheel = matches!(story.scenario.actuator.alone(), Some(Actuator::Wheel(_)));
     let panels = match (rest.is_empty(), executed || acts(planned)) {
         _ if wheel => {
-            // No manoeuvre is planned for a wheel; what the law asks of it may be far more than it gives.
+            // A wheel has no planned manoeuvre, and the law's demand may be far above the wheel's torque.
             let mut on_body: Vec<(&str, _, &[f64])> = vec![("given by the wheel", colour::BLACK, applied)];
             on_body.extend(rest.iter().filter(|(name, ..)| *name == "disturbance").copied());
             let asked = [("demanded by the law", colour::BLUE, feedback.as_slice())];

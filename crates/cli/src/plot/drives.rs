@@ -1,4 +1,5 @@
-//! Figure `drives` of a spacecraft whose appendages turn: angles of the drives, and natural frequencies over the highest of each.
+//! Figure `drives` of a spacecraft with turning appendages: drive angles, and natural frequencies relative to their
+//! highest.
 
 use flexsc_core::record::DrivesMotion;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
@@ -7,7 +8,7 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// Colours of drives, hinges and modes, again from the first after the last.
+/// Colours of drives, hinges and modes, cyclic.
 const COLOURS: [plotters::style::RGBColor; 7] = [
     colour::BLUE,
     colour::VERMILLION,
@@ -18,10 +19,10 @@ const COLOURS: [plotters::style::RGBColor; 7] = [
     colour::GREY,
 ];
 
-/// A frequency that never falls below this part of its highest value is constant.
+/// Ratio of its lowest to its highest value above which a frequency is constant.
 const CONSTANT: f64 = 0.999;
 
-/// A panel of a line for each of several things alike.
+/// Returns a panel with one line for each of several similar components.
 pub fn alike(x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, Vec<Point>)>) -> Panel {
     let values: Vec<f64> = lines.iter().flat_map(|(_, points)| points).map(|(_, value)| *value).collect();
     let layers = lines.into_iter().enumerate().map(|(index, (name, points))| {
@@ -71,7 +72,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, &what), panels, panel_height: 240 }
 }
 
-/// A line with a gap where an angle goes on at the other end of its turn.
+/// Adds a gap to a line wherever an angle wraps around.
 fn unwrapped(line: Vec<Point>) -> Vec<Point> {
     let mut parted: Vec<Point> = Vec::new();
     for point in line {

@@ -40,7 +40,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, what), panels: vec![whole, end], panel_height: 220 }
 }
 
-/// The window means alone, of three axes.
+/// Returns the figure of the window means alone, for three axes.
 pub fn over_windows(story: &Story) -> Figure {
     let all = story.means.iter().map(|mean| mean.value);
     let line = Layer::new("window means", colour::VERMILLION, LayerShape::Line(2.0), means(&story.means));
@@ -49,7 +49,7 @@ pub fn over_windows(story: &Story) -> Figure {
     Figure { title: title(story, what), panels: vec![panel], panel_height: 300 }
 }
 
-/// The window means as a line: each over its window.
+/// Returns the window means as a line, constant over each window.
 pub fn means(means: &[Mean]) -> Vec<Point> {
     means.iter().flat_map(|m| [(m.from, m.value), (m.to, m.value)]).collect()
 }

@@ -1,5 +1,5 @@
-//! Figure `estimate`: the displacement of the dominant mode as the law reads it from a filter, what it really is, and how
-//! far apart they are.
+//! Figure `estimate`: the displacement of the dominant mode as the law reads it from a filter, the true displacement,
+//! and the difference.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 

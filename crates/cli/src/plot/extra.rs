@@ -1,4 +1,4 @@
-//! Figure `extra`: the gain of the extra loop over the run, and the frequency of the dominant mode that it follows.
+//! Figure `extra`: the gain of the extra loop over the run, and the frequency of the dominant mode that schedules it.
 
 use flexsc_core::Scenario;
 use flexsc_core::law::{Extra, Law};
@@ -8,7 +8,7 @@ use super::motion::Motion;
 use super::story::Story;
 use super::{lock, time, title};
 
-/// The extra loop of a scenario, if it has one.
+/// Returns the extra loop of a scenario, if it has one.
 pub fn of(story: &Story) -> Option<&Extra> {
     match &story.scenario.law {
         Law::Pd(pd) => pd.extra.as_ref(),
@@ -37,7 +37,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
 }
 
-/// The natural frequency of the dominant mode (rad/s) that an ideal observer gives the law.
+/// Returns the natural frequency of the dominant mode (rad/s) that an ideal observer gives the law at time `t` (s).
 fn frequency(scenario: &Scenario, t: f64) -> f64 {
     let ratio = |mode: usize| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
     let modes = scenario.model.planar().into_iter().flat_map(|body| &body.modes).enumerate();

@@ -1,14 +1,14 @@
-//! When sensors or actuators fail: shaded in every figure over time.
+//! Shading of the failures of sensors and actuators in every figure over time.
 
 use flexsc_figure::{Figure, Layer, LayerShape, Point, colour};
 
 use super::story::Story;
 use super::time;
 
-/// How dark the time of a failure is.
+/// Opacity of the shading of a failure.
 const DARKNESS: f64 = 0.15;
 
-/// A figure with the failures of a run.
+/// Adds the failures of a run to a figure.
 pub fn shaded(mut figure: Figure, story: &Story) -> Figure {
     let failures = story.scenario.failing();
     if failures.is_empty() {

@@ -1,5 +1,5 @@
-//! Figure `frequency`: the natural frequency of the dominant mode as a filter estimates it, what it really is, and how far
-//! apart they are, with two standard deviations to each side.
+//! Figure `frequency`: the natural frequency of the dominant mode as a filter estimates it, the true frequency, and the
+//! error with two standard deviations to each side.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
@@ -7,7 +7,7 @@ use super::motion::{Estimate, Motion};
 use super::story::Story;
 use super::{lock, time, title};
 
-/// The axis reaches up to so many times the largest frequency, however unsure the filter is.
+/// Upper end of the axis, as a multiple of the largest frequency, even if the filter's uncertainty is larger.
 const BEYOND: f64 = 1.5;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {

@@ -1,4 +1,4 @@
-//! Figure `gain`: the gain and what the adaptation decided, and the windows that it learnt from.
+//! Figure `gain`: the gain and the decisions of the adaptation, and the windows of its objective.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
@@ -38,7 +38,7 @@ pub fn figure(story: &Story) -> Figure {
     Figure { title: title(story, "adaptation"), panels: vec![gain, means], panel_height: 220 }
 }
 
-/// What the adaptation learnt from: its name, its unit, and its windows with their name.
+/// Returns the objective of the adaptation: its name, its unit, the name of its windows, and the windows.
 fn learnt(story: &Story) -> (String, &'static str, &'static str, &[Mean]) {
     match story.scenario.objective().filter(|_| !story.objective.is_empty()) {
         None => ("mean envelope".to_owned(), "rad", "window means", &story.means),

@@ -9,11 +9,11 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// Colours of gimbals, again from the first after the last.
+/// Colours of gimbals, cyclic.
 const COLOURS: [plotters::style::RGBColor; 5] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
 
-/// Whether a scenario has control moment gyros.
+/// Returns true if a scenario has control moment gyros.
 pub fn of(story: &Story) -> bool {
     !story.scenario.study.gimbals.is_empty()
 }

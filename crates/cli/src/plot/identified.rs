@@ -9,15 +9,15 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// The axis reaches up to so many times the true frequency, however unsure the filter is.
+/// Upper end of the axis, as a multiple of the true frequency, even if the filter's uncertainty is larger.
 const BEYOND: f64 = 1.5;
 
-/// Whether there are such modes.
+/// Returns true if an attitude filter identifies modes.
 pub fn of(story: &Story) -> bool {
     modes(&story.scenario).is_some()
 }
 
-/// Their indices.
+/// Returns the indices of the identified modes.
 fn modes(scenario: &Scenario) -> Option<&[usize]> {
     let elastic = scenario.estimator.as_ref()?.attitude()?.elastic.as_ref()?;
     elastic.identifies().then_some(&elastic.modes[..])

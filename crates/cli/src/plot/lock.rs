@@ -1,10 +1,11 @@
-//! Spans in which a filter learns no frequency because too little moves, or has lost the body, as shaded areas.
+//! Shaded intervals in which a filter does not estimate the frequency because the mode moves too little, or has lost
+//! lock.
 
 use flexsc_figure::{FigureAxis, Layer, LayerShape, Point, band, colour};
 
 use super::motion::{Estimate, Motion};
 
-/// The areas, over the whole height of a panel, in its legend or not.
+/// Returns the areas, over the whole height of a panel; `named` adds them to its legend.
 pub fn spans(motion: &Motion, y: &FigureAxis, named: bool) -> Vec<Layer> {
     let area = |name: &str, colour, is: fn(&Estimate) -> bool| {
         let points = shaded(&motion.estimates, y, is);
@@ -16,7 +17,7 @@ pub fn spans(motion: &Motion, y: &FigureAxis, named: bool) -> Vec<Layer> {
     gated.into_iter().chain(lost).collect()
 }
 
-/// A rectangle for each row of samples that are so, each up to the next sample.
+/// Returns a rectangle for each series of samples that satisfy `is`, up to the next sample.
 fn shaded(estimates: &[Estimate], y: &FigureAxis, is: fn(&Estimate) -> bool) -> Vec<Point> {
     let mut points = Vec::new();
     let mut from = 0;

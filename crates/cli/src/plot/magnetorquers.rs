@@ -1,4 +1,5 @@
-//! Figure `magnetorquers` of three axes: magnetic moments with their limits, and the momentum that wheels keep or the body has.
+//! Figure `magnetorquers` of three axes: magnetic moments with their limits, and the momentum of the wheels or the
+//! body.
 
 use flexsc_core::record::SpatialCycle;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
@@ -10,7 +11,7 @@ use super::{time, title};
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =
     [("x", colour::BLUE), ("y", colour::VERMILLION), ("z", colour::GREEN)];
 
-/// Whether a scenario has magnetorquers.
+/// Returns true if a scenario has magnetorquers.
 pub fn of(story: &Story) -> bool {
     story.scenario.actuator.magnetorquers().is_some()
 }

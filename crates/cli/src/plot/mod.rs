@@ -102,14 +102,14 @@ pub struct Args {
 }
 
 impl Args {
-    /// The size of the figures.
+    /// Returns the style of the figures with their size.
     fn style(&self) -> Result<Style, Failure> {
         Style::new(self.width, self.font).map_err(|why| Failure::Arguments(format!("--width, --font: {why}")))
     }
 }
 
 impl Args {
-    /// The figures of a log over the time that is asked for.
+    /// Returns the figures of a log over the requested time.
     fn own(&self, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
         let log = Log::open(path)?;
         if !self.json {
@@ -118,7 +118,7 @@ impl Args {
         drawn_over(&log, path, asked, (self.from, self.to))
     }
 
-    /// The figures that all logs have, those of a kind one over the other.
+    /// Returns the figures that all logs have in common, the lines of all logs in each.
     fn together(&self) -> Result<Vec<(What, Figure)>, Failure> {
         let paths: Vec<&PathBuf> = std::iter::once(&self.path).chain(&self.others).collect();
         let all = paths.iter().map(|path| self.own(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
@@ -126,7 +126,7 @@ impl Args {
             .iter()
             .map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
             .collect();
-        // Logs of one name in several directories are told apart by their paths.
+        // Logs of the same name in several directories are distinguished by their paths.
         let name = |run: usize| {
             let alone = names.iter().filter(|name| **name == names[run]).count() == 1;
             if alone { names[run].clone() } else { paths[run].display().to_string() }
@@ -154,10 +154,10 @@ impl Args {
     }
 }
 
-/// The figure of a log that is in memory, by its name; `path` is what errors call the log.
+/// Returns the figure of a log in memory by its name; errors refer to the log as `path`.
 ///
 /// # Errors
-/// A figure that the log does not have, and a run that cannot be repeated.
+/// A figure that the log does not have, or a run that cannot be repeated.
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
     let what = What::from_str(name, false).map_err(Failure::Arguments)?;
     let drawn = drawn(log, path, &[what])?.into_iter().next();
@@ -165,7 +165,7 @@ pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> 
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
-/// The figures that a log has.
+/// Returns the figures that a log has.
 pub fn there(log: &Log, path: &Path) -> Result<Vec<What>, Failure> {
     Ok(What::all_in(&Story::read(log, path)?))
 }
@@ -197,12 +197,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }
 
-/// Figures of a log: those named, or all that it has.
+/// Returns figures of a log: the named ones, or all that it has.
 fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
     drawn_over(log, path, asked, (None, None))
 }
 
-/// Figures over a part of the time, if it is given.
+/// Returns figures over an interval of time, if given.
 fn drawn_over(
     log: &Log,
     path: &Path,
@@ -244,20 +244,20 @@ fn drawn_over(
     Ok(drawn.collect())
 }
 
-/// The unit of what drives the body.
+/// Returns the unit of the torque: of an acceleration for a body without inertia.
 fn unit_of_torque(story: &Story) -> &'static str {
     story.scenario.model.commanded().1
 }
 
-/// A line where the manoeuvre ends, if there is one.
+/// Returns a line at the end of the manoeuvre, if there is one.
 fn arrival(story: &Story, y: &FigureAxis) -> Option<Layer> {
     let plan = story.scenario.plan.as_ref()?;
     let ends = vec![(plan.time, y.range.start), (plan.time, y.range.end)];
     Some(Layer::new("end of the manoeuvre", colour::GREY, LayerShape::Dashes, ends))
 }
 
-/// What figures of the modes show: the whole run, or of a law that switches about seven periods of the slowest mode at
-/// its end.
+/// Returns the interval of figures of the modes: the whole run, or for a switching law about seven periods of the
+/// slowest mode at the end of the run.
 fn swings(story: &Story) -> std::ops::Range<f64> {
     if let Some(shown) = &story.shown {
         return shown.clone();
@@ -271,7 +271,7 @@ fn swings(story: &Story) -> std::ops::Range<f64> {
     (story.end - span).max(0.0)..story.end
 }
 
-/// The axis of time.
+/// Returns the axis of time.
 fn time(range: std::ops::Range<f64>) -> FigureAxis {
     FigureAxis::exact("time", "s", range)
 }

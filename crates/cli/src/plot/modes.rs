@@ -6,7 +6,7 @@ use super::motion::Motion;
 use super::story::Story;
 use super::{swings, time, title};
 
-/// So many modes have a panel, at most.
+/// Largest number of modes with a panel each.
 const PANELS: usize = 6;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {
@@ -32,7 +32,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     Figure { title: title(story, &what), panels, panel_height: 130 }
 }
 
-/// A positive number with at most so many significant digits.
+/// Formats a positive number with at most `most` significant digits.
 fn digits(number: f64, most: i32) -> String {
     let decimals = (f64::from(most) - 1.0 - number.log10().floor()).clamp(0.0, 12.0) as usize;
     let text = format!("{number:.decimals$}");

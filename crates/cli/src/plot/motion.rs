@@ -1,4 +1,4 @@
-//! The motion of a run and what its filter made of each sample: of a full log, or of a run that is repeated.
+//! Motion of a run and the filter's estimates at each sample, from a full log or from a repeated run.
 
 use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Sample};
 use flexsc_core::time::Instant;
@@ -6,7 +6,7 @@ use flexsc_core::time::Instant;
 use super::columns::{labels, rows, topics};
 use crate::failure::Failure;
 
-/// The motion of a run. All but the envelope and the estimates may be left out where no figure shows it.
+/// Motion of a run. All but the envelope and the estimates may be left out if no figure shows them.
 #[derive(Default)]
 pub struct Motion {
     pub time: Vec<f64>,
@@ -14,30 +14,30 @@ pub struct Motion {
     pub rate: Vec<f64>,
     /// Sum of the modes' displacements.
     pub elastic: Vec<f64>,
-    /// Displacements of each mode, and their rates.
+    /// Displacements of each mode; their rates are in `mode_rates`.
     pub modes: Vec<Vec<f64>>,
     pub mode_rates: Vec<Vec<f64>>,
-    /// The target of the hub; empty without a manoeuvre or a PD law.
+    /// Target of the hub's angle; empty without a manoeuvre or a PD law.
     pub goal: Vec<f64>,
-    /// Torques: planned, of the law, of the actuator, disturbing; each empty without a manoeuvre or a PD law.
+    /// Torques: planned, law, actuator, disturbance; each empty without a manoeuvre or a PD law.
     pub torques: [Vec<f64>; 4],
-    /// Speed and momentum of the wheel; each empty without one that stores momentum.
+    /// Speed and momentum of the wheel; each empty without a wheel that stores momentum.
     pub wheel: [Vec<f64>; 2],
     /// Values of each observed coordinate.
     pub outputs: Vec<Vec<f64>>,
     /// Times and values of the total envelope; empty without an observer.
     pub envelope: Vec<(f64, f64)>,
-    /// What a filter made of each sample; empty without one.
+    /// Estimates of a filter at each sample; empty without a filter.
     pub estimates: Vec<Estimate>,
 }
 
-/// What a filter made of a sample, of the dominant mode.
+/// Filter estimates of the dominant mode at a sample.
 #[derive(Copy, Clone)]
 pub struct Estimate {
     pub time: f64,
     /// Index of the mode.
     pub mode: usize,
-    /// Natural frequency as the law reads it, as the filter has it, its standard deviation, and what it really is (rad/s).
+    /// Natural frequency (rad/s) as the law reads it; below the filter's, its standard deviation, and the true one.
     pub read_frequency: f64,
     pub frequency: f64,
     pub frequency_sd: f64,
@@ -46,14 +46,14 @@ pub struct Estimate {
     pub displacement: f64,
     pub nis: f64,
     pub nees: f64,
-    /// Whether the mode moves too little for its frequency to be learnt.
+    /// True if the mode moves too little for its frequency to be estimated.
     pub gated: bool,
-    /// Whether the filter has lost the body.
+    /// True if the filter has lost lock.
     pub lost: bool,
 }
 
 impl Motion {
-    /// The motion in a full log.
+    /// Reads the motion from a full log.
     pub fn read(log: &Log) -> Result<Self, Failure> {
         let [attitude, rate, modes, envelope] = topics(log, ["/attitude", "/rate", "/modes", "/envelope"])?;
         let [goal, torque, outputs] = topics(log, ["/goal", "/torque", "/outputs"])?;
@@ -80,7 +80,7 @@ impl Motion {
         Ok(motion)
     }
 
-    /// Keeps the instants that every topic has: the last one of a log that was torn may not be of them.
+    /// Keeps only the instants that every topic has: a torn log may have a partial last instant.
     fn keep_whole_rows(&mut self) {
         let needed = [self.time.len(), self.angle.len(), self.rate.len(), self.elastic.len()];
         let Self { time, angle, rate, elastic, modes, mode_rates, goal, torques, wheel, outputs, .. } = self;
@@ -92,11 +92,11 @@ impl Motion {
         }
     }
 
-    /// The displacement of a mode at a time, between two rows by the cubic that has their values and rates; NaN beyond the
-    /// rows.
+    /// Returns the displacement of a mode at a time, by the cubic Hermite interpolation between two rows; NaN beyond
+    /// the rows.
     pub fn displacement(&self, mode: usize, time: f64) -> f64 {
         let (Some(x), Some(v)) = (self.modes.get(mode), self.mode_rates.get(mode)) else { return f64::NAN };
-        // A log counts time in whole nanoseconds.
+        // The times of a log are whole nanoseconds.
         let after = self.time.partition_point(|row| *row < time - 1e-9);
         match (after, self.time.get(after)) {
             (_, Some(row)) if *row <= time + 1e-9 => x[after],
@@ -152,7 +152,7 @@ fn estimates(columns: &Columns) -> Vec<Estimate> {
     rows(columns, names).enumerate().map(row).collect()
 }
 
-/// A column of the rows within each row, one vector for each place in a row.
+/// Returns a column of nested rows, one vector for each index within a row.
 fn inner(columns: &Columns, rows: &str, name: &str) -> Vec<Vec<f64>> {
     let Some(Column::Rows(counts, inner)) = columns.get(rows) else { return Vec::new() };
     let count = counts.first().map_or(0, |count| *count as usize);
@@ -163,12 +163,12 @@ fn inner(columns: &Columns, rows: &str, name: &str) -> Vec<Vec<f64>> {
     (0..count).map(|place| values.iter().skip(place).step_by(count).copied().collect()).collect()
 }
 
-/// Keeps the motion of a run that is repeated: all of it, or that until `early` and from `late` on.
+/// Record that keeps the motion of a repeated run: all of it, or only until `early` and from `late` on.
 pub struct Repeat {
     pub motion: Motion,
     early: f64,
     late: f64,
-    /// Times of the switchings, to compare with the log's.
+    /// Times of the switchings, for comparison with the log.
     pub switchings: Vec<f64>,
 }
 
@@ -238,7 +238,7 @@ impl Estimate {
     }
 }
 
-/// Appends a row to columns, which are made with the first row.
+/// Appends a row to columns, which are created with the first row.
 fn extend(columns: &mut Vec<Vec<f64>>, row: impl Iterator<Item = f64>) {
     for (index, value) in row.enumerate() {
         if index == columns.len() {

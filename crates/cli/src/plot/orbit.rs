@@ -7,13 +7,13 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// A number of each axis.
+/// Function that reads a component of an axis.
 type Of = fn(&OrbitAxis) -> f64;
 
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =
     [("x", colour::BLUE), ("y", colour::VERMILLION), ("z", colour::GREEN)];
 
-/// Whether a scenario has an orbit.
+/// Returns true if a scenario has an orbit.
 pub fn of(story: &Story) -> bool {
     story.scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some())
 }
@@ -53,7 +53,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, "magnetic field, nadir and Sun in body axes"), panels, panel_height: 160 }
 }
 
-/// The stretches of the log in shadow (s).
+/// Returns the intervals of the log in shadow (s).
 fn shadows(cycles: &Cycles, end: f64) -> Vec<[f64; 2]> {
     let mut shadows = Vec::new();
     let mut since = None;

@@ -1,4 +1,4 @@
-//! Whether a log is of the scenario as the file beside it is now.
+//! Comparison of a log with the current state of the scenario file beside it.
 
 use std::io::Write;
 use std::path::Path;
@@ -8,7 +8,7 @@ use flexsc_core::record::{Log, difference};
 
 use crate::say;
 
-/// Says so if the scenario file beside a log has changed since, or is not accepted any more.
+/// Warns if the scenario file beside a log has changed since, or is no longer valid.
 pub fn warn(log: &Log, path: &Path) {
     let file = path.with_extension("toml");
     if !file.is_file() {

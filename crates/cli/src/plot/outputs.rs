@@ -6,7 +6,7 @@ use super::motion::Motion;
 use super::story::Story;
 use super::{arrival, time, title};
 
-/// So many coordinates have a panel, at most: the last ones, the outermost of a panel.
+/// Largest number of coordinates with a panel each: the last ones, such as the outermost of a solar panel.
 const PANELS: usize = 6;
 
 pub fn figure(story: &Story, motion: &Motion) -> Figure {

@@ -1,14 +1,14 @@
-//! The same figures of several runs, one over the other: a colour for each run.
+//! Overlay of the figures of several runs, with a colour for each run.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, RGBColor, Scale, colour};
 
-/// The colours of the runs, in turn.
+/// Colours of the runs, cyclic.
 const COLOURS: [RGBColor; 6] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY, colour::BLACK];
-/// Each further line of a run in a panel is lighter by this part.
+/// Fraction by which each further line of a run in a panel is lighter.
 const LIGHTER: f64 = 0.45;
 
-/// One figure of the figures of some runs, each with the name of its run; none where they have other panels.
+/// Returns the overlay of the named runs' figures; `None` if their panels differ.
 pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
@@ -30,7 +30,7 @@ pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
             runs.iter().map(|(name, figure)| (name.as_str(), &figure.panels[index])).collect();
         let (x, y) = (axis(&panels, |panel| &panel.x), axis(&panels, |panel| &panel.y));
         let mut layers = layers(&panels, index == 0);
-        // A line straight up is as high as the panel.
+        // Vertical lines are as high as the panel.
         for layer in layers.iter_mut().filter(|layer| upright(layer).is_some()) {
             let [first, last] = &mut layer.points[..] else { continue };
             (first.1, last.1) = (y.range.start, y.range.end);
@@ -40,7 +40,7 @@ pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
     Some(Figure { title, panels: (0..count).map(panel).collect(), panel_height })
 }
 
-/// The axis that shows what the axes of all panels show.
+/// Returns the axis that contains the axes of all panels.
 fn axis(panels: &[(&str, &Panel)], of: fn(&Panel) -> &FigureAxis) -> FigureAxis {
     let mut all = of(panels[0].1).clone();
     for (_, panel) in panels {
@@ -50,7 +50,7 @@ fn axis(panels: &[(&str, &Panel)], of: fn(&Panel) -> &FigureAxis) -> FigureAxis 
     all
 }
 
-/// Where a line of two points goes straight up.
+/// Returns the abscissa of a vertical line; `None` for other layers.
 fn upright(layer: &Layer) -> Option<f64> {
     match layer.points[..] {
         [(from, _), (to, _)] if from == to => Some(from),
@@ -64,13 +64,13 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
         let alike = a.points == b.points || (upright(a).is_some() && upright(a) == upright(b));
         a.shape == b.shape && a.name == b.name && alike
     };
-    // What all runs have alike, such as a dead zone, is drawn once and as it is.
+    // Layers that all runs share, such as a dead zone, are drawn once and unchanged.
     let common =
         |layer: &Layer| panels.iter().all(|(_, panel)| panel.layers.iter().any(|other| same(layer, other)));
     layers.extend(panels[0].1.layers.iter().filter(|layer| common(layer)).cloned());
     for (run, (name, panel)) in panels.iter().enumerate() {
         let own: Vec<&Layer> = panel.layers.iter().filter(|layer| !common(layer)).collect();
-        // The widest line is what the panel is about.
+        // The widest line is the main one of the panel.
         let width = |layer: &Layer| if let LayerShape::Line(width) = layer.shape { width } else { 0.0 };
         let main = (0..own.len()).max_by(|a, b| width(own[*a]).total_cmp(&width(own[*b])));
         let mut lines = 0;

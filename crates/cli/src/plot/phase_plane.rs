@@ -1,4 +1,4 @@
-//! Figure `phase-plane`: rate against angle, the law's switching lines, and where the law switched.
+//! Figure `phase-plane`: rate against angle, with the law's switching lines and switchings.
 
 use flexsc_core::law::{Law, Relay, Sides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
@@ -7,15 +7,15 @@ use super::motion::Motion;
 use super::story::{Story, Switching};
 use super::title;
 
-/// So many cycles are shown at the start of a run, and as many at its end.
+/// Number of cycles that are shown at the start of a run, and at its end.
 const CYCLES: usize = 10;
 
-/// When the last cycles begin (s), or what is asked for.
+/// Returns the start of the last cycles (s), or the requested time.
 pub fn late(story: &Story) -> f64 {
     story.shown.as_ref().map_or_else(|| story.last_cycles(CYCLES), |shown| shown.start)
 }
 
-/// When the first cycles end (s); before the start where a time is asked for.
+/// Returns the end of the first cycles (s); a time before the start if a time is requested.
 pub fn early(story: &Story) -> f64 {
     if story.shown.is_some() {
         return -1.0;
@@ -31,7 +31,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         motion.time.iter().zip(states).filter(|(time, _)| shown(**time)).map(|(_, state)| state).collect()
     };
     let first = path(&|time| time <= early && late > 0.0);
-    // A log counts the motion in whole nanoseconds.
+    // The times of a log are whole nanoseconds.
     let last = path(&|time| time >= late - 1e-9 && time <= end + 1e-9);
     let shown = |s: &&Switching| (s.time >= late && s.time <= end) || s.time <= early;
     let points = |timeout: bool| -> Vec<Point> {

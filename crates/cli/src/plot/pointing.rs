@@ -1,4 +1,4 @@
-//! Figure `pointing` of three axes: how far the body is from its target about each axis, with its goal and its dead zone.
+//! Figure `pointing` of three axes: the pointing error about each axis, with its goal and the dead zone.
 
 use flexsc_core::law::Law;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
@@ -7,7 +7,7 @@ use super::spatial::{Cycles, panels};
 use super::story::Story;
 use super::{time, title};
 
-/// A band that is so many times as wide as the errors does not set the height of a panel.
+/// Ratio of a band to the errors above which the band does not determine the height of a panel.
 const WIDE: f64 = 3.0;
 
 pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
@@ -57,19 +57,19 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, "pointing error"), panels, panel_height: 160 }
 }
 
-/// The length of a vector.
+/// Returns the length of a vector.
 pub fn norm(vector: [f64; 3]) -> f64 {
     vector.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
-/// A panel of angles (rad) over time on a logarithmic axis: a large transient leaves room for what comes after it.
+/// Returns a panel of angles (rad) over time with a logarithmic axis, which shows small errors after a large transient.
 pub fn decades(story: &Story, name: &str, layers: Vec<Layer>) -> Panel {
     let y =
         FigureAxis::decades(name, "rad", layers.iter().flat_map(|layer| &layer.points).map(|point| point.1));
     Panel::new(time(0.0..story.end), y, layers)
 }
 
-/// Half widths about an axis: of the goal, and of the law's dead zone (rad).
+/// Returns half widths about an axis: of the goal, and of the law's dead zone (rad).
 fn bands(story: &Story, axis: usize) -> [Option<f64>; 2] {
     let scenario = &story.scenario;
     let own = scenario.study.bands.get(axis).copied().flatten();

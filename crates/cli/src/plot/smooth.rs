@@ -1,24 +1,24 @@
-//! The motion between the rows of a log: cubics with the values and the rates of both rows.
+//! Interpolation of the motion between the rows of a log, by cubics through the values and the rates of both rows.
 
 use super::motion::Motion;
 
-/// So many points at most are put between two rows.
+/// Largest number of points between two rows.
 const MOST: usize = 12;
-/// A mode turns by about so much between two points (rad).
+/// Intended phase of the fastest mode between two points (rad).
 const TURN: f64 = 0.2;
-/// Modes that turn by more between two rows are not met by cubics (rad).
+/// Phase of a mode between two rows (rad) above which cubics do not approximate it.
 const FAST: f64 = 2.0;
 
 impl Motion {
-    /// The motion with points between rows that are a period or less apart (s), where the fastest mode (rad/s) allows it. A law
-    /// that switches has a row at each switching: between them nothing jumps.
+    /// Adds points between rows that are at most a period apart (s), if the fastest mode (rad/s) allows it. With a
+    /// switching law, every switching has a row, so that the motion between rows is smooth.
     pub fn smoothed(&mut self, period: f64, fastest: f64) {
         let turn = period * fastest;
         if turn > FAST || self.time.len() < 2 || self.rate.len() < self.time.len() {
             return;
         }
         let points = if fastest > 0.0 { ((turn / TURN).ceil() as usize).clamp(1, MOST) } else { MOST };
-        // The places of the new rows: a row, and the part of the way to the next.
+        // New rows: the index of a row, and the fraction of the way to the next.
         let rows: Vec<(usize, f64)> = (0..self.time.len())
             .flat_map(|row| {
                 let h = self.time.get(row + 1).map_or(0.0, |next| next - self.time[row]);
@@ -103,7 +103,7 @@ mod tests {
             assert!((motion.elastic[row] - (0.4 * t).sin()).abs() < 2e-3, "{t}");
         }
         assert!(time.iter().all(|t| motion.time.contains(t)));
-        // Over a gap, and of modes that are too fast for the rows, nothing is made up.
+        // Gaps, and modes that are too fast for the rows, are not interpolated.
         let mut gap =
             Motion { time: vec![0.0, 9.0], angle: vec![0.0, 1.0], rate: vec![0.0, 0.0], ..Motion::default() };
         gap.smoothed(2.0, 0.4);

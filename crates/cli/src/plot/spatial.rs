@@ -1,5 +1,5 @@
-//! Figures of a spatial body: `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and `damping`,
-//! from its run repeated.
+//! Figures of a three-axis body: `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and
+//! `damping`, from its repeated run.
 
 use std::path::Path;
 
@@ -17,49 +17,49 @@ use super::story::{Story, unusable};
 use super::{time, title};
 use crate::failure::Failure;
 
-/// More marks than these are small.
+/// Number of marks above which they are small.
 const MANY: usize = 100;
-/// What is less than this part of the values about another axis is rounding, and is shown at the scale of those.
+/// Fraction of the values about other axes below which values are rounding errors, and drawn at the others' scale.
 const ROUNDING: f64 = 1e-9;
 
-/// The cycles of a run.
+/// Data of a repeated run.
 #[derive(Default)]
 pub struct Cycles {
     all: Vec<(f64, SpatialCycle)>,
     tracking: Vec<(f64, Tracking)>,
-    /// What an attitude filter made of each sample.
+    /// Estimates of an attitude filter at each sample.
     pub attitude: Vec<(f64, AttitudeEstimate)>,
-    /// What it knew of elastic modes.
+    /// Filter estimates of the elastic modes.
     pub elastic: Vec<(f64, ElasticEstimates)>,
-    /// The wheels, at each period of the log.
+    /// States of the wheels, at each period of the log.
     pub wheels: Vec<(f64, Wheels)>,
-    /// Control moment gyros, at each period of the log.
+    /// States of the control moment gyros, at each period of the log.
     pub gimbals: Vec<(f64, ControlMomentGyros)>,
-    /// Where the body is on its orbit, at each period of the log.
+    /// Position on the orbit, at each period of the log.
     pub orbit: Vec<(f64, Orbit)>,
     /// Magnetic moments, at each period of the log.
     pub magnetorquers: Vec<(f64, Magnetorquers)>,
-    /// Where it is, at the same times.
+    /// Position of the first point and its velocity, at each period of the log.
     position: Vec<(f64, Position)>,
-    /// What accelerometers tell.
+    /// Readings of the accelerometers.
     pub accelerations: Vec<(f64, Accelerations)>,
-    /// Their bearings, if they have any.
+    /// States of the wheels' bearings, if any.
     pub bearings: Vec<(f64, Bearings)>,
-    /// Torques on the body, but of jets that act alone.
+    /// Torques on the body, except of jets that act alone.
     pub torques: Vec<(f64, Torques)>,
     /// Displacements of the elastic modes (m sqrt(kg)).
     pub modes: Vec<(f64, Vec<f64>)>,
-    /// The drives of appendages, if they have any.
+    /// States of the appendages' drives, if any.
     pub drives: Vec<(f64, DrivesMotion)>,
-    /// The hinges of appendages, if they have any.
+    /// States of the appendages' hinges, if any.
     pub hinges: Vec<(f64, Hinges)>,
 }
 
 impl Cycles {
-    /// The run of a log, repeated.
+    /// Repeats the run of a log.
     pub fn read(story: &Story, log: &Log, path: &Path) -> Result<Self, Failure> {
         let mut cycles = Self::default();
-        // The end of a log that was cut off is rounded, and a cycle may lie on it.
+        // The end of a torn log is rounded, and a cycle may lie on it.
         let end = Span::from_seconds(story.end + 1e-9).min(story.scenario.duration);
         let mut simulation = Simulation::new(&story.scenario, story.run);
         story
@@ -126,7 +126,7 @@ impl Record for Cycles {
     }
 }
 
-/// A panel for each axis: its lines, by their names and colours.
+/// Returns a panel for each axis, with lines of given names and colours.
 pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
     let all = [0, 1, 2].map(lines);
     let values = |layers: &[Layer]| -> Vec<f64> {
@@ -147,14 +147,14 @@ pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<La
     AXES.iter().enumerate().zip(all).map(panel).collect()
 }
 
-/// Rigid rates, and with their elastic part what a perfect gyro would see.
+/// Returns the figure of the rigid rates, and of the rates with their elastic part, which an ideal gyro would measure.
 pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
     let lines = |axis: usize| {
         let seen = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
         let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
         let name = |name| if axis == 0 { name } else { "" };
         vec![
-            // Where both are one, the wider line shows beside the other.
+            // If both coincide, the wider line remains visible.
             Layer::new(name("at the gyro, with elastic part"), colour::SKY, LayerShape::Line(2.8), seen),
             Layer::new(name("rigid part"), colour::BLACK, LayerShape::Line(1.0), rigid),
         ]
@@ -162,7 +162,7 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, "rates"), panels: panels(story, "rad/s", lines), panel_height: 160 }
 }
 
-/// Where the first point is, and its velocity.
+/// Returns the figure of the position of the first point, and its velocity.
 pub fn position(story: &Story, cycles: &Cycles) -> Figure {
     let panel = |x: FigureAxis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
         let line = |(axis, colour): (usize, _)| {
@@ -184,7 +184,7 @@ pub fn position(story: &Story, cycles: &Cycles) -> Figure {
     }
 }
 
-/// Energy of the elastic modes, and of jets the propellant.
+/// Returns the figure of the elastic modes' energy, and of the jets' propellant.
 pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
     let fuel = cycles.over_time(|cycle| cycle.jets.fuel_kg);
@@ -198,7 +198,7 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     let fires = fuel.iter().any(|(_, used)| used.is_finite());
     let below = if fires { x.unnamed() } else { x.clone() };
     let mut energies = panel(below, "elastic energy", "J", elastic);
-    // Where both are one, the wider line shows beside the other.
+    // If both coincide, the wider line remains visible.
     energies.layers[0].shape = LayerShape::Line(3.2);
     energies.layers[0].colour = colour::SKY;
     "all modes".clone_into(&mut energies.layers[0].name);
@@ -217,19 +217,19 @@ pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, what), panels, panel_height: 220 }
 }
 
-/// Whether a panel of pulses has any.
+/// Returns true if a panel of pulses has any.
 fn fires(panel: &Panel) -> bool {
     panel.layers.iter().any(|layer| matches!(layer.shape, LayerShape::Area(_)) && !layer.points.is_empty())
 }
 
-/// For how long the jets fire in each cycle.
+/// Returns the figure of the jets' firing times in each cycle.
 pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
     let on = |cycle: &SpatialCycle, axis: usize| {
         [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis]
     };
     let period = cycles.all.get(1).map_or(0.0, |(time, _)| time - cycles.all[0].0);
     let line = |axis: usize| {
-        // The outline of each row of cycles with pulses, and nothing between them.
+        // Outline of each series of cycles with pulses, without points between them.
         let mut points = Vec::new();
         for row in cycles.all.chunk_by(|a, b| (on(&a.1, axis) == 0.0) == (on(&b.1, axis) == 0.0)) {
             let Some((first, _)) = row.first().filter(|(_, cycle)| on(cycle, axis) != 0.0) else { continue };
@@ -245,7 +245,7 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
             Layer::new("", colour::VERMILLION, LayerShape::Line(0.8), points),
         ]
     };
-    // One scale for all axes; those about which no jet fires have no panel.
+    // All axes have the same scale; axes without firing jets have no panel.
     let longest = cycles.all.iter().flat_map(|(_, cycle)| (0..3).map(|axis| on(cycle, axis).abs()));
     let longest = 1.1 * longest.fold(0.0, f64::max);
     let mut panels = panels(story, "s", line);
@@ -261,7 +261,7 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, "firing time of the jets in each cycle"), panels, panel_height: 160 }
 }
 
-/// Natural frequencies of the tracked modes as estimated, and as they are.
+/// Returns the figure of the tracked modes' natural frequencies, estimated and true.
 pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
     let ends = |points: Vec<Point>| -> Vec<Point> {
         points.first().into_iter().chain(points.last()).copied().collect()
@@ -301,7 +301,7 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
     Figure { title: title(story, "natural frequencies of the tracked modes"), panels, panel_height: 180 }
 }
 
-/// The elastic rates that active damping acts on, with its thresholds and its pulses.
+/// Returns the figure of the elastic rates that active damping acts on, with its thresholds and its pulses.
 pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
     let lines = |axis: usize| {
         let of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {

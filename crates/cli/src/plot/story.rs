@@ -1,5 +1,5 @@
-//! The story of a run for its figures: the events of its log, and its motion, by running the scenario within the log
-//! again where the log has none.
+//! Data of a run for its figures: the events of its log, and its motion, which is recomputed from the scenario in the
+//! log if the log does not have it.
 
 use std::path::Path;
 
@@ -12,50 +12,50 @@ use super::columns::{labels, rows, topics};
 use super::motion::{Motion, Repeat};
 use crate::failure::Failure;
 
-/// A run by its log.
+/// Run of a log.
 pub struct Story {
-    /// What was run.
+    /// Scenario of the run.
     pub scenario: Scenario,
     /// Number of the run.
     pub run: u64,
-    /// When the run ended (s).
+    /// End of the run (s).
     pub end: f64,
-    /// The commands from outside under which it was run.
+    /// External commands of the run.
     pub commanded: Commanded,
-    /// The time that figures show, if it is given.
+    /// Interval of time that figures show, if given.
     pub shown: Option<std::ops::Range<f64>>,
     /// Torque and gain at the start.
     pub start: (f64, f64),
-    /// Every switching.
+    /// Switchings of the law.
     pub switchings: Vec<Switching>,
-    /// Every window mean of the envelope.
+    /// Window means of the envelope.
     pub means: Vec<Mean>,
-    /// Every window of another objective of the adaptation.
+    /// Window means of another objective of the adaptation.
     pub objective: Vec<Mean>,
-    /// Every step of the adaptation.
+    /// Steps of the adaptation.
     pub steps: Vec<Step>,
 }
 
-/// A switching.
+/// Switching of the law.
 pub struct Switching {
     pub time: f64,
-    /// Label of the state that begins.
+    /// Label of the new state.
     pub state: String,
-    /// Whether a timeout made the law decide, and no guard.
+    /// True if a timeout triggered the law's decision, not a guard.
     pub timeout: bool,
     pub torque: f64,
     pub angle: f64,
     pub rate: f64,
 }
 
-/// The mean envelope over a window.
+/// Mean of a quantity over a window.
 pub struct Mean {
     pub from: f64,
     pub to: f64,
     pub value: f64,
 }
 
-/// A step of the adaptation.
+/// Step of the adaptation.
 pub struct Step {
     pub time: f64,
     /// Label of the decision.
@@ -98,8 +98,8 @@ impl Story {
         Ok(Self { scenario, run, end, commanded, shown: None, start, switchings, means, objective, steps })
     }
 
-    /// The motion as a full log has it, or else as the run repeated has it. The run repeated keeps the whole
-    /// motion up to `early` and from `late` on only, and the envelope always.
+    /// Returns the motion from a full log, or else from the repeated run, which keeps the whole motion only up to
+    /// `early` and from `late` on, and the envelope always.
     pub fn motion(&self, log: &Log, path: &Path, early: f64, late: f64) -> Result<Motion, Failure> {
         if log.topics().iter().any(|topic| topic == "/attitude") {
             return Ok(self.smooth(Motion::read(log)?));
@@ -111,7 +111,7 @@ impl Story {
             return Err(Failure::Arguments(format!("{}: {why}", path.display())));
         }
         let mut repeat = Repeat::new(early, late);
-        // The end of a log that was cut off is rounded, and a switching may lie on it.
+        // The end of a torn log is rounded, and a switching may lie on it.
         let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
         let mut simulation = Simulation::new(&self.scenario, self.run);
         self.commanded
@@ -134,7 +134,7 @@ impl Story {
         Ok(self.smooth(repeat.motion))
     }
 
-    /// The motion under a law that switches, with points between its rows.
+    /// Adds points between the rows of the motion under a switching law.
     fn smooth(&self, mut motion: Motion) -> Motion {
         if self.switches() {
             let frequencies = self.scenario.model.frequencies();
@@ -144,32 +144,32 @@ impl Story {
         motion
     }
 
-    /// The key of the number of the law that is tuned; k_t if nothing is.
+    /// Returns the key of the law's tuned parameter; k_t if none is tuned.
     pub fn tunes(&self) -> &str {
         self.scenario.adaptation.as_ref().map_or("k_t", |adaptation| adaptation.tunes())
     }
 
-    /// Whether the law is one that switches.
+    /// Returns true if the law is a switching law.
     pub fn switches(&self) -> bool {
         self.scenario.law.switches()
     }
 
-    /// When the last `count` cycles begin: a cycle lasts from one entry into the law's last state to the next, or
-    /// for six switchings where that state is rare.
+    /// Returns the start of the last `count` cycles: a cycle lasts from one entry into the law's last state to the
+    /// next, or for six switchings if that state is rare.
     pub fn last_cycles(&self, count: usize) -> f64 {
         let cycles = self.entries().rev().nth(count).unwrap_or(0.0);
         let switchings = self.switchings.iter().rev().nth(6 * count).map_or(0.0, |s| s.time);
         cycles.max(switchings)
     }
 
-    /// When the first `count` cycles end, not after `before`.
+    /// Returns the end of the first `count` cycles, at most `before`.
     pub fn first_cycles(&self, count: usize, before: f64) -> f64 {
         let cycles = self.entries().nth(count).unwrap_or(before);
         let switchings = self.switchings.get(6 * count).map_or(before, |s| s.time);
         cycles.min(switchings).min(before)
     }
 
-    /// When the law's last state was entered.
+    /// Returns the times at which the law's last state was entered.
     fn entries(&self) -> impl DoubleEndedIterator<Item = f64> {
         let last = self.switchings.last().map(|s| &s.state);
         self.switchings.iter().filter(move |s| Some(&s.state) == last).map(|s| s.time)

@@ -2,10 +2,10 @@
 
 use super::story::Story;
 
-/// Words of names that are abbreviations.
+/// Abbreviations within names.
 const ABBREVIATIONS: [&str; 9] = ["cmg", "ekf", "iss", "lqg", "lqr", "mc", "pd", "pid", "rw"];
 
-/// The title of a figure: the scenario, what the figure shows, and of which run.
+/// Returns the title of a figure: the scenario, the content of the figure, and the run.
 pub fn title(story: &Story, what: &str) -> String {
     let scenario = &story.scenario;
     let name = readable(&scenario.name);
@@ -20,7 +20,7 @@ pub fn title(story: &Story, what: &str) -> String {
     format!("{name}: {what} ({} = {}{moved}, seed {seed}{run})", story.tunes(), short(first))
 }
 
-/// The name of a scenario in words: `iss-manoeuvre` as "ISS manoeuvre".
+/// Returns the name of a scenario in words: `iss-manoeuvre` as "ISS manoeuvre".
 pub fn readable(name: &str) -> String {
     let word = |(index, word): (usize, &str)| {
         let mut letters = word.chars();
@@ -34,7 +34,7 @@ pub fn readable(name: &str) -> String {
     words.enumerate().map(word).collect::<Vec<_>>().join(" ")
 }
 
-/// A gain with at most four decimals, or digits of a small one.
+/// Formats a gain with at most four decimals, or the leading digits of a small one.
 pub fn short(gain: f64) -> String {
     if gain != 0.0 && gain.abs() < 1e-3 {
         return format!("{gain:.3e}");

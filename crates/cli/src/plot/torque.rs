@@ -5,10 +5,10 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour,
 use super::story::Story;
 use super::{time, title};
 
-/// So many switchings are shown, about: five cycles of a two-sided relay.
+/// Approximate number of switchings that are shown: five cycles of a two-sided relay.
 const SWITCHINGS: usize = 30;
 
-/// The end of the run that is shown (s): all of it if there are few switchings.
+/// Returns the interval at the end of the run that is shown (s): all of it if there are few switchings.
 pub fn shown(story: &Story) -> std::ops::Range<f64> {
     if let Some(shown) = &story.shown {
         return shown.clone();
@@ -24,7 +24,7 @@ pub fn figure(story: &Story) -> Figure {
     let line = steps([(0.0, story.start.0)].into_iter().chain(commands), story.end);
     let x = time(shown(story));
 
-    // One panel for the strong torque, and another where the weak one can be seen, if it is much weaker.
+    // A panel for the strong torque, and a second one for a much weaker torque.
     let levels = line.iter().map(|(_, torque)| torque.abs()).filter(|torque| *torque > 0.0);
     let strong = levels.clone().fold(0.0, f64::max);
     let weak = levels.filter(|level| *level < 0.2 * strong).fold(0.0, f64::max);

@@ -1,5 +1,5 @@
-//! Figure `torques` of three axes: about each axis the torque of the actuators beside that demanded by the law, and the
-//! disturbances with the environment.
+//! Figure `torques` of three axes: about each axis the torque of the actuators with the torque demanded by the law, and
+//! the disturbances with the environment.
 
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::Torque;
@@ -12,7 +12,7 @@ use super::{time, title};
 /// Colours of the axes.
 const COLOURS: [RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
 
-/// Whether a log has torques: pulses of jets that act alone are in the figure `jets`.
+/// Returns true if a log has torques: pulses of jets that act alone are in the figure `jets`.
 pub fn of(story: &Story) -> bool {
     !story.scenario.study.jets_alone || story.scenario.environment.is_some()
 }
@@ -21,7 +21,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let about = |axis: usize, of: fn(&Torque) -> f64| -> Vec<Point> {
         cycles.torques.iter().map(|(time, row)| (*time, of(&row.axes[axis]))).collect()
     };
-    // Commands come in steps, which the wider line shows beside what the actuators make of them.
+    // Demands are steps, drawn with a wider line than the actuators' response.
     let lines = |axis: usize| {
         let name = |name| if axis == 0 { name } else { "" };
         let [demanded, given] =

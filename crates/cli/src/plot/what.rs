@@ -1,4 +1,4 @@
-//! The figures that there are, and which of them a log has.
+//! The kinds of figures, and the conditions for a log to have them.
 
 use clap::ValueEnum;
 use flexsc_core::estimator::Estimator;
@@ -83,12 +83,12 @@ pub enum What {
 }
 
 impl What {
-    /// Those of a log.
+    /// Returns the figures that a log has.
     pub fn all_in(story: &Story) -> Vec<Self> {
         Self::value_variants().iter().copied().filter(|what| what.is_in(story)).collect()
     }
 
-    /// Whether a log has what the figure shows.
+    /// Returns true if a log has the data of the figure.
     fn is_in(self, story: &Story) -> bool {
         let spatial = story.scenario.axis_count() == 3;
         match self {
@@ -128,7 +128,7 @@ impl What {
         }
     }
 
-    /// The figure of a log; none of what only a campaign has.
+    /// Returns the figure of a log; `None` for a kind that only campaigns have.
     pub fn figure(self, story: &Story, motion: &Motion, cycles: &Cycles) -> Option<Figure> {
         Some(match self {
             Self::PhasePlane => phase_plane::figure(story, motion),
@@ -168,13 +168,13 @@ impl What {
         })
     }
 
-    /// How `--what` calls it.
+    /// Returns the name of the figure as `--what` accepts it.
     pub fn name(self) -> String {
         self.to_possible_value().map(|value| value.get_name().to_owned()).unwrap_or_default()
     }
 }
 
-/// Those that are chosen of those that there are: all if none is.
+/// Returns the requested figures of the existing ones: all if none is requested.
 pub fn chosen(asked: &[What], there: &[What]) -> Result<Vec<What>, (String, String)> {
     match asked.iter().find(|what| !there.contains(what)) {
         Some(missing) => {

@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::story::Story;
 use super::{time, title};
 
-/// The wheel of a scenario, if it has one that stores momentum.
+/// Returns the wheel of a scenario, if it has one that stores momentum.
 pub fn rotor(story: &Story) -> Option<&Rotor> {
     story.scenario.actuator.wheel().and_then(|(wheel, _)| wheel.rotor.as_ref())
 }
@@ -32,7 +32,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         layers.push(Layer::new(name, colour::BLACK, LayerShape::Line(1.2), line));
         Panel::new(x, y, layers)
     };
-    // On a body without inertia a momentum is a rate.
+    // A body without inertia has a rate instead of a momentum.
     let momentum = if super::unit_of_torque(story) == "N m" { "N m s" } else { "rad/s" };
     let [speeds, momenta] = &motion.wheel;
     let panels = vec![

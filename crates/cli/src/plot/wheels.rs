@@ -1,4 +1,5 @@
-//! Figure `wheel` of three axes: speed and torque of each wheel, with their limits; with friction this and the pointing error too.
+//! Figure `wheel` of three axes: speed and torque of each wheel with their limits; with friction also the friction
+//! torque and the pointing error.
 
 use flexsc_core::actuator::Wheels;
 use flexsc_core::attitude::AXES;
@@ -11,11 +12,11 @@ use super::spatial::Cycles;
 use super::story::Story;
 use super::{time, title};
 
-/// Colours of wheels, again from the first after the last.
+/// Colours of wheels, cyclic.
 const COLOURS: [plotters::style::RGBColor; 5] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
 
-/// The wheels of a scenario, if it has them.
+/// Returns the wheels of a scenario, if it has them.
 pub fn of(story: &Story) -> Option<&Wheels> {
     story.scenario.actuator.wheels().map(|(wheels, _)| wheels)
 }

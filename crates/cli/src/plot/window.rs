@@ -1,4 +1,4 @@
-//! Figures over a part of a run: `--from` and `--to`.
+//! Figures over a part of a run, by `--from` and `--to`.
 
 use std::ops::Range;
 
@@ -6,13 +6,13 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Scale};
 
 use crate::failure::Failure;
 
-/// Part of its height by which a panel is higher than what it shows, on each side.
+/// Margin above and below the content of a panel, as a fraction of its height.
 const MARGIN: f64 = 0.06;
 
-/// The time that is shown of a run that ends at `end` (s).
+/// Returns the shown interval of a run that ends at `end` (s).
 ///
 /// # Errors
-/// Nothing is left of the run.
+/// An interval that is outside the run.
 pub fn of(from: Option<f64>, to: Option<f64>, end: f64) -> Result<Option<Range<f64>>, Failure> {
     if from.is_none() && to.is_none() {
         return Ok(None);
@@ -26,7 +26,7 @@ pub fn of(from: Option<f64>, to: Option<f64>, end: f64) -> Result<Option<Range<f
     Err(Failure::Arguments(why))
 }
 
-/// A figure over a part of the time: what is over time is cut to it, and as high as what is left.
+/// Restricts a figure to an interval of time: lines over time are cut, and their panels are scaled to the rest.
 pub fn cut(mut figure: Figure, shown: &Range<f64>) -> Figure {
     for panel in
         figure.panels.iter_mut().filter(|panel| panel.x.unit == "s" && panel.x.scale == Scale::Linear)
@@ -42,10 +42,10 @@ pub fn cut(mut figure: Figure, shown: &Range<f64>) -> Figure {
     figure
 }
 
-/// What a panel shows of its values, and a little more; none if it shows none.
+/// Returns the range of a panel's values with a margin; `None` if the panel shows none.
 fn heights(panel: &Panel) -> Option<Range<f64>> {
     let (shown, before) = (&panel.x.range, &panel.y.range);
-    // Areas and lines straight up are as high as the panel was, and tell nothing of the values.
+    // Areas and vertical lines have the panel's previous height, and do not count as values.
     let upright = |layer: &Layer| layer.points.windows(2).all(|pair| pair[0].0 == pair[1].0);
     let lines =
         panel.layers.iter().filter(|layer| !matches!(layer.shape, LayerShape::Area(_)) && !upright(layer));
@@ -59,7 +59,7 @@ fn heights(panel: &Panel) -> Option<Range<f64>> {
         finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     let margin = MARGIN * (high - low);
     if margin > 0.0 {
-        // An axis from zero stays one.
+        // An axis from zero still begins at zero.
         let start = if before.start == 0.0 && low >= 0.0 { 0.0 } else { low - margin };
         Some(start..high + margin)
     } else {
@@ -67,7 +67,7 @@ fn heights(panel: &Panel) -> Option<Range<f64>> {
     }
 }
 
-/// The value of a line at a time, between two of its points.
+/// Returns the value of a line at a time, interpolated between two of its points.
 fn at(layer: &Layer, time: f64) -> Option<f64> {
     if !matches!(layer.shape, LayerShape::Line(_) | LayerShape::Dashes) {
         return None;

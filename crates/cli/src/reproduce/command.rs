@@ -1,4 +1,4 @@
-//! The commands that a page names, read as the program itself reads them.
+//! Commands that a page names, parsed by the program's own parser.
 
 use std::path::PathBuf;
 
@@ -9,16 +9,16 @@ use super::shipped;
 use crate::failure::Failure;
 use crate::{Cli, Verb, scenario, simulate};
 
-/// A command as a page names it, without the program's name: every option is one that the program knows.
+/// Command on a page, without the program's name: every option is one that the program knows.
 pub struct Command {
-    /// What the page says.
+    /// Text of the command on the page.
     pub text: String,
     /// The verb with its arguments.
     pub verb: Verb,
 }
 
 impl Command {
-    /// Reads a command.
+    /// Parses a command.
     pub fn parse(text: &str) -> Result<Self, Failure> {
         let words = std::iter::once("flexsc".to_owned()).chain(words(text));
         let unknown = |error: clap::Error| Failure::Arguments(format!("flexsc {text}: {error}"));
@@ -26,24 +26,24 @@ impl Command {
         Ok(Self { text: text.to_owned(), verb })
     }
 
-    /// That the command cannot be executed here.
+    /// Returns the failure that the command cannot be executed here.
     pub fn failure(&self, why: &str) -> Failure {
         Failure::Arguments(format!("flexsc {}: {why}", self.text))
     }
 
-    /// The scenario of a simulation, and the path that the command gives it.
+    /// Returns the scenario of a simulation, and the path that the command gives it.
     pub fn simulated<'a>(&self, args: &'a simulate::Args) -> Result<(Scenario, &'a PathBuf), Failure> {
         let [path] = &args.scenarios[..] else { return Err(self.failure("one scenario at a time")) };
         Ok((shipped::load(path, &args.set, args.seed)?, path))
     }
 }
 
-/// The scenario of an analysis.
+/// Returns the scenario of an analysis.
 pub fn analysed(args: &scenario::Args) -> Result<Scenario, Failure> {
     shipped::load(&args.scenario, &args.set, None)
 }
 
-/// The words of a command as a shell reads them: parted by blanks, but for those between apostrophes.
+/// Splits a command into words as a shell does: at blanks, except within apostrophes.
 fn words(text: &str) -> Vec<String> {
     let mut words = vec![String::new()];
     for (index, part) in text.split('\'').enumerate() {

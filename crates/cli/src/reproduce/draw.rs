@@ -1,4 +1,4 @@
-//! The figures that the commands of a page draw.
+//! Figures that the commands of a page draw.
 
 use flexsc_core::record::{Detail, Log};
 use flexsc_figure::{Figure, Named};
@@ -9,7 +9,8 @@ use crate::logged::logged;
 use crate::{Verb, plot, simulate};
 
 impl Command {
-    /// The figure that the command draws, of a simulation that of its log; and the command as a user gives it.
+    /// Returns the figure that the command draws, for a simulation from its log; and the command as a user would type
+    /// it.
     pub fn draw(&self, what: &str) -> Result<(Figure, String), Failure> {
         if let Verb::Simulate(args) = &self.verb {
             return self.plot(args, what);
@@ -20,7 +21,8 @@ impl Command {
         Ok((figure, format!("{} --figures DIR", self.text)))
     }
 
-    /// A figure of a run's log, with the motion of a planar body by running it again, as `flexsc plot` does.
+    /// Returns a figure of a run's log, with the motion of a single-axis body by repeating the run, as `flexsc plot`
+    /// does.
     fn plot(&self, args: &simulate::Args, what: &str) -> Result<(Figure, String), Failure> {
         let (scenario, path) = self.simulated(args)?;
         let spatial = scenario.axis_count() == 3;
@@ -30,7 +32,7 @@ impl Command {
         Ok((figure, format!("{text}{option} && flexsc plot {name}.mcap --what {what}")))
     }
 
-    /// The log of a simulation in this detail.
+    /// Returns the log of a simulation in this detail.
     pub fn log(&self, detail: Detail) -> Result<Log, Failure> {
         let Verb::Simulate(args) = &self.verb else { return Err(self.failure("no simulation")) };
         let (scenario, path) = self.simulated(args)?;

@@ -1,4 +1,4 @@
-//! The program itself as the laboratory of a page: it carries out the commands that the page names.
+//! Execution of the commands of a page within the program itself.
 
 use flexsc_core::record::Detail;
 use flexsc_figure::Figure;
@@ -8,7 +8,7 @@ use serde_json::Value as Json;
 use super::command::Command;
 use crate::failure::Failure;
 
-/// This program.
+/// Laboratory that executes commands by this program.
 pub struct Programme;
 
 impl Laboratory for Programme {

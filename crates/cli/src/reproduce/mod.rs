@@ -57,7 +57,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     };
     files::make_parent(&out)?;
     args.docs.as_ref().map_or(Ok(()), |docs| files::make_directory(docs))?;
-    // Two minutes of computing are not for nothing.
+    // The target is checked before two minutes of computing.
     find_room(&out)?;
     args.docs.as_ref().map_or(Ok(()), |docs| find_room(&docs.join("papers.md")))?;
     let papers = args.paper.as_ref().map_or(Paper::value_variants(), std::slice::from_ref);
@@ -97,7 +97,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     if unexpected.is_empty() { Ok(()) } else { Err(Failure::Verdicts(unexpected)) }
 }
 
-/// Computes a paper's section.
+/// Computes the section of a paper.
 fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
     let (bar, name) = (bar.clone(), paper.name());
     let computed = Computed::new(Programme, move |command: &str| {
@@ -107,10 +107,10 @@ fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
     flexsc_papers::fill(paper, computed).map_err(Failure::Page)
 }
 
-/// Room that a page with its figures takes (bytes); it is some 2 MB.
+/// Disk space for a page with its figures (bytes), well above its size of about 2 MB.
 const ROOM: usize = 16 << 20;
 
-/// Makes sure that a page can be written: the file there may be replaced, and there is room.
+/// Checks that a page can be written: that an existing file may be replaced, and that there is disk space.
 fn find_room(path: &Path) -> Result<(), Failure> {
     if let Ok(there) = std::fs::metadata(path) {
         let kind = match there.is_file() {
@@ -129,7 +129,7 @@ fn find_room(path: &Path) -> Result<(), Failure> {
         (0..ROOM / block.len()).try_for_each(|_| file.write_all(&block))?;
         file.sync_data()
     });
-    // Nothing else can be done about a file that does not go.
+    // A file that cannot be removed is left behind.
     let _ = std::fs::remove_file(&room);
     filled.map_err(|source| {
         let why = format!("{source} ({} MB are looked for before it is computed)", ROOM >> 20);

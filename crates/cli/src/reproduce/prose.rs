@@ -1,15 +1,17 @@
-//! README.md and the pages of the documentation, whose numbers are what the commands beside them tell.
+//! Tests of README.md and the pages of the documentation: their numbers must be the results of the commands beside
+//! them.
 //!
-//! A page names its commands and marks its numbers in comments, which no reader sees:
-//! - a comment of its own, `<!--{% set quiet = run("simulate scenarios/relay-quiet.toml") %}-->`, names what a command tells
-//!   ([`super::tell`]);
+//! A page names its commands and marks its numbers in comments, which are invisible to readers:
+//! - a comment of its own, `<!--{% set quiet = run("simulate scenarios/relay-quiet.toml") %}-->`, names a command's
+//!   output ([`super::tell`]);
 //! - `0.34<!--{{ quiet.gain_final }}-->` is a number of the text, which must be the value rounded to its digits; there is no
 //!   `--` in such a comment, and in the cell of a table a `|` is written `\|`;
 //! - `<!--below 0.34 {{ quiet.gain_final }}-->`, on a line of its own, is such a number in the block that follows, where a
-//!   comment would be seen;
-//! - what stands between a comment that begins with `made` and `<!--end-->` must be what the rest of the comment comes to.
+//!   comment would be visible;
+//! - the text between a comment that begins with `made` and `<!--end-->` must equal the value of the rest of the
+//!   comment.
 //!
-//! A page without marks is not tested: there is nothing to tell what its numbers should be.
+//! A page without marks is not tested, since the expected numbers are unknown.
 
 use std::fmt::Write as _;
 use std::sync::{Arc, LazyLock};
@@ -19,32 +21,32 @@ use flexsc_papers::page::{environment, explained};
 
 use super::laboratory::Programme;
 
-/// What was computed, for all pages.
+/// Cache of the computed results, for all pages.
 static COMPUTED: LazyLock<Arc<Computed>> = LazyLock::new(|| Arc::new(Computed::new(Programme, |_| {})));
 
-/// Parts the values of marks from the empty lines between them.
+/// Separator between the values of marks and the empty lines between them.
 const PARTING: char = '\u{1}';
 
-/// A mark that has a value.
+/// Mark that has a value.
 struct Mark<'a> {
-    /// Line of the page.
+    /// Line number of the mark on the page.
     line: usize,
-    /// The template of its value.
+    /// Template of the mark's value.
     template: String,
-    /// What the page has for it.
+    /// Text of the page that must equal the value.
     printed: Printed<'a>,
 }
 
 enum Printed<'a> {
-    /// A number.
+    /// Number before the mark.
     Number(&'a str),
-    /// A number, which has to stand in this block.
+    /// Number that must occur in the block.
     Within(&'a str, &'a str),
-    /// The whole text.
+    /// Whole text.
     Text(&'a str),
 }
 
-/// What is wrong with the numbers of a page.
+/// Returns the errors in the numbers of a page.
 fn faults(page: &str) -> Result<Vec<String>, String> {
     let (mut template, mut marks) = (String::new(), Vec::new());
     let mut rest = page;
@@ -54,7 +56,7 @@ fn faults(page: &str) -> Result<Vec<String>, String> {
             after.split_once("-->").ok_or_else(|| format!("line {line}: a comment without end"))?;
         let ahead = &page[..page.len() - after.len() - 4];
         let inline = !ahead.is_empty() && !ahead.ends_with('\n');
-        // The template has the lines of the page, so that its errors have them too.
+        // The template has the same lines as the page, so that errors have the page's line numbers.
         template.extend(before.chars().filter(|c| *c == '\n'));
         rest = follows;
         let mark = |template: &str, printed| Mark { line, template: template.replace("\\|", "|"), printed };
@@ -65,7 +67,7 @@ fn faults(page: &str) -> Result<Vec<String>, String> {
             Some(mark(made, Printed::Text(text)))
         } else if let Some(below) = comment.strip_prefix("below ") {
             let (number, value) = below.split_once(' ').ok_or_else(|| format!("line {line}: no value"))?;
-            // The marks of one block stand together.
+            // The marks of a block precede it together.
             let block = skip_comments(follows.trim_start_matches('\n'));
             let end = match block.strip_prefix("```") {
                 Some(code) => code.find("```").map_or(block.len(), |end| end + 3),
@@ -96,7 +98,7 @@ fn faults(page: &str) -> Result<Vec<String>, String> {
     Ok(marks.iter().zip(values).filter_map(|(mark, value)| mark.fault(value)).collect())
 }
 
-/// What follows the comments that a text begins with.
+/// Returns a text without its leading comments.
 fn skip_comments(mut text: &str) -> &str {
     while let Some((_, after)) = text.strip_prefix("<!--").and_then(|text| text.split_once("-->")) {
         text = after.trim_start_matches('\n');
@@ -104,7 +106,7 @@ fn skip_comments(mut text: &str) -> &str {
     text
 }
 
-/// The number that a text ends with.
+/// Returns the number at the end of a text.
 fn number_at_end(text: &str) -> &str {
     let part = |c: char| c.is_ascii_digit() || matches!(c, '.' | '+' | '-' | 'e');
     let digits = text.trim_end_matches(part);
@@ -112,7 +114,7 @@ fn number_at_end(text: &str) -> &str {
 }
 
 impl Mark<'_> {
-    /// What is wrong with what is printed, given what should be.
+    /// Returns an error if the printed text differs from the value.
     fn fault(&self, value: &str) -> Option<String> {
         let (line, template) = (self.line, self.template.trim());
         match self.printed {
@@ -137,12 +139,12 @@ impl Mark<'_> {
     }
 }
 
-/// Whether a number stands in a text by itself.
+/// Returns true if a text contains a number, not as a part of a longer one.
 fn has_number(text: &str, number: &str) -> bool {
     let apart = |c: Option<char>| c.is_none_or(|c| !c.is_ascii_digit() && c != '.');
     text.match_indices(number).any(|(at, _)| {
         let (before, after) = (&text[..at], &text[at + number.len()..]);
-        // A full stop ends a sentence.
+        // A full stop at the end of a sentence is not part of a number.
         let after = after
             .strip_prefix('.')
             .filter(|rest| !rest.starts_with(|c: char| c.is_ascii_digit()))
@@ -151,7 +153,7 @@ fn has_number(text: &str, number: &str) -> bool {
     })
 }
 
-/// A value with the digits of a number as it is printed.
+/// Returns a value rounded to the digits of a printed number.
 fn rounded(value: &str, printed: &str) -> Option<String> {
     let value: f64 = value.parse().ok()?;
     printed.parse::<f64>().ok()?;
@@ -162,7 +164,7 @@ fn rounded(value: &str, printed: &str) -> Option<String> {
     })
 }
 
-/// Tests the numbers of a page, by its path in the repository.
+/// Tests the numbers of a page, given by its path in the repository.
 fn tested(path: &str) {
     let path = format!("{}/../../{path}", env!("CARGO_MANIFEST_DIR"));
     let page = std::fs::read_to_string(&path).expect("a page");

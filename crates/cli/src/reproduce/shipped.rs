@@ -1,4 +1,4 @@
-//! The scenarios of the papers by the paths that commands give them: an installed command has no checkout beside it.
+//! Built-in scenarios of the papers, by the paths in their commands: an installed command has no checkout beside it.
 
 use std::path::Path;
 
@@ -7,7 +7,7 @@ use flexsc_core::{Document, Scenario};
 use crate::examples;
 use crate::failure::Failure;
 
-/// A scenario with some keys set, as `--set` and `--seed` of the command do it.
+/// Loads a scenario with some keys set, like the command's options `--set` and `--seed`.
 pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
     let name = path.display().to_string();
     let text = examples::text(&name)?.to_owned();

@@ -1,4 +1,4 @@
-//! What the commands of a page tell: what they print for machines with `--json`.
+//! Results of the commands of a page: their output with `--json`.
 
 use std::ops::Range;
 use std::sync::Arc;
@@ -15,9 +15,9 @@ use crate::stop::Stop;
 use crate::{Verb, campaign, cycle, modes, simulate};
 
 impl Command {
-    /// What the command tells, with its own text as `command_line`: the object that it prints. Of a run it is the run's
-    /// metrics; of several runs each metric is the list of its values, `drawn` has such a list for each key that varies,
-    /// and `runs` counts them. Other objects, one a line, are the list `rows`.
+    /// Returns the object that the command prints, with its own text as `command_line`. For a run it has the run's
+    /// metrics; for several runs each metric is the list of its values, `drawn` has such a list for each key that
+    /// varies, and `runs` is their number. Other objects, one per line, are the list `rows`.
     pub fn tell(&self) -> Result<Json, Failure> {
         let mut told = match &self.verb {
             Verb::Simulate(args) => {
@@ -42,7 +42,7 @@ impl Command {
         Ok(told)
     }
 
-    /// What the command's analysis comes to.
+    /// Computes the results of the command's analysis.
     pub fn results(&self) -> Result<Box<dyn Results>, Failure> {
         Ok(match &self.verb {
             Verb::Modes(args) => modes::results(&analysed(&args.scenario)?, args),
@@ -58,7 +58,7 @@ impl Command {
     }
 }
 
-/// The metrics of the scenario itself.
+/// Returns the metrics of the scenario itself.
 fn single(study: &Campaign) -> Result<Json, Failure> {
     let run = simulate::itself(study);
     let failed = |source| Failure::Run { name: run.scenario.name.clone(), source };
@@ -66,7 +66,7 @@ fn single(study: &Campaign) -> Result<Json, Failure> {
     Ok(campaign::object(study, run.number, &run.drawn, Ok(&metrics))["metrics"].take())
 }
 
-/// The objects of some runs, all of which must succeed.
+/// Returns the objects of some runs, all of which must succeed.
 fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Failure> {
     let runs = range.end - range.start;
     let mut objects = Vec::new();
@@ -86,7 +86,7 @@ fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, Failur
     Ok(objects)
 }
 
-/// The objects of runs as columns.
+/// Returns the objects of runs as columns.
 fn columns(objects: &[Json]) -> Json {
     let of = |part: &str| -> Map<String, Json> {
         let names = objects.first().and_then(|first| first[part].as_object()).into_iter().flat_map(Map::keys);

@@ -8,11 +8,11 @@ use super::Summary;
 use crate::human::digits;
 use crate::say;
 
-/// What is late in a run (s), as the metrics have it.
+/// Start of the late part of a run (s), as defined by the metrics.
 const LATE: f64 = 5.0;
 
 impl Summary<'_> {
-    /// The manoeuvre's end, torques and observed coordinates.
+    /// Prints the manoeuvre's end, torques and observed coordinates.
     pub(super) fn rotation(&self) {
         let (scenario, units) = (self.scenario, self.units);
         if let Some(plan) = &scenario.plan {
@@ -66,7 +66,7 @@ impl Summary<'_> {
         self.outputs(after, late);
     }
 
-    /// The observed coordinates.
+    /// Prints the observed coordinates.
     fn outputs(&self, after: &str, late: bool) {
         let number = |name: &str, index: usize| match self.metrics.get(name) {
             Some(value) => value.numbers().get(index).copied().unwrap_or(f64::NAN),
@@ -88,14 +88,14 @@ impl Summary<'_> {
         }
     }
 
-    /// What a Kalman filter came to.
+    /// Prints the results of a Kalman filter.
     fn filter(&self) {
         if !self.number("nees_mean").is_finite() {
             say!("  filter         not assessed: the run ends before `assess`");
             return;
         }
         let largest = self.number("frequency_error_max_rad_s");
-        // Of frequencies that are known there is no error.
+        // Known frequencies have no error.
         if largest > 0.0 {
             let unit = self.units.frequency();
             let [rms, largest] =
@@ -105,7 +105,7 @@ impl Summary<'_> {
         say!("  consistency    {}", self.consistency());
         let lost = self.number("lock_lost_at_s");
         if lost.is_finite() {
-            // Of innovations that are as expected it lost what it cannot see.
+            // With innovations as expected, the filter has lost an unobservable state.
             let hint = if self.number("nis_mean") > 2.0 {
                 ": the innovations exceed its `moment_noise` and sensor noise"
             } else {

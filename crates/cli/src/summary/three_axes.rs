@@ -10,13 +10,13 @@ use super::Summary;
 use crate::human::digits;
 use crate::say;
 
-/// The elastic rates are judged over so much of the run's end (s), as the metrics have it.
+/// Length of the run's end over which elastic rates are assessed (s), as defined by the metrics.
 const LATE: f64 = 200.0;
-/// No more thrusters are listed.
+/// Largest number of thrusters in the list.
 const THRUSTERS: usize = 12;
 
 impl Summary<'_> {
-    /// Propellant, wheels, gimbals, elastic energy and pointing.
+    /// Prints propellant, wheels, gimbals, elastic energy and pointing.
     pub(super) fn three_axes(&self) {
         self.jets();
         self.wheels();
@@ -145,7 +145,7 @@ impl Summary<'_> {
         );
     }
 
-    /// Frequencies that a filter or an observer has identified, beside the true ones, and active damping.
+    /// Prints the frequencies that a filter or an observer has identified, with the true ones, and active damping.
     fn frequencies(&self) {
         let Some(Value::Numbers(found)) = self.metrics.get("frequency_estimates_hz") else { return };
         let errors = self.metrics.get("frequency_estimate_errors").map_or_else(Vec::new, Value::numbers);

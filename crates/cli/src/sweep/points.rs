@@ -1,4 +1,4 @@
-//! A table of points as CSV: a column for each key, a row for each point.
+//! Table of points as CSV: a column for each key, a row for each point.
 
 use std::path::Path;
 
@@ -6,7 +6,7 @@ use flexsc_core::campaign::{DesignBlock, MOST_NUMBERS};
 
 use crate::failure::Failure;
 
-/// Reads a table.
+/// Reads a table of points.
 pub fn read(path: &Path) -> Result<DesignBlock, Failure> {
     let refused = |why: String| Failure::Arguments(format!("{}: {why}", path.display()));
     let wrong = |error: csv::Error| refused(format!("is not a table of points: {error}"));

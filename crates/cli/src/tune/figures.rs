@@ -1,5 +1,5 @@
-//! The figures of tuned gains over the frequency of the dominant mode: where they may lie (\[Wheel11, Sukhanov\], figure 5),
-//! and how soon the loop settles with them.
+//! Figures of tuned gains over the frequency of the dominant mode: their region (\[Wheel11, Sukhanov\], figure 5), and
+//! the settling time of the loop.
 
 use flexsc_core::analysis::sampled_loop::{Region, Robust};
 use flexsc_core::law::Extra;
@@ -8,19 +8,19 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, 
 use super::tuning::Tuning;
 use crate::plot::readable;
 
-/// Settling times beyond so many limits are not shown.
+/// Largest settling time that is shown, as a multiple of the limit.
 const BEYOND: f64 = 3.0;
 
-/// What is drawn.
+/// Data of the figures.
 struct Drawn<'a> {
     tuning: &'a Tuning,
-    /// The region at each frequency.
+    /// Region at each frequency.
     regions: &'a [Region],
-    /// The robust gains, and the part by which the model may be off; none if they were not asked for.
+    /// Robust gains and the model's relative error; `None` if they were not requested.
     robust: Option<(&'a [Robust], f64)>,
 }
 
-/// The figures.
+/// Returns all figures.
 pub fn all(tuning: &Tuning, regions: &[Region], robust: Option<(&[Robust], f64)>) -> Vec<Named> {
     let (drawn, name) = (Drawn { tuning, regions, robust }, &tuning.name);
     vec![(format!("{name}-tune-region"), drawn.region()), (format!("{name}-tune-settling"), drawn.settling())]
@@ -47,7 +47,7 @@ impl Drawn<'_> {
             Layer::new("", colour::SKY, LayerShape::Line(1.0), upper),
         ];
         let highest = self.tuning.gains.values().last().copied().unwrap_or(self.tuning.gains.high);
-        // Where the region ends only because no higher gain was tried, its middle means little.
+        // If the region ends only at the highest tested gain, its middle is meaningless.
         if self.regions.iter().any(|region| region.gain.is_some_and(|gain| gain.1 >= highest)) {
             let level = vec![(x.range.start, highest), (x.range.end, highest)];
             layers.push(Layer::new("highest gain tried", colour::GREY, LayerShape::Dashes, level));
@@ -95,13 +95,13 @@ impl Drawn<'_> {
         FigureAxis::exact("frequency of the dominant mode (rad/s)", "", low..high)
     }
 
-    /// The scenario's own gain at the frequencies.
+    /// Returns the gain of the scenario's own extra loop at the frequencies.
     fn of(&self, own: &Extra) -> Vec<Point> {
         self.regions.iter().map(|region| (region.frequency_rad_s, own.gain(region.frequency_rad_s))).collect()
     }
 }
 
-/// A value over the frequency, with gaps where there is none.
+/// Returns a value over the frequency, with gaps where there is none.
 fn over<T>(rows: &[T], frequency: impl Fn(&T) -> f64, value: impl Fn(&T) -> Option<f64>) -> Vec<Point> {
     rows.iter().map(|row| (frequency(row), value(row).unwrap_or(f64::NAN))).collect()
 }

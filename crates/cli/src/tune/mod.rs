@@ -1,4 +1,4 @@
-//! `flexsc tune`: the gains of the extra loop that do, and a schedule of the best ones.
+//! `flexsc tune`: admissible gains of the extra loop, and a schedule of the best ones.
 
 mod figures;
 mod table;
@@ -65,7 +65,7 @@ fn part(name: &str, value: f64) -> Result<(), Failure> {
 }
 
 impl Args {
-    /// What the loop of a scenario comes to with the gains that are tried.
+    /// Computes the tuning of a scenario's loop over the given gains.
     pub fn results(&self, scenario: &Scenario) -> Result<Tuned, Failure> {
         let (of, law) = sampled(scenario)?;
         positive("--limit", self.limit)?;
@@ -101,7 +101,7 @@ impl Args {
         Ok(Tuned { tuning, found })
     }
 
-    /// The search for gains that do with the model off by a part.
+    /// Returns the search for gains that are admissible with a relative model error.
     fn search(&self, tuning: &Tuning, off: f64) -> Result<RobustSearch, Failure> {
         part("--robust", off)?;
         part("--margin", self.margin)?;
@@ -128,7 +128,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     args.drawing.check(&args.scenario.scenario)?;
     let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {
-        // Where there is none, nothing is drawn.
+        // Without a schedule, no figure is drawn.
         let schedule = tuned.extra()?;
         args.drawing.save(|| tuned.figures())?;
         return print(schedule.as_bytes());

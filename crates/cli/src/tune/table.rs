@@ -1,4 +1,4 @@
-//! Tuned gains for people.
+//! Printed tables of tuned gains.
 
 use std::io::Write;
 
@@ -7,7 +7,7 @@ use flexsc_core::analysis::sampled_loop::{Gains, Region, Robust};
 use crate::number::fixed;
 use crate::say;
 
-/// Prints the region.
+/// Prints the region of admissible gains.
 pub fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
     let Gains { low, high, step } = gains;
     say!(

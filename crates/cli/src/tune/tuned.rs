@@ -1,4 +1,4 @@
-//! What tuning comes to: the region of the gains or the robust ones, and the schedule that they make.
+//! Results of tuning: the region of the gains or the robust ones, and the resulting schedule.
 
 use flexsc_core::analysis::sampled_loop::{Region, Robust, midpoints};
 use flexsc_figure::Named;
@@ -9,22 +9,22 @@ use super::{figures, table};
 use crate::failure::Failure;
 use crate::results::Results;
 
-/// What was found.
+/// Admissible gains.
 pub enum Found {
-    /// The region of the gains.
+    /// Region of the gains at each frequency.
     Regions(Vec<Region>),
-    /// The gains that do with a model that is off by up to a part.
+    /// Gains that are admissible with a model error of up to `off`, relative.
     Robust { off: f64, rows: Vec<Robust> },
 }
 
-/// What tuning comes to.
+/// Results of tuning.
 pub struct Tuned {
     pub tuning: Tuning,
     pub found: Found,
 }
 
 impl Tuned {
-    /// Frequencies (rad/s) and gains of the schedule, where there is a gain.
+    /// Returns the frequencies (rad/s) and gains of the schedule, where there is a gain.
     fn schedule(&self) -> Vec<(f64, f64)> {
         match &self.found {
             Found::Regions(regions) => midpoints(regions),
@@ -34,7 +34,7 @@ impl Tuned {
         }
     }
 
-    /// The schedule as `[law.pd.extra]` of a scenario.
+    /// Returns the schedule as `[law.pd.extra]` of a scenario.
     pub fn extra(&self) -> Result<String, Failure> {
         let point = |(w, gain): &(f64, f64)| format!("    {{ frequency = {w:.6}, gain = {gain:.4} }},\n");
         let points: String = self.schedule().iter().map(point).collect();

@@ -1,30 +1,30 @@
-//! What `flexsc tune` works on.
+//! Input of `flexsc tune`.
 
 use flexsc_core::analysis::sampled_loop::{Gains, Loop, Region, Scaling, SettlingWindow, regions};
 use flexsc_core::law::Extra;
 
-/// What is tuned.
+/// Loop to tune, with the tested gains and the criterion.
 pub struct Tuning {
     /// Name of the scenario.
     pub name: String,
-    /// Its extra loop, if it has one.
+    /// Extra loop of the scenario, if it has one.
     pub own: Option<Extra>,
-    /// Its loop.
+    /// Sampled loop of the scenario.
     pub of: Loop,
     /// Frequencies of the dominant mode (rad/s).
     pub frequencies: Vec<f64>,
-    /// Which modes follow it.
+    /// Selection of the modes that are scaled with the dominant one.
     pub scaling: Scaling,
-    /// The gains that are tried.
+    /// Gains to test.
     pub gains: Gains,
-    /// What counts as settled.
+    /// Criterion of settling.
     pub window: SettlingWindow,
-    /// The longest settling time of the region (s).
+    /// Longest admissible settling time (s).
     pub limit: f64,
 }
 
 impl Tuning {
-    /// The region of the gains at each frequency.
+    /// Computes the region of the gains at each frequency.
     pub fn regions(&self) -> Vec<Region> {
         regions(&self.of, &self.frequencies, self.scaling, self.gains, self.window, self.limit)
     }

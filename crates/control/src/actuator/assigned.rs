@@ -51,7 +51,7 @@ macro_rules! keys {
             /// Axes about which it executes the demand, on a body with three; default: all.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             axes: Option<Vec<Axis>>,
-            /// Its share of the demand about these axes; default: 1. The shares of all actuators about an axis must sum to 1.
+            /// Share of the demand about these axes; default: 1. The shares of all actuators about an axis must sum to 1.
             #[serde(default, skip_serializing_if = "Option::is_none")]
             share: Option<Share>,
             /// For `jets` or `magnetorquers`: how they unload the `wheels` or `control_moment_gyros` of the list. They then execute no demand.

@@ -7,9 +7,9 @@ use super::per_wheel::PerWheel;
 use crate::document::Fault;
 use crate::quantity::{NonNegative, shortest};
 
-/// Coulomb friction is at most so many times the torque of a motor, which is then stalled ...
+/// Largest ratio of the Coulomb friction to the torque of a motor, which is then stalled ...
 const STALLS: f64 = 10.0;
-/// ... and slows a wheel by no more (rad/s²), or it would stop within a step of the motion.
+/// ... and largest deceleration of a wheel by it (rad/s²), or the wheel would stop within a step of the motion.
 const STOPS: f64 = 500.0;
 
 /// Bearing friction: c Omega + t sgn Omega for a turning wheel, and up to the breakaway torque for a wheel at rest.
@@ -53,7 +53,7 @@ impl Friction {
         Ok(())
     }
 
-    /// What it is to wheels of this inertia (kg m²) with motors of this torque (N m), if that is limited.
+    /// Checks the friction against the wheels' inertia (kg m²) and the largest torque of their motors (N m), if any.
     ///
     /// # Errors
     /// A key within the friction, and why.

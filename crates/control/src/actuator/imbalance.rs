@@ -54,7 +54,7 @@ pub struct Harmonic {
     /// Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase).
     #[serde(default)]
     pub axial: NonNegative,
-    /// Its phase (rad).
+    /// Phase of the harmonic (rad).
     #[serde(default)]
     pub phase: Finite,
 }

@@ -47,7 +47,7 @@ pub struct Pulsing {
     /// End of the current pulse about each axis.
     ends: [Option<Instant>; 3],
     fuel: f64,
-    /// The same about each axis.
+    /// Propellant used about each axis (kg).
     fuels: [f64; 3],
     /// Number of pulses since the start.
     pulses: u64,

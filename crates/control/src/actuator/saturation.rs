@@ -13,7 +13,7 @@ const LATE: f64 = 0.1;
 const STEADY: f64 = 0.5;
 /// A wheel cycles if it is at each of its torque limits for more than this part of the end ...
 const RARE: f64 = 0.025;
-/// ... with so many changes from one to the other, two whole periods, ...
+/// ... with at least this number of changes from one to the other, two whole periods, ...
 const REVERSALS: u64 = 4;
 /// ... and in the second half of the end more than this part as often as in the first.
 const DECAY: f64 = 0.5;
@@ -30,7 +30,7 @@ pub enum EndState {
 }
 
 impl EndState {
-    /// Its name among the metrics.
+    /// Returns the state's name among the metrics.
     pub fn word(self) -> &'static str {
         match self {
             Self::Free => "free",

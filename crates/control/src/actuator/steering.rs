@@ -20,7 +20,8 @@ pub enum Steering {
     /// Smallest sum of squared gimbal rates that gives the torque, by the pseudo-inverse: the rates grow without limit towards
     /// singular angles.
     PseudoInverse,
-    /// The same with a weight on the rates that grows towards singular angles, where the torque then differs from the demanded one.
+    /// Pseudo-inverse with a weight on the rates that grows towards singular angles, where the torque then differs from
+    /// the demanded one.
     #[default]
     SingularityRobust,
 }

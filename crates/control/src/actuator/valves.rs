@@ -17,7 +17,7 @@ pub(super) struct Valves {
     fuel: f64,
     since: Instant,
     flow: f64,
-    /// The same of each thruster.
+    /// Propellant used by each thruster (kg), and its flow (kg/s).
     fuels: Vec<f64>,
     flows: Vec<f64>,
 }
@@ -96,7 +96,7 @@ impl Valves {
         self.fuel + until.sum::<f64>()
     }
 
-    /// The same of each thruster.
+    /// Returns the propellant used by each thruster (kg).
     pub fn fuels(&self, remaining: impl Fn(usize) -> f64) -> Vec<f64> {
         let of = |(index, (fuel, flow)): (usize, (&f64, &f64))| fuel + flow * remaining(index);
         self.fuels.iter().zip(&self.flows).enumerate().map(of).collect()

@@ -22,7 +22,7 @@ pub struct RandomSearch {
     /// attitude law, `yaw.pd.k_d` of a law `per_axis`.
     #[serde(default = "k_t", skip_serializing_if = "is_k_t")]
     pub tunes: String,
-    /// What is measured over each window and made smaller.
+    /// Quantity that is measured over each window and made smaller.
     #[serde(default, skip_serializing_if = "Objective::is_default")]
     pub objective: Objective,
     /// Length of the windows (s); for `envelope_mean`, they are those of the `[estimator.envelope]`.

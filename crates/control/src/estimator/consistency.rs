@@ -1,7 +1,7 @@
 //! Consistency: where normalised errors squared of a filter lie whose covariance fits them (\[BarShalom01\]).
 
-/// Between these chi-square of so many degrees of freedom lies with a probability of 95 %. Wilson and Hilferty: the cube root of it over
-/// its degrees of freedom is about normal.
+/// Returns the bounds between which chi-square with `degrees` degrees of freedom lies with a probability of 95 %.
+/// Wilson and Hilferty: the cube root of chi-square over its degrees of freedom is about normal.
 pub fn chi_square(degrees: usize) -> [f64; 2] {
     /// Where a normal variable lies with a probability of 95 %, in standard deviations.
     const INSIDE: f64 = 1.959_963_984_540_054;

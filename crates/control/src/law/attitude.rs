@@ -50,7 +50,7 @@ pub struct AttitudeLaw {
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Integral {
-    /// Its time constant t (s).
+    /// Time constant t of the integral (s).
     pub time: Positive,
     /// Largest integral (rad s). The integral also stops while the torque or the rate is at its limit and the error would
     /// increase it.

@@ -24,7 +24,7 @@ impl Measure {
         *self == Self::default()
     }
 
-    /// Returns the error about the axis of a belief (rad).
+    /// Returns the error about the axis of a state estimate (rad).
     pub fn error(self, belief: &Belief) -> f64 {
         // Estimates about single axes may add up to more than half a turn.
         let angle = belief.whole.min(PI);

@@ -44,7 +44,7 @@ pub struct Pd {
     /// Numbers as an adaptation has tuned them.
     #[serde(skip)]
     tuned: TunedNumbers,
-    /// What was fed back at the last sample.
+    /// Error that was fed back at the last sample.
     #[serde(skip)]
     last: Option<f64>,
 }

@@ -11,7 +11,7 @@
 //! with b = `braking` and `least` the rate change by the smallest pulse. Along k d the body can brake in time from the
 //! largest rate. Weak jets, for which that line is flat, do not use it alone: they return at the rate slow until the
 //! parabola, from which they can brake. Beyond the edge a return rate of at least r/2 is tolerated; since slow is at
-//! least 2 least, no body comes to rest beyond the dead zone. Within the edge a rate outwards is tolerated while the
+//! least 2 least, no body stops beyond the dead zone. Within the edge a rate outwards is tolerated while the
 //! jets can stop the body before the edge, and none above `switch_on`. If a pulse changes more than `switch_on` or half
 //! of `rate_limit`, these are raised to it. Parabolas are as in \[Wie08\]; the rest is our design.
 

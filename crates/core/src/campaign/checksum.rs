@@ -6,7 +6,7 @@ use crate::random::fnv1a_of;
 
 /// The name of the note.
 pub const NAME: &str = "flexsc.checksum";
-/// What the note says before the checksum is known.
+/// Digits of the note before the checksum is known.
 pub const BLANK: &str = "0000000000000000";
 /// The bytes before the digits: Thrift's compact form of a name of 15 bytes, and of a text of 16 that follows.
 const BEFORE: &[u8] = b"\x18\x0fflexsc.checksum\x18\x10";

@@ -24,9 +24,9 @@ pub struct PointDesign {
     /// How many points a Latin hypercube of the `[uncertain]` keys has; 0 for others.
     #[serde(default)]
     pub hypercube: u64,
-    /// So many runs of each point, which differ in nothing but their noise.
+    /// Number of runs of each point, which differ only in their noise.
     pub replicas: u64,
-    /// What the points are combined from.
+    /// Blocks whose points are combined.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub blocks: Vec<DesignBlock>,
 }
@@ -56,7 +56,7 @@ pub enum DesignBlock {
     List {
         /// The key.
         key: String,
-        /// Its values.
+        /// Values of the key.
         values: Vec<f64>,
     },
     /// Points, each with a value of every key.

@@ -4,7 +4,7 @@
 //! ```text
 //! manifest.toml                               Manifest: version, scenario, design, runs, hash
 //! runs/part-0000000000-0000002048.parquet     a row a run, and a checksum; each written beside its place, synced and renamed
-//! .lock                                       held by the command at work there, released by the kernel on its death
+//! .lock                                       held by the command that writes, released by the kernel on its death
 //! statistics.csv                              of all rows, written by the command
 //! ```
 //!
@@ -50,10 +50,10 @@ pub const STATISTICS: &str = "statistics.csv";
 const STATISTICS_BEGIN: &[u8] = b"metric,unit,runs,mean,sd,";
 /// Name of the file that the writing command locks.
 const LOCK: &str = ".lock";
-/// Who only looks whether the lock is held has it for a moment: so often, and after such a time, it is tried again.
+/// Number of attempts at the lock, with a pause after each: a process that only checks the lock holds it briefly.
 const ATTEMPTS: u32 = 10;
 const MOMENT: Duration = Duration::from_millis(20);
-/// What helps where a part is damaged.
+/// Advice for a damaged part.
 const AGAIN: &str = "delete this file and repeat the command: its runs are computed again";
 
 /// A part's first run and the one after its last, and the size and the time of its file.

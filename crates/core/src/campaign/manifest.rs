@@ -19,7 +19,7 @@ const MARK: &str = "# A campaign of flexsc: what the parts beside it are made fr
 /// Largest size of a manifest (bytes).
 pub const LARGEST: u64 = 1 << 30;
 
-/// What a campaign's rows are made from, and which of its runs are wanted.
+/// Everything that determines a campaign's rows, and the range of its runs that are wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Manifest {
@@ -27,7 +27,7 @@ pub struct Manifest {
     pub format: u32,
     /// The version of flexsc: another one may compute other digits.
     pub flexsc: String,
-    /// What identifies the campaign: a hash of version, scenario, metrics and design.
+    /// Hash of version, scenario, metrics and design, which identifies the campaign.
     pub hash: String,
     /// The first run.
     pub from: u64,

@@ -89,7 +89,7 @@ impl<'a> Merge<'a> {
         Ok(())
     }
 
-    /// What makes the rows of all directories.
+    /// Returns the work that computes the rows of all directories.
     pub fn work(&self) -> &super::Work {
         self.all[0].work()
     }

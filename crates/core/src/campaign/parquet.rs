@@ -166,7 +166,7 @@ fn write_column<W: io::Write + Send>(
     writer.close()
 }
 
-/// What the library makes of a file.
+/// Returns the result of the Parquet library; its errors and panics become I/O errors.
 fn parsed<T>(read: impl FnOnce() -> Result<T, ParquetError>) -> io::Result<T> {
     match contained(read) {
         Some(done) => done.map_err(other),

@@ -27,10 +27,10 @@ use panel::LayoutPanel;
 /// Number of panels above which a layout has tabs.
 const MOST_PANELS: usize = 8;
 
-/// A curve of so many points is drawn as points: up to about one for each pixel, viewers mark each point of a line with a
-/// black disc, and that many discs hide the line and its colour.
+/// Number of points of a curve that is drawn as points: up to about one for each pixel, viewers mark each point of a
+/// line with a black disc, and that many discs hide the line and its colour.
 const FEW: std::ops::Range<f64> = 100.0..1000.0;
-/// The topics that are told once in each period of the log.
+/// Topics that are logged once in each period of the log.
 const AT_EACH_PERIOD: [&str; 20] = [
     "/attitude",
     "/bearings",

@@ -141,7 +141,7 @@ fn estimator(scenario: &Scenario, body: &Planar) -> Vec<LayoutPanel> {
             "Frequency of the dominant mode (rad/s)",
             &[("frequency_rad_s", "as the law reads it"), ("true_frequency_rad_s", "true")],
         ),
-        plot("deviation", "Its standard deviation (rad/s)", &[("frequency_sd_rad_s", "standard deviation")]),
+        plot("deviation", "Standard deviation (rad/s)", &[("frequency_sd_rad_s", "standard deviation")]),
         LayoutPanel::plot("dominant", "Dominant mode (rad)", dominant(scenario, body)),
         plot("nis", "NIS and NEES (1 if consistent)", &[("nis", "NIS"), ("nees", "NEES")]),
         LayoutPanel::states(

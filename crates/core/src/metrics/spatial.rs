@@ -33,7 +33,7 @@ pub struct SpatialMetrics {
     ways: Vec<Option<Sliding>>,
     heat: f64,
     fuel: f64,
-    /// The same by axis or by thruster, and whether by thruster.
+    /// Propellant used (kg) by axis or by thruster, and true if by thruster.
     fuels: (Vec<f64>, bool),
     /// Number of pulses, and number of cycles with any.
     firings: (u64, u64),

@@ -4,7 +4,7 @@ use toml::{Table, Value};
 
 use crate::document::{key, nearest};
 
-/// Of so many numbers one is looked for: of the elements of a large matrix none is meant.
+/// Largest number of paths that are compared with a misspelt key: elements of a large matrix are not meant.
 const MOST_PATHS: usize = 20_000;
 
 /// The key of a number that was probably meant by one that there is not.

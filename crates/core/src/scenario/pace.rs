@@ -40,8 +40,9 @@ const ALLOCATION_S: f64 = 5e-6;
 const ATTITUDE_FILTER: Pace = (1.2e-6, 0.0);
 const KALMAN: Pace = (1.5e-6, 0.0);
 const ADAPTIVE: Pace = (0.0, 1.5e-7);
-/// An operation with numbers of a matrix (s), and so many of an attitude filter with modes for each cube of its order.
+/// Time of an operation with numbers of a matrix (s).
 const PRODUCT_S: f64 = 1e-9;
+/// Number of such operations per cube of the order of an attitude filter with modes, at each sample.
 const ELASTIC_PRODUCTS: f64 = 25.0;
 
 impl Scenario {

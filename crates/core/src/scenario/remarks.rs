@@ -1,4 +1,4 @@
-//! What is accepted and probably a mistake.
+//! Remarks on values that are accepted but probably mistakes.
 
 use toml::{Table, Value};
 

@@ -48,7 +48,7 @@ pub struct PlanarScene {
     panels: ScenePanels,
     wheel: Option<SceneWheel>,
     plumes: Option<Burning>,
-    /// Largest torque so far (N m).
+    /// Largest torque since the start (N m).
     largest: f64,
     frames: FrameTransforms,
 }

@@ -9,7 +9,7 @@ use flexsc_motion::damping::Damping;
 use flexsc_motion::lanes::Real;
 
 impl<R: Real, D: Damping<R>> Flight<R, D> {
-    /// Begins a cycle of all lanes, and ends the runs of those that chatter; tells whether the flight goes on.
+    /// Begins a cycle of all lanes, and ends the runs of those that chatter. Returns true if the flight goes on.
     #[inline(always)]
     pub(super) fn cycle(&mut self, crew: &mut dyn Crew) -> bool {
         if self.cycles >= self.looked_at {

@@ -93,7 +93,7 @@ pub fn unit_at<'a>(schema: &'a Json, key: &str) -> Option<&'a str> {
     ends.iter().filter(|node| of_type(node.schema, "number")).find_map(|node| node.unit)
 }
 
-/// What a key may be, by its path.
+/// Returns the schema nodes that a key may have, by its path.
 fn ends_at<'a>(schema: &'a Json, key: &str) -> Vec<Node<'a>> {
     let mut nodes = vec![Node { schema, unit: None }];
     for part in key.split('.') {

@@ -77,7 +77,7 @@ const ALIASES: &[(&str, &str)] = &[
     ("tesla", "T"),
 ];
 
-/// What is accepted in a unit, for errors.
+/// Accepted parts of a unit, for error messages.
 pub const KNOWN: &str = "m, g, s, A, rad, N, Nm, Nms, T and Hz with prefixes from n to G, min, h, d, deg, arcmin, arcsec, mas and \
                          rpm, joined as in `N m s/rad` or `deg/sqrt(h)`";
 

@@ -72,7 +72,7 @@ pub fn told(wrong: &Wrong) -> String {
 const DISTRIBUTIONS: &str = "; a distribution is a table such as `{ normal = { mean = 0.25, sd = 0.01 } }`, \
                              `{ relative_normal = 0.1 }` or `{ uniform = [0.2, 0.3] }`";
 
-/// What is written as in other languages at a place that the parser does not understand.
+/// Returns a message about syntax of another language at a place that the parser does not understand.
 fn of_another_language(text: &str, place: usize) -> Option<String> {
     let (before, after) = text.split_at_checked(place)?;
     let line = before.rsplit('\n').next().unwrap_or(before);

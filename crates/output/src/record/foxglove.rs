@@ -111,11 +111,11 @@ rows! {
     }
     /// A rotation.
     Quaternion {
-        /// Its x component.
+        /// The x component.
         x: f64,
-        /// Its y component.
+        /// The y component.
         y: f64,
-        /// Its z component.
+        /// The z component.
         z: f64,
         /// Real part.
         w: f64,
@@ -146,9 +146,9 @@ rows! {
         parent_frame_id: String,
         /// Name of the frame.
         child_frame_id: String,
-        /// Its origin in the parent frame (m).
+        /// Origin in the parent frame (m).
         translation: Vector3,
-        /// Its attitude in the parent frame.
+        /// Attitude in the parent frame.
         rotation: Quaternion,
     }
     /// Poses of the frames.
@@ -191,7 +191,7 @@ rows! {
     CubePrimitive {
         /// Pose of its centre.
         pose: Pose,
-        /// Its edges (m).
+        /// Edges (m).
         size: Vector3,
         /// Colour.
         color: Color,
@@ -200,7 +200,7 @@ rows! {
     SpherePrimitive {
         /// Pose of its centre.
         pose: Pose,
-        /// Its diameters (m).
+        /// Diameters (m).
         size: Vector3,
         /// Colour.
         color: Color,
@@ -209,7 +209,7 @@ rows! {
     CylinderPrimitive {
         /// Pose of its centre.
         pose: Pose,
-        /// Its diameters and its height (m).
+        /// Diameters and height (m).
         size: Vector3,
         /// Fraction of the diameters at the lower end.
         bottom_scale: f64,
@@ -244,7 +244,7 @@ rows! {
     }
     /// A text.
     TextPrimitive {
-        /// Its pose.
+        /// Pose of the text.
         pose: Pose,
         /// Whether it faces who looks.
         billboard: bool,
@@ -271,19 +271,19 @@ rows! {
         frame_locked: bool,
         /// Remarks.
         metadata: Vec<KeyValuePair>,
-        /// Its arrows.
+        /// Arrows.
         arrows: Vec<ArrowPrimitive>,
-        /// Its boxes.
+        /// Boxes.
         cubes: Vec<CubePrimitive>,
-        /// Its spheres.
+        /// Spheres.
         spheres: Vec<SpherePrimitive>,
-        /// Its cylinders and cones.
+        /// Cylinders and cones.
         cylinders: Vec<CylinderPrimitive>,
-        /// Its lines.
+        /// Lines.
         lines: Vec<LinePrimitive>,
-        /// Its triangles.
+        /// Triangles.
         triangles: Vec<TriangleListPrimitive>,
-        /// Its texts.
+        /// Texts.
         texts: Vec<TextPrimitive>,
     }
     /// Contents of a scene.

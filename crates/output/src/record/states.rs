@@ -66,9 +66,9 @@ states! {
     }
     /// Whether active damping may use an observer.
     Trust {
-        /// Its innovations are too large.
+        /// Innovations of the observer are too large.
         Doubted = "doubted",
-        /// Its innovations are small enough.
+        /// Innovations of the observer are small enough.
         Trusted = "trusted",
     }
     /// Whether active damping acts about an axis.

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Mapping
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
@@ -70,6 +71,13 @@ class Metrics(dict[str, Any]):
         super().__init__(values)
         self._scenario = scenario
         self._meanings: dict[str, dict[str, str]] | None = None
+
+    def __eq__(self, other: object) -> bool:
+        import numpy as np
+
+        if not isinstance(other, Mapping):
+            return NotImplemented
+        return self.keys() == other.keys() and all(np.array_equal(self[name], other[name]) for name in self)
 
     def _meaning(self, name: str) -> dict[str, str]:
         if name not in self:

@@ -49,7 +49,7 @@ def toml(origin: str, key: str, value: object, depth: int = 0) -> str:
     if isinstance(value, str):
         return _quoted(value, refused)
     if isinstance(value, (date, time)):
-        return value.isoformat()
+        return value.isoformat().replace("+00:00", "Z")
     if isinstance(value, Part):
         return toml(origin, key, value.to_dict(), depth + 1)
     if isinstance(value, Mapping):

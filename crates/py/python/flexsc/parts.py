@@ -293,7 +293,7 @@ class Adaptation(_Part):
     tunes: str
     """The parameter, by its key within the law's table; of a law of your own, one of its `tunable`."""
     objective: str = "envelope_mean"
-    """What is measured over each window, as `objective` of `[adaptation.random_search]`."""
+    """Quantity measured over each window, as `objective` of `[adaptation.random_search]`."""
     window: float | None = None
     """Length of the windows (s); None for `envelope_mean`, which has those of the `[estimator.envelope]`."""
 

@@ -333,8 +333,8 @@ class Appendage(Part):
     points: Sequence[NamedPoint] | None = None
     """Named points of the appendage, measured from its root in its own axes."""
     modes: Sequence[ClampedMode] | str | None = None
-    """Its clamped modes: a table, or the path of a CSV file or of results of a finite-element program.
-    Without modes it is rigid.
+    """Clamped modes: a table, or the path of a CSV file or of results of a finite-element program. Without
+    modes it is rigid.
     """
     damping: float | Vector | None = None
     """Damping ratios of modes read from finite-element results."""
@@ -408,8 +408,8 @@ class Assigned(Part):
     axes: Sequence[Literal["roll", "pitch", "yaw"]] | None = None
     """Axes about which it executes the demand, on a body with three; default: all."""
     share: float | None = None
-    """Its share of the demand about these axes; default: 1. The shares of all actuators about an axis must
-    sum to 1.
+    """Share of the demand about these axes; default: 1. The shares of all actuators about an axis must sum
+    to 1.
     """
     unloads: Unloads | None = None
     """For `jets` or `magnetorquers`: how they unload the `wheels` or `control_moment_gyros` of the list.
@@ -602,7 +602,7 @@ class ClampedMode(Part):
     displacement: float | None = None
     """Modal displacement at the start (m sqrt(kg)). Default: 0.0."""
     rate: float | None = None
-    """Its rate at the start (m sqrt(kg)/s). Default: 0.0."""
+    """Modal rate at the start (m sqrt(kg)/s). Default: 0.0."""
     shapes: Mapping[str, Shape] | None = None
     """Shape of the mode at each point of the appendage, relative to the fixed root, by the name of the
     point.
@@ -814,7 +814,7 @@ class DragPlate(Part):
     area: float
     """Area (m²)."""
     normal: Vector
-    """Its outward normal in the body's axes, of any length."""
+    """Outward normal in the body's axes, of any length."""
     at: Vector
     """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
@@ -1118,7 +1118,7 @@ class Harmonic(Part):
     axial: float | None = None
     """Force along the axis per (rad/s)² (kg m), proportional to cos(k th + phase). Default: 0.0."""
     phase: float | None = None
-    """Its phase (rad). Default: 0.0."""
+    """Phase of the harmonic (rad). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1134,7 +1134,7 @@ class Hinge(Part):
     angle: float | None = None
     """Angle at the start (rad); at 0 the spring is relaxed. Default: 0.0."""
     rate: float | None = None
-    """Its rate at the start (rad/s). Default: 0.0."""
+    """Rate at the start (rad/s). Default: 0.0."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1213,7 +1213,7 @@ class Integral(Part):
     """The integral of the error."""
 
     time: float
-    """Its time constant t (s)."""
+    """Time constant t of the integral (s)."""
     limit: float
     """Largest integral (rad s). The integral also stops while the torque or the rate is at its limit and
     the error would increase it.
@@ -1323,7 +1323,7 @@ class LitPlate(Part):
     area: float
     """Area (m²)."""
     normal: Vector
-    """Its outward normal in the body's axes, of any length."""
+    """Outward normal in the body's axes, of any length."""
     at: Vector
     """Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial
     body.
@@ -1690,7 +1690,7 @@ class Periodic(Part):
     period: float | None = None
     """Period (s); about 5560 s for a station in a low orbit. Default: 5560.0."""
     phase: Vector | None = None
-    """Its phase at the start (rad)."""
+    """Phase at the start (rad)."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1830,7 +1830,7 @@ class RandomSearch(Part):
         "firings",
         "wheel_power_mean",
     ] | None = None
-    """What is measured over each window and made smaller."""
+    """Quantity that is measured over each window and made smaller."""
     window: float | None = None
     """Length of the windows (s); for `envelope_mean`, they are those of the `[estimator.envelope]`."""
     tolerance: float | None = None
@@ -2229,7 +2229,7 @@ class SpatialMode(Part):
     displacement: float | None = None
     """Modal displacement at the start (m sqrt(kg)). Default: 0.0."""
     rate: float | None = None
-    """Its rate at the start (m sqrt(kg)/s). Default: 0.0."""
+    """Modal rate at the start (m sqrt(kg)/s). Default: 0.0."""
     shapes: Mapping[str, Shape] | None = None
     """Shape of the mode at each point, by the name of the point."""
 

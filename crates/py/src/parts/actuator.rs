@@ -14,7 +14,7 @@ use super::instant::{Instant, span};
 use super::object::{Method, Object, numbers};
 use super::reading::Three;
 
-/// What an actuator knows of what is around it about an axis.
+/// Inertia, rate and period about an axis, as an actuator knows them.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Setting {
@@ -35,7 +35,7 @@ impl Setting {
     }
 }
 
-/// What laws demand from now on.
+/// Demands of the laws from now on.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct Demanded {
@@ -64,7 +64,7 @@ impl Demanded {
         self.demands.iter().map(value).collect()
     }
 
-    /// What they are.
+    /// The kinds of these numbers: `torque`, `change` or `moment`.
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
         let kind = |demand: &Demand| match demand {
@@ -185,7 +185,7 @@ impl Effector for Brought {
     }
 }
 
-/// An actuator at work.
+/// Run-time state of an actuator.
 #[derive(Debug)]
 struct Acting {
     method: Method,

@@ -66,7 +66,7 @@ impl Adapt for Brought {
     }
 }
 
-/// An adaptation at work.
+/// Run-time state of an adaptation.
 #[derive(Debug)]
 struct Learning {
     method: Method,

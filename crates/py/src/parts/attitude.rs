@@ -1,4 +1,4 @@
-//! What an attitude filter written in Python knows, beside the truth, for the log.
+//! Estimates of an attitude filter written in Python, next to the true values, for the log.
 
 use flexsc_core::attitude::Vector;
 use flexsc_core::estimator::attitude::AttitudeFilterState;
@@ -10,15 +10,15 @@ use pyo3::prelude::*;
 
 use super::object::{exactly, numbers};
 
-/// What a part tells: its filter, and what its last sample told that filter, if it measured the attitude.
+/// Result of a part: the state of its filter, and the innovation of its last sample, if that measured the attitude.
 type Told = (AttitudeFilterState, Option<Innovation>);
 
-/// What a sample told.
+/// Innovation of a sample.
 #[derive(Copy, Clone, Debug, Default)]
 pub struct Innovation {
     /// Measured less expected; 0 where there is no third number.
     off: [f64; 3],
-    /// Its normalised square, of two numbers times 3/2.
+    /// Normalised square of the innovation, of two numbers times 3/2.
     nis: f64,
     /// How many numbers it has.
     numbers: u64,
@@ -41,8 +41,8 @@ fn innovation(of: &Bound<'_, PyAny>) -> PyResult<Innovation> {
     Ok(Innovation { off: angles, nis, numbers: count as u64 })
 }
 
-/// The filter that a part tells of: attitude, bias and covariance, and the innovation of a sample that measured the attitude;
-/// nothing before it knows any.
+/// Reads the filter state that a part returns: attitude, bias and covariance, and the innovation of a sample that
+/// measured the attitude; `None` before there is one.
 pub fn told(of: &Bound<'_, PyAny>) -> PyResult<Option<Told>> {
     if of.is_none() {
         return Ok(None);
@@ -68,7 +68,7 @@ pub fn told(of: &Bound<'_, PyAny>) -> PyResult<Option<Told>> {
     Ok(Some((AttitudeFilterState { attitude: q / q.norm(), bias, covariance, swinging: None }, learnt)))
 }
 
-/// Its row of the log, where these are the true orientation and the true bias of the gyro (rad/s).
+/// Returns the filter's row of the log, for this true orientation and true bias of the gyro (rad/s).
 pub fn row((filter, learnt): &Told, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
     let Orientation::Attitude(truth) = truth else { return None };
     let bias = Vector::from(bias);

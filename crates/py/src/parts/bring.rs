@@ -21,7 +21,7 @@ pub fn beside_parts(py: Python<'_>, text: &str, name: &str, parts: Vec<Named>) -
     Scenario::new(name, flexsc_core::Scenario::from_document_beside(&document, &own))
 }
 
-/// Its parts that are written in Python, each with its role.
+/// Returns the parts of a scenario that are written in Python, each with its role.
 #[pyfunction]
 pub fn parts_of(py: Python<'_>, scenario: &Scenario) -> Vec<Named> {
     named(py, &scenario.inner.own_parts())

@@ -83,7 +83,7 @@ impl Rule for Brought {
     }
 }
 
-/// A law at work.
+/// Run-time state of a compiled law.
 #[derive(Clone, Debug)]
 struct Deciding {
     function: Function,

@@ -3,7 +3,7 @@
 use flexsc_core::random::{Seed, Stream as Engine};
 use pyo3::prelude::*;
 
-/// What the random numbers of a run come from.
+/// Source of the random numbers of a run.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Draws(pub Seed);

@@ -17,7 +17,7 @@ use super::instant::Instant;
 use super::object::{Method, Object, numbers, overrides};
 use super::reading::{Four, Reading, Three, angle, attitude};
 
-/// What an estimator knows of a scenario before a run.
+/// Data of a scenario that an estimator knows before a run.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone, Debug)]
 pub struct Known {
@@ -63,13 +63,13 @@ impl Known {
         self.angle_noise
     }
 
-    /// The same of the measured rate (rad/s) about each axis, if it is measured.
+    /// Standard deviation of the measured rate (rad/s) about each axis, if it is measured.
     #[getter]
     fn rate_noise(&self) -> Vec<Option<f64>> {
         self.rate_noise.clone()
     }
 
-    /// What the law about each axis reads.
+    /// Kind of estimates that the law about each axis reads.
     #[getter]
     fn reads(&self) -> Vec<&'static str> {
         self.reads.clone()
@@ -117,7 +117,7 @@ impl Taken {
         self.measured.clone()
     }
 
-    /// What each sensor measured now, in the order of the scenario; None of one that was not due, or silent.
+    /// Reading of each sensor now, in the order of the scenario; None of one that was not due, or silent.
     #[getter]
     fn readings(&self) -> Vec<Option<Reading>> {
         self.readings.clone()
@@ -212,14 +212,14 @@ impl Observe for Brought {
     }
 }
 
-/// An estimator at work.
+/// Run-time state of an estimator.
 #[derive(Debug)]
 struct Observing {
     method: Method,
     also: Also,
 }
 
-/// Writes what an estimator believes about each axis.
+/// Writes an estimator's state estimate about each axis.
 fn write(told: &Bound<'_, PyAny>, beliefs: &mut [Belief]) -> PyResult<()> {
     if told.is_none() {
         return Ok(());

@@ -1,4 +1,4 @@
-//! What a law written in Python answers.
+//! Answers of a law written in Python.
 
 use flexsc_core::guard::Guard;
 use flexsc_core::law::{Command, Guards, Hold as Engine, Phase};
@@ -13,7 +13,7 @@ use super::instant::{Instant, span};
 ///
 /// `Hold(torque)` holds a torque (N m; rad/s² on a body without inertia; of a wheel, units of its command);
 /// `acceleration` (rad/s²), `change` of the rigid rate (rad/s) and `moment` (A m²) take its place. The law is
-/// asked again `after` so many seconds, or at the instant `until`, or when the angle is `at_least` or `at_most` a
+/// asked again `after` this time (s), or at the instant `until`, or when the angle is `at_least` or `at_most` a
 /// level (rad), whichever is first; without a time after the law's `period`. `state` is what the log calls it.
 ///
 /// >>> import flexsc

@@ -14,7 +14,7 @@ use pyo3::types::PyAny;
 #[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Instant(pub Exact);
 
-/// A span of so many seconds, which must not be negative.
+/// Returns a span of `seconds` seconds, which must not be negative.
 pub fn span(seconds: f64, what: &str) -> PyResult<Span> {
     if seconds >= 0.0 && seconds.is_finite() {
         Ok(Span::from_seconds(seconds))

@@ -17,7 +17,7 @@ use super::hold::Hold;
 use super::instant::{Instant, span};
 use super::object::{Method, Object};
 
-/// What an actuator can do about an axis, as laws know it.
+/// Capability of an actuator about an axis, as laws know it.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Authority(EngineAuthority);
@@ -65,7 +65,7 @@ impl Event {
         Instant(self.now)
     }
 
-    /// The same in seconds.
+    /// Time of the event (s).
     #[getter]
     fn time(&self) -> f64 {
         self.now.seconds()
@@ -89,19 +89,19 @@ impl Event {
         self.belief.rate
     }
 
-    /// Where the body shall be now (rad).
+    /// Angle of the target now (rad).
     #[getter]
     fn goal_angle(&self) -> f64 {
         self.goal.at(self.now).0
     }
 
-    /// How fast it shall turn (rad/s).
+    /// Rate of the target (rad/s).
     #[getter]
     fn goal_rate(&self) -> f64 {
         self.goal.rate
     }
 
-    /// And how that shall change (rad/s²), of a target that the body is led to.
+    /// Acceleration of the target (rad/s²), if the body is led to it.
     #[getter]
     fn goal_acceleration(&self) -> f64 {
         self.goal.acceleration
@@ -261,7 +261,7 @@ impl Rule for Brought {
     }
 }
 
-/// A law at work.
+/// Run-time state of a law.
 #[derive(Debug)]
 struct Deciding {
     method: Method,

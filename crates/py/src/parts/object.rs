@@ -42,7 +42,7 @@ impl Object {
     }
 }
 
-/// A method of a part at work, or the error that ended it.
+/// Method of a part during a run, or the error that ended it.
 #[derive(Debug)]
 pub struct Method {
     /// The part, and its method.
@@ -87,7 +87,7 @@ impl Method {
         self.kept(call(self.at_work()?.0.0.bind(py)))
     }
 
-    /// What was told; an error is kept.
+    /// Returns the value of a call; an error is kept.
     fn kept<T>(&self, told: PyResult<T>) -> Option<T> {
         told.map_err(|error| self.halted.set(Halt::new(error))).ok()
     }
@@ -116,7 +116,7 @@ pub fn numbers(of: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
     of.try_iter()?.map(|number| number?.extract()).collect()
 }
 
-/// The same, exactly so many.
+/// Returns the numbers of a sequence, which must be exactly `N`.
 pub fn exactly<const N: usize>(of: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; N]> {
     let all = numbers(of)?;
     let count = all.len();

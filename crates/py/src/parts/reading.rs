@@ -1,4 +1,4 @@
-//! What there is to measure, and what sensors measured, for Python.
+//! True values and readings of sensors, for Python.
 
 use flexsc_core::attitude::Vector;
 use flexsc_core::sensor::{Orientation, Reading as Engine, Truth as EngineTruth, VectorSight};
@@ -29,8 +29,8 @@ pub fn attitude(at: &Orientation) -> Option<Four> {
     if let Orientation::Attitude(q) = at { Some(four(q)) } else { None }
 }
 
-/// What a sensor measured: the `angle` (rad) or the `attitude` (w, x, y, z), the true one of a sensor that tells neither;
-/// the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with what it is in `inertial` ones.
+/// Reading of a sensor: the `angle` (rad) or the `attitude` (w, x, y, z), the true one if the sensor measures neither;
+/// the `rate` (rad/s), three numbers or one; a `vector` in the body's axes with its value in `inertial` ones.
 ///
 /// >>> import flexsc
 /// >>> flexsc.Reading(angle=1e-3, rate=2e-6).rate
@@ -38,7 +38,7 @@ pub fn attitude(at: &Orientation) -> Option<Four> {
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Reading {
-    /// Where the body points, of a sensor that tells it.
+    /// Orientation of the body, of a sensor that measures it.
     at: Option<Orientation>,
     rate: Option<[f64; 3]>,
     sight: Option<VectorSight>,
@@ -154,7 +154,7 @@ impl Reading {
     }
 }
 
-/// What there is to measure at an instant.
+/// True values at an instant.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct Truth {

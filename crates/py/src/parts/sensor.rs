@@ -61,7 +61,7 @@ impl Instrument for Brought {
     }
 }
 
-/// A sensor at work.
+/// Run-time state of a sensor.
 #[derive(Debug)]
 struct Reads(Method);
 

@@ -8,8 +8,8 @@ pub const J2000: f64 = 946_728_000.0;
 /// Seconds of a day.
 pub const DAY: f64 = 86_400.0;
 
-/// Returns the angle of the meridian of Greenwich from the mean equinox (rad, 0 to 2 pi) so many nanoseconds after 1970, UTC: mean
-/// sidereal time by the formula of 1982, with UT1 = UTC.
+/// Returns the angle of the meridian of Greenwich from the mean equinox (rad, 0 to 2 pi) at `epoch_ns` nanoseconds
+/// after 1970, UTC: mean sidereal time by the formula of 1982, with UT1 = UTC.
 pub fn greenwich(epoch_ns: u64) -> f64 {
     let days = (epoch_ns as f64 / 1e9 - J2000) / DAY;
     let centuries = days / 36_525.0;

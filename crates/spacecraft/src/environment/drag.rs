@@ -38,7 +38,7 @@ pub struct Drag {
 pub struct Plate {
     /// Area (m²).
     pub area: Positive,
-    /// Its outward normal in the body's axes, of any length.
+    /// Outward normal in the body's axes, of any length.
     pub normal: [Finite; 3],
     /// Position of its centre (m): from the point O of a spacecraft, or from the centre of mass of a spatial body.
     pub at: [Finite; 3],

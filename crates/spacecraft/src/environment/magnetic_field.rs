@@ -38,7 +38,7 @@ impl Default for MagneticField {
 }
 
 impl MagneticField {
-    /// Returns the field with its meridian, of a scenario that begins so many nanoseconds after 1970, UTC.
+    /// Returns the field with its meridian, for a scenario that begins `epoch_ns` nanoseconds after 1970, UTC.
     #[must_use]
     pub fn at_epoch(mut self, epoch_ns: u64) -> Self {
         self.meridian = self.meridian.or_else(|| Finite::new(greenwich(epoch_ns)));

@@ -26,7 +26,7 @@ pub struct SkySight {
 }
 
 impl Sky {
-    /// The sky of an environment, for a run that lasts so long and begins so many nanoseconds after 1970, if its date is known.
+    /// Creates the sky of an environment for a run of this duration from `epoch_ns` nanoseconds after 1970, if known.
     pub fn new(environment: &Environment, duration: Span, epoch_ns: Option<u64>) -> Self {
         let sun = environment.sun.map(|sun| sun.direction(epoch_ns.unwrap_or(0)));
         let dated = |field: MagneticField| epoch_ns.map_or(field, |ns| field.at_epoch(ns));

@@ -31,7 +31,7 @@ pub enum Surface {
     Logs,
     /// Arguments of every command
     Arguments,
-    /// What viewers send to a live run
+    /// Messages of viewers to a live run
     Live,
     /// Parquet parts of campaigns, to everything that reads them
     Parts,

@@ -26,7 +26,7 @@ const COMMANDS: &[&str] = &[
     "merge c -o m.csv",
     "simulate s.toml --runs 12 -o c",
 ];
-/// What stands before the digits of the checksum.
+/// Bytes before the digits of the checksum.
 const BEFORE: &[u8] = b"flexsc.checksum\x18\x10";
 const DIGITS: usize = 16;
 

@@ -6,7 +6,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour}
 use super::super::readable;
 use super::table::{Key, Metric, Runs};
 
-/// So many values are marked each.
+/// Largest number of values that have a marker each.
 const MARKS: usize = 100;
 
 pub fn figure(runs: &Runs, metrics: &[&Metric], key: &Key) -> Figure {

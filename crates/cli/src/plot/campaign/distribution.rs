@@ -1,5 +1,5 @@
 //! Figure `distribution`: a metric over the runs of a campaign, as histogram and as empirical distribution, with the median
-//! and the 5 and 95 %.
+//! and the 5 % and 95 % quantiles.
 
 use flexsc_core::count::counted;
 use flexsc_core::statistics::quantile;
@@ -8,9 +8,9 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour,
 use super::super::readable;
 use super::table::{Metric, Runs};
 
-/// A histogram has no more bars, and no fewer.
+/// Least and largest number of bars of a histogram.
 const BARS: [f64; 2] = [5.0, 60.0];
-/// The axis of a histogram reaches as high at least.
+/// Least height of the axis of a histogram (runs).
 const LOWEST: usize = 5;
 
 pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
@@ -20,7 +20,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     let required = runs.required(metric);
     let ends = bars.iter().flat_map(|((from, to), _)| [*from, *to]);
     let x = FigureAxis::around(&name, unit, ends.chain(required.iter().map(|(most, _)| *most)));
-    // Numbers of runs are whole.
+    // The axis of run numbers has integer labels.
     let highest = bars.iter().map(|bar| bar.1).max().unwrap_or(0).max(LOWEST);
     let counts = FigureAxis::from_zero("runs", "", [highest as f64]);
     let parts = FigureAxis::exact("fraction of runs", "", 0.0..1.0);
@@ -61,15 +61,15 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     Figure { title: title(runs, &name, sorted.len()), panels, panel_height: 200 }
 }
 
-/// What it shows, over how many runs.
+/// Returns the title: the metric, and the number of runs.
 fn title(runs: &Runs, name: &str, count: usize) -> String {
     let without = runs.numbers.len() - count;
     let without = if without > 0 { format!(", {without} without") } else { String::new() };
     format!("{}: {name} ({}{without})", readable(&runs.name), counted(count, "run"))
 }
 
-/// The bars of a histogram over sorted values: their ends, and how many values are in each. Their width is 2 IQR/n^(1/3)
-/// (Freedman and Diaconis), rounded to 1, 2 or 5 times a power of ten.
+/// Returns the bars of a histogram over sorted values: their ends, and the number of values in each. The width is
+/// 2 IQR/n^(1/3) (Freedman and Diaconis), rounded to 1, 2 or 5 times a power of ten.
 fn bars(sorted: &[f64]) -> Vec<((f64, f64), usize)> {
     let (Some(low), Some(high)) = (sorted.first(), sorted.last()) else { return Vec::new() };
     let (low, range) = (*low, high - low);
@@ -80,7 +80,7 @@ fn bars(sorted: &[f64]) -> Vec<((f64, f64), usize)> {
     let wanted = 2.0 * quartiles / (sorted.len() as f64).cbrt();
     let [fewest, most] = BARS;
     let mut width = round_to_nice(wanted.clamp(range / most, range / fewest));
-    // Counts are whole.
+    // Bars over integers have integer widths.
     if sorted.iter().all(|value| value.fract() == 0.0) {
         width = width.max(1.0).round();
     }

@@ -1,5 +1,5 @@
-//! Figure `fan`: the main signals of many runs over time, from their logs: the median, and where half and nine tenths of the
-//! runs are.
+//! Figure `fan`: the main signals of many runs over time, from their logs: the median, and the ranges of half and of
+//! nine tenths of the runs.
 
 use std::collections::BTreeMap;
 use std::io::Write;
@@ -19,23 +19,23 @@ use super::super::time;
 use crate::failure::Failure;
 use crate::{progress, say};
 
-/// Quantiles are taken at so many instants, evenly apart.
+/// Number of evenly spaced instants at which quantiles are computed.
 const INSTANTS: usize = 801;
 
-/// A signal of a run over time.
+/// Signal of a run over time.
 struct Signal {
     name: String,
     unit: &'static str,
     line: Vec<Point>,
-    /// Whether a value holds until the next; else it is straight between them.
+    /// True if a value holds until the next one; otherwise values are interpolated linearly.
     held: bool,
 }
 
 /// Name, unit, and values at the instants.
 type Sampled = (String, &'static str, Vec<f64>);
 
-/// The logs of a directory by the names of their scenarios, each with two runs at least. One that cannot be read is left
-/// out, unless every log is needed.
+/// Returns the logs of a directory by the names of their scenarios, each with at least two runs. Unreadable logs are
+/// left out, unless every log is needed.
 pub fn logs(
     directory: &Path,
     files: &[String],
@@ -60,7 +60,7 @@ pub fn logs(
 }
 
 /// # Errors
-/// A log that is not accepted, and a run that cannot be repeated.
+/// An invalid log, or a run that cannot be repeated.
 pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
     let first = Story::read(&Log::open(&paths[0])?, &paths[0])?;
     let end = first.scenario.duration.seconds();
@@ -114,7 +114,7 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
     })
 }
 
-/// What is shown of a run.
+/// Returns the signals of a run that are shown.
 fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
     let log = Log::open(path)?;
     let story = Story::read(&log, path)?;
@@ -147,7 +147,7 @@ fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
     Ok(signals)
 }
 
-/// The number that is tuned, and the objective if that is not the envelope.
+/// Returns the tuned parameter, and the objective if it is not the envelope.
 fn of_adaptation(story: &Story) -> Vec<Signal> {
     let signal = |name: String, unit, line| Signal { name, unit, line, held: true };
     let mut signals = Vec::new();
@@ -164,7 +164,7 @@ fn of_adaptation(story: &Story) -> Vec<Signal> {
     signals
 }
 
-/// The gain at the end.
+/// Returns the gain at the end.
 fn last(story: &Story) -> Point {
     (story.end, story.steps.last().map_or(story.start.1, |step| step.gain))
 }
@@ -191,11 +191,11 @@ fn of_rotation(story: &Story, motion: &Motion) -> Vec<Signal> {
 }
 
 impl Signal {
-    /// Its values at some instants, which grow; NaN where it has none.
+    /// Returns the values at increasing instants; NaN outside the signal.
     fn at(&self, instants: &[f64]) -> Vec<f64> {
         let mut values = Vec::with_capacity(instants.len());
         for now in instants {
-            // A log counts time in whole nanoseconds.
+            // The times of a log are whole nanoseconds.
             let after = self.line.partition_point(|point| point.0 <= now + 1e-9);
             let value = match (after.checked_sub(1).map(|index| self.line[index]), self.line.get(after)) {
                 (Some((time, value)), _) if self.held && (after < self.line.len() || time >= now - 1e-6) => {

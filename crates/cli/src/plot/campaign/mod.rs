@@ -1,4 +1,4 @@
-//! The figures of a campaign's directory, and its worst runs.
+//! Figures of a campaign's directory, and its worst runs.
 
 mod curve;
 mod distribution;
@@ -24,9 +24,9 @@ use crate::failure::Failure;
 use crate::{print, say};
 use table::{Metric, Runs};
 
-/// So many metrics are drawn if none is named.
+/// Largest number of metrics that are drawn if none is named.
 const MOST: usize = 4;
-/// So many of the worst runs are listed for each metric.
+/// Number of worst runs that are listed for each metric.
 const WORST: usize = 3;
 
 pub fn run(args: &Args) -> Result<(), Failure> {
@@ -86,7 +86,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     target.save(&figures, args.style()?, args.json)
 }
 
-/// The figures of a campaign whose columns are at hand: of one kind, or the natural ones.
+/// Returns figures of a campaign from its columns: of one kind, or the default ones.
 pub fn of_columns(
     work: &Work,
     column: &dyn Fn(&str) -> Option<ColumnCells>,
@@ -98,7 +98,7 @@ pub fn of_columns(
     of_runs(&parts::of(work, read, path, metric)?, kind.as_slice(), metric, path)
 }
 
-/// The figures of the campaigns in a directory, and of its logs.
+/// Returns the figures of the campaigns in a directory, and of its logs.
 pub fn of_directory(directory: &Path, kinds: &[What], metric: &[String]) -> Result<Vec<Named>, Failure> {
     let files = files(directory)?;
     let mut tables = table::read(directory, &files)?;
@@ -132,7 +132,7 @@ fn of_runs(runs: &Runs, kinds: &[What], metric: &[String], path: &Path) -> Resul
     Ok(all.iter().filter(|what| kinds.contains(what)).flat_map(|what| drawn(*what, runs, &metrics)).collect())
 }
 
-/// The names of the files in a directory, sorted.
+/// Returns the sorted names of the files in a directory.
 fn files(directory: &Path) -> Result<Vec<String>, Failure> {
     let unread = |error: std::io::Error| Failure::Arguments(format!("{}: {error}", directory.display()));
     let entries =
@@ -143,7 +143,7 @@ fn files(directory: &Path) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// The figures that a table has.
+/// Returns the kinds of figures that a table has data for.
 fn drawable(runs: &Runs) -> Vec<What> {
     let swept = runs.swept().len();
     [
@@ -157,7 +157,7 @@ fn drawable(runs: &Runs) -> Vec<What> {
     .collect()
 }
 
-/// Those of them that are drawn if none is named.
+/// Returns the kinds of figures that are drawn if none is named.
 fn natural(runs: &Runs) -> Vec<What> {
     let wanted = match runs.swept().len() {
         1 => vec![What::Curve],
@@ -168,14 +168,14 @@ fn natural(runs: &Runs) -> Vec<What> {
     wanted.into_iter().filter(|what| drawable.contains(what)).collect()
 }
 
-/// The metrics that are named, or else the main ones that vary.
+/// Returns the named metrics, or else the main ones that vary.
 fn metrics<'a>(asked: &[String], path: &Path, runs: &'a Runs) -> Result<Vec<&'a Metric>, Failure> {
     let named = |name: &str| runs.metrics.iter().find(|metric| metric.meaning.name == name);
     if asked.is_empty() {
-        // What only repeats a key is left out.
+        // A metric that only repeats a key is left out.
         let tells =
             |metric: &&Metric| metric.varies() && runs.keys.iter().all(|key| key.values != metric.values);
-        // What is required comes first.
+        // A required metric comes first.
         let required = runs.requirement().map(|(name, _)| name);
         let others = MAIN.into_iter().filter(|name| Some(*name) != required);
         let main: Vec<_> = required.into_iter().chain(others).filter_map(named).filter(tells).collect();
@@ -195,7 +195,7 @@ fn metrics<'a>(asked: &[String], path: &Path, runs: &'a Runs) -> Result<Vec<&'a 
     asked.iter().map(metric).collect()
 }
 
-/// The figures of a kind, with their names.
+/// Returns the figures of a kind, with their names.
 fn drawn(what: What, runs: &Runs, metrics: &[&Metric]) -> Vec<(String, Figure)> {
     let name = |metric: &Metric| format!("{}-{}-{}", runs.name, what.name(), metric.meaning.name);
     let each = |figure: &dyn Fn(&Metric) -> Option<Figure>| {

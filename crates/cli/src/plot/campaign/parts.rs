@@ -1,4 +1,4 @@
-//! The campaigns of a directory that are kept as parts, read column by column.
+//! Campaigns that a directory keeps as parts, read column by column.
 
 use std::path::{Path, PathBuf};
 
@@ -9,10 +9,10 @@ use super::table::{Key, Metric, Runs, Source, Texts};
 use crate::campaign::{MAIN, parts};
 use crate::failure::Failure;
 
-/// More numbers than this are not held at once: then only the main metrics are read, and those that are named.
+/// Largest number of values in memory; beyond it only the main and the named metrics are read.
 const HELD: usize = 40_000_000;
 
-/// The campaign of a directory, and those of the directories in it.
+/// Reads the campaign of a directory, and those of its subdirectories.
 pub fn read(directory: &Path, files: &[String], named: &[String]) -> Result<Vec<Runs>, Failure> {
     let within = files.iter().map(|file| directory.join(file));
     let all: Vec<PathBuf> =
@@ -25,7 +25,7 @@ fn runs(path: &Path, named: &[String]) -> Result<Runs, Failure> {
     of(directory.work(), |names| directory.columns(names).map_err(parts::failure), path, named)
 }
 
-/// The runs of a campaign, whose columns are read by their names; `path` is where they are.
+/// Returns the runs of a campaign, whose columns are read by their names; `path` is the campaign's directory.
 pub fn of(
     work: &Work,
     read: impl Fn(&[&str]) -> Result<Vec<Option<ColumnCells>>, Failure>,

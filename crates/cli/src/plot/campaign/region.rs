@@ -7,16 +7,16 @@ use flexsc_figure::{Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RG
 use super::super::readable;
 use super::table::{Metric, Runs};
 
-/// So many shades.
+/// Number of shades.
 const SHADES: usize = 48;
-/// Where there is no value.
+/// Colour of cells without a value.
 const NONE: RGBColor = RGBColor(170, 170, 170);
-/// Part of a cell by which it reaches into the next.
+/// Overlap of a cell with the next one, as a fraction of the cell.
 const SEAM: f64 = 0.02;
-/// Positive values that lie further apart have shades of equal ratios.
+/// Ratio of positive values above which the shades are logarithmic.
 const FAR: f64 = 50.0;
 
-/// None if the values of two keys do not make up a grid.
+/// Returns the map; `None` if the values of the two keys do not form a grid.
 pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
     let swept = runs.swept();
     let [first, second] = swept[..] else { return None };
@@ -64,10 +64,10 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
     Some(Figure { title, panels: vec![panel], panel_height: 420 })
 }
 
-/// Shades of values, and the axis with their unit.
+/// Scale of the shades, and the axis with the unit of the values.
 struct Classes {
     axis: FigureAxis,
-    /// The least and the largest value, or their logarithms.
+    /// Least and largest value, or their logarithms.
     ends: [f64; 2],
     by_ratio: bool,
 }
@@ -80,7 +80,7 @@ impl Classes {
         Self { axis: FigureAxis::exact(name, unit, low..high), ends, by_ratio }
     }
 
-    /// Where a value lies, from 0 to 1.
+    /// Returns the position of a value on the scale, from 0 to 1.
     fn place(&self, value: f64) -> f64 {
         let [low, high] = self.ends;
         let value = if self.by_ratio { value.log10() } else { value };
@@ -91,7 +91,7 @@ impl Classes {
         ((self.place(value) * SHADES as f64) as usize).min(SHADES - 1)
     }
 
-    /// The nice values, each at the limit of two shades that is nearest.
+    /// Returns labels at round values, each at the nearest limit between two shades.
     fn texts(&self) -> Vec<String> {
         let nice: Vec<f64> = if self.by_ratio {
             (-20..20).flat_map(|power| [1.0, 2.0, 5.0].map(|nice| nice * 10_f64.powi(power))).collect()
@@ -104,7 +104,7 @@ impl Classes {
             let limit = (self.place(value) * SHADES as f64).round();
             if (1.0..SHADES as f64).contains(&limit) {
                 let shown = value / scale;
-                // Nice numbers have few digits, but for rounding.
+                // Removes rounding errors, so that round numbers have few digits.
                 let few = (shown * 1e6).round() / 1e6;
                 let text = if few == 0.0 && shown != 0.0 { format!("{shown:.0e}") } else { few.to_string() };
                 texts[limit as usize - 1] = text.replace('-', "−");
@@ -114,7 +114,7 @@ impl Classes {
     }
 }
 
-/// A border, a little further than it is: what is drawn later covers it, and no seam is left between cells.
+/// Returns a border moved slightly outwards: the next cell covers it, so that no seam remains between cells.
 fn beyond(borders: &[f64], index: usize) -> f64 {
     borders[index] + SEAM * (borders[index] - borders[index - 1])
 }
@@ -130,7 +130,7 @@ fn place(sorted: &[f64], value: f64) -> Option<usize> {
     sorted.binary_search_by(|other| other.total_cmp(&value)).ok()
 }
 
-/// The borders of the cells around values: halfway between them, and as far beyond the ends.
+/// Returns the borders of the cells around values: halfway between values, and as far beyond the first and the last.
 fn borders(values: &[f64]) -> Vec<f64> {
     let n = values.len();
     if n < 2 {

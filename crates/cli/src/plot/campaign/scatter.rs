@@ -1,11 +1,12 @@
-//! Figure `scatter`: a metric against each key that was swept, or else drawn, the most telling ones first.
+//! Figure `scatter`: a metric against each swept key, or else against each drawn key, the most strongly correlated
+//! first.
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::super::readable;
 use super::table::{Key, Metric, Runs};
 
-/// So many keys have a panel, at most.
+/// Largest number of keys with a panel each.
 const PANELS: usize = 4;
 
 pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
@@ -36,13 +37,13 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
     Figure { title, panels, panel_height: 180 }
 }
 
-/// The keys that it shows: those that are swept, else those that are drawn.
+/// Returns the keys of the figure: the swept ones, else the drawn ones.
 pub fn keys(runs: &Runs) -> Vec<&Key> {
     let swept = runs.swept();
     if swept.is_empty() { runs.drawn() } else { swept }
 }
 
-/// Spearman's rank correlation over the pairs of numbers; NaN if either does not vary.
+/// Returns Spearman's rank correlation over the pairs of numbers; NaN if either does not vary.
 fn correlation(a: &[f64], b: &[f64]) -> f64 {
     let pairs: Vec<(f64, f64)> =
         a.iter().copied().zip(b.iter().copied()).filter(|(a, b)| a.is_finite() && b.is_finite()).collect();
@@ -53,7 +54,7 @@ fn correlation(a: &[f64], b: &[f64]) -> f64 {
     sum(&a, &b) / (sum(&a, &a) * sum(&b, &b)).sqrt()
 }
 
-/// The rank of each value, from 1; equal ones share the mean of theirs.
+/// Returns the rank of each value, from 1; equal values share their mean rank.
 fn ranks(values: &[f64]) -> Vec<f64> {
     let mut order: Vec<usize> = (0..values.len()).collect();
     order.sort_by(|a, b| values[*a].total_cmp(&values[*b]));

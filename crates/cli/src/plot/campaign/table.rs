@@ -1,4 +1,4 @@
-//! The tables of a directory: `runs.csv`, its parts `runs-LO-HI.csv`, and those of several scenarios, `NAME-runs.csv`.
+//! Tables of a directory: `runs.csv`, its parts `runs-LO-HI.csv`, and those of several scenarios, `NAME-runs.csv`.
 
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -10,44 +10,44 @@ use flexsc_core::whole;
 use crate::campaign::SCENARIO;
 use crate::failure::Failure;
 
-/// The runs of a campaign, by their numbers.
+/// Runs of a campaign, in the order of their numbers.
 pub struct Runs {
-    /// The scenario's name, or else the directory's.
+    /// Name of the scenario, or else of the directory.
     pub name: String,
-    /// What the runs were drawn from, and where that is; none beside tables of before it was kept.
+    /// Scenario of the runs and its origin; `None` for tables of versions that did not keep the scenario.
     pub scenario: Option<(Scenario, Source)>,
     /// Numbers of the runs.
     pub numbers: Vec<u64>,
-    /// The keys that vary.
+    /// Keys that vary.
     pub keys: Vec<Key>,
-    /// The metrics that are numbers.
+    /// Metrics with numerical values.
     pub metrics: Vec<Metric>,
-    /// Why each run failed; empty if it did not.
+    /// Error of each run; empty if the run succeeded.
     pub errors: Vec<String>,
 }
 
-/// Where the scenario of a campaign is.
+/// Origin of the scenario of a campaign.
 pub enum Source {
-    /// In a file beside its tables.
+    /// File beside the campaign's tables.
     File(PathBuf),
-    /// In the directory of its parts.
+    /// Directory of the campaign's parts.
     Directory(PathBuf),
 }
 
-/// The cells of a column as text.
+/// Source of the cells' texts in a column.
 pub enum Texts {
-    /// As a table has them.
+    /// Texts of a table.
     Cells(Vec<String>),
-    /// Integers.
+    /// Integers, formatted from the values.
     Integers,
-    /// Numbers.
+    /// Numbers, formatted from the values.
     Numbers,
-    /// Goals that are met or not.
+    /// Goals, formatted as met or not.
     Goals,
 }
 
 impl Texts {
-    /// The text of a cell with this value; empty where there is none.
+    /// Returns the text of a cell with this value; empty without a value.
     fn of(&self, index: usize, value: f64) -> String {
         match self {
             Self::Cells(cells) => cells[index].clone(),
@@ -60,38 +60,38 @@ impl Texts {
     }
 }
 
-/// A key that varies.
+/// Key that varies.
 pub struct Key {
     pub name: String,
-    /// Its values as TOML, and as numbers.
+    /// Values of the key as TOML, and as numbers.
     pub texts: Texts,
     pub values: Vec<f64>,
-    /// Whether a sweep varies it; else it is drawn.
+    /// True if a sweep varies the key; otherwise it is drawn.
     pub swept: bool,
 }
 
-/// A metric.
+/// Metric of the runs.
 pub struct Metric {
     pub meaning: &'static Meaning,
-    /// Its values as the table has them, and as numbers; NaN where a run has none.
+    /// Values of the metric as in the table, and as numbers; NaN for a run without a value.
     pub texts: Texts,
     pub values: Vec<f64>,
 }
 
-/// The cells of a row, by their columns.
+/// Cells of a row by their columns.
 type Row = BTreeMap<String, String>;
 
-/// The columns of a table and its rows by the number of their run, each with the file that it is of.
+/// Columns of a table, and rows by the number of their run, each with its file.
 #[derive(Default)]
 struct Rows {
     header: Vec<String>,
     rows: BTreeMap<u64, (Row, PathBuf)>,
 }
 
-/// The campaigns of a directory, by their names.
+/// Reads the campaigns of a directory by their names.
 ///
 /// # Errors
-/// A table that cannot be read, or that is none of a campaign; parts that contradict one another.
+/// A table that cannot be read or is not of a campaign, or parts that contradict each other.
 pub fn read(directory: &Path, files: &[String]) -> Result<Vec<Runs>, Failure> {
     let mut tables: BTreeMap<String, Rows> = BTreeMap::new();
     for file in files {
@@ -102,10 +102,10 @@ pub fn read(directory: &Path, files: &[String]) -> Result<Vec<Runs>, Failure> {
     tables.into_iter().map(|(prefix, rows)| rows.into_runs(directory, &prefix)).collect()
 }
 
-/// What the name of a table begins with, if a file is one: nothing, or `NAME-`.
+/// Returns the prefix of a table's name, empty or `NAME-`; `None` if the file is not a table.
 fn prefix(file: &str) -> Option<String> {
     let stem = file.strip_suffix(".csv")?;
-    // What there is of a campaign that was stopped.
+    // The rows of a campaign that was stopped.
     let stem = stem.strip_suffix("-interrupted").unwrap_or(stem);
     let number = |text: &str| text.parse::<u64>().is_ok();
     let whole = match stem.rsplit('-').collect::<Vec<_>>()[..] {
@@ -133,7 +133,7 @@ impl Rows {
                 "is not the table of a campaign: its columns must be `run`, ..., `error`",
             ));
         }
-        // A part of nothing but failures has no metrics: the longer header has them.
+        // A part with failed runs only has no metrics: the longer header has them.
         let within = |short: &[String], long: &[String]| short.iter().all(|column| long.contains(column));
         if within(&self.header, &header) {
             self.header.clone_from(&header);
@@ -185,7 +185,7 @@ impl Rows {
             let values: Vec<f64> = texts.iter().map(number).collect();
             let known = scenario.as_ref().map(|(scenario, _)| scenario);
             if let Some(meaning) = metrics::meaning(header, known) {
-                // Words and lists are no numbers.
+                // Words and lists are not numbers.
                 let goal = metrics::goal::NAMES.contains(&meaning.name);
                 if goal || texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
                     all.push(Metric { meaning, texts: Texts::Cells(texts), values });
@@ -201,25 +201,26 @@ impl Rows {
     }
 }
 
-/// Whether a column describes a run, and is neither a key nor a metric.
+/// Returns true if a column describes a run, and is neither a key nor a metric.
 fn is_about(column: &str) -> bool {
     ["run", "seed", "error"].contains(&column)
 }
 
 impl Runs {
-    /// The keys that a sweep varies.
+    /// Returns the keys that a sweep varies.
     pub fn swept(&self) -> Vec<&Key> {
         self.keys.iter().filter(|key| key.swept).collect()
     }
 
-    /// The metric on which the scenario has a requirement, and the largest value allowed.
+    /// Returns the metric on which the scenario has a requirement, and its largest allowed value.
     pub fn requirement(&self) -> Option<(&'static str, f64)> {
         let (scenario, _) = self.scenario.as_ref()?;
         let most = scenario.reference.pointing.as_ref()?.rms?.get();
         Some(("pointing_rms_rad", most))
     }
 
-    /// The largest value allowed of a metric, with its name in a legend: how many of the runs that have a value meet it.
+    /// Returns the largest allowed value of a metric, and its legend: the fraction of the runs with a value that meet
+    /// it.
     pub fn required(&self, metric: &Metric) -> Option<(f64, String)> {
         let (_, most) = self.requirement().filter(|(name, _)| *name == metric.meaning.name)?;
         let sorted = metric.sorted();
@@ -228,45 +229,45 @@ impl Runs {
         Some((most, format!("requirement, met by {met} of {} runs ({part:.0} %)", sorted.len())))
     }
 
-    /// What an axis along a key is called: its name and its unit.
+    /// Returns the label of an axis along a key: its name and its unit.
     pub fn label_of(&self, key: &Key) -> String {
         let unit = self.scenario.as_ref().and_then(|(scenario, _)| scenario.unit_of(&key.name));
         unit.map_or_else(|| key.name.clone(), |unit| format!("{} ({unit})", key.name))
     }
 
-    /// The keys that are drawn.
+    /// Returns the keys that are drawn.
     pub fn drawn(&self) -> Vec<&Key> {
         self.keys.iter().filter(|key| !key.swept).collect()
     }
 }
 
 impl Key {
-    /// Its value in a run, as TOML.
+    /// Returns the key's value in a run, as TOML.
     pub fn text(&self, index: usize) -> String {
         self.texts.of(index, self.values[index])
     }
 }
 
 impl Metric {
-    /// Its value in a run; empty if there is none.
+    /// Returns the metric's value in a run as text; empty without a value.
     pub fn text(&self, index: usize) -> String {
         self.texts.of(index, self.values[index])
     }
 
-    /// Its values that there are, sorted.
+    /// Returns the metric's existing values, sorted.
     pub fn sorted(&self) -> Vec<f64> {
         let mut values: Vec<f64> = self.values.iter().copied().filter(|value| value.is_finite()).collect();
         values.sort_by(f64::total_cmp);
         values
     }
 
-    /// Whether runs differ in it.
+    /// Returns true if the metric differs between runs.
     pub fn varies(&self) -> bool {
         let sorted = self.sorted();
         sorted.first() != sorted.last()
     }
 
-    /// Its name in words, without the unit, and the unit.
+    /// Returns the metric's name in words, without the unit, and the unit.
     pub fn label(&self) -> (String, &'static str) {
         let unit = self.meaning.unit;
         let suffix = match unit {
@@ -281,11 +282,11 @@ impl Metric {
         };
         let name = self.meaning.name;
         let named = name.strip_suffix(suffix).unwrap_or(name);
-        // Of a body without inertia, whose torques are accelerations.
+        // A body without inertia has accelerations as torques.
         let bare = named.strip_suffix("_nm").or_else(|| named.strip_suffix("_nm_s"));
         let name = bare.map_or_else(|| named.to_owned(), |bare| bare.replace("torque", "acceleration"));
         let name = name.replace('_', " ");
-        // Prefixes are those of single units.
+        // SI prefixes are only for simple units.
         if unit.contains('²') { (format!("{name} ({unit})"), "") } else { (name, unit) }
     }
 }

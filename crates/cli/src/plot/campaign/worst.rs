@@ -1,4 +1,4 @@
-//! The worst runs of a campaign, and the command that repeats each with its log.
+//! Worst runs of a campaign, and the command that repeats each with its log.
 
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -10,20 +10,20 @@ use serde_json::json;
 use super::table::{Metric, Runs, Source};
 use crate::number::short;
 
-/// Metrics of which more is better.
+/// Metrics whose larger values are better.
 const MORE: [&str; 4] =
     ["envelope_reduction", "envelope_frozen_reduction", "nis_inside_95", "lock_lost_at_s"];
-/// Metrics that are 1 where all is well.
+/// Metrics whose ideal value is 1.
 const ONE: [&str; 2] = ["nees_mean", "nis_mean"];
-/// Metrics without a value if something never happened that should have.
+/// Metrics that have no value if an expected event never happened.
 const NEVER: [&str; 3] = ["settling_time_s", "energy_below_10pct_at_s", "energy_below_1pct_at_s"];
 
-/// How bad a value is; none if a metric is neither good nor bad, or has no value.
+/// Returns a measure of how bad a value is; `None` if the metric is neutral or has no value.
 fn badness(metric: &Metric, index: usize) -> Option<f64> {
     let (name, value) = (metric.meaning.name, metric.values[index]);
     let neutral = ["gain_", "cycle_", "pushes_"].iter().any(|start| name.starts_with(start));
     let bad = match name {
-        // A goal is 1 where it is met.
+        // A goal is 1 if it is met.
         _ if goal::NAMES.contains(&name) && value > 0.0 => f64::NAN,
         _ if neutral => f64::NAN,
         _ if MORE.contains(&name) => -value,
@@ -34,12 +34,12 @@ fn badness(metric: &Metric, index: usize) -> Option<f64> {
     (!bad.is_nan()).then_some(bad)
 }
 
-/// A run that is worth a look.
+/// Bad run that is worth repeating.
 struct Worst<'a> {
-    /// The metric, or `error`.
+    /// Name of the metric, or `error`.
     what: &'a str,
     run: u64,
-    /// The value, or why the run failed.
+    /// Value of the metric, or the error of the run.
     value: String,
     command: Option<String>,
 }
@@ -70,7 +70,7 @@ fn worst<'a>(runs: &'a Runs, directory: &Path, metrics: &[&'a Metric], most: usi
     worst
 }
 
-/// The command that repeats a run, with its log and a table of its own.
+/// Returns the command that repeats a run, with its log and a table of its own.
 fn command(runs: &Runs, directory: &Path, scenario: &Path, index: usize) -> String {
     let number = runs.numbers[index];
     let mut command = format!("flexsc simulate {}", quoted(&scenario.display().to_string()));
@@ -87,14 +87,14 @@ fn command(runs: &Runs, directory: &Path, scenario: &Path, index: usize) -> Stri
     command
 }
 
-/// The same of a run of a directory of parts.
+/// Returns the command that repeats a run of a directory of parts.
 fn command_from(directory: &Path, number: u64) -> String {
     let own = directory.join(format!("run-{number}"));
     let [directory, own] = [directory, &own].map(|path| quoted(&path.display().to_string()));
     format!("flexsc simulate --from {directory} --row {number} -o {own}")
 }
 
-/// A word as a shell takes it for one.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./=:+,@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -104,7 +104,7 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// The table for people.
+/// Returns the table for people.
 pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) -> String {
     let worst = worst(runs, directory, metrics, most);
     if worst.is_empty() {
@@ -118,7 +118,7 @@ pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) ->
             before = found.what;
         }
         let why = match found.value.parse() {
-            // A count is printed as it is.
+            // Counts are printed unchanged.
             Ok(number) if found.value.contains(['.', 'e']) => short(number),
             _ => found.value.lines().next().unwrap_or_default().to_owned(),
         };
@@ -130,10 +130,10 @@ pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) ->
     text
 }
 
-/// A line for machines for each.
+/// Returns a JSON line for each of the worst runs.
 pub fn lines(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) -> String {
     let line = |found: Worst<'_>| {
-        // Numbers as the table has them.
+        // Numbers have the digits of the table.
         let value = found.value.parse::<f64>().map_or_else(|_| json!(found.value), |value| json!(value));
         let worst = json!({
             "scenario": runs.name, "metric": found.what, "run": found.run, "value": value, "command": found.command,

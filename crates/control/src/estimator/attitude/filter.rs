@@ -226,7 +226,7 @@ fn unit(q: Quaternion<f64>) -> Quaternion<f64> {
     q / q.norm()
 }
 
-/// Returns the covariance after a correction: K P K' + `added` with K = 1 - [told, 0].
+/// Returns the covariance after a correction: K P K' + `added` with K = 1 - [`told`, 0].
 fn left(covariance: &Matrix6<f64>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) -> Matrix6<f64> {
     let kept = Matrix6x3::identity() - told;
     // The other columns of K are those of the identity.

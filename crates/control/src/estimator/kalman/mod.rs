@@ -143,7 +143,7 @@ pub enum Prior {
     /// Drawn at random about the true state with the standard deviations of `initial` and, about `ratio`, with `ratio_sd`.
     #[default]
     Drawn,
-    /// The true state: errors start at 0, and tell little about the filter.
+    /// The true state: errors start at 0, and say little about the filter.
     True,
 }
 

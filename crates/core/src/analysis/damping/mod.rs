@@ -94,8 +94,8 @@ impl PulsedDamping {
         None
     }
 
-    /// What is wrong with natural frequencies (rad/s) under this relay, if anything is: the pushes come too many turns of a
-    /// mode after their samples. The work grows with these turns, of which nothing is left in a real loop.
+    /// Returns why natural frequencies (rad/s) cannot be analysed with this relay: the pushes come too many turns of a
+    /// mode after their samples. The work grows with these turns, and real loops have few.
     pub fn beyond(&self, frequencies: &[f64]) -> Option<String> {
         let (fastest, delay) = (frequencies.iter().copied().fold(0.0, f64::max), self.timing.mean_delay());
         (fastest * delay > FARTHEST).then(|| {
@@ -112,7 +112,7 @@ impl PulsedDamping {
         frequencies.iter().map(|frequency| self.mode(*frequency)).collect()
     }
 
-    /// What the relay does to a mode of this natural frequency (rad/s).
+    /// Computes the effect of the relay on a mode of this natural frequency (rad/s).
     pub fn mode(&self, frequency: f64) -> DampedMode {
         let Self { timing, damping, acceleration, amplitude, threshold } = *self;
         let factor = timing.phase_factor(frequency);

@@ -16,7 +16,7 @@ labels! {
 }
 
 labels! {
-    /// What the search did at the end of a window.
+    /// Decision of the search at the end of a window.
     Decision {
         /// The first window: any direction.
         Begin = "begin",
@@ -101,7 +101,7 @@ rows! {
     OutputMotion {
         /// Value, in the unit given in `/params`.
         value: f64,
-        /// Its time derivative.
+        /// Time derivative of the value.
         rate: f64,
     }
     /// The observed coordinates, in the order of `/params`.
@@ -217,14 +217,14 @@ rows! {
         frequency_rad_s: f64,
         /// Amplitude, sqrt(x² + (x'/w)²) (rad).
         amplitude_rad: f64,
-        /// Its standard deviation (rad).
+        /// Standard deviation of the amplitude (rad).
         amplitude_sd_rad: f64,
     }
     /// A Kalman filter, after a sample.
     Estimate = "/estimator" {
         /// Index of the dominant mode.
         dominant: u64,
-        /// Its natural frequency as read by the law (rad/s).
+        /// Natural frequency of the dominant mode as read by the law (rad/s).
         frequency_rad_s: f64,
         /// Standard deviation of the estimated frequency (rad/s); 0 for a filter with known frequencies.
         frequency_sd_rad_s: f64,
@@ -234,9 +234,9 @@ rows! {
         displacement_rad: f64,
         /// Estimated frequency divided by its initial value.
         ratio: f64,
-        /// Its standard deviation.
+        /// Standard deviation of the ratio.
         ratio_sd: f64,
-        /// Its rate (1/s).
+        /// Rate of the ratio (1/s).
         ratio_rate_1_s: f64,
         /// Standard deviation of that rate (1/s).
         ratio_rate_sd_1_s: f64,

@@ -80,11 +80,11 @@ rows! {
     AttitudeEstimate = "/attitude_filter" {
         /// Real part of the estimated quaternion that turns vectors of the body into inertial ones.
         q_w: f64,
-        /// Its x component.
+        /// The x component of that quaternion.
         q_x: f64,
-        /// Its y component.
+        /// The y component of that quaternion.
         q_y: f64,
-        /// Its z component.
+        /// The z component of that quaternion.
         q_z: f64,
         /// About x, y and z.
         axes: Vec<AxisEstimate>,
@@ -105,7 +105,7 @@ rows! {
         rate_over_frequency: f64,
         /// Natural frequency in the filter, identified or taken as known (rad/s).
         frequency_rad_s: f64,
-        /// Its standard deviation (rad/s); 0 if it is taken as known.
+        /// Standard deviation of the frequency (rad/s); 0 if it is taken as known.
         frequency_sd_rad_s: f64,
         /// True value, with drives that at the start (rad/s).
         true_frequency_rad_s: f64,
@@ -142,14 +142,14 @@ rows! {
         gyros: Vec<ControlMomentGyro>,
         /// Angular momentum of their rotors along the body's x (N m s).
         momentum_x_nm_s: f64,
-        /// The same along y (N m s).
+        /// Angular momentum of their rotors along the body's y (N m s).
         momentum_y_nm_s: f64,
-        /// The same along z (N m s).
+        /// Angular momentum of their rotors along the body's z (N m s).
         momentum_z_nm_s: f64,
         /// Singularity measure: 0 where the gimbals give no torque in some direction.
         singularity: f64,
     }
-    /// What an accelerometer measures along one of its axes.
+    /// Sample of an accelerometer along one of its axes.
     Acceleration {
         /// Reading (m/s²).
         measured_m_s2: f64,
@@ -263,11 +263,11 @@ rows! {
     Pointing = "/pointing" {
         /// Real part of the quaternion that turns vectors of the body into inertial ones.
         q_w: f64,
-        /// Its x component.
+        /// The x component of the quaternion.
         q_x: f64,
-        /// Its y component.
+        /// The y component of the quaternion.
         q_y: f64,
-        /// Its z component.
+        /// The z component of the quaternion.
         q_z: f64,
         /// Roll, the third of the successive rotations about z, y and x to the attitude (rad).
         roll_rad: f64,

@@ -54,7 +54,7 @@ pub struct Appendage {
     /// Named points of the appendage, measured from its root in its own axes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
-    /// Its clamped modes: a table, or the path of a CSV file or of results of a finite-element program. Without modes it is
+    /// Clamped modes: a table, or the path of a CSV file or of results of a finite-element program. Without modes it is
     /// rigid.
     #[serde(default)]
     pub modes: ModeTable<ClampedMode>,

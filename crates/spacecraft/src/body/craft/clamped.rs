@@ -37,7 +37,7 @@ pub struct ClampedMode {
     /// Modal displacement at the start (m sqrt(kg)).
     #[serde(default)]
     pub displacement: Finite,
-    /// Its rate at the start (m sqrt(kg)/s).
+    /// Modal rate at the start (m sqrt(kg)/s).
     #[serde(default)]
     pub rate: Finite,
     /// Shape of the mode at each point of the appendage, relative to the fixed root, by the name of the point.

@@ -26,7 +26,7 @@ pub struct Hinge {
     /// Angle at the start (rad); at 0 the spring is relaxed.
     #[serde(default)]
     pub angle: Finite,
-    /// Its rate at the start (rad/s).
+    /// Rate at the start (rad/s).
     #[serde(default)]
     pub rate: Finite,
 }

@@ -21,7 +21,7 @@ pub struct Periodic {
     /// Period (s); about 5560 s for a station in a low orbit.
     #[serde(default = "orbit")]
     pub period: Positive,
-    /// Its phase at the start (rad).
+    /// Phase at the start (rad).
     #[serde(default)]
     pub phase: [Finite; 3],
 }

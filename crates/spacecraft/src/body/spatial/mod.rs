@@ -69,7 +69,7 @@ pub struct SpatialMode {
     /// Modal displacement at the start (m sqrt(kg)).
     #[serde(default)]
     pub displacement: Finite,
-    /// Its rate at the start (m sqrt(kg)/s).
+    /// Modal rate at the start (m sqrt(kg)/s).
     #[serde(default)]
     pub rate: Finite,
     /// Shape of the mode at each point, by the name of the point.
