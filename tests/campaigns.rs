@@ -33,7 +33,7 @@ fn a_campaign_writes_tables_and_logs() {
 
 #[test]
 fn the_runs_of_a_dated_scenario_have_its_date() {
-    let dir = Dir::holding("u.toml", &format!("epoch = 2026-03-20T14:46:00+01:00\n{UNCERTAIN}"));
+    let dir = Dir::holding("u.toml", format!("epoch = 2026-03-20T14:46:00+01:00\n{UNCERTAIN}"));
     dir.run("simulate u.toml --runs 2 -o out --log events").exits(0).says(&["2 runs"]);
     let toml = dir.run("log scenario out/u-1.mcap").exits(0).out;
     assert!(toml.contains("\nepoch = 2026-03-20T14:46:00+01:00\n"), "{toml}");

@@ -176,7 +176,7 @@ fn paths_in_the_documentation_exist() {
         texts.push((name.to_owned(), fs::read_to_string(Path::new(ROOT).join(name)).expect("text")));
     }
     for (name, text) in all_sources() {
-        let docs: String = text.lines().filter_map(doc).map(|line| format!("{line}\n")).collect();
+        let docs = text.lines().filter_map(doc).collect::<Vec<_>>().join("\n");
         texts.push((name, docs));
     }
     let mut missing = Vec::new();

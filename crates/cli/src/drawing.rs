@@ -101,7 +101,7 @@ impl Format {
 
 /// Target of figures.
 pub enum Target {
-    /// A file in the format of its extension, where several figures form a sheet; true replaces another file there.
+    /// A file with its format, where several figures form a sheet; the flag is true if another file may be replaced.
     File(PathBuf, Format, bool),
     /// A directory with a file for each figure and format.
     Directory(PathBuf, Format),

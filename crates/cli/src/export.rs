@@ -125,7 +125,7 @@ enum Cells<'a> {
     Within(usize, &'a [u32], Rc<[usize]>),
 }
 
-/// Flattens columns to such as `modes[0].displacement_rad`, with the exact time instead of its two parts.
+/// Returns columns without nesting, such as `modes[0].displacement_rad`, with the exact time instead of its two parts.
 fn flat(columns: &Columns) -> Result<Vec<Flat<'_>>, String> {
     let mut flat = Vec::new();
     let parts = (columns.get("time_whole_s"), columns.get("time_fs"));

@@ -154,7 +154,7 @@ fn shortened(text: &str) -> String {
         let zeros = "0".repeat(MOST_ZEROS);
         match number.parse::<f64>() {
             Ok(value) if number.contains(&zeros) && !before.ends_with(|c: char| c.is_alphanumeric()) => {
-                all.push_str(&format!("{value:e}"));
+                let _ = write!(all, "{value:e}");
             }
             _ => all.push_str(number),
         }

@@ -153,7 +153,7 @@ mod tests {
     fn numbers_have_four_digits_at_most() {
         let cases = [
             (30.237_722_111, "30.24"),
-            (1.570_796_326_8, "1.571"),
+            (std::f64::consts::FRAC_PI_2, "1.571"),
             (19.799_999_999_999_997, "19.8"),
             (12.0, "12"),
             (18000.0, "18000"),
@@ -173,7 +173,7 @@ mod tests {
     #[test]
     fn units_fit_the_size() {
         let engineering = [
-            (0.523_598_775_598_3, "rad", "30 deg"),
+            (std::f64::consts::FRAC_PI_6, "rad", "30 deg"),
             (1.979e-5, "rad", "4.082 arcsec"),
             (2.269e-11, "rad", "22.69 prad"),
             (0.0, "rad", "0 deg"),

@@ -34,8 +34,9 @@ pub struct Lines {
     began: WallInstant,
     steps: u64,
     unit: &'static str,
-    /// Number of steps completed before; below, the time (s) at which the next line is due.
+    /// Number of steps completed before.
     before: u64,
+    /// Time since the start (s) at which the next line is due.
     due: f64,
 }
 

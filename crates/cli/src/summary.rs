@@ -3,6 +3,7 @@
 mod one_axis;
 mod three_axes;
 
+use std::fmt::Write as _;
 use std::io::Write;
 
 use flexsc_core::Scenario;
@@ -158,7 +159,7 @@ impl Summary<'_> {
         );
         if states > 0 {
             let [low, high] = Estimator::inside(states);
-            text.push_str(&format!("; 95 % of the samples within NEES {low:.2} to {high:.2}"));
+            let _ = write!(text, "; 95 % of the samples within NEES {low:.2} to {high:.2}");
         }
         text + ")"
     }

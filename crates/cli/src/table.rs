@@ -25,11 +25,13 @@ pub struct Table {
     lines: Vec<u8>,
     /// Number of bytes of the written lines.
     written: u64,
-    /// True if the lines have a row in addition to the header.
+    /// True if the written lines include a row, not only the header.
     any: bool,
     /// Names of the metrics, known from the first run that has any; earlier rows wait for it.
     metrics: Option<Vec<&'static str>>,
+    /// Rows of runs without metrics that wait for the header.
     waiting: Vec<Vec<String>>,
+    /// Time of the last write.
     flushed: Instant,
 }
 
@@ -41,7 +43,7 @@ impl Table {
         Ok(Self { path, partial, lines, written: 0, any: false, metrics: None, waiting, flushed })
     }
 
-    /// Writes the buffered rows to the file unless the last write was within [`FLUSH`].
+    /// Writes the buffered rows to the file unless the last write was less than [`FLUSH`] ago.
     pub fn flush_in_time(&mut self) -> Result<(), Failure> {
         if self.flushed.elapsed() >= FLUSH {
             self.flushed = Instant::now();

@@ -28,7 +28,7 @@ pub struct Running {
 }
 
 impl Running {
-    /// Adds a value; NaN is ignored.
+    /// Adds a value; a value that is not finite is ignored.
     pub fn add(&mut self, value: f64) {
         if !value.is_finite() {
             return;
@@ -135,7 +135,7 @@ impl Live {
         self.show();
     }
 
-    /// Updates the table unless the last update was within [`AGAIN`].
+    /// Updates the table unless the last update was less than [`AGAIN`] ago.
     pub fn show(&mut self) {
         if self.bar.is_hidden() {
             return self.lines.show(self.bar.position());

@@ -52,8 +52,8 @@ pub fn runs(study: &Campaign, range: &Range<u64>) -> Vec<Range<u64>> {
 }
 
 impl Points {
-    /// Returns the points of the runs in a range; `column` returns the cells of the printed runs, `None` for an unknown
-    /// name.
+    /// Returns the points of the runs in a range; `column` returns the cells of the printed runs for a column name,
+    /// `None` for an unknown one.
     pub fn new<E>(
         (study, range): (&Campaign, &Range<u64>),
         (statistics, selection): (&[Statistics], &Selection),

@@ -85,7 +85,7 @@ impl Set {
 /// Results for all sets.
 pub struct Identified {
     sets: Vec<Set>,
-    /// Number of runs in a row, and their duration (s).
+    /// Number of runs in each row.
     runs: u64,
     /// Duration of each run (s).
     whole: f64,

@@ -69,8 +69,9 @@ pub struct Clock {
     speed: Speed,
     /// Period of the log, by which a single step advances.
     period: Span,
-    /// Latest instant that the clock has released, and the first period of the log after it.
+    /// Latest instant that the clock has released.
     shown: Instant,
+    /// First period of the log after `shown`.
     next: Instant,
     /// Instant up to which a paused run may advance.
     until: Instant,
@@ -103,7 +104,7 @@ impl Clock {
         }
     }
 
-    /// Returns the time to wait before the instant `at`, or `None` and releases it.
+    /// Returns the time to wait until the instant `at`; if it is due, releases it and returns `None`.
     pub fn wait(&mut self, at: Instant, wall: WallInstant) -> Option<Duration> {
         if !self.begun || (self.paused && at > self.until) {
             return Some(LOOK);

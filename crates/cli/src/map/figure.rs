@@ -59,8 +59,8 @@ fn shade(index: usize) -> RGBColor {
     between(&COLOURS, place)
 }
 
-/// Returns the map; `cells` are in rows of one frequency each, `own` is the scenario's frequency (rad/s) and period
-/// (s).
+/// Returns the map; `cells` are in rows of one frequency each, `own` is the scenario's frequency (rad/s) and its
+/// sampling period (s).
 pub fn figure(name: &str, cells: &[MapCell], own: Point) -> Figure {
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();

@@ -107,7 +107,7 @@ impl Family<'_> {
             Layer::new(name, *colour, LayerShape::Line(1.5), points)
         };
         let layers = below.into_iter().chain(self.members.iter().zip(lines).map(layer)).collect();
-        let title = format!("{}: {what}", readable(&self.name));
+        let title = format!("{}: {what}", readable(self.name));
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 

@@ -1,5 +1,5 @@
-//! Figure `gimbals` of a spacecraft with control moment gyros: gimbal angles, gimbal rates with their limits, the singularity
-//! measure, and the momentum of the rotors.
+//! Figure `gimbals` of a spacecraft with control moment gyros: gimbal angles, gimbal rates with their limits, the
+//! singularity measure, and the momentum of the rotors.
 
 use flexsc_core::quantity::Positive;
 use flexsc_core::record::ControlMomentGyros;

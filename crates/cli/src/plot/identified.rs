@@ -1,5 +1,5 @@
-//! Figure `frequency` of three axes: the natural frequency of each mode that an attitude filter identifies, with two standard
-//! deviations to each side, and the true one.
+//! Figure `frequency` of three axes: the natural frequency of each mode that an attitude filter identifies, with two
+//! standard deviations to each side, and the true frequency.
 
 use flexsc_core::record::ElasticEstimate;
 use flexsc_core::scenario::Scenario;

@@ -1,4 +1,4 @@
-//! Shaded intervals in which a filter does not estimate the frequency because the mode moves too little, or has lost
+//! Shaded intervals in which a mode moves too little for a filter to estimate its frequency, or the filter has lost
 //! lock.
 
 use flexsc_figure::{FigureAxis, Layer, LayerShape, Point, band, colour};

@@ -14,8 +14,9 @@ pub struct Motion {
     pub rate: Vec<f64>,
     /// Sum of the modes' displacements.
     pub elastic: Vec<f64>,
-    /// Displacements of each mode; their rates are in `mode_rates`.
+    /// Displacements of each mode.
     pub modes: Vec<Vec<f64>>,
+    /// Rates of each mode.
     pub mode_rates: Vec<Vec<f64>>,
     /// Target of the hub's angle; empty without a manoeuvre or a PD law.
     pub goal: Vec<f64>,
@@ -37,10 +38,13 @@ pub struct Estimate {
     pub time: f64,
     /// Index of the mode.
     pub mode: usize,
-    /// Natural frequency (rad/s) as the law reads it; below the filter's, its standard deviation, and the true one.
+    /// Natural frequency as the law reads it (rad/s).
     pub read_frequency: f64,
+    /// Natural frequency as estimated by the filter (rad/s).
     pub frequency: f64,
+    /// Standard deviation of the filter's frequency (rad/s).
     pub frequency_sd: f64,
+    /// True natural frequency (rad/s).
     pub true_frequency: f64,
     /// Displacement as the law reads it (rad).
     pub displacement: f64,

@@ -1,4 +1,5 @@
-//! Figure `orbit` of three axes: the magnetic field and the directions to planet and Sun in the body's axes, and the shadow.
+//! Figure `orbit` of three axes: the magnetic field and the directions to planet and Sun in the body's axes, and the
+//! intervals in shadow.
 
 use flexsc_core::record::{Light, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};

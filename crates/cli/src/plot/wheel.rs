@@ -7,7 +7,7 @@ use super::motion::Motion;
 use super::story::Story;
 use super::{time, title};
 
-/// Returns the wheel of a scenario, if it has one that stores momentum.
+/// Returns the rotor of a scenario's wheel, if it has one that stores momentum.
 pub fn rotor(story: &Story) -> Option<&Rotor> {
     story.scenario.actuator.wheel().and_then(|(wheel, _)| wheel.rotor.as_ref())
 }

@@ -26,7 +26,7 @@ impl Command {
         Ok(Self { text: text.to_owned(), verb })
     }
 
-    /// Returns the failure that the command cannot be executed here.
+    /// Returns the error for a command that cannot be executed here; `why` is the reason.
     pub fn failure(&self, why: &str) -> Failure {
         Failure::Arguments(format!("flexsc {}: {why}", self.text))
     }

@@ -4,10 +4,10 @@
 //! A page names its commands and marks its numbers in comments, which are invisible to readers:
 //! - a comment of its own, `<!--{% set quiet = run("simulate scenarios/relay-quiet.toml") %}-->`, names a command's
 //!   output ([`super::tell`]);
-//! - `0.34<!--{{ quiet.gain_final }}-->` is a number of the text, which must be the value rounded to its digits; there is no
-//!   `--` in such a comment, and in the cell of a table a `|` is written `\|`;
-//! - `<!--below 0.34 {{ quiet.gain_final }}-->`, on a line of its own, is such a number in the block that follows, where a
-//!   comment would be visible;
+//! - `0.34<!--{{ quiet.gain_final }}-->` is a number of the text, which must be the value rounded to its digits; such a
+//!   comment must not contain `--`, and in the cell of a table a `|` is written `\|`;
+//! - `<!--below 0.34 {{ quiet.gain_final }}-->`, on a line of its own, is such a number in the block that follows,
+//!   where a comment would be visible;
 //! - the text between a comment that begins with `made` and `<!--end-->` must equal the value of the rest of the
 //!   comment.
 //!

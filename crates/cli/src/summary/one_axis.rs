@@ -1,4 +1,4 @@
-//! The summary of a rotation about one axis.
+//! Summary of a run of a single-axis body.
 
 use std::io::Write;
 
@@ -8,7 +8,7 @@ use super::Summary;
 use crate::human::digits;
 use crate::say;
 
-/// Start of the late part of a run (s), as defined by the metrics.
+/// Length of the late part at the end of a run (s), as defined by the metrics.
 const LATE: f64 = 5.0;
 
 impl Summary<'_> {

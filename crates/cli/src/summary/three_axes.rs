@@ -1,4 +1,4 @@
-//! The summary of a body with three axes.
+//! Summary of a run of a three-axis body.
 
 use std::io::Write;
 

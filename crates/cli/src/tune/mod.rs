@@ -128,7 +128,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     args.drawing.check(&args.scenario.scenario)?;
     let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {
-        // Without a schedule, no figure is drawn.
+        // An error here precedes the figures, so that none is drawn without a schedule.
         let schedule = tuned.extra()?;
         args.drawing.save(|| tuned.figures())?;
         return print(schedule.as_bytes());

@@ -109,7 +109,7 @@ impl Saturation {
             cycles: 0,
             limited: [0; 3],
             peaks: [0.0; 2],
-            wheels: vec![LateWheel::default(); wheels.map_or(0, |wheels| wheels.count())],
+            wheels: vec![LateWheel::default(); wheels.map_or(0, super::wheels::Wheels::count)],
             ending: [0; 3],
         }
     }

@@ -132,7 +132,8 @@ impl ColumnCells {
         self.len() == 0
     }
 
-    /// Some of the cells; none beyond the last one.
+    /// Returns the cells of these rows; none beyond the last one.
+    #[must_use]
     pub fn slice(self, rows: Range<usize>) -> Self {
         fn cut<T>(cells: Vec<T>, rows: Range<usize>) -> Vec<T> {
             cells.into_iter().skip(rows.start).take(rows.len()).collect()

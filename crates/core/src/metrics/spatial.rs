@@ -19,6 +19,7 @@ const LATE: f64 = 200.0;
 
 /// Collector of the cycles of a run.
 #[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub struct SpatialMetrics {
     /// Time from which on a cycle is late (s).
     late: f64,

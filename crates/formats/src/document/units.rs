@@ -101,7 +101,7 @@ pub fn meant(text: &str) -> Option<String> {
         rest = after;
         match word.strip_prefix("rt").map(word_meant) {
             // rtHz, rthr
-            Some(Some(of)) => meant.push_str(&format!("sqrt({of})")),
+            Some(Some(of)) => meant.extend(["sqrt(", of.as_str(), ")"]),
             _ => meant.push_str(&word_meant(word)?),
         }
         // m2, s2

@@ -33,7 +33,11 @@ pub fn is_one(name: &str) -> bool {
 
 /// A scenario, results with something else in them, and their deck where there is one.
 pub fn make(seeds: &Seeds, chance: &mut Chance) -> Vec<(String, Vec<u8>)> {
-    let results: Vec<_> = seeds.results.iter().filter(|(name, _)| !name.ends_with(".inp")).collect();
+    let results: Vec<_> = seeds
+        .results
+        .iter()
+        .filter(|(name, _)| Path::new(name).extension().is_none_or(|ending| ending != "inp"))
+        .collect();
     let (name, bytes) = results[chance.below(results.len())];
     let (path, extension) = name.rsplit_once('.').unwrap_or((name, ""));
     let stem = path.rsplit('/').next().unwrap_or(path);

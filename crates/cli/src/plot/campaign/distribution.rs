@@ -1,5 +1,5 @@
-//! Figure `distribution`: a metric over the runs of a campaign, as histogram and as empirical distribution, with the median
-//! and the 5 % and 95 % quantiles.
+//! Figure `distribution`: a metric over the runs of a campaign, as histogram and as empirical distribution, with the
+//! median and the 5 % and 95 % quantiles.
 
 use flexsc_core::count::counted;
 use flexsc_core::statistics::quantile;

@@ -15,7 +15,7 @@ const MORE: [&str; 4] =
     ["envelope_reduction", "envelope_frozen_reduction", "nis_inside_95", "lock_lost_at_s"];
 /// Metrics whose ideal value is 1.
 const ONE: [&str; 2] = ["nees_mean", "nis_mean"];
-/// Metrics that have no value if an expected event never happened.
+/// Metrics without a value if the expected event never happened.
 const NEVER: [&str; 3] = ["settling_time_s", "energy_below_10pct_at_s", "energy_below_1pct_at_s"];
 
 /// Returns a measure of how bad a value is; `None` if the metric is neutral or has no value.
