@@ -261,7 +261,8 @@ fn the_command_knows_spatial_bodies() {
     close(modes["accelerations_rad_s2"][0][0].as_f64().expect("a number"), 8.40e-6, 0.001);
     dir.run("modes iss-manoeuvre-off.toml").exits(0).says(&["12 modes", "influence"]);
     dir.run("plot iss-manoeuvre-off.mcap --format svg -o figures").exits(0);
-    let figures = ["energy", "jets", "pointing", "rates"].map(|what| format!("iss-manoeuvre-off-{what}.svg"));
+    let figures = ["deflection", "energy", "jets", "pointing", "rates"];
+    let figures = figures.map(|what| format!("iss-manoeuvre-off-{what}.svg"));
     assert_eq!(dir.names("figures"), figures);
     dir.run("plot iss-manoeuvre-off.mcap --what angle")
         .exits(2)

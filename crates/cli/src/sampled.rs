@@ -8,7 +8,7 @@ use flexsc_core::{Scenario, ScenarioError};
 use crate::consent::Consent;
 use crate::failure::Failure;
 
-/// What counts as settled, and which modes follow.
+/// Criteria of settling, and the modes that follow.
 #[derive(clap::Args)]
 #[group(skip)]
 pub struct Settled {

@@ -15,7 +15,7 @@ use crate::failure::{Failure, Refused};
 use crate::say;
 use crate::stop::{self, Stop};
 
-/// What a log holds.
+/// Contents of a log.
 #[derive(Copy, Clone, PartialEq, ValueEnum)]
 pub enum LogDetail {
     /// No log

@@ -54,7 +54,7 @@ pub struct Args {
         conflicts_with = "runs",
     )]
     pub live: Option<String>,
-    /// So many times faster than real time, or max
+    /// Speed relative to real time, or max
     #[arg(long, value_name = "FACTOR", requires = "live")]
     speed: Option<Speed>,
     /// Begin when a viewer has subscribed to a topic
