@@ -2,8 +2,9 @@
 
 python3 benches/costs.py [COMMAND]   # COMMAND: default target/release/flexsc
 
-CPU time on one core: of the scenario run once, and for each run of a campaign of 20. Runs of sampled loops
-about one axis share SIMD lanes there, which the estimate of a campaign allows for, and that of `check` does not.
+CPU time on one core: of the scenario run once, and for each run of a campaign of 20. Runs of sampled
+loops about one axis share SIMD lanes there, which the estimate of a campaign allows for, and that of
+`check` does not.
 """
 
 import json

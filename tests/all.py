@@ -34,7 +34,14 @@ LONG = ("tests/python/test_types.py", "tests/python/test_executor.py")
 # Whether the wheel is in the environment.
 INSTALLED = threading.Event()
 # So many inputs, the same on every machine: about 12 s each.
-FUZZED = {"scenarios": "2500", "structures": "15000", "logs": "1000", "arguments": "1100", "live": "3500", "parts": "900"}
+FUZZED = {
+    "scenarios": "2500",
+    "structures": "15000",
+    "logs": "1000",
+    "arguments": "1100",
+    "live": "3500",
+    "parts": "900",
+}
 # What codespell reads; its exceptions are in pyproject.toml.
 WORDS = ("README.md", "CHANGELOG.md", "CONTRIBUTING.md", "SECURITY.md", "docs", "scenarios", "site")
 # What the runners of tests say at their ends.
