@@ -337,6 +337,6 @@ def test_margins_are_on_the_safe_side() -> None:
     # The pole of x + u with u = -k x lies at 1 - k: the loop is stable up to k = 2 exactly.
     one = np.ones((1, 1))
     signals = [SimpleNamespace(name="command")]
-    loop = SimpleNamespace(a=one, b=one, c=one, d=0.0 * one, period=1.0, inputs=signals)
+    loop: Any = SimpleNamespace(a=one, b=one, c=one, d=0.0 * one, period=1.0, inputs=signals)
     found = margins(loop, None)
     assert 2.0 - 1e-7 < found.gain_above < 2.0

@@ -242,7 +242,9 @@ def _in_units_of(factor: float, most: int) -> Any:
 
     class Locator(MaxNLocator):
         def tick_values(self, vmin: float, vmax: float) -> Any:
-            return super().tick_values(vmin / factor, vmax / factor) * factor
+            import numpy as np
+
+            return np.asarray(super().tick_values(vmin / factor, vmax / factor)) * factor
 
     return Locator(nbins=most, steps=[1, 2, 5, 10])
 
