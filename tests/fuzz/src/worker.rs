@@ -139,7 +139,9 @@ fn wrong(case: &Case, code: u8, directory: &Path) -> io::Result<Option<String>> 
     let mut files = Vec::new();
     case::gather(directory, "", &mut files)?;
     // The lock of a campaign's directory stays in it, and the kernel releases it.
-    let new = |(name, _): &&(String, Vec<u8>)| case.file(name).is_none() && !name.ends_with(".lock");
+    let new = |(name, _): &&(String, Vec<u8>)| {
+        case.file(name).is_none() && name.rsplit('/').next() != Some(".lock")
+    };
     if let Some((name, _)) = files.iter().filter(new).find(|(name, _)| code == 2 || name.contains(".partial"))
     {
         return Ok(Some(format!(
