@@ -160,7 +160,7 @@ impl Itinerary {
         self.leg(now).is_some_and(|leg| now.since(leg.begins).seconds() < leg.path.duration())
     }
 
-    /// Whether it ever does.
+    /// True if the target moves at any time.
     pub fn has_slews(&self) -> bool {
         self.legs.iter().any(|leg| leg.path.duration() > 0.0)
     }
