@@ -11,7 +11,7 @@ mod reference;
 use std::hint::black_box;
 use std::time::{Duration, Instant};
 
-use flexsc_core::batch::{Job, simulate_on};
+use flexsc_core::batch::{BatchJob, simulate_on};
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
@@ -79,7 +79,7 @@ fn main() {
         ("five damped modes, events only", &damped),
         ("five damped modes, 40 window means", &damped_windows),
     ];
-    let (none, all) = (Selection::of::<&str>([]).expect("no names"), Selection::ALL);
+    let (none, all) = (Selection::from_names::<&str>([]).expect("no names"), Selection::ALL);
     let many: Vec<Vec<CampaignRun>> = texts.iter().map(|(_, text)| even(text)).collect();
     let one: Vec<CampaignRun> = texts
         .iter()
@@ -126,8 +126,8 @@ fn main() {
     );
     for ((name, _), runs) in texts.iter().zip(&many) {
         for (what, selection) in [("", &none), (", all metrics", &all)] {
-            let of = |run| Job { number: 0, scenario: run, selection };
-            let jobs: Vec<Job<'_>> = runs.iter().map(|run| of(&run.scenario)).collect();
+            let of = |run| BatchJob { number: 0, scenario: run, selection };
+            let jobs: Vec<BatchJob<'_>> = runs.iter().map(|run| of(&run.scenario)).collect();
             for processor in Processor::all() {
                 let jobs = jobs.clone();
                 kinds.add(

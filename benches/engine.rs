@@ -8,10 +8,10 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
-use flexsc_core::analysis::sampled_loop::{DiscreteBody, Loop, Scaling, SettlingWindow, map};
-use flexsc_core::batch::{Job, simulate_on};
+use flexsc_core::analysis::sampled_loop::{DiscretePlant, SampledLoop, Scaling, SettlingWindow, map};
+use flexsc_core::batch::{BatchJob, simulate_on};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::estimator::kalman::{FrequencyTracking, KalmanSetting, Prediction};
+use flexsc_core::estimator::kalman::{FilterContext, FrequencyTracking, Prediction};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::random::Seed;
@@ -95,8 +95,10 @@ fn lanes(c: &mut Criterion) {
     group.bench_function("one by one", |b| {
         b.iter(|| runs.iter().map(|run| Campaign::simulate(run, ()).expect("a run")).collect::<Vec<_>>());
     });
-    let jobs: Vec<Job<'_>> =
-        scenarios.iter().map(|scenario| Job { number: 0, scenario, selection: &Selection::ALL }).collect();
+    let jobs: Vec<BatchJob<'_>> = scenarios
+        .iter()
+        .map(|scenario| BatchJob { number: 0, scenario, selection: &Selection::ALL })
+        .collect();
     for processor in Processor::all() {
         group.bench_function(processor.name(), |b| b.iter(|| simulate_on(processor, black_box(&jobs))));
     }
@@ -121,7 +123,7 @@ fn filters(c: &mut Criterion) {
     let mut group = c.benchmark_group("filter");
     for (name, prediction) in [("ekf step", Prediction::Extended), ("ukf step", Prediction::Unscented)] {
         let body = scenario(MODES).model;
-        let setting = KalmanSetting {
+        let setting = FilterContext {
             body: body.planar().expect("a body with one angle"),
             back_emf: (1e-4, true),
             period: 0.3,
@@ -201,15 +203,15 @@ const WHEEL: &str = include_str!("../scenarios/wheel-fast-mode.toml");
 fn sampled_loop(c: &mut Criterion) {
     let mut group = c.benchmark_group("sampled loop");
     let window = SettlingWindow { band: 0.003, horizon: 400.0 };
-    let looped = |text: &str| Loop::of(&scenario(text)).expect("a loop").0;
+    let looped = |text: &str| SampledLoop::from_scenario(&scenario(text)).expect("a loop").0;
     let (linear, shaped) = (looped(WHEEL), looped(&WHEEL.replace("back_emf", "dead_zone = 1e-3\nback_emf")));
     let ratios = [1.0; 4];
     group.bench_function("400 s", |b| {
-        b.iter(|| DiscreteBody::new(black_box(&linear), &ratios).closed(0.0).settle(window));
+        b.iter(|| DiscretePlant::new(black_box(&linear), &ratios).closed(0.0).settle(window));
     });
-    let held = DiscreteBody::new(&linear, &ratios);
+    let held = DiscretePlant::new(&linear, &ratios);
     group.bench_function("400 s, another gain", |b| b.iter(|| held.closed(black_box(1.2)).settle(window)));
-    let held = DiscreteBody::new(&shaped, &ratios);
+    let held = DiscretePlant::new(&shaped, &ratios);
     group.bench_function("400 s, shaped command", |b| b.iter(|| held.closed(black_box(0.0)).settle(window)));
     group.bench_function("spectral radius", |b| b.iter(|| held.closed(black_box(0.0)).spectral_radius()));
     group.sample_size(10).measurement_time(Duration::from_secs(10));

@@ -2,7 +2,7 @@
 //! the point.
 
 use flexsc_core::Scenario;
-use flexsc_core::metrics::Value;
+use flexsc_core::metrics::MetricValue;
 use flexsc_core::record::{Column, Detail, Trace};
 
 use crate::traces::{column, flown, traced};
@@ -64,7 +64,7 @@ fn measured(trace: &Trace, sensor: u64) -> Vec<Vec<f64>> {
 /// A hub that spins, and a mass that slides in it: specific forces of 1e-3 to 2e-2 m/s². The model leaves out what is
 /// of second order in the slider's millimetres: 5e-7 m/s² after 12 s.
 #[test]
-fn a_pushed_hub_with_a_slider_is_felt_as_by_newton() {
+fn a_pushed_hub_with_a_slider_accelerates_as_by_newton() {
     let trace = run(HUB_AND_MASS);
     let (bench, slider) = (measured(&trace, 1), measured(&trace, 2));
     assert_eq!(bench.len(), 27);
@@ -84,7 +84,7 @@ fn a_pushed_hub_with_a_slider_is_felt_as_by_newton() {
 
 /// The second derivative of the first point's position, by differences: with rotation, Coriolis and all modes.
 #[test]
-fn what_is_felt_is_how_the_place_accelerates() {
+fn readings_are_the_acceleration_of_the_place() {
     let text = HUB_AND_MASS
         .replace("rate = [0.0, 0.0, 0.1]", "rate = [0.02, -0.03, 0.04]")
         .replace(
@@ -120,14 +120,14 @@ fn what_is_felt_is_how_the_place_accelerates() {
 
 /// The accelerometer on the bench measures the imbalance of the run-up, most where it passes the mode.
 #[test]
-fn a_run_up_is_felt_on_the_bench() {
+fn a_run_up_is_measured_on_the_bench() {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/wheel-run-up.toml")).expect("a file");
     let scenario = Scenario::parse("wheel-run-up.toml", &text).expect("a scenario");
     let (metrics, trace) = flown(&scenario, 0, Detail::Full);
-    let felt = measured(&trace, 1);
+    let sensed = measured(&trace, 1);
     let size = |row: &Vec<f64>| row.iter().map(|x| x * x).sum::<f64>().sqrt();
     let within = |from: f64, to: f64| {
-        let rows = felt.iter().enumerate().filter(|(row, _)| (from..to).contains(&(*row as f64 * 0.01)));
+        let rows = sensed.iter().enumerate().filter(|(row, _)| (from..to).contains(&(*row as f64 * 0.01)));
         rows.map(|(_, row)| size(row)).fold(0.0, f64::max)
     };
     // The imbalance is at 93 rad/s after 135 s, and at 80 rad/s after 89 s.
@@ -137,9 +137,9 @@ fn a_run_up_is_felt_on_the_bench() {
         within(130.0, 142.0),
         within(85.0, 92.0)
     );
-    let squares: f64 = felt.iter().map(|row| size(row) * size(row)).sum();
-    let rms = (squares / felt.len() as f64).sqrt();
-    let Some(Value::Numbers(told)) = metrics.get("acceleration_rms_m_s2") else { panic!("a metric") };
+    let squares: f64 = sensed.iter().map(|row| size(row) * size(row)).sum();
+    let rms = (squares / sensed.len() as f64).sqrt();
+    let Some(MetricValue::Numbers(told)) = metrics.get("acceleration_rms_m_s2") else { panic!("a metric") };
     assert!((told[0] / rms - 1.0).abs() < 1e-12, "{told:?} {rms}");
     // Recording does not change the motion.
     let alone = text.replace(

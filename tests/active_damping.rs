@@ -46,7 +46,7 @@ fn tracking(scenario: &Scenario) -> Columns {
 }
 
 /// Returns a column of the nested rows with the given index, out of `count` in each row.
-fn of(columns: &Columns, rows: &str, [index, count]: [usize; 2], name: &str) -> Vec<f64> {
+fn element_column(columns: &Columns, rows: &str, [index, count]: [usize; 2], name: &str) -> Vec<f64> {
     let Some(Column::Rows(_, rows)) = columns.get(rows) else { panic!("{rows}") };
     let values: Vec<f64> = match rows.get(name) {
         Some(Column::Numbers(numbers)) => numbers.clone(),
@@ -192,7 +192,7 @@ fn frozen_estimates_stay_what_they_were() {
 }
 
 #[test]
-fn turns_tell_frequencies_and_influences() {
+fn turns_identify_frequencies_and_influences() {
     let runs = twelve("iss-identification", &[]);
     for run in &runs {
         let [frequencies, influences] =
@@ -227,14 +227,14 @@ fn an_axis_that_knows_the_jets_of_the_others_sees_no_motion_that_is_not() {
             ("log.period", "200"),
         ];
         let rows = tracking(&scenario("iss-identification", &keys));
-        let column = |name| of(&rows, "channels", [0, 3], name);
+        let column = |name| element_column(&rows, "channels", [0, 3], name);
         let (told, truth) = (column("elastic_rad_s"), column("true_elastic_rad_s"));
         let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
         let rate =
             square(&mut told.iter().zip(&truth).map(|(a, b)| a - b)) / square(&mut truth.iter().copied());
         let off = |index| {
             let [found, truth] = ["frequency_rad_s", "true_frequency_rad_s"]
-                .map(|name| of(&rows, "trackers", [index, 9], name));
+                .map(|name| element_column(&rows, "trackers", [index, 9], name));
             let ratios = found.iter().zip(&truth).map(|(found, truth)| (found / truth - 1.0).abs());
             ratios.fold(0.0, f64::max)
         };
@@ -249,8 +249,8 @@ fn an_axis_that_knows_the_jets_of_the_others_sees_no_motion_that_is_not() {
 #[test]
 fn what_is_logged_agrees_with_itself() {
     let rows = tracking(&scenario("iss-ringdown", &[("duration", "60"), ("log.period", "60")]));
-    let yaw = |name| of(&rows, "channels", [2, 3], name);
-    let mode = |name| of(&rows, "trackers", [4, 6], name);
+    let yaw = |name| element_column(&rows, "channels", [2, 3], name);
+    let mode = |name| element_column(&rows, "trackers", [4, 6], name);
     assert_eq!(mode("axis")[0], 2.0);
     // The mode of 0.2368 Hz, hardly observable in yaw, is tracked together with that of 0.2476 Hz.
     close(mode("true_frequency_rad_s")[0], 1.555_716_68, 1e-4);
@@ -259,7 +259,7 @@ fn what_is_logged_agrees_with_itself() {
     close(yaw("true_elastic_rad_s")[0], 5e-4, 1e-3);
     // The rule: twice what a cycle changes of the mode that a long burn excites most.
     close(yaw("threshold_rad_s")[0], 2.0 * 5.908_320e-5 * 0.2, 3e-3);
-    close(of(&rows, "channels", [1, 3], "threshold_rad_s")[0], 2.0 * 1.289e-4 * 0.2, 2e-3);
+    close(element_column(&rows, "channels", [1, 3], "threshold_rad_s")[0], 2.0 * 1.289e-4 * 0.2, 2e-3);
     let [on, rate, latched] = ["damping_on_s", "acted_on_rad_s", "latched"].map(yaw);
     assert!(on.iter().filter(|on| **on != 0.0).count() > 20);
     for (on, (rate, latched)) in on.iter().zip(rate.iter().zip(&latched)) {

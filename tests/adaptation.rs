@@ -1,7 +1,7 @@
 //! The random search against an independent one: draw for draw, and over many seeds.
 
 use flexsc_core::Simulation;
-use flexsc_core::adaptation::{Adaptation, Decision, SearchState, SearchStep};
+use flexsc_core::adaptation::{AdaptationKind, Decision, RandomSearchState, SearchStep};
 use flexsc_core::campaign::Campaign;
 use flexsc_core::time::{Instant, Span};
 
@@ -25,10 +25,10 @@ fn search_freezes_where_an_independent_one_does() {
     let exact = [(2153, 20_000.0, 0.338_913_4, 6.569_8e-6), (1491, 14_500.0, 0.338_918_4, 6.559_4e-6)];
     for (seed, frozen_at, k_t, level) in exact {
         let mut scenario = scenario("relay-adaptive", &[]);
-        let Some(Adaptation::RandomSearch(constants)) = scenario.written.adaptation.take() else {
+        let Some(AdaptationKind::RandomSearch(constants)) = scenario.written.adaptation.take() else {
             panic!("no search")
         };
-        let mut search = SearchState::new(constants, 0.31);
+        let mut search = RandomSearchState::new(constants, 0.31);
         let mut draws = SplitMix(seed);
         let mut simulation = Simulation::new(&scenario, 0);
         let mut last = None;
@@ -37,7 +37,7 @@ fn search_freezes_where_an_independent_one_does() {
             simulation.run_until(now, &mut ()).expect("a run");
             let mean = simulation.window_mean().expect("a mean");
             if let Some(step) = search.learn(now, mean, draws.uniform()) {
-                simulation.tune("k_t", step.gain);
+                simulation.set_parameter("k_t", step.gain);
                 last = Some((now, step));
             }
         }
@@ -59,7 +59,7 @@ fn adaptation_over_seeds_is_distributed_as_it_should_be() {
     let mut frozen = Vec::new();
     let mut reduction = Vec::new();
     std::sync::Arc::new(study)
-        .each::<()>(
+        .for_each_run::<()>(
             0..400,
             0,
             |run| Ok(Campaign::simulate(run, ())?),

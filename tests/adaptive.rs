@@ -4,9 +4,9 @@
 
 use std::f64::consts::{PI, TAU};
 
-use flexsc_core::analysis::identification::Trial;
+use flexsc_core::analysis::identification::IdentificationTrial;
 use flexsc_core::estimator::adaptive::{
-    Gradient, ModelOscillator, ModelPhase, Observer, Pulse, Recurrence, Tracker, merged,
+    AdaptiveObserver, Gradient, ModeVector, OscillatorModel, Pulse, Recurrence, Tracker, merge,
 };
 use flexsc_core::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::random::{Seed, Stream};
@@ -30,16 +30,16 @@ fn mode(at: f64, influence: &[f64], bounds: Option<[f64; 2]>) -> Tracker {
 
 /// Channel of a spacecraft: exactly simulated modes, each of which every input excites.
 struct Channel {
-    modes: Vec<(ModelOscillator, Vec<f64>)>,
+    modes: Vec<(OscillatorModel, Vec<f64>)>,
     rigid: Vec<f64>,
     rate: f64,
-    phases: Vec<ModelPhase>,
+    phases: Vec<ModeVector>,
 }
 
 impl Channel {
     /// Modes by their frequency (Hz) and influences.
     fn new(modes: &[(f64, Vec<f64>)], rigid: &[f64]) -> Self {
-        let of = |hertz: f64| ModelOscillator { frequency: 2.0 * PI * hertz, damping: 0.005 };
+        let of = |hertz: f64| OscillatorModel { frequency: 2.0 * PI * hertz, damping: 0.005 };
         Self {
             modes: modes.iter().map(|(hertz, influence)| (of(*hertz), influence.clone())).collect(),
             rigid: rigid.to_vec(),
@@ -59,9 +59,9 @@ impl Channel {
 
     fn advance(&mut self, pulses: &[Pulse]) {
         for (phase, (of, influence)) in self.phases.iter_mut().zip(&self.modes) {
-            *phase = of.turned(&of.transition(CYCLE), CYCLE, *phase).0;
+            *phase = of.propagate(&of.transition(CYCLE), CYCLE, *phase).0;
             for Pulse { input, acceleration, start, duration } in pulses {
-                let push = of.pulse(CYCLE - start, CYCLE - start - duration).0;
+                let push = of.pulse_response(CYCLE - start, CYCLE - start - duration).0;
                 *phase = [0, 1].map(|axis| phase[axis] + influence[*input] * acceleration * push[axis]);
             }
         }
@@ -121,7 +121,10 @@ fn modes_are_found_over_random_runs() {
     ];
     for (modes, rate, fewest, times, frequency, influence) in sets {
         for (off, longest) in [0.05, 0.1, 0.2, 0.3].into_iter().zip(times) {
-            let mut trial = Trial::of(modes.iter().map(|(at, mu)| (2.0 * PI * at, *mu)).collect(), off);
+            let mut trial = IdentificationTrial::published(
+                modes.iter().map(|(at, mu)| (2.0 * PI * at, *mu)).collect(),
+                off,
+            );
             trial.observer.rate = NonNegative::new(rate).expect("a rate");
             let row = trial.table(12);
             assert!(
@@ -137,10 +140,10 @@ fn modes_are_found_over_random_runs() {
 #[test]
 fn the_command_tells_how_often_modes_are_found() {
     let dir = Dir::new();
-    let told = dir.run("identify --modes 1.556:2.89 --off 0.1,0.3 --runs 12 --json").exits(0).json();
-    let rows = told["rows"].as_array().expect("rows");
+    let reported = dir.run("identify --modes 1.556:2.89 --off 0.1,0.3 --runs 12 --json").exits(0).json();
+    let rows = reported["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), 2);
-    let trial = Trial::of(vec![(1.556, 2.89)], 0.3);
+    let trial = IdentificationTrial::published(vec![(1.556, 2.89)], 0.3);
     // Passed through JSON text, whose numbers are exact to the last place but one.
     let exact = serde_json::json!(trial.table(12)).to_string();
     let exact: serde_json::Value = serde_json::from_str(&exact).expect("JSON");
@@ -151,8 +154,8 @@ fn the_command_tells_how_often_modes_are_found() {
     let drawn = dir.text("drawn/identification.svg");
     assert!(drawn.contains("0.2476 Hz, 10 % off") && drawn.contains("found (%)"));
     // Two modes that no run of 300 s distinguishes.
-    let near = Trial::of(vec![(TAU * 0.6049, 1.5), (TAU * 0.6096, 1.6)], 0.05).table(4);
-    let apart = Trial::of(vec![(TAU * 0.2476, 2.89), (TAU * 0.6, 3.0)], 0.05).table(4);
+    let near = IdentificationTrial::published(vec![(TAU * 0.6049, 1.5), (TAU * 0.6096, 1.6)], 0.05).table(4);
+    let apart = IdentificationTrial::published(vec![(TAU * 0.2476, 2.89), (TAU * 0.6, 3.0)], 0.05).table(4);
     assert!(near.persistence.expect("excited") < 0.05 && apart.persistence.expect("excited") > 0.7);
     for (bad, why) in [
         ("identify --modes 1.2", "must be W:MU,W:MU"),
@@ -176,7 +179,7 @@ fn regular(cycle: usize) -> Vec<Pulse> {
 #[test]
 fn basin_of_attraction_of_one_mode() {
     let wide = [0.1, 10.0].map(|bound| NonNegative::new(bound).expect("0 or more"));
-    let found = |observer: &mut dyn Observer| {
+    let found = |observer: &mut dyn AdaptiveObserver| {
         let mut channel = Channel::new(&[(0.2, vec![2.0])], &[1.0]);
         for cycle in 0..1500 {
             observer.update(channel.rate + channel.elastic());
@@ -203,7 +206,7 @@ fn rms(values: &[f64]) -> f64 {
 #[test]
 fn one_tracker_follows_a_near_pair() {
     let pair = [(0.6049, vec![1.4]), (0.6096, vec![1.7])];
-    let merged = merged(&[mode(0.6049, &[1.4], None), mode(0.6096, &[1.7], None)], 0.08);
+    let merged = merge(&[mode(0.6049, &[1.4], None), mode(0.6096, &[1.7], None)], 0.08);
     assert_eq!(merged.len(), 1);
     let mut found = Vec::new();
     for run in 0..6 {

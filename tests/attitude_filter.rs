@@ -1,7 +1,7 @@
 //! The attitude filter in the loop: gyro, star tracker, law and wheels on a three-axis body.
 
-use flexsc_core::analysis::loop_parts::LoopParts;
-use flexsc_core::metrics::Gather;
+use flexsc_core::analysis::linear_loop::LinearLoop;
+use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::{Scenario, Simulation};
 
 /// A turn of 0.3 rad along a profile, with a late tracker.
@@ -49,7 +49,7 @@ fn scenario(change: &[(&str, &str)]) -> Result<Scenario, String> {
 }
 
 fn metric(scenario: &Scenario, run: u64, names: &[&str]) -> Vec<f64> {
-    let mut gather = Gather::new(scenario);
+    let mut gather = MetricsCollector::new(scenario);
     Simulation::new(scenario, run).run(&mut gather).expect("valid");
     let metrics = gather.finish(scenario);
     names.iter().map(|name| metrics.number(name).unwrap_or_else(|| panic!("{name} {metrics:?}"))).collect()
@@ -151,7 +151,7 @@ fn linear_loops_refuse_means_over_exposures() {
     let parts = |exposure: &str| {
         let latency = format!("latency = 0.6{exposure}");
         let change = [("latency = 0.6", &latency[..]), ("ASSESS", "form = \"steady\"")];
-        LoopParts::of(&scenario(&change).expect("valid"))
+        LinearLoop::from_scenario(&scenario(&change).expect("valid"))
     };
     assert!(parts("").is_ok());
     let fault = parts(", exposure = 0.1").expect_err("refused").to_string();

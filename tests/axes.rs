@@ -4,7 +4,7 @@
 
 use std::fmt::Write as _;
 
-use flexsc_core::flow::Rigid;
+use flexsc_core::flow::RigidBody;
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
@@ -107,7 +107,7 @@ fn of_three(scenario: &Scenario, times: &[f64]) -> Vec<([f64; 3], [f64; 3])> {
         for ((.., rotation, about), mode) in MODES.iter().zip(&state.modes) {
             angles[*about] += rotation * mode.displacement;
         }
-        let momentum = Rigid::momentum(&state.turn);
+        let momentum = RigidBody::momentum(&state.turn);
         (angles, [0, 1, 2].map(|axis| momentum[axis] / INERTIAS[axis]))
     };
     times.iter().map(at).collect()

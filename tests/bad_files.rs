@@ -63,7 +63,7 @@ fn nothing_is_run_beside_a_bad_file() {
 }
 
 #[test]
-fn what_is_nested_too_deep_is_told_by_line_and_key() {
+fn nesting_too_deep_is_refused_with_line_and_key() {
     let dir = Dir::new();
     let headers: Vec<String> = (1..300).map(|depth| format!("[law{}]", ".a".repeat(depth))).collect();
     let headers = headers.join("\n");

@@ -1,7 +1,7 @@
 //! Real wheels: the shipped scenarios do what their comments say, tachometers are read, and impossible settings are
 //! refused.
 
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::scenario::Scenario;
 
@@ -67,7 +67,7 @@ fn wheels_pass_through_zero_and_compensation_helps() {
     assert!((lost / total - 1.0).abs() < 1e-2, "{lost} {total}");
     assert_eq!(metrics.number("friction_heat_j"), Some(total));
     let goal = |change: &[(&str, &str)]| flown(&changed("wheel-friction", change), 0, Detail::Events).0;
-    let met = |metrics: &Metrics| metrics.get("goal") == Some(&Value::Word("met"));
+    let met = |metrics: &Metrics| metrics.get("goal") == Some(&MetricValue::Word("met"));
     assert!(!met(&metrics) && met(&goal(&[COMPENSATED])));
     let faster = ("speeds = [40, -40, 40, -40] ", "speeds = [200, -200, 200, -200] ");
     assert!(met(&goal(&[faster])));
@@ -132,7 +132,7 @@ fn a_run_up_shakes_the_modes_that_it_passes() {
     assert!(most(91.0, 95.0) > 8.0 * most(80.0, 84.0) && most(91.0, 95.0) > 5.0 * most(98.0, 110.0));
     // 115 - 85 exp(-2.4) rad/s.
     assert!((speeds.last().expect("rows") - 107.3).abs() < 0.2, "{:?}", speeds.last());
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
     assert_eq!(metrics.number("wheel_zero_crossings"), None, "there is no friction");
 }
 

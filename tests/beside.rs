@@ -7,7 +7,7 @@ use std::convert::Infallible;
 use std::sync::Arc;
 
 use flexsc_core::Scenario;
-use flexsc_core::batch::{self, Job};
+use flexsc_core::batch::{self, BatchJob};
 use flexsc_core::campaign::{Campaign, CampaignRun, Grid, RunOutcome};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
@@ -35,9 +35,9 @@ fn taken(what: &str, scenario: &Scenario) -> usize {
     let runs = runs(scenario);
     let alone: Vec<String> =
         runs.iter().map(|run| format!("{:?}", Campaign::simulate(run, ()).map_err(|_| "failed"))).collect();
-    let jobs: Vec<Job<'_>> = runs
+    let jobs: Vec<BatchJob<'_>> = runs
         .iter()
-        .map(|run| Job { number: run.number, scenario: &run.scenario, selection: &Selection::ALL })
+        .map(|run| BatchJob { number: run.number, scenario: &run.scenario, selection: &Selection::ALL })
         .collect();
     let mut widest = None;
     for processor in Processor::all() {
@@ -133,7 +133,7 @@ fn what_a_batch_declines_is_simulated_alone() {
 
 #[test]
 fn rows_depend_on_no_thread_and_no_neighbour() {
-    let gains = || Some(Grid::even("law.relay.k_t".to_owned(), 0.28, 0.40, 40));
+    let gains = || Some(Grid::linspace("law.relay.k_t".to_owned(), 0.28, 0.40, 40));
     let (minute, short, long) = (("duration", "60.0"), ("duration", "3000.0"), ("duration", "9000.0"));
     let damped = ("body.planar.modes", DAMPED);
     for (name, changes, grid) in [
@@ -149,11 +149,11 @@ fn rows_depend_on_no_thread_and_no_neighbour() {
         let study = Arc::new(study.expect("a campaign"));
         // A light build has no kernels for damped modes.
         let takes = !changes.contains(&damped) || cfg!(feature = "damped-flights");
-        assert_eq!(batch::takes(study.scenario()), takes, "{name}");
+        assert_eq!(batch::accepts(study.scenario()), takes, "{name}");
         let rows = |threads: usize, beside: bool| {
             let mut rows = Vec::new();
             let work = |run: &CampaignRun| Ok(Campaign::simulate(run, ())?);
-            let tell = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
+            let report = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
                 // All fields but the duration of the computation.
                 rows.extend(outcome.map(|RunOutcome { number, drawn, metrics, .. }| {
                     format!("{number} {drawn:?} {metrics:?}")
@@ -161,9 +161,9 @@ fn rows_depend_on_no_thread_and_no_neighbour() {
                 Ok(())
             };
             let Ok(()) = if beside {
-                study.each_beside(3..40, threads, &Selection::ALL, work, tell)
+                study.for_each_run_in_batches(3..40, threads, &Selection::ALL, work, report)
             } else {
-                study.each(3..40, threads, work, tell)
+                study.for_each_run(3..40, threads, work, report)
             };
             rows
         };
@@ -191,23 +191,23 @@ fn a_metric_does_not_depend_on_which_others_are_wanted() {
     ] {
         let study = Campaign::new(scenario(name, changes), "selected", None).expect("a campaign");
         let study = Arc::new(study);
-        let told = |selection: &Selection| -> Vec<Vec<(&'static str, String)>> {
+        let reported = |selection: &Selection| -> Vec<Vec<(&'static str, String)>> {
             let wanted = selection.clone();
-            let work = move |run: &CampaignRun| Ok(Campaign::simulate_for(run, &wanted, ())?);
+            let work = move |run: &CampaignRun| Ok(Campaign::simulate_metrics(run, &wanted, ())?);
             let mut rows = Vec::new();
-            let tell = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
+            let report = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
                 rows.extend(outcome.map(|outcome| {
                     let metrics = outcome.metrics.expect("a run").0.into_iter();
                     metrics.map(|(meaning, value)| (meaning.name, format!("{value:?}"))).collect::<Vec<_>>()
                 }));
                 Ok(())
             };
-            let Ok(()) = study.each_beside(0..3, 1, selection, work, tell);
+            let Ok(()) = study.for_each_run_in_batches(0..3, 1, selection, work, report);
             rows
         };
-        let all = told(&Selection::ALL);
+        let all = reported(&Selection::ALL);
         for (at, (metric, _)) in all[0].iter().enumerate() {
-            let one = told(&Selection::of([metric]).expect("a metric"));
+            let one = reported(&Selection::from_names([metric]).expect("a metric"));
             for (run, row) in one.iter().enumerate() {
                 assert_eq!(row[..], all[run][at..=at], "{name}: {metric} of run {run}");
             }

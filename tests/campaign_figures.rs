@@ -74,8 +74,8 @@ fn distributions_have_the_quantiles_of_the_table() {
 fn scatters_show_what_was_drawn_and_fans_what_was_logged() {
     let dir = Dir::holding("u.toml", UNCERTAIN);
     dir.run("simulate u.toml --runs 9 --table csv -o out --log events").exits(0);
-    let told = dir.run("plot out -o figures --format svg").exits(0).prints(&["u: the worst of 9 runs"]);
-    assert!(told.contains("flexsc simulate out/scenario.toml --runs "), "{told}");
+    let reported = dir.run("plot out -o figures --format svg").exits(0).prints(&["u: the worst of 9 runs"]);
+    assert!(reported.contains("flexsc simulate out/scenario.toml --runs "), "{reported}");
     assert!(dir.names("figures").contains(&"u-fan.svg".to_owned()), "{:?}", dir.names("figures"));
     let scatter = Drawing::read(&dir, "u-scatter-envelope_late_mean_rad");
     scatter.shows(&["law.relay.k_t", "body.planar.rate (rad/s)", "envelope late mean (µrad)"]);
@@ -234,8 +234,8 @@ fn bad_tables_are_named() {
     assert_eq!(dir.names("empty"), ["runs.csv"]);
     // A table without its scenario is drawn, but its runs cannot be repeated.
     dir.write("empty/runs.csv", format!("{header}1,1,0.5,\n2,1,0.6,\n"));
-    let told = dir.run("plot empty --json").exits(0).out;
-    assert!(told.contains("\"command\":null"), "{told}");
+    let reported = dir.run("plot empty --json").exits(0).out;
+    assert!(reported.contains("\"command\":null"), "{reported}");
     dir.run("plot empty").exits(0).says(&["no scenario.toml"]);
 }
 

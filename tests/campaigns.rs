@@ -301,7 +301,7 @@ fn a_killed_campaign_keeps_its_rows() {
 }
 
 #[test]
-fn statistics_are_finite_and_tell_what_they_leave_out() {
+fn statistics_are_finite_and_count_what_they_leave_out() {
     let dir = Dir::new();
     // An unstable loop: the angle grows to some 1e200 rad, whose square is beyond every double.
     let unstable = "duration = 36.0\n[body.planar]\nangle = 0.1\n[law.pd]\nk_p = 1.0\nk_d = 0.0\nperiod = 1.0\n\

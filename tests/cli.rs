@@ -67,10 +67,10 @@ fn check_tells_mistakes_to_programs() {
     );
     let ran = dir.run("check bad.toml relay-fixed.toml none.toml --json").exits(2);
     assert!(ran.err.is_empty(), "{}", ran.err);
-    let told: Vec<Json> = ran.out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
-    assert_eq!(told.len(), 3);
-    assert_eq!(told[0]["accepted"], false);
-    let mistakes = told[0]["mistakes"].as_array().expect("a list");
+    let reported: Vec<Json> = ran.out.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
+    assert_eq!(reported.len(), 3);
+    assert_eq!(reported[0]["accepted"], false);
+    let mistakes = reported[0]["mistakes"].as_array().expect("a list");
     assert_eq!(mistakes.len(), 2, "{mistakes:?}");
     let first = &mistakes[0];
     assert_eq!((&first["line"], &first["column"]), (&Json::from(14), &Json::from(1)));
@@ -79,8 +79,11 @@ fn check_tells_mistakes_to_programs() {
         (&mistakes[1]["line"], &mistakes[1]["key"]),
         (&Json::from(21), &"estimator.envelope.window".into())
     );
-    assert_eq!(told[1]["accepted"], true);
-    assert_eq!((&told[2]["accepted"], &told[2]["mistakes"][0]["line"]), (&Json::from(false), &Json::Null));
+    assert_eq!(reported[1]["accepted"], true);
+    assert_eq!(
+        (&reported[2]["accepted"], &reported[2]["mistakes"][0]["line"]),
+        (&Json::from(false), &Json::Null)
+    );
 }
 
 #[test]
@@ -206,7 +209,7 @@ fn completions_are_printed() {
 }
 
 #[test]
-fn modes_and_cycles_are_told_as_json() {
+fn modes_and_cycles_have_json_output() {
     let dir = Dir::with(&["relay-fixed"]);
     let modes = dir.run("modes relay-fixed.toml --json").exits(0).json();
     assert_eq!(modes["frequencies_rad_s"], serde_json::json!([0.44, 0.755]));

@@ -3,7 +3,7 @@
 //! Golden numbers: tests/golden/damping_oracle.py, NumPy and SciPy.
 
 use flexsc_core::analysis::damping::{Convergence, persistence};
-use flexsc_core::estimator::adaptive::{Gradient, Observer, Pulse, Tracker};
+use flexsc_core::estimator::adaptive::{AdaptiveObserver, Gradient, Pulse, Tracker};
 use flexsc_core::quantity::{Finite, Frequency};
 use flexsc_core::random::Seed;
 
@@ -67,7 +67,7 @@ fn the_turning_regressor_allows_far_less() {
 }
 
 /// Returns the persistence of excitation of two modes (Hz) over random bursts of a time (s).
-fn told_apart(modes: [f64; 2], time: f64, run: u64) -> f64 {
+fn resolution(modes: [f64; 2], time: f64, run: u64) -> f64 {
     let frequency = |hertz: f64| Frequency::new(TURN * hertz).expect("a frequency");
     let tracker = |hertz: f64| Tracker {
         frequency: frequency(hertz),
@@ -94,7 +94,7 @@ fn told_apart(modes: [f64; 2], time: f64, run: u64) -> f64 {
 }
 
 #[test]
-fn near_modes_are_not_told_apart() {
+fn near_modes_are_not_resolved() {
     // (modes, after 60 s, after 300 s: between which bounds).
     let cases = [
         ([0.25, 0.6], [0.4, 1.0], [0.7, 1.0]),
@@ -104,7 +104,7 @@ fn near_modes_are_not_told_apart() {
     ];
     for (modes, short, long) in cases {
         for (time, [low, high]) in [(60.0, short), (300.0, long)] {
-            let mut found: Vec<f64> = (0..5).map(|run| told_apart(modes, time, run)).collect();
+            let mut found: Vec<f64> = (0..5).map(|run| resolution(modes, time, run)).collect();
             found.sort_by(f64::total_cmp);
             assert!((low..high).contains(&found[2]), "{modes:?} over {time} s: {found:?}");
         }
@@ -120,11 +120,11 @@ fn near_modes_are_not_told_apart() {
 #[test]
 fn the_command_tells_when_the_observer_converges() {
     let dir = Dir::new();
-    let told = dir.run("observer --frequency 1.2566370614 --kappa 0,1.5 --json").exits(0).json();
-    close(told["a"].as_f64().expect("A"), 1.934_735_096_8, 1e-9);
-    close(told["frozen"][1]["area"].as_f64().expect("an area"), 1.347, 0.01);
-    assert_eq!([0, 1].map(|i| told["frozen"][i]["converges"].as_bool()), [Some(true), Some(false)]);
-    close(told["turning"]["gain_max"].as_f64().expect("a gain"), 0.0429, 0.035);
+    let reported = dir.run("observer --frequency 1.2566370614 --kappa 0,1.5 --json").exits(0).json();
+    close(reported["a"].as_f64().expect("A"), 1.934_735_096_8, 1e-9);
+    close(reported["frozen"][1]["area"].as_f64().expect("an area"), 1.347, 0.01);
+    assert_eq!([0, 1].map(|i| reported["frozen"][i]["converges"].as_bool()), [Some(true), Some(false)]);
+    close(reported["turning"]["gain_max"].as_f64().expect("a gain"), 0.0429, 0.035);
     let said = dir.run("observer --frequency 1.2566 --weights 0.05,-0.5,0.15 --figures drawn --format svg");
     said.exits(0).says(&["converges with no W4", "0.2000 Hz"]);
     let drawn = dir.text("drawn/observer.svg");

@@ -136,8 +136,8 @@ fn long_work_needs_a_yes() {
         "hint: `--yes` runs it anyway",
     ];
     refused(dir.run_bounded("simulate a.toml --log none"), &words);
-    let told = dir.run_bounded("check a.toml").exits(0).says(&["accepted", words[0]]);
-    assert!(!told.err.contains("hint"));
+    let reported = dir.run_bounded("check a.toml").exits(0).says(&["accepted", words[0]]);
+    assert!(!reported.err.contains("hint"));
     assert_eq!(dir.run_bounded("check a.toml --json").exits(0).json()["needs_yes"], true);
     let running = dir.start("simulate a.toml --log none --yes");
     std::thread::sleep(std::time::Duration::from_millis(500));
@@ -359,7 +359,7 @@ fn ordinary_work_needs_no_yes() {
     let scenarios =
         std::fs::read_dir(crate::util::SCENARIOS).expect("shipped").flatten().map(|file| file.path());
     for path in scenarios.filter(|path| path.extension().is_some_and(|kind| kind == "toml")) {
-        let told = dir.run(&format!("check {} --json", path.display())).exits(0).json();
-        assert_eq!(told["needs_yes"], false, "{}", path.display());
+        let reported = dir.run(&format!("check {} --json", path.display())).exits(0).json();
+        assert_eq!(reported["needs_yes"], false, "{}", path.display());
     }
 }

@@ -7,7 +7,7 @@
 use std::collections::BTreeMap;
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::craft::{Craft, HubRotor};
+use flexsc_core::body::craft::{AssembledSpacecraft, HubRotor};
 use flexsc_core::{Document, Scenario, ScenarioError};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
 
@@ -44,7 +44,7 @@ pub fn reference(set: &[(&str, &str)]) -> Result<Scenario, ScenarioError> {
     Scenario::from_document(&document)
 }
 
-pub fn craft(scenario: &Scenario) -> &Craft {
+pub fn craft(scenario: &Scenario) -> &AssembledSpacecraft {
     scenario.model.craft().expect("a spacecraft")
 }
 
@@ -59,10 +59,10 @@ fn wheels() -> Vec<HubRotor> {
 }
 
 /// The reference spacecraft with wheels that turn freely.
-fn open() -> Craft {
+fn open() -> AssembledSpacecraft {
     let scenario = reference(&[]).expect("valid");
     let hub = scenario.spacecraft.as_ref().expect("a hub");
-    Craft::assemble(hub, &scenario.appendage, &[0.0; 2], &wheels()).expect("valid")
+    AssembledSpacecraft::assemble(hub, &scenario.appendage, &[0.0; 2], &wheels()).expect("valid")
 }
 
 /// The rows of the oracle for wheels that are open or locked.
@@ -123,13 +123,13 @@ fn free_modes_agree_with_the_whole_problem() {
 }
 
 /// Rotations delta of the clamped modes about the centre of mass, from their first moments.
-fn rotations(craft: &Craft) -> Matrix3xX<f64> {
+fn rotations(craft: &AssembledSpacecraft) -> Matrix3xX<f64> {
     let of = |n: &Matrix3<f64>| vector![n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)]];
     let columns: Vec<_> = craft.parts.iter().map(|part| of(&part.moments)).collect();
     Matrix3xX::from_columns(&columns)
 }
 
-fn translations(craft: &Craft) -> Matrix3xX<f64> {
+fn translations(craft: &AssembledSpacecraft) -> Matrix3xX<f64> {
     let columns: Vec<_> = craft.parts.iter().map(|part| part.translation).collect();
     Matrix3xX::from_columns(&columns)
 }
@@ -270,8 +270,8 @@ fn order_origin_and_axes_do_not_matter() {
         let scenario = Scenario::parse("again.toml", text).expect("valid");
         craft(&scenario).clone()
     };
-    let swapped =
-        Craft::assemble(hub, &[panels[1].clone(), panels[0].clone()], &[0.0; 2], &[]).expect("valid");
+    let swapped = AssembledSpacecraft::assemble(hub, &[panels[1].clone(), panels[0].clone()], &[0.0; 2], &[])
+        .expect("valid");
     // O is moved by (1, -2, 0.5), and with it everything that is given from there.
     let mut moved = scenario.clone();
     let mut document = Document::from_table("moved.toml", moved.to_table());
@@ -316,7 +316,7 @@ fn order_origin_and_axes_do_not_matter() {
             near((back * mode.rotation - exact.rotation).norm(), 0.0, 1e-13);
             near((back * mode.moments * back.transpose() - exact.moments).norm(), 0.0, 1e-11);
             for point in ["jet", "tip"] {
-                let of = |craft: &Craft| craft.spatial.shapes(point)[index];
+                let of = |craft: &AssembledSpacecraft| craft.spatial.shapes(point)[index];
                 let ((f, phi), (exact_f, exact_phi)) = (of(again), of(self::craft(&scenario)));
                 near((back * f - exact_f).norm() + (back * phi - exact_phi).norm(), 0.0, 1e-12);
             }

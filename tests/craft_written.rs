@@ -4,7 +4,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::attitude::Vector;
-use flexsc_core::body::craft::{Craft, HubRotor};
+use flexsc_core::body::craft::{AssembledSpacecraft, HubRotor};
 
 use crate::craft::{CRAFT, ONE, craft, golden, near, reference, three};
 use crate::util::Dir;
@@ -146,6 +146,7 @@ fn rotors_are_part_of_the_hub() {
     let scenario = reference(&[]).expect("valid");
     let hub = scenario.spacecraft.as_ref().expect("a hub");
     let heavy = [HubRotor { axis: Vector::z(), spin_inertia: 400.0 }];
-    let fault = Craft::assemble(hub, &scenario.appendage, &[0.0; 2], &heavy).expect_err("impossible");
+    let fault =
+        AssembledSpacecraft::assemble(hub, &scenario.appendage, &[0.0; 2], &heavy).expect_err("impossible");
     assert_eq!(fault.key, "spacecraft.inertia");
 }

@@ -5,8 +5,8 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
-use flexsc_core::law::{Law, Sides};
-use flexsc_core::metrics::Value;
+use flexsc_core::law::{LawKind, RelaySides};
+use flexsc_core::metrics::MetricValue;
 
 use crate::study::{close, metrics, numbers, scenario};
 
@@ -25,7 +25,7 @@ fn limit_cycles_and_their_multipliers() {
     for (k_t, period, multiplier, symmetric) in exact {
         let metrics = metrics(scenario("relay-fixed", &[("law.relay.k_t", &k_t.to_string())]));
         let ours = |name| metrics.number(name).unwrap_or(f64::NAN);
-        assert_eq!(metrics.get("cycle_kind"), Some(&Value::Word("two-sided")), "k_t = {k_t}");
+        assert_eq!(metrics.get("cycle_kind"), Some(&MetricValue::Word("two-sided")), "k_t = {k_t}");
         assert!((ours("cycle_period_s") - period).abs() < 2e-8, "k_t = {k_t}: {}", ours("cycle_period_s"));
         let largest = ours("cycle_multiplier_max");
         assert!((largest - multiplier).abs() < 6e-4, "k_t = {k_t}: multiplier {largest}");
@@ -33,7 +33,7 @@ fn limit_cycles_and_their_multipliers() {
         assert_eq!(numbers(&metrics, "cycle_multipliers").len(), 5);
     }
     let chaotic = metrics(scenario("relay-fixed", &[("law.relay.k_t", "0.345")]));
-    assert_eq!(chaotic.get("cycle_kind"), Some(&Value::Word("none")));
+    assert_eq!(chaotic.get("cycle_kind"), Some(&MetricValue::Word("none")));
     assert!(chaotic.number("cycle_period_s").expect("a metric").is_nan());
 }
 
@@ -61,9 +61,9 @@ fn rigid_cycles_in_closed_form_and_simulated() {
     ];
     for (k_t, entry, push, brake, coast, period, multiplier) in exact {
         let scenario = rigid(k_t);
-        let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
+        let LawKind::Relay(law) = &scenario.law else { panic!("a relay law") };
         let cycle = cycles(law, scenario.one_angle().expect("one angle"), k_t)[0];
-        assert_eq!(cycle.sides, Sides::Two);
+        assert_eq!(cycle.sides, RelaySides::Two);
         for (ours, exact) in [
             (cycle.entry_rate_rad_s, entry),
             (cycle.push_s, push),
@@ -86,30 +86,30 @@ fn rigid_cycles_in_closed_form_and_simulated() {
 fn rigid_cycles_exist_and_are_stable_where_they_should_be() {
     let of = |k_t: f64| {
         let scenario = rigid(k_t);
-        let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
+        let LawKind::Relay(law) = &scenario.law else { panic!("a relay law") };
         cycles(law, scenario.one_angle().expect("one angle"), k_t)
     };
     let kinds = |k_t: f64| of(k_t).iter().map(|c| (c.sides, c.stable)).collect::<Vec<_>>();
     // Two-sided below 0.547089, stable below 0.450650; one-sided from 0.415477 on, always stable.
-    assert_eq!(kinds(0.415_47), [(Sides::Two, true)]);
-    assert_eq!(kinds(0.415_48), [(Sides::Two, true), (Sides::One, true)]);
-    assert_eq!(kinds(0.450_64), [(Sides::Two, true), (Sides::One, true)]);
-    assert_eq!(kinds(0.450_66), [(Sides::Two, false), (Sides::One, true)]);
-    assert_eq!(kinds(0.547_08), [(Sides::Two, false), (Sides::One, true)]);
-    assert_eq!(kinds(0.547_10), [(Sides::One, true)]);
+    assert_eq!(kinds(0.415_47), [(RelaySides::Two, true)]);
+    assert_eq!(kinds(0.415_48), [(RelaySides::Two, true), (RelaySides::One, true)]);
+    assert_eq!(kinds(0.450_64), [(RelaySides::Two, true), (RelaySides::One, true)]);
+    assert_eq!(kinds(0.450_66), [(RelaySides::Two, false), (RelaySides::One, true)]);
+    assert_eq!(kinds(0.547_08), [(RelaySides::Two, false), (RelaySides::One, true)]);
+    assert_eq!(kinds(0.547_10), [(RelaySides::One, true)]);
     close(of(0.5)[1].period_s, 71.390_494, 1e-7);
     // Bistable: which cycle a run ends in depends on where it starts.
     for (rate, kind) in [("2.2e-5", "two-sided"), ("4e-5", "one-sided")] {
         let set = [("body.planar.modes", "[]"), ("law.relay.k_t", "0.42"), ("body.planar.rate", rate)];
         let metrics = metrics(scenario("relay-fixed", &set));
-        assert_eq!(metrics.get("cycle_kind"), Some(&Value::Word(kind)), "rate {rate}");
+        assert_eq!(metrics.get("cycle_kind"), Some(&MetricValue::Word(kind)), "rate {rate}");
     }
 }
 
 #[test]
 fn resonances_with_the_modes() {
     let scenario = scenario("relay-fixed", &[]);
-    let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
+    let LawKind::Relay(law) = &scenario.law else { panic!("a relay law") };
     let found = resonances(law, scenario.one_angle().expect("one angle"));
     let exact = [
         (0, 3, 42.8399, 0.297_777),
@@ -129,12 +129,12 @@ fn one_sided_law_ends_in_its_cycle() {
     // Without the left boundary the one-sided cycle exists at 0.31 too: period 120.343 s.
     let set = [("body.planar.modes", "[]"), ("duration", "50000")];
     let scenario = scenario("relay-one-sided", &set);
-    let Law::Relay(law) = &scenario.law else { panic!("a relay law") };
+    let LawKind::Relay(law) = &scenario.law else { panic!("a relay law") };
     let closed = cycles(law, scenario.one_angle().expect("one angle"), 0.31)[0];
     close(closed.period_s, 120.343, 1e-5);
     close(closed.angle_min_rad, -1.25e-3, 0.05);
     let simulated = metrics(scenario.clone());
-    assert_eq!(simulated.get("cycle_kind"), Some(&Value::Word("one-sided")));
+    assert_eq!(simulated.get("cycle_kind"), Some(&MetricValue::Word("one-sided")));
     close(simulated.number("cycle_period_s").expect("a period"), closed.period_s, 1e-9);
     assert_eq!(simulated.number("pushes_left"), Some(0.0));
 }

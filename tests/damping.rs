@@ -6,7 +6,7 @@ use std::f64::consts::PI;
 
 use flexsc_core::actuator::PulseTiming;
 use flexsc_core::analysis::damping::{Decay, PulsedDamping};
-use flexsc_core::estimator::adaptive::{ModelOscillator, ModelPhase};
+use flexsc_core::estimator::adaptive::{ModeVector, OscillatorModel};
 use flexsc_core::numerics::delay_margin::delay_margin;
 
 use crate::study::close;
@@ -26,18 +26,18 @@ fn amplitudes(
     hertz: f64,
     damping: f64,
     acceleration: f64,
-    start: ModelPhase,
+    start: ModeVector,
     late: usize,
     count: usize,
 ) -> Vec<f64> {
-    let of = ModelOscillator { frequency: TURN * hertz, damping };
-    let (transition, push) = (of.transition(CYCLE), of.pulse(CYCLE, 0.0).0);
+    let of = OscillatorModel { frequency: TURN * hertz, damping };
+    let (transition, push) = (of.transition(CYCLE), of.pulse_response(CYCLE, 0.0).0);
     let (mut phase, mut queue) = (start, vec![0.0; late]);
     let sample = |_| {
         let amplitude = phase[0].hypot(phase[1]);
         queue.push(if phase[0] > 0.0 { -acceleration } else { acceleration });
         let now = queue.remove(0);
-        phase = of.turned(&transition, CYCLE, phase).0;
+        phase = of.propagate(&transition, CYCLE, phase).0;
         phase = [0, 1].map(|axis| phase[axis] + now * push[axis]);
         amplitude
     };
@@ -128,8 +128,8 @@ fn delayed_feedback_is_stable_up_to_a_gain() {
 fn delayed(frequency: f64, delay: f64, damping: f64, gain: f64, time: f64) -> f64 {
     let steps = 1000_usize;
     let step = delay / steps as f64;
-    let of = ModelOscillator { frequency, damping };
-    let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
+    let of = OscillatorModel { frequency, damping };
+    let (transition, push) = (of.transition(step), of.pulse_response(step, 0.0).0);
     let mut past = vec![0.0; steps];
     let (mut phase, mut late) = ([1.0, 0.0], 0.0);
     for index in 0..(time / step) as usize {
@@ -137,7 +137,7 @@ fn delayed(frequency: f64, delay: f64, damping: f64, gain: f64, time: f64) -> f6
         past[index % steps] = phase[0];
         let mean = 1.5 * held - 0.5 * late;
         late = held;
-        phase = of.turned(&transition, step, phase).0;
+        phase = of.propagate(&transition, step, phase).0;
         phase = [0, 1].map(|axis| phase[axis] - gain * mean * push[axis]);
     }
     phase[0].hypot(phase[1])
@@ -187,16 +187,16 @@ fn a_relay_brings_a_mode_to_rest() {
 #[test]
 fn a_threshold_saves_thrust_as_foreseen() {
     // The relay that reads all the time, 0.2 Hz: steps of 1 ms.
-    let of = ModelOscillator { frequency: 0.2 * TURN, damping: 0.0 };
+    let of = OscillatorModel { frequency: 0.2 * TURN, damping: 0.0 };
     let step = 1e-3;
-    let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
-    let (mut phase, mut thrust, mut time): (ModelPhase, f64, f64) = ([1e-3, 0.0], 0.0, 0.0);
+    let (transition, push) = (of.transition(step), of.pulse_response(step, 0.0).0);
+    let (mut phase, mut thrust, mut time): (ModeVector, f64, f64) = ([1e-3, 0.0], 0.0, 0.0);
     while phase[0].hypot(phase[1]) > 1.001e-4 {
         let fires = phase[0].abs() > 1e-4;
         let now = if fires { -4.6e-5 * phase[0].signum() } else { 0.0 };
         thrust += if fires { step } else { 0.0 };
         time += step;
-        phase = of.turned(&transition, step, phase).0;
+        phase = of.propagate(&transition, step, phase).0;
         phase = [0, 1].map(|axis| phase[axis] + now * push[axis]);
         assert!(time < 60.0, "no end");
     }
@@ -248,15 +248,15 @@ fn a_delayed_relay_ends_in_a_limit_cycle() {
         close(border.limit_cycle(acceleration), foreseen, 2e-3);
         close(border.frequency, TURN * swing, 1e-3);
         // Steps of 1 ms: the relay reads all the time.
-        let of = ModelOscillator { frequency: TURN * hertz, damping: 0.005 };
+        let of = OscillatorModel { frequency: TURN * hertz, damping: 0.005 };
         let (step, count) = (1e-3, 200_000);
-        let (transition, push) = (of.transition(step), of.pulse(step, 0.0).0);
-        let (mut phase, mut past): (ModelPhase, Vec<f64>) = ([5e-5, 0.0], vec![0.0; 200]);
+        let (transition, push) = (of.transition(step), of.pulse_response(step, 0.0).0);
+        let (mut phase, mut past): (ModeVector, Vec<f64>) = ([5e-5, 0.0], vec![0.0; 200]);
         let (mut largest, mut crossings) = (0.0_f64, Vec::new());
         for index in 0..count {
             let now = std::mem::replace(&mut past[index % 200], -acceleration * phase[0].signum());
             let before = phase[0];
-            phase = of.turned(&transition, step, phase).0;
+            phase = of.propagate(&transition, step, phase).0;
             phase = [0, 1].map(|axis| phase[axis] + now * push[axis]);
             if index > count / 2 {
                 largest = largest.max(phase[0].abs());
@@ -278,10 +278,11 @@ fn a_delayed_relay_ends_in_a_limit_cycle() {
 fn the_command_tells_what_a_relay_does() {
     let dir = Dir::new();
     let yaw = format!("--acceleration {YAW} --amplitude 5e-4");
-    let told = dir.run(&format!("damping --frequency 1.5557167:1.5557167:1 {yaw} --json")).exits(0).json();
-    let row = &told["rows"][0];
+    let reported =
+        dir.run(&format!("damping --frequency 1.5557167:1.5557167:1 {yaw} --json")).exits(0).json();
+    let row = &reported["rows"][0];
     let number = |name: &str| row[name].as_f64().expect("a number");
-    close(told["frequency_limit_rad_s"].as_f64().expect("a number"), 5.0 * PI, 1e-14);
+    close(reported["frequency_limit_rad_s"].as_f64().expect("a number"), 5.0 * PI, 1e-14);
     // ln(1 + r V0/s)/r
     close(number("decay_s"), 12.846_26, 1e-6);
     close(number("phase_factor"), 0.983_95, 1e-5);

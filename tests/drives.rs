@@ -1,6 +1,6 @@
 //! Driven appendages: against an oracle of point masses, balances, refused settings, and the shipped scenario.
 
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::Detail;
 use flexsc_core::scenario::Scenario;
 
@@ -153,7 +153,7 @@ fn a_notch_has_to_cover_the_drift() {
     ];
     let narrow =
         ("frequency = 2.6, depth = 0.1, damping = 0.9", "frequency = 2.386, depth = 0.05, damping = 0.1");
-    let met = |metrics: &Metrics| metrics.get("goal") == Some(&Value::Word("met"));
+    let met = |metrics: &Metrics| metrics.get("goal") == Some(&MetricValue::Word("met"));
     let (metrics, trace) = flown(&shipped(&[]), 0, Detail::Full);
     assert!(met(&metrics), "{metrics:?}");
     let frequencies = within(&trace, "/drives", "modes", "frequency_rad_s");

@@ -1,7 +1,7 @@
 //! The shipped Earth observer: spacecraft from parts, wheels, gyro, star tracker, attitude filter, law and turn
 //! together.
 
-use flexsc_core::metrics::Value;
+use flexsc_core::metrics::MetricValue;
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::scenario::Scenario;
 
@@ -34,7 +34,7 @@ fn it_does_what_its_comment_says() {
     let scenario = observer(&[]);
     for run in 0..5 {
         let (metrics, trace) = flown(&scenario, run, Detail::Full);
-        assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "run {run}");
+        assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")), "run {run}");
         let (turning, pointing) = (worst(&trace, 30.0, 200.9), worst(&trace, 240.9, 300.0));
         assert!(turning < 5e-4 && pointing < 1e-4, "run {run}: {turning} {pointing}");
         let Some(Column::Rows(_, wheels)) = trace.topic("/wheels").and_then(|rows| rows.get("wheels")) else {

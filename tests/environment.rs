@@ -181,11 +181,14 @@ fn steps_of_a_rotation_are_counted() {
         );
         Scenario::parse("long.toml", &text)
     };
-    assert_eq!(long(1.8e10, "").expect("a rigid one takes steps of 1000 s").cost(None, false).excess(), None);
+    assert_eq!(
+        long(1.8e10, "").expect("a rigid one takes steps of 1000 s").cost(None, false).limit_exceeded(),
+        None
+    );
     let error = long(1.8e10, &PANEL.replace("1.1,", "120.0,")).expect_err("too many").to_string();
     assert!(error.contains("`duration` makes 1."), "{error}");
     let years = long(1e10, &PANEL.replace("1.1,", "11.0,")).expect("possible").cost(None, false);
-    assert!(years.excess().is_some_and(|why| why.starts_with("`duration` makes")), "{years:?}");
+    assert!(years.limit_exceeded().is_some_and(|why| why.starts_with("`duration` makes")), "{years:?}");
 }
 
 /// The Sun of the date acts like a given direction; without a date it is refused.
@@ -200,7 +203,7 @@ fn the_sun_of_the_date_is_a_direction() {
     };
     let sun = |text: &str| {
         let scenario = Scenario::parse("sun.toml", text).unwrap_or_else(|error| panic!("{error}"));
-        *scenario.sky().sun().expect("a Sun")
+        *scenario.orbit_environment().sun().expect("a Sun")
     };
     // The solstice of June: over the tropic, at a right ascension of 90 degrees.
     let found = sun(&text("\"epoch\"", "epoch = 2024-06-20T20:51:00Z"));

@@ -2,15 +2,15 @@
 
 use std::convert::Infallible;
 
-use flexsc_core::belief::Belief;
 use flexsc_core::body::Planar;
-use flexsc_core::flow::{ForcedInput, Segment};
+use flexsc_core::flow::{SegmentInput, UncoupledSegment};
 use flexsc_core::guard::Guard;
-use flexsc_core::law::{Cause, Command, Goal};
-use flexsc_core::motion::State;
-use flexsc_core::motion::crossing::locate;
+use flexsc_core::law::{Command, DecisionCause, Setpoint};
+use flexsc_core::motion::AxisState;
+use flexsc_core::motion::crossing::first_crossing;
 use flexsc_core::random::{Seed, Stream};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
+use flexsc_core::state_estimate::StateEstimate;
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation, SimulationError};
 
@@ -24,7 +24,7 @@ fn scenario(text: &str) -> Scenario {
 }
 
 /// A body with random modes, some damped, some beyond critical, in a random state.
-fn random_body(stream: &mut Stream) -> (Planar, State) {
+fn random_body(stream: &mut Stream) -> (Planar, AxisState) {
     let (angle, rate) = (1e-4 * stream.normal(), 2e-5 * stream.normal());
     let mut text = format!("duration = 1.0\n[body.planar]\nangle = {angle:e}\nrate = {rate:e}\n");
     for _ in 0..stream.index(6) {
@@ -42,7 +42,7 @@ fn random_body(stream: &mut Stream) -> (Planar, State) {
     }
     let scenario = scenario(&(text + RELAY));
     let body = scenario.one_angle().expect("one angle").clone();
-    let state = body.start();
+    let state = body.initial_state();
     (body, state)
 }
 
@@ -52,8 +52,8 @@ fn no_crossing_is_missed() {
     let (mut tripped, mut clear) = (0, 0);
     for trial in 0..1500 {
         let (body, state) = random_body(&mut stream);
-        let mut segment = Segment::new(&body);
-        segment.depart(&state, &ForcedInput::constant(3e-6 * stream.normal()));
+        let mut segment = UncoupledSegment::new(&body);
+        segment.depart(&state, &SegmentInput::constant(3e-6 * stream.normal()));
         let start = state.angle();
         let mut away = || 3e-4 * stream.uniform();
         let mut guards = [Guard::at_least(start + away()), Guard::at_most(start - away())];
@@ -63,8 +63,8 @@ fn no_crossing_is_missed() {
         }
         let horizon = Span::from_seconds(5.0);
         let mut there = state.clone();
-        let trip =
-            locate(&segment, &guards, horizon, &mut there, || Ok::<_, Infallible>(())).expect("not stopped");
+        let trip = first_crossing(&segment, &guards, horizon, &mut there, || Ok::<_, Infallible>(()))
+            .expect("not stopped");
         let until = trip.map_or(5.0, |trip| trip.after.seconds());
         // No level is crossed before, at 20 000 instants, within the rounding of the angle.
         let mut probe = state.clone();
@@ -83,7 +83,7 @@ fn no_crossing_is_missed() {
                 assert!(guard.holds(sensed.angle));
                 assert_eq!(probe, there);
                 // It is the first tick: one before, the angle is short of the level, or at it to rounding.
-                let before = segment.at(trip.after.minus(Span::TICK).seconds(), &mut probe);
+                let before = segment.at(trip.after.remaining_after(Span::TICK).seconds(), &mut probe);
                 assert!(guard.gap(before.angle) > -1e-18);
             }
         }
@@ -97,18 +97,20 @@ fn a_tangent_touch_is_found() {
     let text = format!("duration = 1.0\n[body.planar]\nangle = 1e-4\nrate = 1e-5\n{RELAY}");
     let scenario = scenario(&text);
     let body = scenario.one_angle().expect("one angle");
-    let mut segment = Segment::new(body);
-    let state = body.start();
-    segment.depart(&state, &ForcedInput::constant(-1e-6));
+    let mut segment = UncoupledSegment::new(body);
+    let state = body.initial_state();
+    segment.depart(&state, &SegmentInput::constant(-1e-6));
     let peak = 1e-4 + 1e-5 * 1e-5 / (2.0 * 1e-6);
     let mut there = state.clone();
     let horizon = Span::from_seconds(100.0);
-    let below =
-        locate(&segment, &[Guard::at_least(peak - 1e-18)], horizon, &mut there, || Ok::<_, Infallible>(()));
+    let below = first_crossing(&segment, &[Guard::at_least(peak - 1e-18)], horizon, &mut there, || {
+        Ok::<_, Infallible>(())
+    });
     let below = below.expect("not stopped").expect("a touch");
     assert!((below.after.seconds() - 10.0).abs() < 2e-6, "{}", below.after.seconds());
-    let above =
-        locate(&segment, &[Guard::at_least(peak + 1e-18)], horizon, &mut there, || Ok::<_, Infallible>(()));
+    let above = first_crossing(&segment, &[Guard::at_least(peak + 1e-18)], horizon, &mut there, || {
+        Ok::<_, Infallible>(())
+    });
     assert_eq!(above.expect("not stopped"), None);
 }
 
@@ -116,12 +118,13 @@ fn a_tangent_touch_is_found() {
 fn a_guard_that_holds_trips_at_once() {
     let scenario = scenario(&format!("duration = 1.0\n[body.planar]\nangle = 1e-4\n{RELAY}"));
     let body = scenario.one_angle().expect("one angle");
-    let mut segment = Segment::new(body);
-    let state = body.start();
-    segment.depart(&state, &ForcedInput::constant(0.0));
+    let mut segment = UncoupledSegment::new(body);
+    let state = body.initial_state();
+    segment.depart(&state, &SegmentInput::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_most(0.0), Guard::at_least(1e-4)];
-    let trip = locate(&segment, &guards, Span::from_seconds(1.0), &mut there, || Ok::<_, Infallible>(()));
+    let trip =
+        first_crossing(&segment, &guards, Span::from_seconds(1.0), &mut there, || Ok::<_, Infallible>(()));
     let trip = trip.expect("not stopped").expect("a trip");
     assert_eq!((trip.after, trip.guard), (Span::ZERO, 1));
 }
@@ -131,15 +134,17 @@ fn a_crossing_beyond_64_bits_of_femtoseconds_is_found() {
     let text = format!("duration = 1.0\n[body.planar]\nrate = 1e-9\n{RELAY}");
     let scenario = scenario(&text);
     let body = scenario.one_angle().expect("one angle");
-    let mut segment = Segment::new(body);
-    let state = body.start();
-    segment.depart(&state, &ForcedInput::constant(0.0));
+    let mut segment = UncoupledSegment::new(body);
+    let state = body.initial_state();
+    segment.depart(&state, &SegmentInput::constant(0.0));
     let mut there = state.clone();
     let guards = [Guard::at_least(5e-4)];
-    let trip = locate(&segment, &guards, Span::from_seconds(1e6), &mut there, || Ok::<_, Infallible>(()));
+    let trip =
+        first_crossing(&segment, &guards, Span::from_seconds(1e6), &mut there, || Ok::<_, Infallible>(()));
     let trip = trip.expect("not stopped").expect("a trip");
     assert!((trip.after.seconds() - 5e5).abs() < 1e-9);
-    let none = locate(&segment, &guards, Span::from_seconds(4.9e5), &mut there, || Ok::<_, Infallible>(()));
+    let none =
+        first_crossing(&segment, &guards, Span::from_seconds(4.9e5), &mut there, || Ok::<_, Infallible>(()));
     assert_eq!(none.expect("not stopped"), None);
 }
 
@@ -231,8 +236,8 @@ fn switching_much_faster_than_any_mode_is_an_error() {
     assert!(matches!(error, SimulationError::LawChatter { .. }), "{error}");
     // It is the same error from the loop, which a log of rows at fixed times has from the start on.
     let mut rows = Trace::new(Detail::Full);
-    let told = Simulation::new(&scenario(&quick), 0).run(&mut rows).expect_err("chatter");
-    assert_eq!(told.to_string(), error.to_string());
+    let reported = Simulation::new(&scenario(&quick), 0).run(&mut rows).expect_err("chatter");
+    assert_eq!(reported.to_string(), error.to_string());
     // A relay that is a million times as strong switches often, and is none.
     run(&shipped.replace("strong = 4e-5", "strong = 40.0").replace("duration = 20000.0", "duration = 20.0"))
         .expect("a run");
@@ -251,13 +256,13 @@ fn the_brake_keeps_the_gain_that_it_began_with() {
     let study = scenario(&format!("duration = 1\n{FLEXIBLE}{RELAY}"));
     let mut law = study.law.start(&study.study.authorities[0]);
     let at = |seconds| Instant::START + Span::from_seconds(seconds);
-    let belief = Belief { angle: 6e-4, ..Belief::default() };
-    let push = law.decide(at(0.0), Cause::Start, &Goal::default(), &belief);
+    let estimate = StateEstimate { angle: 6e-4, ..StateEstimate::default() };
+    let push = law.decide(at(0.0), DecisionCause::Start, &Setpoint::default(), &estimate);
     assert_eq!(push.command, Command::Torque(-4e-5));
     law.tune("k_t", 0.25);
-    let brake = law.decide(at(4.0), Cause::Guard(0), &Goal::default(), &belief);
+    let brake = law.decide(at(4.0), DecisionCause::Guard(0), &Setpoint::default(), &estimate);
     assert_eq!((brake.command, brake.until), (Command::Torque(4e-5), Some(at(5.0))));
     law.tune("k_t", 0.9);
-    let coast = law.decide(at(5.0), Cause::Timeout, &Goal::default(), &belief);
+    let coast = law.decide(at(5.0), DecisionCause::Timeout, &Setpoint::default(), &estimate);
     assert_eq!((coast.command, coast.until, coast.guards.len()), (Command::Torque(1e-6), None, 2));
 }

@@ -89,7 +89,7 @@ band = 2e-3
 
 #[test]
 fn metrics_of_a_rotation_are_those_of_a_dense_search() {
-    let told = metrics(Scenario::parse("pd", ROTATION).expect("valid"));
+    let reported = metrics(Scenario::parse("pd", ROTATION).expect("valid"));
     let golden = [
         ("peak_torque_nm", 1.1),
         ("angle_error_peak_rad", 2.111_241_263_071_022e-2),
@@ -102,11 +102,11 @@ fn metrics_of_a_rotation_are_those_of_a_dense_search() {
         ("settling_time_s", 3.150_509_190_981_662e1),
     ];
     for (name, exact) in golden {
-        let value = told.number(name).unwrap_or_else(|| numbers(&told, name)[0]);
+        let value = reported.number(name).unwrap_or_else(|| numbers(&reported, name)[0]);
         close(value, exact, 2e-12);
     }
-    assert_eq!(word(&told, "goal"), "met");
-    let row = told.to_row();
+    assert_eq!(word(&reported, "goal"), "met");
+    let row = reported.to_row();
     let unit = |name: &str| row.metrics.iter().find(|metric| metric.name == name).expect("it").unit.clone();
     assert_eq!((unit("output_peaks"), unit("peak_torque_nm")), ("m".to_owned(), "N m".to_owned()));
 }
@@ -132,11 +132,11 @@ torque = -1e-6
 [reference]
 band = 4e-4
 ";
-    let told = metrics(Scenario::parse("arc", text).expect("valid"));
-    close(number(&told, "angle_error_peak_rad"), 1.079_838_841_452_594_3e-3, 1e-13);
-    close(number(&told, "itae"), 0.165_419_965_418_987_1, 1e-13);
-    assert_eq!(number(&told, "time_outside_s"), 19.0);
-    assert_eq!(word(&told, "goal"), "missed");
+    let reported = metrics(Scenario::parse("arc", text).expect("valid"));
+    close(number(&reported, "angle_error_peak_rad"), 1.079_838_841_452_594_3e-3, 1e-13);
+    close(number(&reported, "itae"), 0.165_419_965_418_987_1, 1e-13);
+    assert_eq!(number(&reported, "time_outside_s"), 19.0);
+    assert_eq!(word(&reported, "goal"), "missed");
 }
 
 /// Returns the largest value in a full log, for observed coordinates that of each.
@@ -159,10 +159,10 @@ fn largest_logged(scenario: &Scenario, topic: &str) -> Vec<f64> {
 fn where_nothing_is_in_closed_form_no_sample_is_larger() {
     // The chain is integrated by extrapolation, and its metrics by Taylor series: they agree as the tolerance says.
     let chain = scenario("rotation-nonlinear", &[("log.period", "0.001"), ("duration", "14")]);
-    let told = numbers(&metrics(chain.clone()), "output_peaks");
+    let reported = numbers(&metrics(chain.clone()), "output_peaks");
     let logged = largest_logged(&chain, "/outputs");
     assert_eq!(logged.len(), 4);
-    for (told, logged) in told.into_iter().zip(logged) {
+    for (told, logged) in reported.into_iter().zip(logged) {
         // A crest between two samples is a part (40 rad/s 0.5 ms)²/2 higher at most.
         assert!(told >= logged * (1.0 - 1e-9) && told <= logged * (1.0 + 3e-4), "{told} {logged}");
     }
@@ -170,19 +170,19 @@ fn where_nothing_is_in_closed_form_no_sample_is_larger() {
         "wheel-fixed-gain",
         &[("log.period", "0.01"), ("duration", "90"), ("reference.band", "1.0")],
     );
-    let told = number(&metrics(drifting.clone()), "angle_error_peak_rad");
+    let reported = number(&metrics(drifting.clone()), "angle_error_peak_rad");
     let logged = largest_logged(&drifting, "/attitude")[0];
-    assert!(told >= logged * (1.0 - 1e-13) && told <= logged * (1.0 + 2e-4), "{told} {logged}");
+    assert!(reported >= logged * (1.0 - 1e-13) && reported <= logged * (1.0 + 2e-4), "{reported} {logged}");
 }
 
 #[test]
 fn worst_residuals_are_the_largest_of_a_much_finer_grid() {
     let scenario = scenario("rotation-cosine", &[]);
     let (plan, body) = (scenario.plan.as_ref().expect("a plan"), scenario.one_angle().expect("one angle"));
-    let report = flexsc_core::manoeuvre::Report::new(plan, body, 0.1);
+    let report = flexsc_core::manoeuvre::PlanReport::new(plan, body, 0.1);
     for (index, residual) in report.residuals.iter().enumerate() {
         let finest = (0..=40_000).map(|i| 0.9 + 0.2 * f64::from(i) / 4e4);
-        let largest = finest.map(|factor| plan.left(body, factor)[index]).fold(0.0, f64::max);
+        let largest = finest.map(|factor| plan.residual_at(body, factor)[index]).fold(0.0, f64::max);
         // Between the points of the finer grid a crest is 1e-8 higher at most; 401 points were 1e-6 and more off.
         assert!(residual.worst >= largest * (1.0 - 1e-13), "{} {largest}", residual.worst);
         assert!(residual.worst <= largest * (1.0 + 1e-7), "{} {largest}", residual.worst);

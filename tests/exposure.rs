@@ -4,7 +4,7 @@ use nalgebra::Quaternion;
 
 use flexsc_core::attitude::{Vector, rotation, rotation_vector};
 use flexsc_core::time::{Instant, Span};
-use flexsc_core::{LookField, Scenario, Simulation};
+use flexsc_core::{ObservationField, Scenario, Simulation};
 
 use crate::spatial::FREE;
 use crate::traces::{column, traced};
@@ -36,8 +36,8 @@ struct Looked {
 impl Looked {
     fn new(scenario: &Scenario, point: &str) -> Self {
         let run = Simulation::new(scenario, 3);
-        let fields = run.fields(scenario);
-        let widths = |fields: &[LookField]| fields.iter().map(LookField::width).sum::<usize>();
+        let fields = run.observation_fields(scenario);
+        let widths = |fields: &[ObservationField]| fields.iter().map(ObservationField::width).sum::<usize>();
         let place = |name: &str, nth: usize| {
             let of = fields.iter().enumerate().filter(|(_, field)| field.name == name).nth(nth);
             widths(&fields[..of.expect("a field").0])
@@ -56,7 +56,7 @@ impl Looked {
 
     fn go(&mut self, to: Instant) {
         self.run.run_until(to, &mut ()).expect("a run");
-        self.run.look(&mut self.row).expect("numbers");
+        self.run.observe(&mut self.row).expect("numbers");
     }
 
     fn hub(&self) -> Quaternion<f64> {
@@ -72,7 +72,7 @@ impl Looked {
     }
 
     /// Returns the attitude that was reported last.
-    fn told(&self) -> Quaternion<f64> {
+    fn reading(&self) -> Quaternion<f64> {
         let error = |place: usize| rotation(&Vector::from_row_slice(&self.row[place..place + 3]));
         self.hub() * error(self.places[1]).conjugate() * error(self.places[2])
     }
@@ -101,8 +101,8 @@ fn off(scenario: &Scenario, point: &str, [at, exposure, latency]: [f64; 3], part
     let mean = seen
         .iter()
         .fold(Vector::zeros(), |sum, (seen, weight)| sum + rotation_vector(&middle, seen) * *weight);
-    let told = rotation_vector(&middle, &run.told());
-    [(told - mean).norm(), told.norm()]
+    let described = rotation_vector(&middle, &run.reading());
+    [(described - mean).norm(), described.norm()]
 }
 
 /// Exposures that contain starts of segments, on every kind of body.

@@ -12,15 +12,15 @@ const ROOT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../..");
 /// Row of the document, folder of the role, name of a kind in code, and the largest number of files elsewhere that name
 /// it.
 const KINDS: [(&str, &str, &str, usize); 9] = [
-    ("| a law |", "law", "Law::Attitude", 3),
-    ("| a sensor |", "sensor", "Sensor::StarTracker", 2),
-    ("| a sensor |", "sensor", "Sensor::Gyro", 2),
-    ("| a law |", "law", "Law::BDot", 2),
-    ("| a sensor |", "sensor", "Sensor::Magnetometer", 2),
-    ("| a sensor |", "sensor", "Sensor::SunSensor", 2),
-    ("| an estimator |", "estimator", "Estimator::RigidRate", 2),
-    ("| an estimator |", "estimator", "Estimator::Attitude", 2),
-    ("| an actuator about each axis |", "actuator", "Actuator::Hold", 3),
+    ("| a law |", "law", "LawKind::Attitude", 3),
+    ("| a sensor |", "sensor", "SensorKind::StarTracker", 2),
+    ("| a sensor |", "sensor", "SensorKind::Gyro", 2),
+    ("| a law |", "law", "LawKind::BDot", 2),
+    ("| a sensor |", "sensor", "SensorKind::Magnetometer", 2),
+    ("| a sensor |", "sensor", "SensorKind::SunSensor", 2),
+    ("| an estimator |", "estimator", "EstimatorKind::RigidRate", 2),
+    ("| an estimator |", "estimator", "EstimatorKind::Attitude", 2),
+    ("| an actuator about each axis |", "actuator", "ActuatorKind::Hold", 3),
 ];
 
 /// Returns the path from `src` on for a crate of the engine, and other paths whole.
@@ -41,7 +41,7 @@ fn a_new_kind_is_named_where_the_document_says_and_nowhere_else() {
         let row =
             document.lines().find(|line| line.starts_with(row)).unwrap_or_else(|| panic!("no row {row}"));
         let names = |(_, text): &&(String, String)| {
-            // `Law::Attitude` is not `Law::AttitudeX`.
+            // `LawKind::Attitude` is not `LawKind::AttitudeX`.
             text.match_indices(kind).any(|(at, _)| {
                 !text[at + kind.len()..].starts_with(|next: char| next.is_alphanumeric() || next == '_')
             })

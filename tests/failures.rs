@@ -200,7 +200,7 @@ fn magnetorquers_fail_by_axes() {
 
 /// Failures of sensors are logged like those of actuators, with their exact instants; a gyro has them too.
 #[test]
-fn failures_are_told() {
+fn failures_are_reported() {
     let text = format!(
         "{RIGID}rate = 1e-3\n[sensor.gyro]\nperiod = 0.5\nfaults = [{{ stuck = {{ from = 4.2, to = 9.0 }} }}]\n\
          [law.pd]\nk_p = 4.0\nk_d = 30.0\nperiod = 0.5\n[actuator.hold]\nperiod = 0.5\nfaults = [{{ dead = {{ from = 0.1 }} }}]"

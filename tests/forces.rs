@@ -1,6 +1,6 @@
 //! Forces at points of a spacecraft, steady and in pulses: the motion under them, and refused ones.
 
-use flexsc_core::metrics::Gather;
+use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::record::{Columns, Trace};
 use flexsc_core::{Scenario, ScenarioError, Simulation};
 
@@ -84,7 +84,7 @@ fn pulses_act_on_one_angle_too() {
         [[disturbance]]\ntorque = 0.5\npulse = { period = 1.0, on = 0.25 }\nfrom = 0.5\nto = 4.6\n";
     let scenario = scenario(text).expect("valid");
     let mut simulation = Simulation::new(&scenario, 0);
-    simulation.run(&mut Gather::new(&scenario)).expect("a run");
+    simulation.run(&mut MetricsCollector::new(&scenario)).expect("a run");
     // Four whole pulses, and 0.1 s of the fifth.
     near(simulation.state().expect("one angle").rigid_rate, 0.25 * 1.1, 1e-15);
 }

@@ -2,7 +2,7 @@
 //! and the shipped scenario.
 
 use flexsc_core::Simulation;
-use flexsc_core::metrics::Value;
+use flexsc_core::metrics::MetricValue;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
 use flexsc_core::time::{Instant, Span};
@@ -92,11 +92,11 @@ fn the_steps_of_fast_gimbals_are_counted() {
 #[test]
 fn the_shipped_scenario_does_what_its_comment_says() {
     let (metrics, trace) = flown(&parsed(&changed(&[])), 0, Detail::Full);
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "{metrics:?}");
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")), "{metrics:?}");
     let rates = within(&trace, "/control_moment_gyros", "gyros", "rate_rad_s");
     let largest = rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
-    let told = metrics.number("gimbal_rate_peak_rad_s").expect("a rate");
-    assert!(largest <= told && told <= 1.0, "{largest} {told}");
+    let reported = metrics.number("gimbal_rate_peak_rad_s").expect("a rate");
+    assert!(largest <= reported && reported <= 1.0, "{largest} {reported}");
     let measure = column(&trace, "/control_moment_gyros", "singularity");
     let least = measure.iter().copied().fold(f64::INFINITY, f64::min);
     assert!((least - metrics.number("singularity_min").expect("a measure")).abs() < 1e-9, "{least}");
@@ -121,9 +121,13 @@ fn a_clone_repeats_the_run_to_the_last_bit() {
     let mut second = first.clone();
     let ends = [&mut first, &mut second].map(|run| {
         run.run(&mut Trace::new(Detail::Events)).expect("a run");
-        let mut row = vec![0.0; run.fields(&scenario).iter().map(flexsc_core::LookField::width).sum()];
-        run.look(&mut row).expect("a state");
-        let names: Vec<&str> = run.fields(&scenario).iter().map(|field| field.name).collect();
+        let mut row =
+            vec![
+                0.0;
+                run.observation_fields(&scenario).iter().map(flexsc_core::ObservationField::width).sum()
+            ];
+        run.observe(&mut row).expect("a state");
+        let names: Vec<&str> = run.observation_fields(&scenario).iter().map(|field| field.name).collect();
         assert!(names.contains(&"gimbal_angles") && names.contains(&"gimbal_rates"));
         row.iter().map(|value| value.to_bits()).collect::<Vec<_>>()
     });
@@ -131,7 +135,7 @@ fn a_clone_repeats_the_run_to_the_last_bit() {
     let mut whole = Simulation::new(&scenario, 0);
     whole.run(&mut Trace::new(Detail::Full)).expect("a run");
     let mut row = vec![0.0; ends[0].len()];
-    whole.look(&mut row).expect("a state");
+    whole.observe(&mut row).expect("a state");
     assert_eq!(row.iter().map(|value| value.to_bits()).collect::<Vec<_>>(), ends[0]);
 }
 
@@ -183,7 +187,7 @@ fn magnetorquers_unload_them() {
     let start = (x * x + y * y + z * z).sqrt();
     let end = metrics.number("gyro_momentum_end_nm_s").expect("a momentum");
     assert!(start > 5.0 && end < 0.9 * start, "{end} of {start}");
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
 }
 
 #[test]

@@ -73,7 +73,7 @@ fn a_name_that_ends_in_a_form_is_a_file_in_every_verb_that_draws() {
 }
 
 #[test]
-fn runs_without_anything_random_are_told_of() {
+fn runs_without_randomness_are_reported() {
     let dir = quiet();
     let warning = "warning: no metric differs between the 3 runs";
     let alike = dir.run("simulate relay-fixed.toml --set duration=400 --runs 3").exits(0).says(&[warning]);
@@ -147,8 +147,8 @@ fn metrics_are_exported_as_a_table_for_people() {
     let rows: Vec<[String; 4]> = table.deserialize().collect::<Result<_, _>>().expect("rows");
     let of =
         |name: &str| rows.iter().find(|row| row[0] == name).unwrap_or_else(|| panic!("no {name} in\n{text}"));
-    let told = dir.run("simulate relay-adaptive.toml --set duration=1200 --json").exits(0).json();
-    let metrics = &told["metrics"];
+    let reported = dir.run("simulate relay-adaptive.toml --set duration=1200 --json").exits(0).json();
+    let metrics = &reported["metrics"];
     for name in ["switchings", "duty", "envelope_mean_rad"] {
         assert_eq!(of(name)[1].parse::<f64>().ok(), metrics[name].as_f64(), "{name}");
     }

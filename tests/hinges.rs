@@ -1,7 +1,7 @@
 //! Appendages on hinges: against an oracle of rigid bodies, balances, shipped satellites with hinges, and refused
 //! settings.
 
-use flexsc_core::metrics::Value;
+use flexsc_core::metrics::MetricValue;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
@@ -138,7 +138,7 @@ fn hinged(name: &str) -> Scenario {
 fn satellites_fly_with_hinges_and_stop_anywhere() {
     for name in ["agile-observer", "earth-observer", "momentum-unloading", "canted-jets", "wheels-and-jets"] {
         let scenario = hinged(name);
-        let told = |pieces: u32| {
+        let reported = |pieces: u32| {
             let mut trace = Trace::new(Detail::Full);
             let mut run = Simulation::new(&scenario, 0);
             for piece in 1..=pieces {
@@ -151,7 +151,7 @@ fn satellites_fly_with_hinges_and_stop_anywhere() {
             assert!(topics.iter().all(Option::is_some), "{name}");
             format!("{topics:?}")
         };
-        assert!(told(1) == told(7), "{name}");
+        assert!(reported(1) == reported(7), "{name}");
     }
 }
 
@@ -205,7 +205,7 @@ fn panels_unfold() {
         let text = std::fs::read_to_string(format!("{SCENARIOS}/panel-deployment.toml")).expect("a file");
         let text = text.replace("stiffness = 0.45", &format!("stiffness = {stiffness}"));
         let (metrics, trace) = flown(&parsed(&text), 0, Detail::Full);
-        assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "{metrics:?}");
+        assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")), "{metrics:?}");
         trace
     };
     let most = |of: &[f64]| of.iter().map(|of| of.abs()).fold(0.0, f64::max);

@@ -6,7 +6,7 @@ use nalgebra::{Complex, DMatrix, DVector, Matrix3, Quaternion};
 use flexsc_core::Scenario;
 use flexsc_core::actuator::Wheels;
 use flexsc_core::attitude::Vector;
-use flexsc_core::motion::turning::{Acting, Bearing, Flexible, Rotor, Turning};
+use flexsc_core::motion::three_axis::{Bearing, FlexibleBody, Rotor, SegmentLoads, ThreeAxisMotion};
 
 const CRAFT: &str = include_str!("golden/craft.toml");
 const MODES: &str = include_str!("golden/turning/modes.csv");
@@ -44,7 +44,7 @@ const SLIGHT: &str = "static = [7.2e-9, 0, 0, 0], dynamic = [3e-10, 0, 0, 0], \
                       positions = [[0.3, 0.3, -0.4], [-0.3, 0.3, -0.4], [-0.3, -0.3, -0.4], [0.3, -0.3, -0.4]]";
 
 /// Returns the reference spacecraft with its full damping matrix, and the bearings and axes of its wheels.
-fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
+fn craft(imbalance: &str) -> (FlexibleBody, Vec<Bearing>, Vec<Vector>) {
     let text = format!(
         "{CRAFT}\n[actuator.wheels]\narrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\n"
     );
@@ -66,7 +66,7 @@ fn craft(imbalance: &str) -> (Flexible, Vec<Bearing>, Vec<Vector>) {
 }
 
 /// Returns the complex amplitudes of the modes and of the rate, rigid and total, at a steady speed (rad/s).
-fn steady(flexible: &Flexible, bearing: &Bearing, speed: f64) -> (DVector<C>, [nalgebra::Vector3<C>; 2]) {
+fn steady(flexible: &FlexibleBody, bearing: &Bearing, speed: f64) -> (DVector<C>, [nalgebra::Vector3<C>; 2]) {
     let line = &bearing.lines[0];
     let square = speed * speed;
     let torque =
@@ -124,11 +124,11 @@ fn the_motion_is_the_steady_one() {
         let (q, [rigid, whole]) = steady(&flexible, &bearings[0], speed);
         let modes: Vec<[f64; 2]> = q.iter().map(|q| [q.re, (q * C::new(0.0, speed)).re]).collect();
         let rate = rigid.map(|part| part.re);
-        let mut turning = Turning::new(&flexible, Quaternion::identity(), rate, &modes);
-        turning.bear(bearings.clone());
+        let mut turning = ThreeAxisMotion::new(&flexible, Quaternion::identity(), rate, &modes);
+        turning.set_bearings(bearings.clone());
         let hub = turning.seen().rate;
-        turning.depart(&Acting { rotors: rotors(&axes, speed, 0.0, &hub), ..Acting::default() });
-        turning.settle(None);
+        turning.depart(&SegmentLoads { rotors: rotors(&axes, speed, 0.0, &hub), ..SegmentLoads::default() });
+        turning.resolve_stick_slip(None);
         let mut worst = 0.0_f64;
         for k in 1..=40 {
             let t = 0.1 * f64::from(k) + 1e-3;
@@ -145,10 +145,14 @@ fn the_motion_is_the_steady_one() {
 #[test]
 fn a_run_up_through_the_line() {
     let (flexible, bearings, axes) = craft(SLIGHT);
-    let mut turning = Turning::new(&flexible, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
-    turning.bear(bearings);
-    turning.depart(&Acting { rotors: rotors(&axes, 40.0, INERTIA, &Vector::zeros()), ..Acting::default() });
-    turning.settle(None);
+    let mut turning =
+        ThreeAxisMotion::new(&flexible, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
+    turning.set_bearings(bearings);
+    turning.depart(&SegmentLoads {
+        rotors: rotors(&axes, 40.0, INERTIA, &Vector::zeros()),
+        ..SegmentLoads::default()
+    });
+    turning.resolve_stick_slip(None);
     let table = rows(RUN_UP);
     let most = table.iter().map(|row| Vector::from_row_slice(&row[1..4]).norm()).fold(0.0, f64::max);
     assert!(table.len() == 80 && most > 3e-10);
@@ -156,7 +160,7 @@ fn a_run_up_through_the_line() {
         turning.advance(row[0], None, || Ok::<(), ()>(())).expect("valid");
         let off = (turning.seen().rate - Vector::from_row_slice(&row[1..4])).norm();
         assert!(off < 2e-8 * most, "{}: {off:e}", row[0]);
-        assert!((turning.turned(None)[0].speed - row[4]).abs() < 1e-9);
+        assert!((turning.rotor_observations(None)[0].speed - row[4]).abs() < 1e-9);
     }
 }
 
@@ -168,12 +172,13 @@ fn harmonics_are_followed() {
     assert_eq!((bearings[0].lines.len(), bearings[0].highest()), (1, 2.0));
     let (q, [rigid, whole]) = steady_at(&flexible, &bearings[..1], 31.0, 2.0);
     let modes: Vec<[f64; 2]> = q.iter().map(|q| [q.re, (q * C::new(0.0, 62.0)).re]).collect();
-    let mut turning = Turning::new(&flexible, Quaternion::identity(), rigid.map(|part| part.re), &modes);
+    let mut turning =
+        ThreeAxisMotion::new(&flexible, Quaternion::identity(), rigid.map(|part| part.re), &modes);
     let quiet = Bearing { inertia: INERTIA, ..Bearing::default() };
-    turning.bear(vec![bearings[0].clone(), quiet.clone(), quiet.clone(), quiet]);
+    turning.set_bearings(vec![bearings[0].clone(), quiet.clone(), quiet.clone(), quiet]);
     let hub = turning.seen().rate;
-    turning.depart(&Acting { rotors: rotors(&axes, 31.0, 0.0, &hub), ..Acting::default() });
-    turning.settle(None);
+    turning.depart(&SegmentLoads { rotors: rotors(&axes, 31.0, 0.0, &hub), ..SegmentLoads::default() });
+    turning.resolve_stick_slip(None);
     for k in 1..=20 {
         let t = 0.1 * f64::from(k);
         turning.advance(t, None, || Ok::<(), ()>(())).expect("valid");
@@ -186,7 +191,7 @@ fn harmonics_are_followed() {
 /// Returns the steady amplitudes for a line of this order: those of a wheel at `order` times the speed with a
 /// coefficient smaller by the square of the order.
 fn steady_at(
-    flexible: &Flexible,
+    flexible: &FlexibleBody,
     bearings: &[Bearing],
     speed: f64,
     order: f64,

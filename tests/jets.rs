@@ -2,7 +2,7 @@
 //! compared with SciPy's in `numerics/simplex.rs`; here its effects are tested.
 
 use flexsc_core::Scenario;
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::{Column, Detail, Trace};
 
 use crate::util::SCENARIOS;
@@ -31,7 +31,7 @@ fn pulses(trace: &Trace) -> Vec<Vec<f64>> {
 #[test]
 fn canted_thrusters_turn_a_body_by_what_is_cheapest() {
     let (metrics, trace) = flown(&text("canted-jets"));
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
     let (fuel, pulses) = (metrics.number("fuel_kg").expect("propellant"), pulses(&trace));
     let on: f64 = pulses.iter().flatten().sum();
     assert!((fuel / (on * 0.5 / (220.0 * 9.806_65)) - 1.0).abs() < 1e-12, "{fuel}");
@@ -41,7 +41,7 @@ fn canted_thrusters_turn_a_body_by_what_is_cheapest() {
     // Without a force the body stays where it is, and propellant is more.
     let (free, calm) =
         flown(&text("canted-jets").replace("minimum_on = 0.005", "force_free = true\nminimum_on = 0.0"));
-    assert_eq!(free.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(free.get("goal"), Some(&MetricValue::Word("met")));
     let speed = |trace: &Trace| {
         let last = |name: &str| {
             *trace.topic("/position").and_then(|rows| rows.numbers(name)?.last()).expect("a row")
@@ -108,7 +108,7 @@ fn wheels_are_unloaded_by_the_least_propellant() {
     let alone = format!("{}{}", &unloading[..groups], &unloading[end..])
         .replace("minimum_on = 0.01", "allocation = \"least_propellant\"\nminimum_on = 0.01");
     let ((by_groups, _), (by_itself, trace)) = (flown(&unloading), flown(&alone));
-    assert_eq!(by_itself.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(by_itself.get("goal"), Some(&MetricValue::Word("met")));
     let fuel = |metrics: &Metrics| metrics.number("fuel_kg").expect("propellant");
     // Each group turns the body about its axis alone, nearly: there is little to gain.
     assert!(fuel(&by_itself) < 1.01 * fuel(&by_groups) && fuel(&by_itself) > 0.8 * fuel(&by_groups));

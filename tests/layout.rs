@@ -308,8 +308,8 @@ fn layout_of(scenario: &str) -> Value {
 fn lines(layout: &Value, plot: &str) -> Vec<(String, String, bool)> {
     let paths = layout["configById"][plot]["paths"].as_array().unwrap_or_else(|| panic!("{plot}"));
     let text = |path: &Value, key: &str| path[key].as_str().expect("a text").to_owned();
-    let told = |path: &Value| (text(path, "label"), text(path, "color"), path["showLine"] == true);
-    paths.iter().map(told).collect()
+    let reported = |path: &Value| (text(path, "label"), text(path, "color"), path["showLine"] == true);
+    paths.iter().map(reported).collect()
 }
 
 #[test]

@@ -1,7 +1,7 @@
 //! The linear flow against 66-digit arithmetic: `tests/golden/linear`, Taylor series of the matrix exponential from node to
 //! node and strides certified to 1e-55, without eigenvalues. The law is that of the relay study, on each axis.
 
-use flexsc_core::motion::linear::{LinearFlow, StateForm};
+use flexsc_core::motion::linear::{LinearFlow, SplitPlant};
 use nalgebra::DVector;
 
 use crate::plants::{
@@ -12,7 +12,7 @@ use crate::plants::{
 /// Flies a plant against its files: the first 20 switchings to 1e-12 s, all to `bound`.
 fn agrees(
     name: &str,
-    form: StateForm,
+    form: SplitPlant,
     start: &DVector<f64>,
     inertias: &[f64],
     k_t: f64,
@@ -48,23 +48,23 @@ fn agrees(
 
 #[test]
 fn a_relay_beside_a_wheel() {
-    agrees("a_backemf_31", wheel(2e-4).form(), &wheel_start(), &[1.0], 0.31, 1e-11);
+    agrees("a_backemf_31", wheel(2e-4).split(), &wheel_start(), &[1.0], 0.31, 1e-11);
 }
 
 /// Shifted equilibria lose nine digits here.
 #[test]
 fn a_drag_that_is_nearly_none() {
-    agrees("a9_backemf_1e-9_31", wheel(1e-9).form(), &wheel_start(), &[1.0], 0.31, 1e-11);
+    agrees("a9_backemf_1e-9_31", wheel(1e-9).split(), &wheel_start(), &[1.0], 0.31, 1e-11);
 }
 
 #[test]
 fn damping_that_couples_the_modes() {
-    agrees("b_damping_3389", dashpot().form(), &wheel_start(), &[1.0], 0.3389, 1e-11);
+    agrees("b_damping_3389", dashpot().split(), &wheel_start(), &[1.0], 0.3389, 1e-11);
 }
 
 #[test]
 fn three_axes_with_momentum_bias() {
-    let form = three_axes(1.1e-3, 20.0).form().expect("a plant");
+    let form = three_axes(1.1e-3, 20.0).to_split_form().expect("a plant");
     let flow = LinearFlow::new(form.clone()).expect("a flow");
     assert!(flow.condition() < 1.01, "{}", flow.condition());
     agrees("c_three", form, &three_start(), &INERTIAS, 0.31, 5e-11);
@@ -73,34 +73,34 @@ fn three_axes_with_momentum_bias() {
 /// Filters that read the rigid angle itself would lose three digits.
 #[test]
 fn filters_between_sensor_and_law() {
-    let flow = LinearFlow::new(filters(2e-4).form()).expect("a flow");
+    let flow = LinearFlow::new(filters(2e-4).split()).expect("a flow");
     assert!(flow.condition() < 10.0, "{}", flow.condition());
-    let flight = agrees("d_filters_31", filters(2e-4).form(), &filters_start(), &[1.0], 0.31, 1e-11);
+    let flight = agrees("d_filters_31", filters(2e-4).split(), &filters_start(), &[1.0], 0.31, 1e-11);
     assert!(flight.evaluations < 4.0, "{}", flight.evaluations);
-    agrees("d0_filters_no_drag_31", filters(0.0).form(), &filters_start(), &[1.0], 0.31, 1e-11);
+    agrees("d0_filters_no_drag_31", filters(0.0).split(), &filters_start(), &[1.0], 0.31, 1e-11);
 }
 
 #[test]
 fn a_harmonic_disturbance_as_two_more_states() {
-    agrees("g_forced_31", forced(0.3).form(), &forced_start(), &[1.0], 0.31, 1e-11);
+    agrees("g_forced_31", forced(0.3).split(), &forced_start(), &[1.0], 0.31, 1e-11);
 }
 
 /// Two poles that beat have large residues of opposite signs.
 #[test]
 fn a_disturbance_in_resonance_costs_few_evaluations() {
-    let flight = fly(forced(0.44).form(), &forced_start(), &[1.0], 0.31, &[], 60);
+    let flight = fly(forced(0.44).split(), &forced_start(), &[1.0], 0.31, &[], 60);
     assert!(flight.evaluations < 7.0, "{}", flight.evaluations);
 }
 
 /// Three poles at 0 are left as they are, and the columns of three angles are zeros by structure.
 #[test]
 fn rates_that_nothing_damps() {
-    let form = three_axes(0.0, 0.0).form().expect("a plant");
+    let form = three_axes(0.0, 0.0).to_split_form().expect("a plant");
     assert_eq!(form.carried.nrows(), 3);
     let flow = LinearFlow::new(form).expect("a flow");
     assert_eq!(flow.poles().iter().filter(|pole| pole.norm_sqr() < 1e-28).count(), 3);
     assert!(flow.condition() < 1.01, "{}", flow.condition());
-    let form = three_axes(0.0, 20.0).form().expect("a plant");
+    let form = three_axes(0.0, 20.0).to_split_form().expect("a plant");
     agrees("h_three_bias", form, &three_start(), &INERTIAS, 0.3389, 1e-11);
 }
 
@@ -111,6 +111,6 @@ fn modes_that_grow() {
     for (at, value) in [((3, 3), 0.004), ((3, 5), -0.001), ((5, 5), 0.006), ((5, 3), -0.001)] {
         system.matrix[at] += value;
     }
-    let flight = agrees("u_unstable_31", system.form(), &wheel_start(), &[1.0], 0.31, 1e-11);
+    let flight = agrees("u_unstable_31", system.split(), &wheel_start(), &[1.0], 0.31, 1e-11);
     assert!(flight.evaluations < 8.0, "{}", flight.evaluations);
 }

@@ -6,24 +6,24 @@ use std::convert::Infallible;
 use std::sync::Arc;
 
 use flexsc_core::guard::Guard;
-use flexsc_core::motion::crossing::locate;
-use flexsc_core::motion::linear::{GuardLevel, LinearFlow, LinearSegment, LinearSight, System};
+use flexsc_core::motion::crossing::first_crossing;
+use flexsc_core::motion::linear::{LinearFlow, LinearOutput, LinearPlant, LinearSegment, OutputGuard};
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 
 use crate::plants::{Counted, dashpot, filters, forced, golden, off, three_axes, wheel, wheel_start};
 
 /// Returns an angle at a time (s) after a start from a state, under a constant input.
-fn value(system: &System, start: &DVector<f64>, input: f64, at: f64) -> f64 {
-    let flow = Arc::new(LinearFlow::new(system.form()).expect("a flow"));
+fn value(system: &LinearPlant, start: &DVector<f64>, input: f64, at: f64) -> f64 {
+    let flow = Arc::new(LinearFlow::new(system.split()).expect("a flow"));
     let mut segment = LinearSegment::new(Arc::clone(&flow));
-    segment.depart(&flow.modal(start), &[input]);
-    let mut seen = LinearSight::default();
+    segment.depart(&flow.to_modal(start), &[input]);
+    let mut seen = LinearOutput::default();
     segment.at(at, &mut seen);
     // The final state gives the same value.
-    let mut state = flow.modal(start);
-    segment.arrive(at, &mut state);
-    let again = (&system.output * flow.vector(&state))[0];
+    let mut state = flow.to_modal(start);
+    segment.state_at(at, &mut state);
+    let again = (&system.output * flow.to_state(&state))[0];
     assert!(
         (again - seen.outputs[0].angle).abs() < 1e-11 * again.abs().max(1e-5),
         "{again} {}",
@@ -33,9 +33,9 @@ fn value(system: &System, start: &DVector<f64>, input: f64, at: f64) -> f64 {
 }
 
 /// An oscillator read through a low-pass of nearly its own pole.
-fn oscillators(apart: f64) -> System {
+fn oscillators(apart: f64) -> LinearPlant {
     let (w, v) = (0.755_f64, 0.755 * (1.0 + apart));
-    System {
+    LinearPlant {
         matrix: dmatrix![0.0, 1.0, 0.0, 0.0; -w * w, -0.02 * w, 0.0, 0.0; 0.0, 0.0, 0.0, 1.0; v * v, 0.0, -v * v, -0.02 * v],
         input: dmatrix![0.0; 0.0216; 0.0; 0.0],
         output: dmatrix![0.0, 0.0, 1.0, 0.0],
@@ -43,15 +43,15 @@ fn oscillators(apart: f64) -> System {
 }
 
 /// Creates an oscillator of 2 rad/s with a damping ratio of 1 + `beyond`.
-fn critical(beyond: f64) -> System {
+fn critical(beyond: f64) -> LinearPlant {
     let matrix = dmatrix![0.0, 1.0; -4.0, -4.0 * (1.0 + beyond)];
-    System { matrix, input: dmatrix![0.0; 4.0], output: dmatrix![1.0, 0.0] }
+    LinearPlant { matrix, input: dmatrix![0.0; 4.0], output: dmatrix![1.0, 0.0] }
 }
 
 /// Three filters of 2 1/s in a row.
-fn cascade() -> System {
+fn cascade() -> LinearPlant {
     let matrix = dmatrix![-2.0, 0.0, 0.0; 2.0, -2.0, 0.0; 0.0, 2.0, -2.0];
-    System { matrix, input: dmatrix![2.0; 0.0; 0.0], output: dmatrix![0.0, 0.0, 1.0] }
+    LinearPlant { matrix, input: dmatrix![2.0; 0.0; 0.0], output: dmatrix![0.0, 0.0, 1.0] }
 }
 
 #[test]
@@ -87,25 +87,29 @@ fn three_equal_poles() {
 
 #[test]
 fn a_touch_is_found_and_none_is_invented() {
-    let mut told = 0;
+    let mut reported = 0;
     for row in golden("f_crests") {
         let number = |index: usize| row[index].parse::<f64>().expect("a number");
         let (d, level, horizon) = (number(1), number(2), Span::from_seconds(number(10)));
         let system = if row[0].parse::<u32>().expect("an index") % 2 == 0 { wheel(2e-4) } else { dashpot() };
-        let flow = Arc::new(LinearFlow::new(system.form()).expect("a flow"));
+        let flow = Arc::new(LinearFlow::new(system.split()).expect("a flow"));
         let mut segment = LinearSegment::new(Arc::clone(&flow));
-        segment.depart(&flow.modal(&DVector::from_fn(6, |i, _| number(4 + i))), &[number(3)]);
-        let guards = [GuardLevel { output: 0, guard: Guard::at_least(level) }];
+        segment.depart(&flow.to_modal(&DVector::from_fn(6, |i, _| number(4 + i))), &[number(3)]);
+        let guards = [OutputGuard { output: 0, guard: Guard::at_least(level) }];
         let count = Cell::new(0);
-        let trip = locate(&Counted(&segment, &count), &guards, horizon, &mut LinearSight::default(), || {
-            Ok::<_, Infallible>(())
-        });
+        let trip = first_crossing(
+            &Counted(&segment, &count),
+            &guards,
+            horizon,
+            &mut LinearOutput::default(),
+            || Ok::<_, Infallible>(()),
+        );
         let trip = trip.expect("not stopped");
         assert!(count.get() < 60, "{} evaluations", count.get());
         if d == 0.0 {
             continue; // Below the rounding of the angle.
         }
-        told += 1;
+        reported += 1;
         assert_eq!(trip.is_none(), row[11].is_empty(), "{row:?}");
         if let Some(trip) = trip {
             let bound = if d > -1e-15 {
@@ -119,7 +123,7 @@ fn a_touch_is_found_and_none_is_invented() {
             assert!(error < bound, "{row:?}: off by {error:e} s");
         }
     }
-    assert_eq!(told, 160);
+    assert_eq!(reported, 160);
 }
 
 /// On dense samples of every plant nothing exceeds its bounds while they hold.
@@ -135,17 +139,17 @@ fn bounds_are_never_exceeded() {
     let mut growing = wheel(2e-4);
     (growing.matrix[(3, 3)], growing.matrix[(5, 5)]) = (0.004, 0.006);
     let forms = [
-        wheel(2e-4).form(),
-        dashpot().form(),
-        filters(2e-4).form(),
-        three_axes(1.1e-3, 20.0).form().expect("a plant"),
-        growing.form(),
-        forced(0.44).form(),
-        oscillators(1e-3).form(),
-        oscillators(0.0).form(),
-        critical(0.0).form(),
-        critical(1e-6).form(),
-        cascade().form(),
+        wheel(2e-4).split(),
+        dashpot().split(),
+        filters(2e-4).split(),
+        three_axes(1.1e-3, 20.0).to_split_form().expect("a plant"),
+        growing.split(),
+        forced(0.44).split(),
+        oscillators(1e-3).split(),
+        oscillators(0.0).split(),
+        critical(0.0).split(),
+        critical(1e-6).split(),
+        cascade().split(),
     ];
     for (plant, form) in forms.into_iter().enumerate() {
         let flow = Arc::new(LinearFlow::new(form.clone()).expect("a flow"));
@@ -155,12 +159,12 @@ fn bounds_are_never_exceeded() {
         for _ in 0..60 {
             let state = DVector::from_fn(order, |_, _| 1e-5 * draw());
             let input: Vec<f64> = (0..inputs).map(|_| 1e-5 * draw()).collect();
-            segment.depart(&flow.modal(&state), &input);
-            let (mut now, mut then) = (LinearSight::default(), LinearSight::default());
+            segment.depart(&flow.to_modal(&state), &input);
+            let (mut now, mut then) = (LinearOutput::default(), LinearOutput::default());
             let from = 800.0 * draw().abs();
             segment.at(from, &mut now);
             let span = now.window.min(40.0);
-            let mut before: Option<LinearSight> = None;
+            let mut before: Option<LinearOutput> = None;
             for step in 0..=400 {
                 segment.at(from + span * f64::from(step) / 400.0, &mut then);
                 for (j, sensed) in then.outputs.iter().enumerate() {
@@ -189,13 +193,13 @@ fn bounds_are_never_exceeded() {
 }
 
 /// A plant with its one input made by more states: a polynomial, or an oscillation.
-fn driven(plain: &System, exosystem: &DMatrix<f64>) -> System {
+fn driven(plain: &LinearPlant, exosystem: &DMatrix<f64>) -> LinearPlant {
     let (order, more) = (plain.matrix.nrows(), exosystem.nrows());
     let mut matrix = DMatrix::zeros(order + more, order + more);
     matrix.view_mut((0, 0), (order, order)).copy_from(&plain.matrix);
     matrix.view_mut((0, order), (order, 1)).copy_from(&plain.input);
     matrix.view_mut((order, order), (more, more)).copy_from(exosystem);
-    System {
+    LinearPlant {
         matrix,
         input: DMatrix::zeros(order + more, 1),
         output: plain.output.clone().resize_horizontally(order + more, 0.0),
@@ -218,10 +222,10 @@ fn waveforms_as_more_states() {
             start.extend([2e-6, -3e-7, 4e-8, -5e-9]);
             driven(&plain, &DMatrix::from_fn(4, 4, |i, j| f64::from(u8::from(j == i + 1))))
         };
-        let flow = Arc::new(LinearFlow::new(system.form()).expect("a flow"));
+        let flow = Arc::new(LinearFlow::new(system.split()).expect("a flow"));
         let mut segment = LinearSegment::new(Arc::clone(&flow));
-        segment.depart(&flow.modal(&start), &[0.0]);
-        let mut seen = LinearSight::default();
+        segment.depart(&flow.to_modal(&start), &[0.0]);
+        let mut seen = LinearOutput::default();
         segment.at(h, &mut seen);
         let sensed = seen.outputs[0];
         let (value, bound) = if harmonic.is_some() {

@@ -195,7 +195,7 @@ fn a_run_without_viewers_ends_by_itself() {
 }
 
 #[test]
-fn a_client_that_errs_is_told_and_harms_nobody() {
+fn a_faulty_client_gets_an_error_and_harms_no_other() {
     let dir = Dir::with(&["relay-fixed"]);
     let mut run = dir.start("simulate relay-fixed.toml --log none --live=127.0.0.1:0 --wait --speed max");
     let (mut viewer, address) = Viewer::open(&mut run);

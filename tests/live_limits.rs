@@ -171,8 +171,8 @@ fn requests_have_limits() {
             break status;
         }
     };
-    let told = status["message"].as_str().expect("a text");
-    assert!(told.starts_with("not understood: ") && told.len() < 300, "{} bytes", told.len());
+    let reported = status["message"].as_str().expect("a text");
+    assert!(reported.starts_with("not understood: ") && reported.len() < 300, "{} bytes", reported.len());
     let mut large = Viewer::connect(&address);
     large.socket.send(Message::text(" ".repeat((64 << 10) + 1))).expect("sent");
     loop {

@@ -3,7 +3,7 @@
 //! Golden numbers: tests/golden/loop_oracle.py, NumPy and SciPy.
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::sampled_loop::{DiscreteBody, Gains, Loop, Scaling, SettlingWindow, map};
+use flexsc_core::analysis::sampled_loop::{DiscretePlant, Gains, SampledLoop, Scaling, SettlingWindow, map};
 use flexsc_core::law::Differentiation;
 
 use crate::study::close;
@@ -30,12 +30,12 @@ differentiation = "raw"
 pub const WINDOW: SettlingWindow = SettlingWindow { band: 0.003, horizon: 2000.0 };
 pub const GAINS: Gains = Gains { low: -2.0, high: 6.0, step: 0.05 };
 
-pub fn fitted() -> Loop {
-    Loop::of(&Scenario::parse("fitted.toml", FITTED).expect("valid")).expect("a loop").0
+pub fn fitted() -> SampledLoop {
+    SampledLoop::from_scenario(&Scenario::parse("fitted.toml", FITTED).expect("valid")).expect("a loop").0
 }
 
-pub fn at(of: &Loop, frequency: f64) -> DiscreteBody<'_> {
-    DiscreteBody::new(of, &of.ratios(frequency, Scaling::All))
+pub fn at(of: &SampledLoop, frequency: f64) -> DiscretePlant<'_> {
+    DiscretePlant::new(of, &of.ratios(frequency, Scaling::All))
 }
 
 #[test]
@@ -145,7 +145,7 @@ fn the_integral_and_the_shaped_command() {
     // A command that is never shaped, computed by the nonlinear path.
     let scenario = |set: &str| {
         let text = FITTED.replace("[law.pd]", &format!("{set}\n[law.pd]"));
-        Loop::of(&Scenario::parse("shaped.toml", &text).expect("valid")).expect("a loop").0
+        SampledLoop::from_scenario(&Scenario::parse("shaped.toml", &text).expect("valid")).expect("a loop").0
     };
     let idle = scenario("limit = 1e9");
     for (shaped, linear) in at(&idle, 0.2).closed(1.2).angles(6667).iter().zip(&x) {
@@ -165,25 +165,25 @@ fn the_integral_and_the_shaped_command() {
 fn delays() {
     let of = fitted();
     // One period late is the same, whether the loop says so or the state holds the command.
-    let late = |delay: f64| Loop { delay, ..of.clone() };
+    let late = |delay: f64| SampledLoop { delay, ..of.clone() };
     let one = late(0.3);
-    let closed = DiscreteBody::new(&one, &[1.0; 4]).closed(0.5);
+    let closed = DiscretePlant::new(&one, &[1.0; 4]).closed(0.5);
     assert_eq!(closed.free.nrows(), 12);
-    let (x, y) = (closed.angles(50), DiscreteBody::new(&of, &[1.0; 4]).closed(0.5).angles(50));
+    let (x, y) = (closed.angles(50), DiscretePlant::new(&of, &[1.0; 4]).closed(0.5).angles(50));
     assert_eq!(x[1].to_bits(), x[0].to_bits());
     assert!((x[1] - y[1]).abs() > 1e-6);
     // A part of a period: so close to none, or to a whole one, it is nearly that.
     for (delay, like) in [(1e-6, &y), (0.3 - 1e-6, &x), (0.3 + 1e-6, &x)] {
         let late = late(delay);
-        let angles = DiscreteBody::new(&late, &[1.0; 4]).closed(0.5).angles(50);
+        let angles = DiscretePlant::new(&late, &[1.0; 4]).closed(0.5).angles(50);
         assert!(angles.iter().zip(like.iter()).all(|(a, b)| (a - b).abs() < 1e-7), "{delay}");
     }
     // Halved periods with every second sample: a delay of half a period, by hand.
     let half = late(0.15);
     let fine = late(0.0);
-    let fine = Loop { period: 0.15, ..fine };
-    let step = DiscreteBody::new(&fine, &[1.0; 4]).closed(0.0);
-    let x = DiscreteBody::new(&half, &[1.0; 4]).closed(0.0).angles(40);
+    let fine = SampledLoop { period: 0.15, ..fine };
+    let step = DiscretePlant::new(&fine, &[1.0; 4]).closed(0.0);
+    let x = DiscretePlant::new(&half, &[1.0; 4]).closed(0.0).angles(40);
     let mut state = step.start.clone();
     let (mut last, mut u) = ((&step.angle * &state).x, 0.0);
     for angle in x {
@@ -211,7 +211,7 @@ fn the_lower_edge_of_stability() {
 }
 
 /// The longest period, on a grid of 0.05 s, up to which every loop is stable.
-fn longest(of: &Loop, frequency: f64, scaling: Scaling) -> f64 {
+fn longest(of: &SampledLoop, frequency: f64, scaling: Scaling) -> f64 {
     let periods: Vec<f64> = (1..60).map(|n| 0.05 * f64::from(n)).collect();
     let cells = map(of, &[frequency], &periods, scaling, |_| 0.0, SettlingWindow { horizon: 1.0, ..WINDOW });
     let stable = cells.iter().take_while(|cell| cell.spectral_radius < 1.0).count();
@@ -233,7 +233,7 @@ fn the_longest_periods() {
 fn a_band_of_frequencies_can_be_unstable() {
     // The exact rate, one sample late, slow samples and a wheel that damps as much as the law.
     let (period, back_emf, authority) = (14.0, 0.02, 1e-4);
-    let of = Loop {
+    let of = SampledLoop {
         period,
         delay: period,
         back_emf,
@@ -245,7 +245,7 @@ fn a_band_of_frequencies_can_be_unstable() {
         .step_by(5)
         .filter(|n| {
             let ratios = of.ratios(1e-3 * f64::from(*n), Scaling::First);
-            DiscreteBody::new(&of, &ratios).closed(0.0).spectral_radius() >= 1.0
+            DiscretePlant::new(&of, &ratios).closed(0.0).spectral_radius() >= 1.0
         })
         .collect();
     assert_eq!(unstable, (70..=155).step_by(5).collect::<Vec<_>>());
@@ -262,8 +262,8 @@ fn a_map_is_its_cells() {
     for (index, cell) in cells.iter().enumerate() {
         let (frequency, period) = (frequencies[index / 4], periods[index % 4]);
         assert_eq!((cell.frequency_rad_s, cell.period_s), (frequency, period));
-        let one = Loop { period, ..of.clone() };
-        let closed = DiscreteBody::new(&one, &[frequency / 0.3, 1.0, 1.0, 1.0]).closed(4.0 * frequency);
+        let one = SampledLoop { period, ..of.clone() };
+        let closed = DiscretePlant::new(&one, &[frequency / 0.3, 1.0, 1.0, 1.0]).closed(4.0 * frequency);
         assert_eq!(cell.spectral_radius.to_bits(), closed.spectral_radius().to_bits());
         assert_eq!(cell.settling_s, closed.settle(window).time_s);
     }

@@ -1,6 +1,6 @@
 //! Magnetic control in whole scenarios: momentum, decay rates, detumbling, filters of vectors, targets of the orbit.
 
-use flexsc_core::metrics::{Gather, Value};
+use flexsc_core::metrics::{MetricValue, MetricsCollector};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
@@ -152,7 +152,7 @@ fn the_small_satellite_does_what_its_comment_says() {
     let scenario = shipped("detumble-and-point", &[]);
     for run in 0..3 {
         let (metrics, trace) = flown(&scenario, run, Detail::Full);
-        assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "run {run}");
+        assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")), "run {run}");
         let rates = along(&trace, "/rates", "rigid_rad_s");
         // Rows come every 5 s: the end of the detumbling, and that of the run.
         assert!(norm(&rates[0]) > 0.05 && norm(&rates[1199]) < 5e-3, "run {run}: {}", norm(&rates[1199]));
@@ -171,7 +171,7 @@ fn a_filter_of_vectors_is_as_good_as_it_says() {
     let runs = 50;
     let mut sums = [0.0; 2];
     for run in 0..runs {
-        let mut gather = Gather::new(&scenario);
+        let mut gather = MetricsCollector::new(&scenario);
         Simulation::new(&scenario, run).run(&mut gather).expect("a run");
         let metrics = gather.finish(&scenario);
         for (sum, name) in sums.iter_mut().zip(["nees_mean", "nis_mean"]) {
@@ -196,7 +196,7 @@ fn filters_with_constant_gains_are_as_good_as_they_say() {
         let runs = 40;
         let mut sums = [0.0; 2];
         for run in 0..runs {
-            let mut gather = Gather::new(&scenario);
+            let mut gather = MetricsCollector::new(&scenario);
             Simulation::new(&scenario, run).run(&mut gather).expect("a run");
             let metrics = gather.finish(&scenario);
             for (sum, name) in sums.iter_mut().zip(["nees_mean", "nis_mean"]) {
@@ -211,7 +211,7 @@ fn filters_with_constant_gains_are_as_good_as_they_say() {
 #[test]
 fn the_observer_keeps_its_wheels_empty_by_torquers() {
     let (metrics, trace) = flown(&shipped("magnetic-unloading", &[]), 0, Detail::Full);
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
     let momenta = along(&trace, "/wheels", "momentum_nm_s");
     let most = momenta.iter().map(norm).fold(0.0, f64::max);
     assert!((0.06..0.12).contains(&most), "{most}");

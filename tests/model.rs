@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use flexsc_core::body::{Axes, Model};
+use flexsc_core::body::{BodyAxes, BodyModel};
 use flexsc_core::{Document, Scenario};
 
 const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
@@ -14,21 +14,23 @@ fn shipped(name: &str) -> Scenario {
     Scenario::load(Path::new(&format!("{SCENARIOS}/{name}.toml"))).expect("a scenario")
 }
 
-fn kind(model: &Model) -> &'static str {
+fn kind(model: &BodyModel) -> &'static str {
     match model {
-        Model::Planar(_) => "planar",
-        Model::Chain(..) => "chain",
-        Model::Spatial(_) => "spatial",
-        Model::Craft(_) => "craft",
+        BodyModel::Planar(_) => "planar",
+        BodyModel::Chain(..) => "chain",
+        BodyModel::Spatial(_) => "spatial",
+        BodyModel::Craft(_) => "craft",
     }
 }
 
 /// Returns true if two models are one in memory.
-fn are_one(a: &Model, b: &Model) -> bool {
+fn are_one(a: &BodyModel, b: &BodyModel) -> bool {
     match (a, b) {
-        (Model::Planar(a), Model::Planar(b)) => Arc::ptr_eq(a, b),
-        (Model::Chain(a, chain), Model::Chain(b, other)) => Arc::ptr_eq(a, b) && Arc::ptr_eq(chain, other),
-        (Model::Spatial(a), Model::Spatial(b)) => Arc::ptr_eq(a, b),
+        (BodyModel::Planar(a), BodyModel::Planar(b)) => Arc::ptr_eq(a, b),
+        (BodyModel::Chain(a, chain), BodyModel::Chain(b, other)) => {
+            Arc::ptr_eq(a, b) && Arc::ptr_eq(chain, other)
+        }
+        (BodyModel::Spatial(a), BodyModel::Spatial(b)) => Arc::ptr_eq(a, b),
         _ => false,
     }
 }
@@ -48,8 +50,8 @@ fn every_way_of_writing_a_body_comes_to_a_model() {
         let model = &scenario.model;
         assert_eq!(kind(model), expected, "{name}");
         let found = match model.axes() {
-            Axes::One(body) => (1, body.modes.len()),
-            Axes::Three(body) => (3, body.modes.len()),
+            BodyAxes::One(body) => (1, body.modes.len()),
+            BodyAxes::Three(body) => (3, body.modes.len()),
         };
         assert_eq!(found, (axes, modes), "{name}");
         assert_eq!((scenario.axis_count(), scenario.mode_count()), found, "{name}");
@@ -76,7 +78,7 @@ fn a_scenario_takes_the_model_of_the_same_body_over() {
         let like = |key: &str, value: &str| {
             let mut document = Document::from_table(name, parent.to_table());
             document.set_text(key, value).expect("a key");
-            Scenario::from_document_like(&document, &parent).expect("valid")
+            Scenario::from_document_reusing(&document, &parent).expect("valid")
         };
         assert!(are_one(&like("seed", "7").model, &parent.model), "{name}");
         let other = like(key, value);

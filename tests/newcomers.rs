@@ -1,6 +1,6 @@
 //! Spacecraft as a newcomer writes them from the documentation, of at most 60 lines: each is read, runs, and does its work.
 
-use flexsc_core::metrics::{Gather, Value};
+use flexsc_core::metrics::{MetricValue, MetricsCollector};
 use flexsc_core::{Scenario, Simulation};
 
 const FILES: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/newcomers");
@@ -15,9 +15,9 @@ fn what_is_written_from_the_documentation_runs_and_meets_its_goal() {
         let text = std::fs::read_to_string(&path).expect("a text");
         assert!(text.lines().count() <= 60, "{}", path.display());
         let scenario = Scenario::load(&path).unwrap_or_else(|error| panic!("{error}"));
-        let mut gather = Gather::new(&scenario);
+        let mut gather = MetricsCollector::new(&scenario);
         Simulation::new(&scenario, 0).run(&mut gather).expect("a run");
         let metrics = gather.finish(&scenario);
-        assert_eq!(metrics.get("goal"), Some(&Value::Word("met")), "{}", path.display());
+        assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")), "{}", path.display());
     }
 }

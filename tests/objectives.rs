@@ -3,11 +3,11 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, SearchStep};
-use flexsc_core::own::Own;
+use flexsc_core::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
+use flexsc_core::custom::Custom;
 use flexsc_core::random::Seed;
 use flexsc_core::record::Trace;
-use flexsc_core::scenario::OwnParts;
+use flexsc_core::scenario::CustomParts;
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
@@ -27,7 +27,7 @@ struct Stairs {
 #[derive(Clone, Debug)]
 struct Climbing(Stairs, f64);
 
-impl Adapt for Stairs {
+impl AdaptationSpec for Stairs {
     fn tunes(&self) -> &str {
         self.tunes
     }
@@ -40,26 +40,28 @@ impl Adapt for Stairs {
         Some(Span::from_seconds(self.window))
     }
 
-    fn start(&self, value: f64, _: Seed) -> Box<dyn Learn> {
+    fn start(&self, value: f64, _: Seed) -> Box<dyn Adaptation> {
         Box::new(Climbing(self.clone(), value))
     }
 }
 
-impl Learn for Climbing {
+impl Adaptation for Climbing {
     fn learn(&mut self, _: Instant, _: f64) -> Option<SearchStep> {
         self.1 += self.0.step;
         Some(SearchStep { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
     }
 
-    fn copy(&self) -> Box<dyn Learn> {
+    fn copy(&self) -> Box<dyn Adaptation> {
         Box::new(self.clone())
     }
 }
 
 /// Returns the objective over each window, for a scenario whose gain climbs by these stairs.
 fn measured(plain: &Scenario, stairs: Stairs) -> (Vec<f64>, Trace) {
-    let own: Own<dyn Adapt> = Own::new(Arc::new(stairs));
-    let study = plain.bringing(OwnParts { adaptation: Some(own), ..OwnParts::default() }).expect("it fits");
+    let own: Custom<dyn AdaptationSpec> = Custom::new(Arc::new(stairs));
+    let study = plain
+        .with_custom_parts(CustomParts { adaptation: Some(own), ..CustomParts::default() })
+        .expect("it fits");
     let trace = traced(&study);
     (column(&trace, "/objective", "value").to_vec(), trace)
 }
@@ -86,7 +88,7 @@ fn objectives_about_one_axis_are_those_of_the_exact_motion() {
         let exact: Vec<f64> = golden
             .lines()
             .filter_map(|line| line.split(',').skip(1).collect::<Vec<_>>().try_into().ok())
-            .filter(|[name, _]: &[&str; 2]| *name == objective.word())
+            .filter(|[name, _]: &[&str; 2]| *name == objective.key())
             .map(|[_, value]| value.parse().expect("a number"))
             .collect();
         if exact.is_empty() {
@@ -231,7 +233,7 @@ fn every_number_of_every_law_is_tuned_by_every_objective_or_refused_with_a_reaso
                 for objective in Objective::ALL {
                     let (low, high) = (0.95 * number.value, 1.05 * number.value);
                     let mut adapted = text.clone();
-                    let objective = objective.word();
+                    let objective = objective.key();
                     write!(
                         adapted,
                         "[adaptation.random_search]\ntunes = \"{}\"\nobjective = \"{objective}\"\nwindow = 10.0\n\
@@ -286,14 +288,15 @@ fn a_number_that_is_tuned_is_the_number_that_acts() {
         let text = format!("duration = 20.0\nseed = 3\nlaw = {{ {law} }}\n{body}");
         let plain = Scenario::parse("plain.toml", &text).expect("a scenario");
         let stairs = Stairs { tunes, objective: Objective::TorqueMean, window: 9.9, step: 0.3 * value };
-        let own: Own<dyn Adapt> = Own::new(Arc::new(stairs));
-        let study =
-            plain.bringing(OwnParts { adaptation: Some(own), ..OwnParts::default() }).expect("it fits");
+        let own: Custom<dyn AdaptationSpec> = Custom::new(Arc::new(stairs));
+        let study = plain
+            .with_custom_parts(CustomParts { adaptation: Some(own), ..CustomParts::default() })
+            .expect("it fits");
         let (mut adapted, mut tuned) = (Simulation::new(&study, 0), Simulation::new(&plain, 0));
         let mut constant = Simulation::new(&plain, 0);
         adapted.run(&mut ()).expect("a run");
         tuned.run_until(Instant::START + Span::from_seconds(9.9), &mut ()).expect("a run");
-        tuned.tune(tunes, 1.3 * value);
+        tuned.set_parameter(tunes, 1.3 * value);
         tuned.run_until(Instant::START + Span::from_seconds(19.7), &mut ()).expect("a run");
         tuned.run(&mut ()).expect("a run");
         constant.run(&mut ()).expect("a run");

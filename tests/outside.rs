@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 
-use flexsc_core::metrics::{Gather, Value};
+use flexsc_core::metrics::{MetricValue, MetricsCollector};
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
@@ -179,7 +179,7 @@ fn half_a_turn_meets_its_requirement_by_its_profile() {
     let text = std::fs::read_to_string(format!("{SCENARIOS}/half-turn.toml")).expect("a file");
     let rms = |text: &str| {
         let scenario = Scenario::parse("half-turn.toml", text).expect("a scenario");
-        let mut gather = Gather::new(&scenario);
+        let mut gather = MetricsCollector::new(&scenario);
         Simulation::new(&scenario, 0).run(&mut gather).expect("a run");
         let metrics = gather.finish(&scenario);
         (metrics.number("pointing_rms_rad").expect("a number"), metrics.get("requirement").cloned())
@@ -187,7 +187,7 @@ fn half_a_turn_meets_its_requirement_by_its_profile() {
     let arcsec = std::f64::consts::PI / 648_000.0;
     let (smooth, verdict) = rms(&text);
     assert!(
-        (smooth / arcsec - 1.8).abs() < 0.05 && verdict == Some(Value::Word("met")),
+        (smooth / arcsec - 1.8).abs() < 0.05 && verdict == Some(MetricValue::Word("met")),
         "{}",
         smooth / arcsec
     );
@@ -196,7 +196,7 @@ fn half_a_turn_meets_its_requirement_by_its_profile() {
         .replace("acceleration = 0.027925268031909273", "acceleration = 0.013962634015954637");
     let (abrupt, verdict) = rms(&abrupt);
     assert!(
-        (abrupt / arcsec - 9.5).abs() < 0.05 && verdict == Some(Value::Word("missed")),
+        (abrupt / arcsec - 9.5).abs() < 0.05 && verdict == Some(MetricValue::Word("missed")),
         "{}",
         abrupt / arcsec
     );
@@ -213,7 +213,7 @@ fn pulses_of_the_period_of_the_slosh_drive_it() {
         (scenario, metrics, trace)
     };
     let (scenario, metrics, trace) = flight("30.0");
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
     let slosh = scenario.model.spatial().expect("three axes").modes[2].frequency.get();
     assert!((std::f64::consts::TAU / slosh - 29.96).abs() < 0.005);
     // 20 pulses of 10 s and 20.1 N on two tonnes.

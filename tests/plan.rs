@@ -16,9 +16,10 @@ fn dir(drive: &str, rate: f64, manoeuvre: &str) -> Dir {
 fn the_numbers_of_a_plan() {
     let quarter =
         format!("angle = {FRAC_PI_2:?}\ntime = 12.0\n[manoeuvre.command]\nsine = {{ suppress = 1 }}");
-    let told = dir("torque", 0.0, &quarter).run("plan turn.toml --json").exits(0).json();
-    let number =
-        |key: &str| told.pointer(key).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{key}"));
+    let reported = dir("torque", 0.0, &quarter).run("plan turn.toml --json").exits(0).json();
+    let number = |key: &str| {
+        reported.pointer(key).and_then(serde_json::Value::as_f64).unwrap_or_else(|| panic!("{key}"))
+    };
     for (key, exact, tolerance) in [
         ("/time_s", 12.0, 0.0),
         ("/coefficients_nm/0", 411.465238316, 1e-11),
@@ -36,8 +37,8 @@ fn the_numbers_of_a_plan() {
     ] {
         close(number(key), exact, tolerance);
     }
-    assert_eq!(told["even_coefficients_nm"], serde_json::json!([]));
-    assert_eq!(told["constant_nm"], 0.0);
+    assert_eq!(reported["even_coefficients_nm"], serde_json::json!([]));
+    assert_eq!(reported["constant_nm"], 0.0);
     let dir = dir("torque", 0.0, &quarter);
     dir.run("plan turn.toml").exits(0).says(&[
         "411.465238316, -190.087330099 N m",
@@ -47,11 +48,11 @@ fn the_numbers_of_a_plan() {
     ]);
     // Another command, in the time that its peak allows.
     let set = "--set manoeuvre.command.sine.suppress=2 --peak-torque 521.080754063";
-    let told = dir.run(&format!("plan turn.toml --json {set}")).exits(0).json();
-    assert!((told["time_s"].as_f64().expect("a time") - 14.2784).abs() < 1e-4);
-    close(told["peak_torque_nm"].as_f64().expect("a peak"), 521.080754063, 1e-12);
-    let told = dir.run("plan turn.toml --json --set manoeuvre.command={bang_bang={}}").exits(0).json();
-    assert!(told["coefficients_nm"].is_null() && told["harmonics_nm"].is_null());
+    let reported = dir.run(&format!("plan turn.toml --json {set}")).exits(0).json();
+    assert!((reported["time_s"].as_f64().expect("a time") - 14.2784).abs() < 1e-4);
+    close(reported["peak_torque_nm"].as_f64().expect("a peak"), 521.080754063, 1e-12);
+    let reported = dir.run("plan turn.toml --json --set manoeuvre.command={bang_bang={}}").exits(0).json();
+    assert!(reported["coefficients_nm"].is_null() && reported["harmonics_nm"].is_null());
     // The same bytes each time.
     let again = |_| dir.run("plan turn.toml --json --compare").exits(0).out;
     assert_eq!(again(0), again(1));
@@ -62,16 +63,16 @@ fn rates_and_motion_have_their_keys() {
     let spin = format!(
         "angle = {FRAC_PI_2:?}\ntime = 12.0\nend_rate = 0.2\n[manoeuvre.command]\nsine = {{ suppress = 2 }}"
     );
-    let told = dir("torque", 0.0, &spin).run("plan turn.toml --json").exits(0).json();
-    close(told["constant_nm"].as_f64().expect("a number"), 76.9445, 1e-12);
-    close(told["even_coefficients_nm"][0].as_f64().expect("a number"), -99.55520223269, 1e-11);
-    assert!(told["tuned_times_s"][0]["cosine"].is_null());
+    let reported = dir("torque", 0.0, &spin).run("plan turn.toml --json").exits(0).json();
+    close(reported["constant_nm"].as_f64().expect("a number"), 76.9445, 1e-12);
+    close(reported["even_coefficients_nm"][0].as_f64().expect("a number"), -99.55520223269, 1e-11);
+    assert!(reported["tuned_times_s"][0]["cosine"].is_null());
     let quarter =
         format!("angle = {FRAC_PI_2:?}\ntime = 12.0\n[manoeuvre.command]\nsine = {{ suppress = 2 }}");
-    let told = dir("motion", 0.0, &quarter).run("plan turn.toml --json").exits(0).json();
-    close(told["coefficients_rad_s2"][2].as_f64().expect("a number"), -0.0367391841, 2e-9);
-    close(told["peak_torque_nm"].as_f64().expect("a number"), 718.49901755, 1e-9);
-    assert!(told.get("coefficients_nm").is_none());
+    let reported = dir("motion", 0.0, &quarter).run("plan turn.toml --json").exits(0).json();
+    close(reported["coefficients_rad_s2"][2].as_f64().expect("a number"), -0.0367391841, 2e-9);
+    close(reported["peak_torque_nm"].as_f64().expect("a number"), 718.49901755, 1e-9);
+    assert!(reported.get("coefficients_nm").is_none());
 }
 
 #[test]

@@ -5,9 +5,10 @@ use std::convert::Infallible;
 use std::sync::Arc;
 
 use flexsc_core::guard::Guard;
-use flexsc_core::motion::crossing::{Approach, locate};
+use flexsc_core::motion::crossing::{BoundedMotion, first_crossing};
 use flexsc_core::motion::linear::{
-    GuardLevel, LinearFlow, LinearSegment, LinearSight, Modal, SecondOrder, StateForm, System,
+    LinearFlow, LinearOutput, LinearPlant, LinearSegment, ModalState, OutputGuard, SecondOrderPlant,
+    SplitPlant,
 };
 use flexsc_core::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
@@ -71,36 +72,36 @@ impl Relay {
 /// Segment that counts its evaluations.
 pub struct Counted<'a>(pub &'a LinearSegment, pub &'a Cell<u32>);
 
-impl Approach for Counted<'_> {
-    type Guard = GuardLevel;
-    type State = LinearSight;
-    type Sensed = ();
+impl BoundedMotion for Counted<'_> {
+    type Guard = OutputGuard;
+    type State = LinearOutput;
+    type Observation = ();
 
-    fn begin(&self, seen: &mut LinearSight) {
+    fn initial(&self, seen: &mut LinearOutput) {
         self.1.set(self.1.get() + 1);
-        self.0.begin(seen);
+        self.0.initial(seen);
     }
-    fn go(&self, h: f64, seen: &mut LinearSight) {
+    fn evaluate(&self, h: f64, seen: &mut LinearOutput) {
         self.1.set(self.1.get() + 1);
-        self.0.go(h, seen);
+        self.0.evaluate(h, seen);
     }
-    fn is_finite(seen: &LinearSight, (): ()) -> bool {
+    fn is_finite(seen: &LinearOutput, (): ()) -> bool {
         LinearSegment::is_finite(seen, ())
     }
-    fn holds(guard: GuardLevel, seen: &LinearSight, (): ()) -> bool {
+    fn holds(guard: OutputGuard, seen: &LinearOutput, (): ()) -> bool {
         LinearSegment::holds(guard, seen, ())
     }
-    fn window(seen: &LinearSight) -> f64 {
-        LinearSegment::window(seen)
+    fn bounds_valid_for(seen: &LinearOutput) -> f64 {
+        LinearSegment::bounds_valid_for(seen)
     }
-    fn earliest(&self, guard: GuardLevel, horizon: Span, seen: &LinearSight) -> f64 {
-        self.0.earliest(guard, horizon, seen)
+    fn earliest_crossing(&self, guard: OutputGuard, horizon: Span, seen: &LinearOutput) -> f64 {
+        self.0.earliest_crossing(guard, horizon, seen)
     }
-    fn stride(&self, guard: GuardLevel, seen: &LinearSight, (): ()) -> f64 {
-        self.0.stride(guard, seen, ())
+    fn safe_stride(&self, guard: OutputGuard, seen: &LinearOutput, (): ()) -> f64 {
+        self.0.safe_stride(guard, seen, ())
     }
-    fn is_clear(&self, guard: GuardLevel, seen: &LinearSight, (): (), time: f64) -> bool {
-        self.0.is_clear(guard, seen, (), time)
+    fn has_no_crossing(&self, guard: OutputGuard, seen: &LinearOutput, (): (), time: f64) -> bool {
+        self.0.has_no_crossing(guard, seen, (), time)
     }
 }
 
@@ -113,7 +114,7 @@ pub struct Flight {
 
 /// Flies a plant whose outputs are the axes and whose inputs are moments times these inertias.
 pub fn fly(
-    form: StateForm,
+    form: SplitPlant,
     start: &DVector<f64>,
     inertias: &[f64],
     k_t: f64,
@@ -121,17 +122,17 @@ pub fn fly(
     count: usize,
 ) -> Flight {
     let flow = Arc::new(LinearFlow::new(form).expect("a flow"));
-    let mut here: Modal = flow.modal(start);
+    let mut here: ModalState = flow.to_modal(start);
     let mut segment = LinearSegment::new(Arc::clone(&flow));
     let mut relays: Vec<Relay> = inertias.iter().map(|_| Relay::new()).collect();
-    let (mut now, mut seen, counter) = (Instant::START, LinearSight::default(), Cell::new(0));
+    let (mut now, mut seen, counter) = (Instant::START, LinearOutput::default(), Cell::new(0));
     let (mut arcs, mut flight) = (0, Flight { switchings: Vec::new(), evaluations: 0.0, states: Vec::new() });
     while flight.switchings.len() < count || flight.states.len() < times.len() {
         let input: Vec<f64> = relays.iter().zip(inertias).map(|(relay, j)| j * relay.moment).collect();
         segment.depart(&here, &input);
         let end = relays.iter().filter_map(|relay| relay.until).min();
         let horizon = end.map_or(Span::from_seconds(1e4), |end| end.since(now));
-        let guards: Vec<(GuardLevel, usize)> = relays
+        let guards: Vec<(OutputGuard, usize)> = relays
             .iter()
             .enumerate()
             .flat_map(|(output, relay)| {
@@ -139,25 +140,27 @@ pub fn fly(
                     .guards
                     .iter()
                     .enumerate()
-                    .map(move |(index, guard)| (GuardLevel { output, guard: *guard }, index))
+                    .map(move |(index, guard)| (OutputGuard { output, guard: *guard }, index))
             })
             .collect();
-        let levels: Vec<GuardLevel> = guards.iter().map(|(level, _)| *level).collect();
+        let levels: Vec<OutputGuard> = guards.iter().map(|(level, _)| *level).collect();
         arcs += u32::from(!levels.is_empty());
         let trip = if levels.is_empty() {
             None
         } else {
-            locate(&Counted(&segment, &counter), &levels, horizon, &mut seen, || Ok::<_, Infallible>(()))
-                .expect("not stopped")
+            first_crossing(&Counted(&segment, &counter), &levels, horizon, &mut seen, || {
+                Ok::<_, Infallible>(())
+            })
+            .expect("not stopped")
         };
         let after = trip.map_or(horizon, |trip| trip.after);
         while flight.states.len() < times.len() && times[flight.states.len()] <= (now + after).seconds() {
             let mut state = here.clone();
             let at = Instant::START + Span::from_seconds(times[flight.states.len()]);
-            segment.arrive(at.since(now).seconds(), &mut state);
-            flight.states.push(flow.vector(&state));
+            segment.state_at(at.since(now).seconds(), &mut state);
+            flight.states.push(flow.to_state(&state));
         }
-        segment.arrive(after.seconds(), &mut here);
+        segment.state_at(after.seconds(), &mut here);
         now += after;
         let (axis, guard) = match trip {
             Some(trip) => (guards[trip.guard].0.output, Some(guards[trip.guard].1)),
@@ -192,7 +195,7 @@ pub const W: [f64; 2] = [0.44, 0.755];
 pub const K: [f64; 2] = [0.0213, 0.0216];
 
 /// Plant (a) with this back-EMF (1/s).
-pub fn wheel(back_emf: f64) -> System {
+pub fn wheel(back_emf: f64) -> LinearPlant {
     let mut matrix = DMatrix::zeros(6, 6);
     for i in 0..3 {
         matrix[(2 * i, 2 * i + 1)] = 1.0;
@@ -205,7 +208,7 @@ pub fn wheel(back_emf: f64) -> System {
         }
     }
     let input = dmatrix![0.0; 1.0; 0.0; K[0]; 0.0; K[1]];
-    System { matrix, input, output: dmatrix![1.0, 0.0, 1.0, 0.0, 1.0, 0.0] }
+    LinearPlant { matrix, input, output: dmatrix![1.0, 0.0, 1.0, 0.0, 1.0, 0.0] }
 }
 
 pub fn wheel_start() -> DVector<f64> {
@@ -213,7 +216,7 @@ pub fn wheel_start() -> DVector<f64> {
 }
 
 /// Plant (b): a dashpot beside the wheel.
-pub fn dashpot() -> System {
+pub fn dashpot() -> LinearPlant {
     let mut system = wheel(2e-4);
     for (at, value) in [((3, 3), -0.0061), ((3, 5), 0.005_964), ((5, 5), -0.0061), ((5, 3), 0.006_048)] {
         system.matrix[at] += value;
@@ -222,7 +225,7 @@ pub fn dashpot() -> System {
 }
 
 /// Plant (d): a low-pass and a notch between the angle and the law.
-pub fn filters(back_emf: f64) -> System {
+pub fn filters(back_emf: f64) -> LinearPlant {
     let plain = wheel(back_emf);
     let mut matrix = DMatrix::zeros(9, 9);
     matrix.view_mut((0, 0), (6, 6)).copy_from(&plain.matrix);
@@ -235,7 +238,7 @@ pub fn filters(back_emf: f64) -> System {
     let output = DMatrix::from_fn(1, 9, |_, j| {
         [1.0, 0.0, -1.3 * wn][j.saturating_sub(6)] * f64::from(u8::from(j >= 6))
     });
-    System { matrix, input: plain.input.resize_vertically(9, 0.0), output }
+    LinearPlant { matrix, input: plain.input.resize_vertically(9, 0.0), output }
 }
 
 pub fn filters_start() -> DVector<f64> {
@@ -245,7 +248,7 @@ pub fn filters_start() -> DVector<f64> {
 }
 
 /// Plant (g): a disturbance of this frequency (rad/s), by two more states.
-pub fn forced(nu: f64) -> System {
+pub fn forced(nu: f64) -> LinearPlant {
     let plain = wheel(2e-4);
     let mut matrix = DMatrix::zeros(8, 8);
     matrix.view_mut((0, 0), (6, 6)).copy_from(&plain.matrix);
@@ -253,7 +256,7 @@ pub fn forced(nu: f64) -> System {
         matrix[(row, 6)] = 2e-7 * gain;
     }
     (matrix[(6, 7)], matrix[(7, 6)]) = (nu, -nu);
-    System {
+    LinearPlant {
         matrix,
         input: plain.input.resize_vertically(8, 0.0),
         output: plain.output.resize_horizontally(8, 0.0),
@@ -269,7 +272,7 @@ pub fn forced_start() -> DVector<f64> {
 pub const INERTIAS: [f64; 3] = [900.0, 1000.0, 600.0];
 
 /// Plant (c): three axes and three modes, with this orbital rate (rad/s) and momentum bias (N m s).
-pub fn three_axes(n: f64, h: f64) -> SecondOrder {
+pub fn three_axes(n: f64, h: f64) -> SecondOrderPlant {
     let [j1, j2, j3] = INERTIAS;
     let delta = [[8.0, 0.5, -1.0], [0.7, 7.0, 2.0], [-0.4, 1.5, 5.0]];
     let (w, zeta) = ([0.37, 0.62, 1.1], [0.002, 0.003, 0.002]);
@@ -290,7 +293,7 @@ pub fn three_axes(n: f64, h: f64) -> SecondOrder {
         stiffness[(i, i)] = k;
     }
     let output = DMatrix::from_fn(3, 6, |i, j| f64::from(u8::from(i == j)));
-    SecondOrder { mass, damping, stiffness, input: output.transpose(), output }
+    SecondOrderPlant { mass, damping, stiffness, input: output.transpose(), output }
 }
 
 pub fn three_start() -> DVector<f64> {

@@ -150,9 +150,9 @@ fn a_file_holds_one_figure_or_a_sheet_of_all() {
     assert_eq!(dir.text("gain.svg"), svg(&dir, "gain"));
     dir.run("plot relay-adaptive.mcap -o gain.PNG --what gain --format png").exits(0);
     assert!(dir.read("gain.PNG") == dir.read("figures/relay-adaptive-gain.png"));
-    let told = dir.run("plot relay-adaptive.mcap -o all.svg --json").exits(0);
-    assert_eq!((told.err.as_str(), told.out.lines().count()), ("", 1));
-    assert_eq!(told.json()["figures"].as_array().map(Vec::len), Some(FIGURES.len()));
+    let reported = dir.run("plot relay-adaptive.mcap -o all.svg --json").exits(0);
+    assert_eq!((reported.err.as_str(), reported.out.lines().count()), ("", 1));
+    assert_eq!(reported.json()["figures"].as_array().map(Vec::len), Some(FIGURES.len()));
     let sheet = dir.text("all.svg");
     let document = Document::parse(&sheet).expect("well-formed XML");
     let root = document.root_element();

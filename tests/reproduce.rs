@@ -68,7 +68,7 @@ fn stands_alone(page: &str) {
 
 #[test]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]
-fn papers_that_there_are_not_are_told() {
+fn unknown_papers_are_refused() {
     Dir::new().run("reproduce satellite -o page").exits(2).says(&["satellite", "relay", "rotation"]);
     let dir = Dir::holding("page", "a file");
     dir.run("reproduce station -o page").exits(1).says(&["cannot write page"]);

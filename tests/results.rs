@@ -64,10 +64,10 @@ fn a_scenario_with_results_repeats_without_their_file() {
     // A scenario that differs in another key takes the modes over, one in their damping does not.
     let mut document = Document::parse(&format!("{GOLDEN}boom.toml"), written).expect("a document");
     document.set_text("law.pd.k_p", "2.0").expect("a key");
-    let like = Scenario::from_document_like(&document, &scenario).expect("a scenario");
+    let like = Scenario::from_document_reusing(&document, &scenario).expect("a scenario");
     assert_eq!(like.body, scenario.body);
     document.set_text("appendage[0].damping", "0.001").expect("a key");
-    let like = Scenario::from_document_like(&document, &scenario).expect("a scenario");
+    let like = Scenario::from_document_reusing(&document, &scenario).expect("a scenario");
     assert_eq!(like.appendage[0].modes[0].damping.get(), 0.001);
 }
 

@@ -5,7 +5,7 @@
 
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
-use flexsc_core::manoeuvre::{CommandCost, FieldCommon, compare};
+use flexsc_core::manoeuvre::{CommandCost, ComparisonBasis, compare};
 use flexsc_core::quantity::Positive;
 use flexsc_core::time::Span;
 use flexsc_core::waveform::TermShape;
@@ -97,7 +97,7 @@ fn digits(name: &str, value: f64, exact: f64) {
     assert!(fits, "{name}: {value:e} instead of {exact:e}");
 }
 
-fn find<'a>(rows: &'a [CommandCost], name: &str) -> &'a flexsc_core::manoeuvre::FieldOutcome {
+fn find<'a>(rows: &'a [CommandCost], name: &str) -> &'a flexsc_core::manoeuvre::AlternativeOutcome {
     let row = rows.iter().find(|row| row.name == name).unwrap_or_else(|| panic!("no row {name}"));
     row.outcome.as_ref().unwrap_or_else(|why| panic!("{name}: {why:?}"))
 }
@@ -106,7 +106,7 @@ fn find<'a>(rows: &'a [CommandCost], name: &str) -> &'a flexsc_core::manoeuvre::
 fn the_field_in_12_seconds() {
     let scenario = quarter_turn("sine = {}");
     let manoeuvre = scenario.manoeuvre.as_ref().expect("a manoeuvre");
-    let rows = compare(manoeuvre, FieldCommon::Time(Span::from_seconds(12.0)), body(&scenario), 0.1);
+    let rows = compare(manoeuvre, ComparisonBasis::Time(Span::from_seconds(12.0)), body(&scenario), 0.1);
     assert_eq!(rows.len(), FIELD.len());
     for &(name, peak, rms, initial, phi4, near, worst, angle, angle_worst) in FIELD {
         let row = find(&rows, name);
@@ -130,7 +130,7 @@ fn the_field_at_one_peak_torque() {
     let scenario = quarter_turn("sine = {}");
     let manoeuvre = scenario.manoeuvre.as_ref().expect("a manoeuvre");
     let peak = 521.080_754_063;
-    let common = FieldCommon::PeakTorque(Positive::new(peak).expect("positive"));
+    let common = ComparisonBasis::PeakTorque(Positive::new(peak).expect("positive"));
     let rows = compare(manoeuvre, common, body(&scenario), 0.1);
     for &(name, time, rms, phi4, near, worst) in AT_521_NM {
         let row = find(&rows, name);
@@ -215,7 +215,7 @@ fn every_command_keeps_the_rates_before_and_after() {
                 let mut rigid = body(&scenario).clone();
                 rigid.modes.clear();
                 rigid.outputs.clear();
-                let report = flexsc_core::manoeuvre::Report::new(plan(&scenario), &rigid, 0.1);
+                let report = flexsc_core::manoeuvre::PlanReport::new(plan(&scenario), &rigid, 0.1);
                 let errors = (report.angle_error, report.rate_error);
                 assert!(errors.0.abs() < 1e-12 && errors.1.abs() < 1e-12, "{command} {shaper}: {errors:?}");
                 if command.contains("bang") && shaper.is_empty() {

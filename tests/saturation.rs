@@ -1,6 +1,6 @@
 //! Limits of wheels and jets in the metrics, and warnings of runs that end in saturation or in an oscillation.
 
-use flexsc_core::metrics::{Gather, Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics, MetricsCollector};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::util::Dir;
@@ -16,14 +16,14 @@ fn body(bandwidth: f64, more: &str) -> String {
 
 fn metrics(text: &str) -> Metrics {
     let scenario = Scenario::parse("a", text).expect("valid");
-    let mut gather = Gather::new(&scenario);
+    let mut gather = MetricsCollector::new(&scenario);
     Simulation::new(&scenario, 0).run(&mut gather).expect("a run");
     gather.finish(&scenario)
 }
 
 fn word(metrics: &Metrics, name: &str) -> &'static str {
     match metrics.get(name) {
-        Some(Value::Word(word)) => word,
+        Some(MetricValue::Word(word)) => word,
         other => panic!("{name}: {other:?}"),
     }
 }
@@ -31,10 +31,10 @@ fn word(metrics: &Metrics, name: &str) -> &'static str {
 /// The sampled double integrator with gains w² and 2 zeta w is unstable where 2 zeta w T > 2: the wheels then alternate between
 /// their torque limits.
 #[test]
-fn an_unstable_loop_is_told() {
+fn an_unstable_loop_is_reported() {
     let dir = Dir::holding("a.toml", body(4.0, ""));
-    let told = dir.run("simulate a.toml --log events").exits(0);
-    told.says(&["warning", "does not decay", "alternate between their torque limits", "the last 40 s"]);
+    let reported = dir.run("simulate a.toml --log events").exits(0);
+    reported.says(&["warning", "does not decay", "alternate between their torque limits", "the last 40 s"]);
     let object = dir.run("simulate a.toml --log none --json").exits(0).json();
     assert_eq!(object["metrics"]["actuator_end"], "cycling");
     assert!(object["metrics"]["actuator_limit_late_share"].as_f64().expect("a share") > 0.5);
@@ -48,7 +48,7 @@ fn an_unstable_loop_is_told() {
 }
 
 #[test]
-fn steady_saturation_is_told() {
+fn steady_saturation_is_reported() {
     let more = "[[disturbance]]\nabout = \"yaw\"\ntorque = 0.08\n";
     let of = metrics(&body(0.1, more));
     assert_eq!(word(&of, "actuator_end"), "saturated");
@@ -77,7 +77,7 @@ fn peaks_of_wheels_are_those_of_the_impulse() {
 }
 
 #[test]
-fn propellant_is_told_by_axis_or_by_thruster() {
+fn propellant_is_reported_by_axis_or_by_thruster() {
     for (name, list, count) in [("iss-ringdown", "fuel_axes_kg", 3), ("canted-jets", "fuel_thrusters_kg", 4)]
     {
         let dir = Dir::with(&[name]);

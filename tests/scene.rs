@@ -19,7 +19,7 @@ struct Frames {
 }
 
 impl Frames {
-    fn of(log: &Log) -> Self {
+    fn from_log(log: &Log) -> Self {
         let columns = log.columns("/tf").expect("frames");
         let times = columns.numbers("time_s").expect("times").to_vec();
         let Some(Column::Rows(counts, inner)) = columns.get("transforms") else { panic!("{columns:?}") };
@@ -77,7 +77,7 @@ fn sections_are_drawn_at_their_angles() {
         let dir = Dir::with(&[scenario]);
         let options = format!("--set log.scene.bending={bending} --set log.period=0.1 --set duration=14");
         let log = log(&dir, scenario, &options);
-        let frames = Frames::of(&log);
+        let frames = Frames::from_log(&log);
         let attitude = log.columns("/attitude").expect("a motion");
         let outputs = log.columns("/outputs").expect("sections");
         let (times, hub) =
@@ -110,7 +110,7 @@ fn modes_bend_panels_against_the_hub() {
     let dir = Dir::with(&["relay-fixed"]);
     let log =
         log(&dir, "relay-fixed", "--set duration=300 --set log.scene={bending=20000,turning=500,period=0.5}");
-    let frames = Frames::of(&log);
+    let frames = Frames::from_log(&log);
     assert_eq!(frames.times.len(), 601);
     let (attitude, modes) =
         (log.columns("/attitude").expect("a motion"), log.columns("/modes").expect("modes"));
@@ -136,7 +136,7 @@ fn modes_bend_panels_against_the_hub() {
 fn points_move_as_the_shapes_say() {
     let dir = Dir::with(&["iss-ringdown-off"]);
     let log = log(&dir, "iss-ringdown-off", "--set duration=30 --set log.scene={bending=300,turning=1}");
-    let frames = Frames::of(&log);
+    let frames = Frames::from_log(&log);
     let scenario =
         flexsc_core::Scenario::load(format!("{SCENARIOS}/iss-ringdown-off.toml").as_ref()).expect("shipped");
     let body = scenario.model.spatial().expect("three axes");
@@ -255,7 +255,7 @@ fn panels_visibly_bend() {
         let shorter =
             if name.starts_with("relay") { "--set duration=2000 --set log.scene.period=1" } else { "" };
         let log = log(&dir, &name, &format!("{shorter} --set log.period=0.5"));
-        let frames = Frames::of(&log);
+        let frames = Frames::from_log(&log);
         let chain = if frames.names.iter().any(|frame| frame == "wing_1/1") { "wing_1/" } else { "panel_1/" };
         let bend = |message: usize| -> f64 {
             let sections = frames.names.iter().filter(|frame| frame.starts_with(chain));
@@ -280,7 +280,7 @@ fn panels_visibly_bend() {
 fn wings_swing_on_their_hinges() {
     let dir = Dir::with(&["panel-deployment"]);
     let log = log(&dir, "panel-deployment", "--set duration=60 --set log.scene.period=1");
-    let frames = Frames::of(&log);
+    let frames = Frames::from_log(&log);
     let about_x = |message: usize, wing: &str| {
         let [x, y, z, w] = frames.rotations[frames.at(message, wing)];
         assert!(y.abs() < 1e-12 && z.abs() < 1e-12, "{wing} turns about x alone");
@@ -296,12 +296,12 @@ fn wings_swing_on_their_hinges() {
 /// Lines for people: the run, each step of the adaptation, the end.
 #[test]
 fn a_log_tells_what_happened() {
-    let told = |scenario: &str, options: &str| {
+    let reported = |scenario: &str, options: &str| {
         let dir = Dir::with(&[scenario]);
         dir.run(&format!("simulate {scenario}.toml {options}")).exits(0);
         dir.run(&format!("export {scenario}.mcap --topic /log")).exits(0).out
     };
-    let relay = told("relay-adaptive", "");
+    let relay = reported("relay-adaptive", "");
     assert_eq!(relay.lines().count(), 1 + 2 + 36, "{relay}");
     for line in [
         "0e0,0e0,info,\"relay-adaptive: 20000 s, seed 157, run 0\",run",
@@ -311,11 +311,11 @@ fn a_log_tells_what_happened() {
     ] {
         assert!(relay.contains(line), "no `{line}` in\n{relay}");
     }
-    let lost = told("wheel-ekf", "--set sensor.sampled.faults=[{stuck={from=60}}] --set duration=120");
+    let lost = reported("wheel-ekf", "--set sensor.sampled.faults=[{stuck={from=60}}] --set duration=120");
     assert!(lost.contains("warning,the filter has lost the body,estimator"), "{lost}");
-    let rotation = told("rotation-sine", "");
+    let rotation = reported("rotation-sine", "");
     assert!(rotation.contains("the manoeuvre ends") && rotation.contains("1.2e1,1.2e1,info"), "{rotation}");
-    let station = told("iss-manoeuvre", "");
+    let station = reported("iss-manoeuvre", "");
     for line in [
         "the target is roll 0.00873, pitch 0.01745, yaw 0.05236 rad",
         "within the dead zone about its target",
@@ -337,7 +337,7 @@ fn names_of_a_user_do_not_meet_those_of_the_scene() {
         names.sort();
         names.windows(2).all(|pair| pair[0] != pair[1])
     };
-    assert!(unique(Frames::of(&log).names));
+    assert!(unique(Frames::from_log(&log).names));
     let scene = log.columns("/scene").expect("a scene");
     let (_, entities) = rows(&scene, "entities");
     let Some(Column::Texts(ids)) = entities.get("id") else { panic!("ids") };
@@ -372,7 +372,7 @@ fn a_wheel_turns_as_its_speed_says_and_slowly_enough_to_be_seen() {
     let wheel = log.columns("/wheel").expect("a wheel");
     let speeds = wheel.numbers("speed_rad_s").expect("speeds");
     let times = wheel.numbers("time_s").expect("times");
-    let frames = Frames::of(&log);
+    let frames = Frames::from_log(&log);
     assert_eq!(frames.times, times);
     for at in 1..times.len() {
         let turned = frames.angle(at, "wheel") - frames.angle(at - 1, "wheel");

@@ -2,10 +2,10 @@
 //!
 //! Golden numbers: tests/golden/several_oracle.py, SciPy.
 
-use flexsc_core::actuator::{Actuator, Assigned};
-use flexsc_core::own::Own;
-use flexsc_core::parts::Parts;
-use flexsc_core::scenario::OwnParts;
+use flexsc_core::actuator::{ActuatorKind, AssignedActuator};
+use flexsc_core::custom::Custom;
+use flexsc_core::one_or_many::OneOrMany;
+use flexsc_core::scenario::CustomParts;
 use flexsc_core::{Document, Scenario};
 
 use crate::own_parts::servo;
@@ -172,24 +172,25 @@ fn an_actuator_from_outside_has_a_place_in_a_list() {
         "{ONE_ANGLE}[[actuator]]\nideal = {{}}\nshare = 0.5\n[[actuator]]\nideal = {{}}\nshare = 0.5\n"
     );
     let plain = scenario(&text);
-    let own = |place: usize| OwnParts {
-        actuators: vec![(place, Own::new(servo(1e9, 1e-300)))],
-        ..OwnParts::default()
+    let own = |place: usize| CustomParts {
+        actuators: vec![(place, Custom::new(servo(1e9, 1e-300)))],
+        ..CustomParts::default()
     };
-    let mixed = plain.bringing(own(1)).expect("it fits");
-    assert!(matches!(mixed.actuator[1].kind, Actuator::Own(_)) && mixed.actuator[1].share.is_some());
+    let mixed = plain.with_custom_parts(own(1)).expect("it fits");
+    assert!(matches!(mixed.actuator[1].kind, ActuatorKind::Own(_)) && mixed.actuator[1].share.is_some());
     let expected = column(&plain, "/attitude", "angle_rad");
     let off = difference(&expected, &column(&mixed, "/attitude", "angle_rad"));
     assert!(off < 1e-15, "{off:e}");
     // It stays where other keys change, and stands beside the text.
-    let document = Document::from_table("own.toml", mixed.table_beside_own_parts());
-    assert_eq!(Scenario::from_document_beside(&document, &mixed.own_parts()).expect("a scenario"), mixed);
-    let fault = plain.bringing(own(2)).expect_err("no place");
+    let document = Document::from_table("own.toml", mixed.table_without_custom_parts());
+    assert_eq!(Scenario::from_document_with(&document, &mixed.custom_parts()).expect("a scenario"), mixed);
+    let fault = plain.with_custom_parts(own(2)).expect_err("no place");
     assert!(fault.to_string().contains("actuator[2]: is not there: the scenario has 2 actuators"), "{fault}");
     let alone = plain.with(|scenario| {
-        scenario.actuator = Parts::one(Assigned::from(Actuator::Own(Own::new(servo(1e9, 1e-300)))));
+        scenario.actuator =
+            OneOrMany::one(AssignedActuator::from(ActuatorKind::Own(Custom::new(servo(1e9, 1e-300)))));
     });
-    assert_eq!(alone.expect("it fits").own_parts().actuators.len(), 1);
+    assert_eq!(alone.expect("it fits").custom_parts().actuators.len(), 1);
 }
 
 /// Actuators of a body with one angle or three axes, and words of the one error.

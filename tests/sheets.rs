@@ -79,8 +79,8 @@ fn coincident_curves_both_show() {
 fn the_mean_of_nees_is_the_metric() {
     let dir = Dir::with(&["earth-observer"]);
     dir.run("simulate earth-observer.toml --set duration=120 --log full").exits(0);
-    let told = dir.run("simulate earth-observer.toml --set duration=120 --log none --json").exits(0);
-    let mean = told.json()["metrics"]["nees_mean"].as_f64().expect("a number");
+    let reported = dir.run("simulate earth-observer.toml --set duration=120 --log none --json").exits(0);
+    let mean = reported.json()["metrics"]["nees_mean"].as_f64().expect("a number");
     dir.run("plot earth-observer.mcap -o figures --what consistency --format svg").exits(0);
     let found = texts(&dir.text("figures/earth-observer-consistency.svg"));
     let expected = format!("mean {mean:.2} from 60 to 120 s");
@@ -131,10 +131,10 @@ fn a_requirement_is_drawn_with_the_runs_that_meet_it() {
     let names = dir.names("figures");
     assert!(names.contains(&"half-turn-distribution-pointing_rms_rad.svg".to_owned()), "{names:?}");
     assert_eq!(table(&dir, "out/runs.csv").iter().filter(|row| row["requirement"] == "met").count(), 13);
-    let told = "requirement, met by 13 of 20 runs (65 %)";
+    let reported = "requirement, met by 13 of 20 runs (65 %)";
     for figure in ["distribution", "scatter"] {
         let drawing = Drawing::read(&dir, &format!("half-turn-{figure}-pointing_rms_rad"));
-        drawing.shows(&[told]);
+        drawing.shows(&[reported]);
     }
 }
 

@@ -5,7 +5,7 @@
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
 use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{Plan, Report};
+use flexsc_core::manoeuvre::{Plan, PlanReport};
 use flexsc_core::{Document, Scenario, ScenarioError};
 
 /// Moment of inertia (kg m²).
@@ -96,6 +96,6 @@ pub fn plan(scenario: &Scenario) -> &Plan {
 }
 
 /// The report of a scenario's plan, with a band of 10 %.
-pub fn report(scenario: &Scenario) -> Report {
-    Report::new(plan(scenario), body(scenario), 0.1)
+pub fn report(scenario: &Scenario) -> PlanReport {
+    PlanReport::new(plan(scenario), body(scenario), 0.1)
 }

@@ -4,7 +4,7 @@
 
 use flexsc_core::attitude::Vector;
 use flexsc_core::body::spatial::Spatial;
-use flexsc_core::flow::{Elastic, Rigid, RigidTurn, SpatialState};
+use flexsc_core::flow::{ElasticModes, RigidBody, RigidState, ThreeAxisState};
 use flexsc_core::quantity::Finite;
 use flexsc_core::record::Detail;
 use flexsc_core::{Document, Scenario};
@@ -110,9 +110,9 @@ fn a_tumbling_body_is_where_thirty_digits_put_it() {
          [0.248_287_393_218_305_87, 0.179_815_096_323_343_9, 1.085_638_361_491_806]),
     ];
     let scenario = free(&[]);
-    let rigid = Rigid::new(body(&scenario));
+    let rigid = RigidBody::new(body(&scenario));
     for (torque, [w, x, y, z], rate) in exact {
-        let mut turn = SpatialState::start(body(&scenario), &rigid).turn;
+        let mut turn = ThreeAxisState::start(body(&scenario), &rigid).turn;
         for k in 0..400 {
             rigid
                 .advance(&mut turn, &Vector::from(torque), None, None, (0.1 * f64::from(k), 0.1), go_on)
@@ -139,20 +139,21 @@ fn momentum_and_energy_last() {
         (&tumbling, 1e4, 0.2, 2e-14, 1e-13),
         (&station, 1e6, 0.2, 1e-14, 1e-14),
     ] {
-        let rigid = Rigid::new(body(of));
-        let mut turn = SpatialState::start(body(of), &rigid).turn;
-        let inertial = |turn: &RigidTurn| {
-            let (v, momentum) = (turn.attitude.vector().into_owned(), Rigid::momentum(turn));
+        let rigid = RigidBody::new(body(of));
+        let mut turn = ThreeAxisState::start(body(of), &rigid).turn;
+        let inertial = |turn: &RigidState| {
+            let (v, momentum) = (turn.attitude.vector().into_owned(), RigidBody::momentum(turn));
             let across = v.cross(&momentum);
             momentum + (across * turn.attitude.w + v.cross(&across)) * 2.0
         };
-        let (momentum, energy, fixed) = (Rigid::momentum(&turn).norm(), rigid.energy(&turn), inertial(&turn));
+        let (momentum, energy, fixed) =
+            (RigidBody::momentum(&turn).norm(), rigid.energy(&turn), inertial(&turn));
         let (mut worst, mut longest) = (0.0_f64, 0.0_f64);
         for k in 0..(time / step) as u64 {
             rigid
                 .advance(&mut turn, &Vector::zeros(), None, None, (step * k as f64, step), go_on)
                 .expect("done");
-            worst = worst.max((Rigid::momentum(&turn).norm() / momentum - 1.0).abs());
+            worst = worst.max((RigidBody::momentum(&turn).norm() / momentum - 1.0).abs());
             worst = worst.max((rigid.energy(&turn) / energy - 1.0).abs());
             longest = longest.max((turn.attitude.norm() - 1.0).abs());
         }
@@ -201,8 +202,8 @@ fn modes_follow_the_matrix_exponential() {
 #[track_caller]
 fn assert_moves(scenario: &Scenario, w: f64, pieces: &[(f64, f64)], exact: [f64; 2]) {
     // One of the pieces may be the cycle, whose transition is known beforehand.
-    let mut elastic = Elastic::new(body(scenario), 0.2);
-    let mut phases = Elastic::start(body(scenario));
+    let mut elastic = ElasticModes::new(body(scenario), 0.2);
+    let mut phases = ElasticModes::start(body(scenario));
     for (push, t) in pieces {
         elastic.advance(&mut phases, &[*push], *t);
     }
@@ -236,7 +237,7 @@ fn modes_in_a_file_are_those_of_the_table_and_stay_in_the_log() {
     dir.run("simulate free.toml --log full").exits(0);
     let document = Document::load(&dir.path("free.toml")).expect("there");
     std::fs::remove_file(dir.path("modes.csv")).expect("there");
-    let again = Scenario::from_document_like(&document, &read).expect("the modes are taken over");
+    let again = Scenario::from_document_reusing(&document, &read).expect("the modes are taken over");
     assert_eq!(again, read);
     std::fs::rename(dir.path("free.mcap"), dir.path("first.mcap")).expect("there");
     let kept = dir.run("log scenario first.mcap").exits(0).prints(&["hub"]);

@@ -2,8 +2,8 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, a loop of its own by Runge-Kutta steps.
 
-use flexsc_core::flow::Elastic;
-use flexsc_core::metrics::Gather;
+use flexsc_core::flow::ElasticModes;
+use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
@@ -26,11 +26,11 @@ fn last(trace: &Trace, topic: &str, name: &str) -> f64 {
 
 /// The slow modes, which hardly turn the gyro, keep their energy; the visible energy is that of the other modes.
 #[test]
-fn the_energy_that_the_gyro_sees_is_told_apart() {
+fn the_energy_at_the_gyro_is_reported_apart() {
     let study = scenario("iss-manoeuvre", &[("duration", "120"), ("log.period", "10")]);
     let full = traced(&study);
     let shapes =
-        study.model.spatial().map(|body| body.shapes(&study.study.sensed_at[0])).expect("three axes");
+        study.model.spatial().map(|body| body.shapes(&study.study.sensor_points[0])).expect("three axes");
     let energies = within(&full, "/vibrations", "modes", "energy_j");
     // Modes 1 to 3, of 0.0978, 0.1063 and 0.2368 Hz, turn it by less than a tenth of what mode 5 does.
     let most = shapes.iter().map(|(_, rotation)| rotation.norm()).fold(0.0, f64::max);
@@ -108,11 +108,11 @@ fn the_manoeuvre_uses_the_propellant_that_it_should() {
 #[test]
 fn dense_records_change_nothing() {
     let study = scenario("iss-manoeuvre-off", &[("log.period", "0.073"), ("duration", "60")]);
-    let mut dense = (Trace::new(Detail::Full), Gather::new(&study));
+    let mut dense = (Trace::new(Detail::Full), MetricsCollector::new(&study));
     Simulation::new(&study, 0).run(&mut dense).expect("a run");
     assert_eq!(dense.1.finish(&study).to_json(), metrics(study.clone()).to_json());
     // Stops on the way do not change it either.
-    let mut stopped = Gather::new(&study);
+    let mut stopped = MetricsCollector::new(&study);
     let mut run = Simulation::new(&study, 0);
     for k in 1..=700 {
         let until = Instant::START + Span::from_seconds(0.0917 * f64::from(k));
@@ -185,7 +185,7 @@ fn the_surroundings_push() {
 
 /// Executed in the cycle of its command or in the next: there the rigid rates are what the pulses make of them.
 #[test]
-fn pulses_act_where_and_as_long_as_they_are_told() {
+fn pulses_act_where_and_as_long_as_commanded() {
     let keys = |delay: &'static str| {
         [
             ("body.spatial.inertia", "[[5, 0, 0], [0, 3, 0], [0, 0, 2]]"),
@@ -211,8 +211,8 @@ fn pulses_act_where_and_as_long_as_they_are_told() {
             assert!((rate - (0.05 - fired / 3.0)).abs() < 1e-15, "{k}: {rate}");
         }
         // The mode, pushed along x by -1 N where its displacement is 1/sqrt(kg), follows the exact pulse.
-        let mut elastic = Elastic::new(body(&free(&[])), 0.2);
-        let mut phases = Elastic::start(body(&free(&[])));
+        let mut elastic = ElasticModes::new(body(&free(&[])), 0.2);
+        let mut phases = ElasticModes::start(body(&free(&[])));
         elastic.advance(&mut phases, &[-1.0], 0.15);
         elastic.advance(&mut phases, &[], 0.85 - 0.05 * f64::from(begins));
         close(last(&trace, "/energy", "elastic_j"), elastic.energies(&phases).sum(), 1e-12);
@@ -328,14 +328,14 @@ fn every_target_is_reached_and_held() {
             let key = format!("actuator.jets.thrusters[{thruster}].thrust");
             document.set_text(&key, &(130.0 * scale).to_string()).expect("a thruster");
         }
-        let told = metrics(Scenario::from_document(&document).expect("valid"));
-        let goal = told.get("goal");
+        let reported = metrics(Scenario::from_document(&document).expect("valid"));
+        let goal = reported.get("goal");
         assert_eq!(
             goal,
-            Some(&flexsc_core::metrics::Value::Word("met")),
+            Some(&flexsc_core::metrics::MetricValue::Word("met")),
             "case {case}: scale {scale}, zone {zone}, limit {limit}, on {on}, off {off}, delay {delay}, torque {torque}: {:?} s \
              outside",
-            told.number("time_outside_s")
+            reported.number("time_outside_s")
         );
     }
 }

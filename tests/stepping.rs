@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use flexsc_core::law::Command;
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
-use flexsc_core::{LookField, Occasion, Scenario, Simulation};
+use flexsc_core::{ObservationField, Scenario, Simulation, StopAt};
 
 use crate::util::SCENARIOS;
 
@@ -40,8 +40,9 @@ fn flown(name: &str, seconds: f64) -> Scenario {
 
 /// Returns the row of a simulation, to the bit.
 fn row(simulation: &mut Simulation, scenario: &Scenario) -> Vec<u64> {
-    let mut row = vec![0.0; simulation.fields(scenario).iter().map(LookField::width).sum()];
-    simulation.look(&mut row).expect("finite numbers");
+    let mut row =
+        vec![0.0; simulation.observation_fields(scenario).iter().map(ObservationField::width).sum()];
+    simulation.observe(&mut row).expect("finite numbers");
     row.into_iter().map(f64::to_bits).collect()
 }
 
@@ -55,22 +56,22 @@ fn a_run_in_pieces_comes_to_the_same_as_a_whole_one() {
         let rows = |trace: Trace| -> BTreeMap<&str, usize> {
             trace.into_columns().map(|(name, rows)| (name, rows.len())).collect()
         };
-        let told = rows(trace);
+        let reported = rows(trace);
         for piece in [0.37, 1.0, 9.9] {
             let mut pieces = Trace::new(Detail::Events);
             let mut cut = Simulation::new(&scenario, 3);
             let mut until = 0.0;
-            while !cut.is_done() {
+            while !cut.is_finished() {
                 until += piece;
                 cut.run_up_to(at(until), &mut pieces).expect("a piece");
                 // Copies do not disturb.
                 let mut copy = cut.clone();
-                copy.steer([Command::Torque(1e-4); 3]);
+                copy.set_external_command([Command::Torque(1e-4); 3]);
                 copy.run_up_to(at(until + 0.5), &mut ()).expect("a copy");
                 row(&mut cut, &scenario);
             }
             assert_eq!(row(&mut cut, &scenario), row(&mut whole, &scenario), "{name} {piece}");
-            assert_eq!(rows(pieces), told, "{name} {piece}");
+            assert_eq!(rows(pieces), reported, "{name} {piece}");
         }
     }
 }
@@ -79,23 +80,23 @@ fn a_run_in_pieces_comes_to_the_same_as_a_whole_one() {
 fn what_a_law_would_command_may_come_from_outside() {
     // The law of the four clamped modes: -30 p - 60 w, at most 1 N m, held for a second.
     let scenario = flown("four-clamped-modes", 60.0);
-    let fields = Simulation::new(&scenario, 0).fields(&scenario);
+    let fields = Simulation::new(&scenario, 0).observation_fields(&scenario);
     let place = |name: &str| -> usize {
         let found = fields.iter().position(|field| field.name == name).expect("a field");
-        fields[..found].iter().map(LookField::width).sum()
+        fields[..found].iter().map(ObservationField::width).sum()
     };
     let (attitude, rate) = (place("attitude"), place("rate"));
     let mut whole = Simulation::new(&scenario, 0);
     let mut steered = Simulation::new(&scenario, 0);
-    let mut row = vec![0.0; fields.iter().map(LookField::width).sum()];
+    let mut row = vec![0.0; fields.iter().map(ObservationField::width).sum()];
     for second in 1..=60 {
         steered.open(&mut ()).expect("a start");
-        steered.look(&mut row).expect("numbers");
+        steered.observe(&mut row).expect("numbers");
         let torque = |axis: usize| {
             let p = row[attitude + 1 + axis] / (1.0 + row[attitude]);
             (-30.0 * p - 60.0 * row[rate + axis]).clamp(-1.0, 1.0)
         };
-        steered.steer([0, 1, 2].map(|axis| Command::Torque(torque(axis))));
+        steered.set_external_command([0, 1, 2].map(|axis| Command::Torque(torque(axis))));
         steered.run_up_to(at(f64::from(second)), &mut ()).expect("a step");
     }
     whole.run(&mut ()).expect("a run");
@@ -116,13 +117,13 @@ fn a_command_acts_from_the_instant_at_which_the_run_stands() {
     let rate = |simulation: &Simulation| simulation.state().expect("one angle").rigid_rate;
     for (until, torque, expected) in [(0.5, 2.0, 0.5), (1.0, -4.0, -0.5), (1.25, 0.0, -0.5), (2.0, 8.0, 1.5)]
     {
-        simulation.steer([Command::Torque(torque); 3]);
+        simulation.set_external_command([Command::Torque(torque); 3]);
         simulation.run_up_to(at(until), &mut ()).expect("a step");
         assert!((rate(&simulation) - expected).abs() < 1e-15, "{until}: {}", rate(&simulation));
     }
     // Commands stay; the whole of the rest is one period after the other.
     simulation.run(&mut ()).expect("the rest");
-    assert!(simulation.is_done());
+    assert!(simulation.is_finished());
     assert!((rate(&simulation) - 9.5).abs() < 1e-14, "{}", rate(&simulation));
 }
 
@@ -134,25 +135,23 @@ fn runs_stop_at_what_comes_next() {
     let times = |topic: &str, name: &str| {
         trace.topic(topic).and_then(|rows| rows.numbers(name)).expect("a column").to_vec()
     };
-    let stops = |occasion: Occasion| {
+    let stops = |occasion: StopAt| {
         let mut simulation = Simulation::new(&scenario, 0);
         let mut stops = Vec::new();
         while simulation.run_to_next(occasion, Instant::END, &mut ()).expect("a run") {
             stops.push(simulation.time().seconds());
         }
-        assert!(simulation.is_done());
+        assert!(simulation.is_finished());
         stops
     };
-    assert_eq!(stops(Occasion::Switching), times("/command", "time_s"));
-    assert!(stops(Occasion::Decision).len() >= stops(Occasion::Switching).len());
-    assert_eq!(stops(Occasion::Window), [500.0, 1000.0, 1500.0, 2000.0, 2500.0]);
-    assert_eq!(stops(Occasion::Sample), [0.0; 0], "its sensor measures at every instant");
+    assert_eq!(stops(StopAt::Switching), times("/command", "time_s"));
+    assert!(stops(StopAt::Decision).len() >= stops(StopAt::Switching).len());
+    assert_eq!(stops(StopAt::Window), [500.0, 1000.0, 1500.0, 2000.0, 2500.0]);
+    assert_eq!(stops(StopAt::Sample), [0.0; 0], "its sensor measures at every instant");
     let scenario = flown("relay-sampled", 10.0);
     let mut simulation = Simulation::new(&scenario, 0);
-    assert!(simulation.run_to_next(Occasion::Sample, Instant::END, &mut ()).expect("a run"));
+    assert!(simulation.run_to_next(StopAt::Sample, Instant::END, &mut ()).expect("a run"));
     let first = simulation.time().seconds();
-    assert!(
-        first > 0.0 && !simulation.run_to_next(Occasion::Sample, at(1.5 * first), &mut ()).expect("a run")
-    );
+    assert!(first > 0.0 && !simulation.run_to_next(StopAt::Sample, at(1.5 * first), &mut ()).expect("a run"));
     assert_eq!(simulation.time(), at(1.5 * first));
 }

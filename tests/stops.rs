@@ -85,7 +85,7 @@ fn an_interrupted_run_has_a_whole_log() {
 
 #[cfg(unix)]
 #[test]
-fn what_is_told_to_ignore_signals_ends_well_by_others() {
+fn runs_that_ignore_a_signal_end_by_another() {
     let dir = Dir::with(&["relay-fixed"]);
     // By `nohup`, and in the background of a script besides.
     for (ignored, other) in [("HUP", "INT"), ("INT HUP", "TERM")] {

@@ -256,7 +256,7 @@ fn coordinates_may_turn_with_the_hub() {
 
 /// A table of free modes gives the modes with the hub clamped, and conversely.
 #[test]
-fn modes_with_the_hub_free_tell_those_with_the_hub_held() {
+fn free_hub_modes_determine_held_hub_modes() {
     let dir = Dir::new();
     let free = model(&dir, &PANELS.replace("SET", ""));
     let clamped = model(&dir, &PANELS.replace("SET", "drive = \"motion\""));
@@ -336,9 +336,9 @@ fn modes_are_solved_once_and_kept_in_the_log() {
     let study = |grid| Campaign::new(scenario.clone(), "study.toml", grid);
     let run = study(None).expect("valid").run(3).expect("a run");
     assert_eq!(run.scenario.model, scenario.model);
-    let weak = Grid::even("law.relay.weak".to_owned(), 0.01, 0.03, 3);
+    let weak = Grid::linspace("law.relay.weak".to_owned(), 0.01, 0.03, 3);
     assert!(study(Some(weak)).is_ok());
-    let damping = Grid::even("body.matrices.damping".to_owned(), 0.0, 0.01, 3);
+    let damping = Grid::linspace("body.matrices.damping".to_owned(), 0.0, 0.01, 3);
     let error = study(Some(damping)).expect_err("solved again").to_string();
     assert!(error.contains("`body.matrices.mass` cannot be used") && error.contains("m.csv"), "{error}");
     // What the log holds repeats alone, to the same bytes.
@@ -362,16 +362,16 @@ fn the_command_tells_of_modes() {
     );
     let number = |value: &serde_json::Value| value.as_f64().expect("a number");
     for (name, inertia) in [("free", 0.0), ("held", 1.0)] {
-        let told = dir.run(&format!("modes {name}.toml --json")).exits(0).json();
-        close(number(&told["inertia_kg_m2"]), 4616.67, 1e-14);
+        let reported = dir.run(&format!("modes {name}.toml --json")).exits(0).json();
+        close(number(&reported["inertia_kg_m2"]), 4616.67, 1e-14);
         for n in 0..4 {
-            close(number(&told["free_frequencies_rad_s"][n]), FREE[n][0], 1e-11);
-            close(number(&told["clamped_frequencies_rad_s"][n]), CLAMPED[n][0], 1e-11);
+            close(number(&reported["free_frequencies_rad_s"][n]), FREE[n][0], 1e-11);
+            close(number(&reported["clamped_frequencies_rad_s"][n]), CLAMPED[n][0], 1e-11);
             let own = if inertia == 0.0 { (4616.67 * FREE[n][1]).powi(2) } else { CLAMPED[n][1].powi(2) };
-            close(number(&told["effective_inertias_kg_m2"][n]), own, 1e-10);
+            close(number(&reported["effective_inertias_kg_m2"][n]), own, 1e-10);
         }
-        assert_eq!(told["outputs"][3]["name"], "section_4");
-        assert_eq!(told["outputs"][3]["weights"].as_array().map(Vec::len), Some(4));
+        assert_eq!(reported["outputs"][3]["name"], "section_4");
+        assert_eq!(reported["outputs"][3]["weights"].as_array().map(Vec::len), Some(4));
     }
     dir.run("modes free.toml --units si").exits(0).says(&[
         "3.33",

@@ -1,7 +1,7 @@
 //! Shipped scenarios run by the engine itself, and their metrics.
 
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::{Document, Scenario};
 
 /// A shipped scenario with some keys set.
@@ -22,7 +22,7 @@ pub fn metrics(scenario: Scenario) -> Metrics {
 /// A metric that is a list.
 pub fn numbers(metrics: &Metrics, name: &str) -> Vec<f64> {
     match metrics.get(name) {
-        Some(value @ (Value::Numbers(_) | Value::Quantities(_))) => value.numbers(),
+        Some(value @ (MetricValue::Numbers(_) | MetricValue::Quantities(_))) => value.numbers(),
         other => panic!("{name}: {other:?}"),
     }
 }

@@ -57,10 +57,10 @@ fn tables_of_modes_keep_their_columns_apart() {
         modes = [{ frequency = 0.5, damping = 0.005, translation = [0, 0, 10.0], rotation = [0, -190.0, 0] }]\n\
         [law.pd]\nk_p = 1.0\nk_d = 10.0\nperiod = 0.5\n";
     let dir = Dir::holding("a.toml", heavy);
-    let told = dir.run("modes a.toml").exits(0).err;
-    let row = told.lines().find(|line| line.contains("wing, without first moments")).expect("a mode");
+    let reported = dir.run("modes a.toml").exits(0).err;
+    let row = reported.lines().find(|line| line.contains("wing, without first moments")).expect("a mode");
     // Mode, frequency, period, damping, three masses, three inertias, and four words of the appendage.
-    assert_eq!(row.split_whitespace().count(), 14, "{told}");
+    assert_eq!(row.split_whitespace().count(), 14, "{reported}");
     let damped = dir.run("damping --frequency 0.1:100000:3 --acceleration 0.1 --period 1e-6").exits(0).err;
     for row in damped.lines().skip(3) {
         assert_eq!(row.split_whitespace().count(), 9, "{damped}");
@@ -72,8 +72,12 @@ fn a_log_of_other_settings_is_refused_in_plain_words() {
     let dir = Dir::with(&["wheel-ekf"]);
     dir.run("simulate wheel-ekf.toml").exits(0);
     let other = "simulate wheel-ekf.toml --set sensor.sampled.faults=[{stuck={from=60}}]";
-    let told = dir.run(other).exits(2).err;
-    holds(&told, &["holds a run with other settings (`sensor.sampled.faults`: added)"], &["a longer value"]);
+    let reported = dir.run(other).exits(2).err;
+    holds(
+        &reported,
+        &["holds a run with other settings (`sensor.sampled.faults`: added)"],
+        &["a longer value"],
+    );
 }
 
 #[test]
@@ -89,6 +93,7 @@ fn a_check_estimates_the_time() {
 #[test]
 fn a_run_of_days_needs_a_yes() {
     let dir = Dir::with(&["wheel-fast-mode"]);
-    let told = dir.run_bounded("simulate wheel-fast-mode.toml --log none --set duration=1.8e10").exits(2).err;
-    holds(&told, &["must be confirmed", "--yes"], &[]);
+    let reported =
+        dir.run_bounded("simulate wheel-fast-mode.toml --log none --set duration=1.8e10").exits(2).err;
+    holds(&reported, &["must be confirmed", "--yes"], &[]);
 }

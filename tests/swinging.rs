@@ -5,10 +5,10 @@ use std::sync::Arc;
 
 use flexsc_core::attitude::{Vector, rotation};
 use flexsc_core::estimator::attitude::{
-    AttitudeFilterState, AttitudeMeasurement, FilterHistory, Fix, GyroNoise, Identified, KnownMode,
-    KnownModes, Swinging,
+    AttitudeFilterState, AttitudeMeasurement, DelayedMeasurement, ElasticFilterStates, FilterHistory,
+    FilterMode, FilterModes, FrequencyIdentification, GyroNoise,
 };
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
 use flexsc_core::time::{Instant, Span};
@@ -26,8 +26,8 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
     text.lines().map(|line| line.split(',').map(|cell| cell.parse().expect("a number")).collect()).collect()
 }
 
-fn known() -> KnownModes {
-    let mode = |frequency: f64, damping: f64, [hub, gyro, mount]: [[f64; 3]; 3], rate: f64| KnownMode {
+fn known() -> FilterModes {
+    let mode = |frequency: f64, damping: f64, [hub, gyro, mount]: [[f64; 3]; 3], rate: f64| FilterMode {
         frequency,
         true_frequency: frequency,
         damping,
@@ -38,10 +38,10 @@ fn known() -> KnownModes {
     };
     let first = [[0.03, -0.01, 0.004], [0.01, 0.02, -0.005], [-0.04, 0.01, 0.02]];
     let second = [[0.002, 0.05, -0.02], [0.0, 0.015, 0.01], [0.03, -0.02, 0.05]];
-    KnownModes {
+    FilterModes {
         each: vec![mode(1.7, 0.005, first, 1e-3), mode(5.1, 0.01, second, 1e-3)],
         noise: 2e-4,
-        ..KnownModes::default()
+        ..FilterModes::default()
     }
 }
 
@@ -54,7 +54,7 @@ fn modes_in_the_filter_are_those_of_the_oracle() {
 #[test]
 fn identified_frequencies_are_those_of_the_oracle() {
     let mut known = known();
-    known.identified = Some(Identified { deviation: 0.15, walk: 1e-4 });
+    known.identified = Some(FrequencyIdentification { deviation: 0.15, walk: 1e-4 });
     for (mode, off) in known.each.iter_mut().zip([1.2, 0.9]) {
         mode.frequency *= off;
     }
@@ -63,30 +63,30 @@ fn identified_frequencies_are_those_of_the_oracle() {
 
 /// Checks that a filter that knows or identifies these modes has the states of the oracle within a tolerance, and its
 /// deviations.
-fn follows_the_oracle(known: KnownModes, given: &str, tolerance: f64) {
+fn follows_the_oracle(known: FilterModes, given: &str, tolerance: f64) {
     let (read, noise) = (rows(READ), GyroNoise { angle_random_walk: 3e-6, rate_random_walk: 1e-8 });
     let off = Vector::new(1e-3, -5e-4, 8e-4);
     let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
     let mut filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
-    filter.swinging = Some(Box::new(Swinging::new(Arc::new(known), &filter.covariance)));
+    filter.swinging = Some(Box::new(ElasticFilterStates::new(Arc::new(known), &filter.covariance)));
     let mut history = FilterHistory::new(Instant::START, filter, noise, Span::from_seconds(0.5));
     let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
     let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
     let tracker = Matrix3::from_diagonal(&Vector::new(2.4e-5, 2.4e-5, 1.5e-4).map(|noise| noise * noise));
     let (mut given, mut nis) = (rows(given).into_iter().peekable(), 0.0);
     for k in 1..read.len() {
-        history.push(at(k - 1, 0.1), three(&read[k - 1][1..4]));
-        history.read(at(k, 0.0), three(&read[k][4..7]));
+        history.set_torque(at(k - 1, 0.1), three(&read[k - 1][1..4]));
+        history.add_gyro(at(k, 0.0), three(&read[k][4..7]));
         if k % 4 == 2 && k > 2 {
             let z = &read[k - 2][7..11];
-            let fix = Fix {
+            let fix = DelayedMeasurement {
                 exposed: at(k - 2, 0.0),
                 measured: AttitudeMeasurement::Attitude(Quaternion::new(z[0], z[1], z[2], z[3])),
                 noise: tracker,
                 gain: None,
                 sensor: 1,
             };
-            nis = history.fix(fix).expect("a correction").nis;
+            nis = history.add_measurement(fix).expect("a correction").nis;
         }
         let Some(row) = given.next_if(|row| row[0] as usize == k) else { continue };
         let filter = history.latest();
@@ -153,7 +153,7 @@ fn a_filter_that_knows_the_mode_is_consistent_and_points_better() {
     );
     let [held, shaken] = [&with, &without].map(|(_, trace)| worst(trace));
     assert!(held < 8e-4 && (1.1e-3..1.3e-3).contains(&shaken), "{held:e} {shaken:e}");
-    assert_eq!(with.0.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(with.0.get("goal"), Some(&MetricValue::Word("met")));
     // A filter that takes the mode for a tenth slower shows it.
     let wrong = ("modes = [0], noise", "modes = [0], factor = 0.9, noise");
     assert!(number(&flown(&changed(&[wrong]).expect("it"), 0, Detail::Full), "nis_mean") > 2.0);
@@ -179,7 +179,7 @@ fn frequencies_are_identified_from_the_slew() {
         let boom = changed(&[("modes = [0], noise", &keys)]).expect("it");
         for run in 0..5 {
             let (metrics, trace) = flown(&boom, run, Detail::Full);
-            let Some(Value::Numbers(errors)) = metrics.get("frequency_estimate_errors") else {
+            let Some(MetricValue::Numbers(errors)) = metrics.get("frequency_estimate_errors") else {
                 panic!("no errors of frequencies")
             };
             assert!(errors.len() == 1 && errors[0].abs() < 2e-3, "{factor} {run} {errors:?}");

@@ -1,12 +1,12 @@
 //! Runs made by tests, and the columns of their traces.
 
-use flexsc_core::metrics::{Gather, Metrics};
+use flexsc_core::metrics::{Metrics, MetricsCollector};
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
 /// Returns the metrics and the trace of a run.
 pub fn flown(scenario: &Scenario, run: u64, detail: Detail) -> (Metrics, Trace) {
-    let (mut gather, mut trace) = (Gather::new(scenario), Trace::new(detail));
+    let (mut gather, mut trace) = (MetricsCollector::new(scenario), Trace::new(detail));
     Simulation::new(scenario, run).run(&mut (&mut gather, &mut trace)).expect("a run");
     (gather.finish(scenario), trace)
 }

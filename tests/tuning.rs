@@ -2,7 +2,8 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{
-    Doubt, Gains, Loop, RobustGoal, RobustSearch, Scaling, SettlingWindow, midpoints, regions, robust,
+    Gains, ModelUncertainty, RobustGoal, RobustSearch, SampledLoop, Scaling, SettlingWindow, midpoints,
+    optimize, regions,
 };
 
 use crate::loops::{FITTED, GAINS, WINDOW, at, fitted};
@@ -45,13 +46,13 @@ fn robust_gains() {
         gains: Gains { step: 0.1, ..GAINS },
         scaling: Scaling::All,
         window: SettlingWindow { horizon: 600.0, ..WINDOW },
-        doubt: Doubt { frequency: part, modal_gain: part, authority: part, delay: 0.3 },
+        doubt: ModelUncertainty { frequency: part, modal_gain: part, authority: part, delay: 0.3 },
         goal: RobustGoal::Settling,
         quantile: 1.0,
         margin: 1e-4,
     };
     let frequencies = [0.1, 0.2, 0.3];
-    let found = robust(&of, &frequencies, search);
+    let found = optimize(&of, &frequencies, search);
     // The worst of the corners, by hand: no gain of the grid is better than the one found.
     let worst = |frequency: f64, gain: f64| {
         let mut worst: f64 = 0.0;
@@ -66,7 +67,9 @@ fn robust_gains() {
                     "gain = 5e-4",
                     &format!("gain = {}\ndelay = {}", 5e-4 * sign(1), 0.3 * f64::from(corner >> 3)),
                 );
-            let loop_ = Loop::of(&Scenario::parse("corner.toml", &text).expect("valid")).expect("a loop").0;
+            let loop_ = SampledLoop::from_scenario(&Scenario::parse("corner.toml", &text).expect("valid"))
+                .expect("a loop")
+                .0;
             let closed = at(&loop_, frequency * sign(2)).closed(gain);
             let settling = closed.settle(search.window).crossing_s.unwrap_or(f64::INFINITY);
             worst = worst.max(if closed.spectral_radius() < 1.0 - 1e-4 { settling } else { f64::INFINITY });
@@ -84,26 +87,26 @@ fn robust_gains() {
         assert!(ours <= robust.settling_without_s.unwrap_or(f64::INFINITY));
     }
     // No loop is that quick.
-    assert_eq!(robust(&of, &[0.2], RobustSearch { margin: 0.5, ..search })[0].gain, None);
+    assert_eq!(optimize(&of, &[0.2], RobustSearch { margin: 0.5, ..search })[0].gain, None);
 }
 
 #[test]
 fn the_command_tells_regions_schedules_and_maps() {
     let dir = Dir::holding("fitted.toml", FITTED);
     let few = "--frequency 0.15:0.3:4";
-    let told = dir.run(&format!("tune fitted.toml --json {few}")).exits(0).json();
-    let rows = told["rows"].as_array().expect("rows");
+    let reported = dir.run(&format!("tune fitted.toml --json {few}")).exits(0).json();
+    let rows = reported["rows"].as_array().expect("rows");
     assert_eq!(rows.len(), 4);
     assert!((rows[1]["midpoint"].as_f64().expect("a gain") - 0.1).abs() < 1e-9);
-    assert_eq!(told["schedule"][1]["gain"], rows[1]["midpoint"]);
-    assert_eq!(told["schedule"][1]["frequency"], rows[1]["frequency_rad_s"]);
+    assert_eq!(reported["schedule"][1]["gain"], rows[1]["midpoint"]);
+    assert_eq!(reported["schedule"][1]["frequency"], rows[1]["frequency_rad_s"]);
     dir.run(&format!("tune fitted.toml {few}")).exits(0).says(&["rad/s", "0.2000", "1.000", "180.3"]);
     // The schedule is one that a scenario takes.
     let known = "[sensor.sampled]\nperiod = 0.3\n[estimator.truth]\n";
     let schedule =
         dir.run(&format!("tune fitted.toml --schedule {few}")).exits(0).prints(&["[law.pd.extra]"]);
     let scheduled = Scenario::parse("scheduled.toml", &format!("{FITTED}{known}{schedule}")).expect("valid");
-    let law = Loop::of(&scheduled).expect("a loop").1;
+    let law = SampledLoop::from_scenario(&scheduled).expect("a loop").1;
     assert!((law.extra_gain(0.2) - 0.1).abs() < 1e-9 && (law.extra_gain(1.0) - 1.4).abs() < 1e-9);
     let sure =
         dir.run(&format!("tune fitted.toml --robust 0.05 --gain -1:2:13 --json {few}")).exits(0).json();
@@ -116,8 +119,8 @@ fn the_command_tells_regions_schedules_and_maps() {
         .says(&["12 cells"]);
     let rows = table(&dir, "map.csv");
     assert_eq!(rows.len(), 12);
-    let told = dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 --json").exits(0).json();
-    for (row, cell) in rows.iter().zip(told["rows"].as_array().expect("rows")) {
+    let reported = dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 --json").exits(0).json();
+    for (row, cell) in rows.iter().zip(reported["rows"].as_array().expect("rows")) {
         let (table, json): (f64, _) =
             (row["spectral_radius"].parse().expect("a number"), &cell["spectral_radius"]);
         close(table, json.as_f64().expect("a number"), 1e-15);

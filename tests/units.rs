@@ -49,20 +49,20 @@ fn numbers_with_units_are_those_in_si() {
 }
 
 #[test]
-fn wrong_units_are_told_all_at_once_with_their_places() {
+fn wrong_units_are_reported_all_at_once_with_their_places() {
     let text = PLAIN
         .replace("duration = 120.0", "duration = '2 kg'")
         .replace("frequency = 3.141592653589793", "frequency = '3 fortnights'")
         .replace("damping = 0.7", "damping = '70 deg'");
-    let told = Scenario::parse("x", &text).expect_err("refused").to_string();
+    let reported = Scenario::parse("x", &text).expect_err("refused").to_string();
     for words in [
         "x:2:12: `duration` has the unit `kg`, expected a unit such as `s`",
         "`appendage[0].modes[0].frequency` has the unit `fortnights`, which is not known; expected a unit such as `rad/s`",
         "`law.attitude.damping` has the unit `deg`, but takes a number without a unit",
     ] {
-        assert!(told.contains(words), "no `{words}` in\n{told}");
+        assert!(reported.contains(words), "no `{words}` in\n{reported}");
     }
-    assert_eq!(told.matches('^').count(), 6 + 14 + 8, "{told}");
+    assert_eq!(reported.matches('^').count(), 6 + 14 + 8, "{reported}");
 }
 
 #[test]
@@ -156,12 +156,12 @@ fn units_of_others_are_suggested() {
         ("0.017453292519943295", "\"10 RPM\"", "rpm"),
         ("0.017453292519943295", "\"10 deg/hr\"", "deg/h"),
     ] {
-        let told = Scenario::parse("x", &PLAIN.replacen(from, to, 1)).expect_err("refused").to_string();
-        assert!(told.contains(&format!("did you mean `{meant}`?")), "{told}");
+        let reported = Scenario::parse("x", &PLAIN.replacen(from, to, 1)).expect_err("refused").to_string();
+        assert!(reported.contains(&format!("did you mean `{meant}`?")), "{reported}");
     }
-    let told =
+    let reported =
         Scenario::parse("x", &PLAIN.replace("120.0\n", "'3 fortnights'\n")).expect_err("refused").to_string();
-    assert!(told.contains("known are m, g, s, A"), "{told}");
+    assert!(reported.contains("known are m, g, s, A"), "{reported}");
 }
 
 #[test]
@@ -170,9 +170,9 @@ fn a_percent_is_a_hundredth_and_nothing_else() {
     let read =
         Scenario::parse("x", &PLAIN.replace("damping = 0.002", "damping = \"0.2 %\"")).expect("a scenario");
     assert_eq!(read.to_toml(), plain.to_toml());
-    let told =
+    let reported =
         Scenario::parse("x", &PLAIN.replace("bandwidth = 0.1", "bandwidth = '10 %'")).expect_err("refused");
-    assert!(told.to_string().contains("expected a unit such as `rad/s`"), "{told}");
+    assert!(reported.to_string().contains("expected a unit such as `rad/s`"), "{reported}");
 }
 
 #[test]
@@ -202,15 +202,15 @@ fn distributions_take_the_units_of_their_key() {
 #[test]
 fn degrees_and_impossible_bodies_are_refused() {
     let target = "[[target]]\nfrom = 1.0\nyaw = 30\n";
-    let told = Scenario::parse("x", &format!("{PLAIN}{target}")).expect_err("degrees").to_string();
-    assert!(told.contains("in rad, or such as \"30 deg\", got 30"), "{told}");
+    let reported = Scenario::parse("x", &format!("{PLAIN}{target}")).expect_err("degrees").to_string();
+    assert!(reported.contains("in rad, or such as \"30 deg\", got 30"), "{reported}");
     Scenario::parse("x", &format!("{PLAIN}{}", target.replace("30", "\"30 deg\""))).expect("an angle");
     // Principal moments 300, 40 and 35 of no body, in its axes and turned by 30 degrees about z.
     for inertia in
         ["[[300, 0, 0], [0, 40, 0], [0, 0, 35]]", "[[235.0, 112.5833, 0], [112.5833, 105.0, 0], [0, 0, 35]]"]
     {
         let text = PLAIN.replace("[[120.0, 0.0, 0.0], [0.0, 90.0, 0.0], [0.0, 0.0, 100.0]]", inertia);
-        let told = Scenario::parse("x", &text).expect_err("no body").to_string();
-        assert!(told.contains("no principal moment exceeds the sum of the other two"), "{told}");
+        let reported = Scenario::parse("x", &text).expect_err("no body").to_string();
+        assert!(reported.contains("no principal moment exceeds the sum of the other two"), "{reported}");
     }
 }

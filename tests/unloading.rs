@@ -1,6 +1,6 @@
 //! Jets that unload wheels: the shipped scenario does what its comment says, and impossible settings are refused.
 
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::Detail;
 use flexsc_core::scenario::Scenario;
 
@@ -29,7 +29,7 @@ fn norm(of: &[f64; 3]) -> f64 {
 #[test]
 fn jets_take_what_a_steady_torque_gives() {
     let (metrics, times, momenta) = flown(&text());
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("met")));
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
     let most = momenta.iter().map(norm).fold(0.0, f64::max);
     assert!((1.5..1.6).contains(&most), "{most}");
     assert!(metrics.number("pointing_error_end_rad").expect("an error") < 1e-8);
@@ -44,7 +44,7 @@ fn jets_take_what_a_steady_torque_gives() {
     let given = 1.2e-3 * times.last().expect("rows") - momenta.last().expect("rows")[0];
     assert!((taken / given - 1.0).abs() < 0.02, "{taken} {given}");
     // Each takes 0.02 N m over 2 s, but for the last of a row.
-    let Some(Value::Count(pulses)) = metrics.get("firings") else { panic!("pulses") };
+    let Some(MetricValue::Count(pulses)) = metrics.get("firings") else { panic!("pulses") };
     assert!((*pulses as f64 - taken / 0.04).abs() < 5.0, "{pulses} {taken}");
 }
 
@@ -54,7 +54,7 @@ fn without_them_a_wheel_is_full_and_the_body_turns_away() {
     let (before, rest) = text.split_once("[actuator.wheels.unloading]").expect("the table");
     let (_, after) = rest.split_once("[reference]").expect("the band");
     let (metrics, times, momenta) = flown(&format!("{before}[reference]{after}"));
-    assert_eq!(metrics.get("goal"), Some(&Value::Word("missed")));
+    assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("missed")));
     let full = momenta.iter().position(|row| row[0] >= 2.2 - 1e-9).expect("full");
     // 2.2 N m s at 1.2e-3 N m.
     assert!((times[full] - 1833.0).abs() < 20.0, "{}", times[full]);

@@ -1,8 +1,8 @@
 //! Records do not change a run, and a copy of a run continues as the run itself, with every kind of parts.
 
-use flexsc_core::flow::SpatialState;
-use flexsc_core::motion::{State, Stretch};
-use flexsc_core::record::{Course, Detail, Record, RecordError, Sample, Trace};
+use flexsc_core::flow::ThreeAxisState;
+use flexsc_core::motion::{AxisState, MotionPiece};
+use flexsc_core::record::{Detail, PieceDemand, Record, RecordError, Sample, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Document, Scenario, Simulation};
 
@@ -61,7 +61,7 @@ fn runs() -> Vec<(&'static str, Scenario)> {
 }
 
 /// State that a run has reached.
-type Reached = (Option<State>, Option<SpatialState>);
+type Reached = (Option<AxisState>, Option<ThreeAxisState>);
 
 fn reached(simulation: &Simulation) -> Reached {
     (simulation.state().cloned(), simulation.spatial_state().cloned())
@@ -95,19 +95,19 @@ fn a_copy_goes_on_as_the_run_itself() {
 struct Everything(u64);
 
 impl Record for Everything {
-    fn dense(&self) -> bool {
+    fn wants_motion(&self) -> bool {
         true
     }
 
-    fn scene(&self) -> bool {
+    fn wants_scene(&self) -> bool {
         true
     }
 
-    fn course(&self) -> Course {
-        Course::All
+    fn piece_demand(&self) -> PieceDemand {
+        PieceDemand::All
     }
 
-    fn stretch(&mut self, _: Instant, _: &Stretch) -> Result<(), RecordError> {
+    fn piece(&mut self, _: Instant, _: &MotionPiece) -> Result<(), RecordError> {
         self.0 += 1;
         Ok(())
     }
@@ -131,7 +131,7 @@ fn whatever_looks_at_a_run_changes_nothing() {
             let full = end(Simulation::new(&looked, 5), &mut Trace::new(Detail::Full));
             assert_eq!(full, exact, "{name}: a row each {period} s");
             let mut simulation = Simulation::new(&looked, 5);
-            simulation.draw(&looked);
+            simulation.enable_scene(&looked);
             let mut everything = Everything(0);
             assert_eq!(end(simulation, &mut everything), exact, "{name}: a scene, each {period} s");
             assert!(everything.0 > 0, "{name}");

@@ -65,7 +65,7 @@ impl Viewer {
         viewer
     }
 
-    /// Returns the next message; `Said::Nothing` if none comes within this time.
+    /// Returns the next message; `Said::None` if none comes within this time.
     pub fn next(&mut self, within: Duration) -> Said {
         let began = Instant::now();
         while began.elapsed() < within {

@@ -113,5 +113,5 @@ fn sums_shifts_and_breaks() {
     // Right-continuous, and a limit from either side.
     assert_eq!(waveform.at(12.0), 0.0);
     assert_eq!(waveform.at(3.0) - harmonic(2.0).at(3.0), 1.0);
-    assert_eq!(waveform.on_piece(1.0, 3.0), harmonic(2.0).at(3.0));
+    assert_eq!(waveform.value_on_piece(1.0, 3.0), harmonic(2.0).at(3.0));
 }

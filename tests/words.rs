@@ -22,10 +22,6 @@ const PRIVATE: [&str; 24] = [
 const PRIVATE_PARTS: [&str; 10] =
     ["tell", "told", "felt", "feel", "lent", "borne", "abreast", "crew", "sight", "belief"];
 
-/// Names that remain with such a part, and names that several public types of the engine share. These numbers only shrink.
-const NAMES_LEFT: usize = 247;
-const SHARED_LEFT: usize = 24;
-
 /// Returns the Rust sources of all crates and of the tests, without this file.
 fn all_sources() -> Vec<(String, String)> {
     let mut files = Vec::new();
@@ -129,7 +125,7 @@ fn parts(name: &str) -> Vec<String> {
 }
 
 #[test]
-fn names_with_words_of_other_fields_become_fewer() {
+fn names_use_the_words_of_the_field() {
     let mut wrong = Vec::new();
     for (name, text) in all_sources() {
         for (_, kind, item) in items(&text) {
@@ -138,15 +134,17 @@ fn names_with_words_of_other_fields_become_fewer() {
             }
         }
     }
-    assert_eq!(wrong.len(), NAMES_LEFT, "{wrong:#?}");
+    assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
 #[test]
-fn shared_names_of_public_types_become_fewer() {
+fn public_types_of_the_engine_have_names_of_their_own() {
     let mut types: BTreeMap<String, Vec<String>> = BTreeMap::new();
     for part in ENGINE {
         let mut files = Vec::new();
         sources(&Path::new(ROOT).join("crates").join(part).join("src"), &mut files);
+        // A stand-in for a feature that is left out has the names of what it stands for.
+        files.retain(|(name, _)| !name.ends_with("/unavailable.rs"));
         for (name, text) in files {
             for (_, _, item) in items(&text).filter(|(public, kind, item)| {
                 *public
@@ -158,7 +156,7 @@ fn shared_names_of_public_types_become_fewer() {
         }
     }
     types.retain(|_, files| files.len() > 1);
-    assert_eq!(types.len(), SHARED_LEFT, "{types:#?}");
+    assert!(types.is_empty(), "{types:#?}");
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Custom actuator: a servo that gives torques in whole steps up to a limit, about each axis.
 
-use flexsc_core::actuator::{Actuate, Demand, Effector, TorquerSetting};
+use flexsc_core::actuator::{Actuator, ActuatorSpec, AxisActuatorContext, Demand};
 use flexsc_core::time::Instant;
 use flexsc_core::wrench::Wrench;
 
@@ -15,8 +15,8 @@ pub struct Servo {
 #[derive(Clone, Debug)]
 struct Turning(Servo, [[f64; 2]; 3], Vec<f64>);
 
-impl Effector for Servo {
-    fn start(&self, settings: &[TorquerSetting]) -> Box<dyn Actuate> {
+impl ActuatorSpec for Servo {
+    fn start(&self, settings: &[AxisActuatorContext]) -> Box<dyn Actuator> {
         Box::new(Turning(*self, [[0.0; 2]; 3], settings.iter().map(|setting| setting.inertia).collect()))
     }
 
@@ -25,7 +25,7 @@ impl Effector for Servo {
     }
 }
 
-impl Actuate for Turning {
+impl Actuator for Turning {
     fn command(&mut self, _: Instant, demands: &[Demand], _: [f64; 3]) {
         let Self(servo, torques, _) = self;
         for (torque, demand) in torques.iter_mut().zip(demands) {
@@ -35,23 +35,23 @@ impl Actuate for Turning {
         }
     }
 
-    fn exert(&self, _: Instant, onto: &mut Wrench) {
+    fn apply(&self, _: Instant, onto: &mut Wrench) {
         onto.hub.iter_mut().zip(&self.1).for_each(|(hub, [_, given])| *hub += given);
     }
 
-    fn asked(&self, axis: usize) -> f64 {
+    fn demanded_torque(&self, axis: usize) -> f64 {
         self.1[axis][0]
     }
 
-    fn torque(&self, axis: usize) -> f64 {
+    fn held_torque(&self, axis: usize) -> f64 {
         self.1[axis][1]
     }
 
-    fn moment(&self, axis: usize) -> f64 {
+    fn reduced_moment(&self, axis: usize) -> f64 {
         self.1[axis][1] / self.2[axis]
     }
 
-    fn copy(&self) -> Box<dyn Actuate> {
+    fn copy(&self) -> Box<dyn Actuator> {
         Box::new(self.clone())
     }
 }

@@ -2,8 +2,8 @@
 
 use std::io;
 
-use flexsc_core::adaptation::{Adapt, Decision, Learn, SearchStep};
-use flexsc_core::own::Halt;
+use flexsc_core::adaptation::{Adaptation, AdaptationSpec, Decision, SearchStep};
+use flexsc_core::custom::PartError;
 use flexsc_core::random::Seed;
 use flexsc_core::time::Instant;
 
@@ -18,27 +18,27 @@ pub struct Climber {
 #[derive(Clone, Debug)]
 struct Climbing(Climber, f64);
 
-impl Adapt for Climber {
+impl AdaptationSpec for Climber {
     fn tunes(&self) -> &'static str {
         "k_t"
     }
 
-    fn start(&self, value: f64, _: Seed) -> Box<dyn Learn> {
+    fn start(&self, value: f64, _: Seed) -> Box<dyn Adaptation> {
         Box::new(Climbing(*self, value))
     }
 }
 
-impl Learn for Climbing {
+impl Adaptation for Climbing {
     fn learn(&mut self, _: Instant, _: f64) -> Option<SearchStep> {
         self.1 += self.0.step;
         Some(SearchStep { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
     }
 
-    fn halted(&self) -> Option<Halt> {
-        (self.1 > self.0.most).then(|| Halt::new(io::Error::other("too far")))
+    fn halted(&self) -> Option<PartError> {
+        (self.1 > self.0.most).then(|| PartError::new(io::Error::other("too far")))
     }
 
-    fn copy(&self) -> Box<dyn Learn> {
+    fn copy(&self) -> Box<dyn Adaptation> {
         Box::new(self.clone())
     }
 }

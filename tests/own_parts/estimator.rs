@@ -1,8 +1,8 @@
 //! Custom estimator: an alpha-beta filter of angle and rate about each axis.
 
-use flexsc_core::belief::Belief;
-use flexsc_core::estimator::{Estimate, Known, Observe, Taken};
+use flexsc_core::estimator::{Estimator, EstimatorContext, EstimatorSpec, SampleContext};
 use flexsc_core::random::Seed;
+use flexsc_core::state_estimate::StateEstimate;
 use flexsc_core::time::Instant;
 
 /// Gains by which an innovation corrects angle and rate.
@@ -16,14 +16,14 @@ pub struct AlphaBeta {
 #[derive(Clone, Debug)]
 struct Filtering(AlphaBeta, Vec<[f64; 2]>, Option<Instant>);
 
-impl Observe for AlphaBeta {
-    fn start(&self, known: &Known<'_>, _: Seed) -> Box<dyn Estimate> {
+impl EstimatorSpec for AlphaBeta {
+    fn start(&self, known: &EstimatorContext<'_>, _: Seed) -> Box<dyn Estimator> {
         Box::new(Filtering(*self, vec![[0.0; 2]; known.axes.len()], None))
     }
 }
 
-impl Estimate for Filtering {
-    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
+impl Estimator for Filtering {
+    fn update(&mut self, taken: &SampleContext<'_>, beliefs: &mut [StateEstimate]) {
         let Self(gains, states, last) = self;
         let Some(measured) = taken.measured else { return };
         let since = last.replace(taken.now).map(|last| taken.now.since(last).seconds());
@@ -39,7 +39,7 @@ impl Estimate for Filtering {
         }
     }
 
-    fn copy(&self) -> Box<dyn Estimate> {
+    fn copy(&self) -> Box<dyn Estimator> {
         Box::new(self.clone())
     }
 }

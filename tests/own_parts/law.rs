@@ -1,7 +1,9 @@
 //! Custom law: proportional, integral and derivative feedback.
 
-use flexsc_core::belief::Belief;
-use flexsc_core::law::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Rule};
+use flexsc_core::law::{
+    Authority, Command, ControlOutput, DecisionCause, Guards, Law, LawSpec, Phase, Setpoint,
+};
+use flexsc_core::state_estimate::StateEstimate;
 use flexsc_core::time::{Instant, Span};
 
 /// u = -k_p e - k_i (integral of e) - k_d e', held between samples (N m/rad, N m/(rad s), N m s/rad, s).
@@ -17,8 +19,8 @@ pub struct Pid {
 #[derive(Copy, Clone, Debug)]
 struct Integrating(Pid, f64);
 
-impl Rule for Pid {
-    fn start(&self, _: &Authority) -> Box<dyn Control> {
+impl LawSpec for Pid {
+    fn start(&self, _: &Authority) -> Box<dyn Law> {
         Box::new(Integrating(*self, 0.0))
     }
 
@@ -27,22 +29,28 @@ impl Rule for Pid {
     }
 }
 
-impl Control for Integrating {
-    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+impl Law for Integrating {
+    fn decide(
+        &mut self,
+        now: Instant,
+        _: DecisionCause,
+        goal: &Setpoint,
+        belief: &StateEstimate,
+    ) -> ControlOutput {
         let Self(law, integral) = self;
         let (angle, rate) = goal.at(now);
         let error = belief.angle - angle;
         *integral += error * law.period;
         let torque = -law.k_p * error - law.k_i * *integral - law.k_d * (belief.rate - rate);
         let until = Some(now + Span::from_seconds(law.period));
-        Hold { command: Command::Torque(torque), until, guards: Guards::NONE }
+        ControlOutput { command: Command::Torque(torque), until, guards: Guards::NONE }
     }
 
     fn state(&self) -> Phase {
         Phase::Feedback
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(*self)
     }
 }

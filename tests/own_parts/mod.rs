@@ -8,16 +8,16 @@ mod sensor;
 
 use std::sync::Arc;
 
-use flexsc_core::actuator::{Actuator, Effector};
-use flexsc_core::adaptation::Adaptation;
+use flexsc_core::actuator::{ActuatorKind, ActuatorSpec};
+use flexsc_core::adaptation::AdaptationKind;
 use flexsc_core::campaign::Campaign;
-use flexsc_core::estimator::Estimator;
-use flexsc_core::law::Law;
-use flexsc_core::own::Own;
-use flexsc_core::parts::Parts;
+use flexsc_core::custom::Custom;
+use flexsc_core::estimator::EstimatorKind;
+use flexsc_core::law::LawKind;
+use flexsc_core::one_or_many::OneOrMany;
 use flexsc_core::record::{Column, Detail, Trace};
-use flexsc_core::scenario::OwnParts;
-use flexsc_core::sensor::Sensor;
+use flexsc_core::scenario::CustomParts;
+use flexsc_core::sensor::SensorKind;
 use flexsc_core::{Document, Scenario, Simulation, SimulationError};
 
 const ONE_ANGLE: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.planar]\ninertia = 100.0\nangle = 2e-3\n\
@@ -31,7 +31,7 @@ const THREE_AXES: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.spatial]
                           [log]\nperiod = 1.0";
 
 /// Creates a custom servo (N m).
-pub fn servo(most: f64, step: f64) -> Arc<dyn Effector> {
+pub fn servo(most: f64, step: f64) -> Arc<dyn ActuatorSpec> {
     Arc::new(actuator::Servo { most, step })
 }
 
@@ -40,12 +40,14 @@ fn of_own_parts(text: &str) -> Scenario {
     let scenario = Scenario::parse("own.toml", text).expect("a scenario");
     let whole = scenario.with(|scenario| {
         scenario.law =
-            Law::Own(Own::new(Arc::new(law::Pid { k_p: 4.0, k_i: 0.15, k_d: 30.0, period: 0.25 })));
-        scenario.sensor =
-            Parts::one(Sensor::Own(Own::new(Arc::new(sensor::Encoder { step: 1e-6, period: 0.25 }))));
+            LawKind::Own(Custom::new(Arc::new(law::Pid { k_p: 4.0, k_i: 0.15, k_d: 30.0, period: 0.25 })));
+        scenario.sensor = OneOrMany::one(SensorKind::Own(Custom::new(Arc::new(sensor::Encoder {
+            step: 1e-6,
+            period: 0.25,
+        }))));
         scenario.estimator =
-            Some(Estimator::Own(Own::new(Arc::new(estimator::AlphaBeta { alpha: 0.4, beta: 0.1 }))));
-        scenario.actuator = Parts::one(Actuator::Own(Own::new(servo(0.05, 1e-5))).into());
+            Some(EstimatorKind::Own(Custom::new(Arc::new(estimator::AlphaBeta { alpha: 0.4, beta: 0.1 }))));
+        scenario.actuator = OneOrMany::one(ActuatorKind::Own(Custom::new(servo(0.05, 1e-5))).into());
     });
     whole.expect("parts that fit each other")
 }
@@ -91,12 +93,14 @@ const RELAY: &str = "duration = 3000.0\n[law.relay]\ndead_zone = 5e-4\nhysteresi
 fn an_adaptation_from_outside_tunes_and_what_cannot_go_on_ends_the_run() {
     let plain = Scenario::parse("relay.toml", RELAY).expect("a scenario");
     let climbing = |most| {
-        let own: Own<dyn flexsc_core::adaptation::Adapt> =
-            Own::new(Arc::new(adaptation::Climber { step: 0.01, most }));
-        plain.bringing(OwnParts { adaptation: Some(own), ..OwnParts::default() }).expect("it fits")
+        let own: Custom<dyn flexsc_core::adaptation::AdaptationSpec> =
+            Custom::new(Arc::new(adaptation::Climber { step: 0.01, most }));
+        plain
+            .with_custom_parts(CustomParts { adaptation: Some(own), ..CustomParts::default() })
+            .expect("it fits")
     };
     let study = climbing(1.0);
-    assert!(matches!(study.adaptation, Some(Adaptation::Own(_))) && study.has_own_parts());
+    assert!(matches!(study.adaptation, Some(AdaptationKind::Own(_))) && study.has_custom_parts());
     let mut simulation = Simulation::new(&study, 0);
     let mut trace = Trace::new(Detail::Events);
     simulation.run(&mut trace).expect("a run");
@@ -116,19 +120,20 @@ fn an_adaptation_from_outside_tunes_and_what_cannot_go_on_ends_the_run() {
 #[test]
 fn own_parts_stay_where_keys_change_and_stand_beside_a_text() {
     let study = of_own_parts(ONE_ANGLE);
-    let parts = study.own_parts();
+    let parts = study.custom_parts();
     assert_eq!(parts.each(), ["law", "sensor", "estimator", "actuator"]);
-    let mut document = Document::from_table("own.toml", study.table_beside_own_parts());
+    let mut document = Document::from_table("own.toml", study.table_without_custom_parts());
     document.set_text("duration", "100.0").expect("a key");
-    let shorter = Scenario::from_document_like(&document, &study).expect("a scenario");
-    assert_eq!(shorter.own_parts(), parts);
-    assert_eq!(Scenario::from_document_beside(&document, &parts).expect("a scenario"), shorter);
+    let shorter = Scenario::from_document_reusing(&document, &study).expect("a scenario");
+    assert_eq!(shorter.custom_parts(), parts);
+    assert_eq!(Scenario::from_document_with(&document, &parts).expect("a scenario"), shorter);
     document.set_text("law", "{ pd = { k_p = 4.0, k_d = 30.0, period = 0.25 } }").expect("a law");
-    let built_in = Scenario::from_document_like(&document, &study).expect("a scenario");
-    assert!(built_in.own_parts().law.is_none() && built_in.own_parts().estimator.is_some());
+    let built_in = Scenario::from_document_reusing(&document, &study).expect("a scenario");
+    assert!(built_in.custom_parts().law.is_none() && built_in.custom_parts().estimator.is_some());
     // An index without a sensor.
     let elsewhere = parts.sensors.iter().map(|(_, sensor)| (3, sensor.clone())).collect();
-    let fault =
-        built_in.bringing(OwnParts { sensors: elsewhere, ..OwnParts::default() }).expect_err("no place");
+    let fault = built_in
+        .with_custom_parts(CustomParts { sensors: elsewhere, ..CustomParts::default() })
+        .expect_err("no place");
     assert!(fault.to_string().contains("sensor[3]: is not there: the scenario has 1 sensor"), "{fault}");
 }

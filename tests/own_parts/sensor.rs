@@ -1,7 +1,7 @@
 //! Custom sensor: an encoder that measures angles in whole steps, and no rates.
 
 use flexsc_core::random::Seed;
-use flexsc_core::sensor::{Instrument, Reading, Sense, Truth};
+use flexsc_core::sensor::{Reading, Sensor, SensorSpec, Truth};
 use flexsc_core::time::{Instant, Span};
 
 /// Encoder with its step (rad) and its period (s).
@@ -11,8 +11,8 @@ pub struct Encoder {
     pub period: f64,
 }
 
-impl Instrument for Encoder {
-    fn start(&self, _: usize, _: Seed) -> Box<dyn Sense> {
+impl SensorSpec for Encoder {
+    fn start(&self, _: usize, _: Seed) -> Box<dyn Sensor> {
         Box::new(*self)
     }
 
@@ -25,13 +25,13 @@ impl Instrument for Encoder {
     }
 }
 
-impl Sense for Encoder {
+impl Sensor for Encoder {
     fn read(&mut self, _: Instant, truth: &Truth, _: Option<&Reading>) -> Option<Reading> {
-        let steps = truth.seen().map(|angle| (angle / self.step).round() * self.step);
-        Some(Reading { at: truth.orientation.at(steps), rate: None, sight: None })
+        let steps = truth.sensor_angles().map(|angle| (angle / self.step).round() * self.step);
+        Some(Reading { at: truth.orientation.rotated_by(steps), rate: None, sight: None })
     }
 
-    fn copy(&self) -> Box<dyn Sense> {
+    fn copy(&self) -> Box<dyn Sensor> {
         Box::new(*self)
     }
 }

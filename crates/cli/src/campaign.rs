@@ -1,14 +1,14 @@
 //! Execution of a campaign: the row of each run, and the statistics.
 
+mod campaign_record;
 pub mod file;
-mod kept;
-mod live;
 pub mod logs;
 pub mod options;
-pub mod parts;
+pub mod part_files;
 mod points;
+mod progress_table;
+mod report;
 mod scheduler;
-mod told;
 
 use std::io::Write;
 use std::ops::Range;
@@ -18,28 +18,28 @@ use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, Directory, Manifest, Rows, RunError, RunOutcome, Sampling, Work,
+    Campaign, CampaignRun, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows, Sampling,
 };
 use flexsc_core::count::counted;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
-use flexsc_core::statistics::Gathered;
+use flexsc_core::statistics::MetricColumns;
 use serde::Serialize;
 use serde_json::{Map, Value as Json, json};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::human::Units;
 use crate::results::print_lines;
-use crate::table::Table;
+use crate::runs_table::RunsTable;
 use crate::{files, say, stop, summary};
 
-use kept::Kept;
-pub use kept::SCENARIO;
-use live::Live;
-pub use live::{Running, table as table_so_far};
-pub use options::{Kind, Options};
+use campaign_record::CampaignRecord;
+pub use campaign_record::SCENARIO;
+pub use options::{CampaignOptions, TableFormat};
 use points::Points;
-use told::{Told, are_alike, met, verdict, write_statistics};
+use progress_table::LiveStatistics;
+pub use progress_table::{RunningMean, table as table_so_far};
+use report::{CampaignReport, are_alike, met, verdict, write_statistics};
 
 /// Metrics that are printed and drawn if none is named: the first ones of this list that vary.
 pub const MAIN: [&str; 23] = [
@@ -70,7 +70,7 @@ pub const MAIN: [&str; 23] = [
 
 /// Runs of a campaign to make, and their outputs.
 #[expect(clippy::struct_excessive_bools, reason = "each is an option of the command")]
-pub struct Job<'a> {
+pub struct CampaignJob<'a> {
     /// Range of the runs.
     pub range: Range<u64>,
     /// True if the runs are only a part of the campaign: the tables are then named by the range.
@@ -80,7 +80,7 @@ pub struct Job<'a> {
     /// True if `table` is a file.
     pub is_file: bool,
     /// File format of the rows.
-    pub kind: Kind,
+    pub kind: TableFormat,
     /// Selected metrics of the rows.
     pub selection: Selection,
     /// True if the first failed run ends the campaign.
@@ -104,55 +104,55 @@ pub struct Job<'a> {
 /// Runs a campaign; `work` simulates a single run.
 pub fn run(
     study: &Arc<Campaign>,
-    job: &Job<'_>,
+    job: &CampaignJob<'_>,
     work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let began = WallInstant::now();
     let _writing = stop::writing();
-    let told = match job.table {
-        Some(path) if job.kind == Kind::Parquet && !job.is_file => {
+    let reported = match job.table {
+        Some(path) if job.kind == TableFormat::Parquet && !job.is_file => {
             let path = job.prefix.map_or_else(|| path.to_owned(), |name| path.join(name));
-            parts::run(study, job, &path, work)?
+            part_files::run(study, job, &path, work)?
         }
         _ => table(study, job, work)?,
     };
-    let runs = told.runs as u64;
-    if study.design().keys().is_empty() && are_alike(&told.statistics) {
+    let runs = reported.runs as u64;
+    if study.design().keys().is_empty() && are_alike(&reported.statistics) {
         say!(
             "warning: no metric differs between the {runs} runs: does the scenario have noise or [uncertain] keys?"
         );
     }
     if !job.json {
         let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
-        if let Some(only) = &told.only {
-            summary::tell(study.scenario(), only, took, job.units);
+        if let Some(only) = &reported.only {
+            summary::print_summary(study.scenario(), only, took, job.units);
         } else {
             say!("{name}   {}, {took:.2} s", counted(runs, "run"));
-            told.say();
+            reported.say();
         }
-        if let Some(path) = &told.table {
+        if let Some(path) = &reported.table {
             say!("  table          {}", path.display());
         }
     }
-    match told.failed {
+    match reported.failed {
         None => Ok(()),
-        Some((failed, number, why)) => Err(Failure::Runs { failed, runs, number, why }),
+        Some((failed, number, why)) => Err(CliError::Runs { failed, runs, number, why }),
     }
 }
 
 /// Runs a campaign with its rows in one table, or without a table.
 fn table(
     study: &Arc<Campaign>,
-    job: &Job<'_>,
+    job: &CampaignJob<'_>,
     work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
-) -> Result<Told, Failure> {
+) -> Result<CampaignReport, CliError> {
     let runs = job.range.end - job.range.start;
     let mut table = None;
     let mut rows = None;
     if let Some(path) = job.table.filter(|_| job.is_file) {
         files::refuse_existing(path, job.force)?;
         files::make_parent(path)?;
-        rows = Some(Rows::new(study.fields(&job.selection)));
+        rows = Some(RunRows::new(study.fields(&job.selection)));
     }
     if let Some(dir) = job.table.filter(|_| !job.is_file) {
         let design = study.design();
@@ -160,43 +160,43 @@ fn table(
         {
             // The `scenario.toml` could not repeat a run.
             let why = "--sample and --replicas of a scenario with [uncertain] keys need --table parquet";
-            return Err(Failure::Arguments(format!("{why}, or no -o")));
+            return Err(CliError::Arguments(format!("{why}, or no -o")));
         }
-        if Directory::is_one(dir) && !job.force {
+        if Directory::is_campaign_directory(dir) && !job.force {
             let why = "holds a campaign as Parquet files";
             let hint = "hint: give another directory with -o, or leave out `--table csv` to continue it";
-            return Err(Failure::Arguments(format!("{}: {why}\n\n{hint}", dir.display())));
+            return Err(CliError::Arguments(format!("{}: {why}\n\n{hint}", dir.display())));
         }
-        let kept = Kept::new(dir, job, study);
+        let kept = CampaignRecord::new(dir, job, study);
         // Checked before the files of a killed campaign change, and again as their only writer.
         kept.check()?;
-        table = Some(Table::create(&dir.join(job.file("runs")))?);
+        table = Some(RunsTable::create(&dir.join(job.file("runs")))?);
         kept.keep()?;
     }
-    let mut telling = Telling {
+    let mut telling = CampaignPrinter {
         study,
         job,
         table: table.as_mut(),
         rows: rows.as_mut(),
         shown: points::runs(study, &job.range),
-        points: Rows::new(study.fields(&job.selection)),
-        all: Gathered::default(),
+        points: RunRows::new(study.fields(&job.selection)),
+        all: MetricColumns::default(),
         only: None,
-        live: Live::new(runs, 0),
+        live: LiveStatistics::new(runs, 0),
         next: job.range.start,
         failed: None,
     };
     let (range, threads) = (job.range.clone(), job.threads());
-    let tell = |outcome| telling.tell(outcome);
+    let report = |outcome| telling.report(outcome);
     let done = if job.plain {
-        study.each_beside(range, threads, &job.selection, work, tell)
+        study.for_each_run_in_batches(range, threads, &job.selection, work, report)
     } else {
-        study.each(range, threads, work, tell)
+        study.for_each_run(range, threads, work, report)
     };
-    let Telling { all, only, failed, points, .. } = telling;
+    let CampaignPrinter { all, only, failed, points, .. } = telling;
     if let Err(failure) = done {
         return Err(match (&failure, table) {
-            (Failure::Interrupted(_) | Failure::Write { .. } | Failure::First { .. }, Some(table)) => {
+            (CliError::Interrupted(_) | CliError::Write { .. } | CliError::First { .. }, Some(table)) => {
                 table.interrupt(study, failure)
             }
             _ => failure,
@@ -211,24 +211,29 @@ fn table(
     if let (Some(path), Some(rows)) = (job.table, &rows) {
         let manifest = Manifest::new(study, job.range.clone(), &job.selection);
         let manifest =
-            manifest.map_err(|why| Failure::Arguments(format!("{}: {why}", study.scenario().name)))?;
-        file::write(path, job.kind, &Work::of(manifest, path).map_err(parts::failure)?, rows)?;
+            manifest.map_err(|why| CliError::Arguments(format!("{}: {why}", study.scenario().name)))?;
+        file::write(
+            path,
+            job.kind,
+            &RowMaker::from_manifest(manifest, path).map_err(part_files::failure)?,
+            rows,
+        )?;
         table = Some(path.to_owned());
     }
-    let column = |name: &str| -> Result<_, Failure> { Ok(points.column(name).cloned()) };
+    let column = |name: &str| -> Result<_, CliError> { Ok(points.column(name).cloned()) };
     let points = Points::new((study, &job.range), (&statistics, &job.selection), column)?;
-    Ok(Told { runs, statistics, points, failed, only, table })
+    Ok(CampaignReport { runs, statistics, points, failed, only, table })
 }
 
-fn interruption(at: u64) -> Failure {
-    Failure::Interrupted(format!(" at run {at}"))
+fn interruption(at: u64) -> CliError {
+    CliError::Interrupted(format!(" at run {at}"))
 }
 
 /// Returns the outcome of a run, or an error if its log stopped the run.
-fn accepted(outcome: RunOutcome) -> Result<RunOutcome, Failure> {
+fn accepted(outcome: RunOutcome) -> Result<RunOutcome, CliError> {
     match outcome.metrics {
         Err(RunError::Simulation(SimulationError::Record(RecordError::Io(source)))) => {
-            Err(Failure::write(Path::new(&format!("the log of run {}", outcome.number)))(source))
+            Err(CliError::write(Path::new(&format!("the log of run {}", outcome.number)))(source))
         }
         Err(RunError::Simulation(SimulationError::Record(RecordError::Interrupted))) => {
             Err(interruption(outcome.number))
@@ -237,7 +242,7 @@ fn accepted(outcome: RunOutcome) -> Result<RunOutcome, Failure> {
     }
 }
 
-impl Job<'_> {
+impl CampaignJob<'_> {
     fn threads(&self) -> usize {
         usize::from(self.jobs.unwrap_or(0))
     }
@@ -251,32 +256,32 @@ impl Job<'_> {
 }
 
 /// Receiver of the runs' rows, in order.
-struct Telling<'a> {
+struct CampaignPrinter<'a> {
     study: &'a Campaign,
-    job: &'a Job<'a>,
-    table: Option<&'a mut Table>,
+    job: &'a CampaignJob<'a>,
+    table: Option<&'a mut RunsTable>,
     /// Rows for a single file.
-    rows: Option<&'a mut Rows>,
+    rows: Option<&'a mut RunRows>,
     /// Runs whose points are printed, and their rows.
     shown: Vec<Range<u64>>,
-    points: Rows,
-    all: Gathered,
+    points: RunRows,
+    all: MetricColumns,
     only: Option<Metrics>,
-    live: Live,
+    live: LiveStatistics,
     /// Number of the next expected run.
     next: u64,
     /// Number of failed runs, number of the first one, and its error.
     failed: Option<(u64, u64, String)>,
 }
 
-impl Telling<'_> {
-    fn tell(&mut self, outcome: Option<RunOutcome>) -> Result<(), Failure> {
+impl CampaignPrinter<'_> {
+    fn report(&mut self, outcome: Option<RunOutcome>) -> Result<(), CliError> {
         if let Some(table) = &mut self.table {
-            table.flush_in_time()?;
+            table.flush_if_due()?;
         }
         let Some(outcome) = outcome else {
             self.live.show();
-            return if stop::asked() { Err(interruption(self.next)) } else { Ok(()) };
+            return if stop::stop_requested() { Err(interruption(self.next)) } else { Ok(()) };
         };
         self.next = outcome.number + 1;
         let outcome = accepted(outcome)?;
@@ -300,7 +305,7 @@ impl Telling<'_> {
                 self.only = Some(metrics);
             }
             Err(error) if self.job.fail_fast => {
-                return Err(Failure::First { number: outcome.number, why: error.to_string() });
+                return Err(CliError::First { number: outcome.number, why: error.to_string() });
             }
             Err(error) => {
                 let first = self.failed.take();

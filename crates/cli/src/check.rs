@@ -7,7 +7,7 @@ use flexsc_core::count::counted;
 use flexsc_core::{Scenario, ScenarioError};
 use serde_json::json;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::human::seconds;
 use crate::{print, say, scenario};
 
@@ -21,29 +21,29 @@ pub struct Args {
     json: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     let mut all = true;
     for path in &args.scenarios {
         match scenario::load(path, &[], None) {
             Ok(scenario) => accepted(path, &scenario, args.json)?,
-            Err(Failure::Scenario(error)) => {
+            Err(CliError::Scenario(error)) => {
                 if args.json {
                     refused(path, &error)?;
                 } else {
-                    Failure::Scenario(error).tell();
+                    CliError::Scenario(error).print();
                 }
                 all = false;
             }
             Err(other) => return Err(other),
         }
     }
-    if all { Ok(()) } else { Err(Failure::Told) }
+    if all { Ok(()) } else { Err(CliError::Told) }
 }
 
-fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), Failure> {
+fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError> {
     let (modes, duration) = (scenario.mode_count(), scenario.duration.seconds());
     let cost = scenario.cost(None, false);
-    let costly = cost.excess();
+    let costly = cost.limit_exceeded();
     if json {
         let object = json!({
             "file": path.display().to_string(), "scenario": scenario.name, "duration_s": duration, "modes": modes,
@@ -68,7 +68,7 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), Failure>
 }
 
 /// Prints each error with its position, in the format that editors and other programs parse.
-fn refused(path: &Path, error: &ScenarioError) -> Result<(), Failure> {
+fn refused(path: &Path, error: &ScenarioError) -> Result<(), CliError> {
     let mistakes = error.mistakes().into_iter().map(|mistake| {
         json!({
             "line": mistake.place.as_ref().map(|place| place.line),

@@ -4,10 +4,10 @@ use std::io::Write;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
-use flexsc_core::law::{Law, Sides};
+use flexsc_core::law::{LawKind, RelaySides};
 use serde_json::{Value as Json, json};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::results::{Results, show};
 use crate::say;
 use crate::scenario::Args;
@@ -27,16 +27,16 @@ pub struct RelayCycles {
 }
 
 /// Computes the limit cycles of a scenario's relay law on a rigid body.
-pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
+pub fn results(scenario: &Scenario) -> Result<RelayCycles, CliError> {
     let body = scenario.one_angle()?;
-    let Law::Relay(law) = &scenario.law else {
-        return Err(Failure::Arguments(format!(
+    let LawKind::Relay(law) = &scenario.law else {
+        return Err(CliError::Arguments(format!(
             "{}: limit cycles are computed for a law `relay`",
             scenario.name
         )));
     };
-    if scenario.actuator.wheel().is_some() {
-        return Err(Failure::Arguments(format!(
+    if scenario.actuator.flywheel().is_some() {
+        return Err(CliError::Arguments(format!(
             "{}: limit cycles are computed for an ideal torque, not for a wheel",
             scenario.name
         )));
@@ -46,7 +46,7 @@ pub fn results(scenario: &Scenario) -> Result<RelayCycles, Failure> {
     Ok(RelayCycles { name, k_t, unit, cycles: cycles(law, body, k_t), resonances: resonances(law, body) })
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     show(&results(&args.load()?)?, None, args.json)
 }
 
@@ -56,14 +56,14 @@ impl Results for RelayCycles {
         vec![json!({"scenario": name, "k_t": k_t, "cycles": cycles, "resonances": resonances})]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let Self { name, k_t, unit, cycles, resonances } = self;
         say!("{name}   k_t = {k_t}, modes left out");
         if cycles.is_empty() {
             say!("  no limit cycle exists");
         }
         for cycle in cycles {
-            let kind = if cycle.sides == Sides::Two { "two-sided" } else { "one-sided" };
+            let kind = if cycle.sides == RelaySides::Two { "two-sided" } else { "one-sided" };
             let stability = if cycle.stable { "stable" } else { "unstable" };
             say!("  {kind} cycle, {stability}: multiplier {:.4}", cycle.multiplier);
             say!("    period         {:.9} s", cycle.period_s);

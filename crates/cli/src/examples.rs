@@ -7,7 +7,7 @@ use std::path::PathBuf;
 use flexsc_core::Document;
 use serde_json::json;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::out::{self, Out};
 use crate::{files, print, say};
 
@@ -105,7 +105,7 @@ pub struct NewArgs {
 }
 
 /// Returns the text of an example.
-pub fn text(name: &str) -> Result<&'static str, Failure> {
+pub fn text(name: &str) -> Result<&'static str, CliError> {
     let stem = name.strip_suffix(".toml").unwrap_or(name);
     let stem = stem.strip_prefix("scenarios/").unwrap_or(stem);
     let example = EXAMPLES.iter().find(|(example, _)| *example == stem);
@@ -115,18 +115,18 @@ pub fn text(name: &str) -> Result<&'static str, Failure> {
             || "`flexsc examples` lists them".to_owned(),
             |nearest| format!("did you mean `{nearest}`?"),
         );
-        Failure::Arguments(format!("there is no example `{name}`\n\nhint: {hint}"))
+        CliError::Arguments(format!("there is no example `{name}`\n\nhint: {hint}"))
     })
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     if args.names.is_empty() {
         return list(args.json);
     }
     let out = Out::new(&args.out, &["toml"], &[])?;
     if let (Out::File(path, _), [_, _, ..]) = (&out, &args.names[..]) {
         let why = "cannot contain several examples\n\nhint: give a directory";
-        return Err(Failure::Arguments(format!("-o {}: {why}", path.display())));
+        return Err(CliError::Arguments(format!("-o {}: {why}", path.display())));
     }
     let copies = args.names.iter().map(|name| {
         let stem = name.strip_suffix(".toml").unwrap_or(name);
@@ -136,7 +136,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         };
         Ok((path, text(name)?.as_bytes()))
     });
-    let copies = copies.collect::<Result<Vec<_>, Failure>>()?;
+    let copies = copies.collect::<Result<Vec<_>, CliError>>()?;
     for (path, text) in &copies {
         files::refuse_other(path, text, args.force)?;
     }
@@ -147,13 +147,13 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-pub fn new(args: &NewArgs) -> Result<(), Failure> {
+pub fn new(args: &NewArgs) -> Result<(), CliError> {
     let text = text(&args.like)?;
     let path = match out::ending(&args.name) {
         Some("toml") => args.name.clone(),
         Some(other) => {
             let path = args.name.display();
-            return Err(Failure::Arguments(format!("{path}: a scenario ends in .toml, not in .{other}")));
+            return Err(CliError::Arguments(format!("{path}: a scenario ends in .toml, not in .{other}")));
         }
         None => {
             let mut name = args.name.clone().into_os_string();
@@ -167,7 +167,7 @@ pub fn new(args: &NewArgs) -> Result<(), Failure> {
 }
 
 /// Prints the name and the description of each example.
-fn list(as_json: bool) -> Result<(), Failure> {
+fn list(as_json: bool) -> Result<(), CliError> {
     let mut lines = String::new();
     let widest = EXAMPLES.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let mut objects = Vec::new();

@@ -10,7 +10,7 @@ use clap::ValueEnum;
 use flexsc_core::record::{Column, Columns, Log, LogError};
 use serde_json::{Map, Value as Json, json};
 
-use crate::failure::{Failure, shown};
+use crate::error::{CliError, for_terminal};
 use crate::{files, out};
 
 #[derive(clap::Args)]
@@ -46,13 +46,13 @@ const EMPTY_PER_FULL: usize = 16;
 
 impl Args {
     /// Returns the format, by the option or the file's extension.
-    fn form(&self) -> Result<Format, Failure> {
+    fn form(&self) -> Result<Format, CliError> {
         let Some(path) = &self.out else { return Ok(self.format.unwrap_or(Format::Csv)) };
         let ending = out::file(path, &["csv", "jsonl"], &[&self.log])?;
         let said = if ending == "jsonl" { Format::Jsonl } else { Format::Csv };
         match self.format {
             Some(format) if format != said && out::ending(path).is_some() => {
-                Err(Failure::Arguments(format!(
+                Err(CliError::Arguments(format!(
                     "--format: {} has the ending of another format\n\nhint: leave out --format",
                     path.display()
                 )))
@@ -62,43 +62,43 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     let format = args.form()?;
     let log = Log::open(&args.log)?;
     let Some(topic) = &args.topic else {
-        return tell(args, |out| writeln!(out, "{}", shown(&log.topics().join("\n"))));
+        return write_output(args, |out| writeln!(out, "{}", for_terminal(&log.topics().join("\n"))));
     };
     let columns = log.columns(topic)?;
     if topic == metrics::TOPIC
         && let Some(table) = metrics::table(&columns, format)
     {
         let table = table.map_err(|why| unreadable(&args.log, topic, why.to_string()))?;
-        return tell(args, |out| out.write_all(&table));
+        return write_output(args, |out| out.write_all(&table));
     }
     let table = flat(&columns).map_err(|why| unreadable(&args.log, topic, why))?;
-    tell(args, |out| match format {
+    write_output(args, |out| match format {
         Format::Csv => csv(&table, columns.len(), out),
         Format::Jsonl => jsonl(&table, columns.len(), out),
     })
 }
 
-fn unreadable(path: &Path, topic: &str, why: String) -> Failure {
+fn unreadable(path: &Path, topic: &str, why: String) -> CliError {
     LogError::Undecodable { path: path.to_owned(), topic: topic.to_owned(), why }.into()
 }
 
 /// Writes the exported table to the file or to stdout.
-fn tell(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), Failure> {
+fn write_output(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
     let Some(path) = &args.out else {
         let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
-        return write(&mut out).and_then(|()| out.flush()).map_err(Failure::Stdout);
+        return write(&mut out).and_then(|()| out.flush()).map_err(CliError::Stdout);
     };
     let mut bytes = Vec::new();
-    write(&mut bytes).map_err(Failure::write(path))?;
+    write(&mut bytes).map_err(CliError::write(path))?;
     files::write(path, &bytes, args.force)
 }
 
 /// Cell of a table.
-enum Cell<'a> {
+enum ExportCell<'a> {
     Empty,
     Number(f64),
     /// Exact time: whole seconds and femtoseconds, more digits than a double has.
@@ -109,14 +109,14 @@ enum Cell<'a> {
 }
 
 /// Column of a table without nesting.
-struct Flat<'a> {
+struct FlatColumn<'a> {
     name: String,
     column: &'a Column,
-    cells: Cells<'a>,
+    cells: CellSource<'a>,
 }
 
 /// Mapping from the rows of a table to the values of a column.
-enum Cells<'a> {
+enum CellSource<'a> {
     /// One value for each row.
     Own,
     /// Exact times: whole seconds, and femtoseconds past them.
@@ -126,15 +126,15 @@ enum Cells<'a> {
 }
 
 /// Returns columns without nesting, such as `modes[0].displacement_rad`, with the exact time instead of its two parts.
-fn flat(columns: &Columns) -> Result<Vec<Flat<'_>>, String> {
+fn flat(columns: &Columns) -> Result<Vec<FlatColumn<'_>>, String> {
     let mut flat = Vec::new();
     let parts = (columns.get("time_whole_s"), columns.get("time_fs"));
-    let own = |column| Flat { name: String::new(), column, cells: Cells::Own };
+    let own = |column| FlatColumn { name: String::new(), column, cells: CellSource::Own };
     for (name, column) in &columns.columns {
         let of = match (name.as_str(), column, &parts) {
             ("time_whole_s" | "time_fs", Column::Counts(_), (Some(_), Some(_))) => continue,
             ("time_s", _, (Some(Column::Counts(whole)), Some(Column::Counts(part)))) => {
-                Flat { cells: Cells::Exact(whole, part), ..own(column) }
+                FlatColumn { cells: CellSource::Exact(whole, part), ..own(column) }
             }
             (_, Column::Rows(counts, inner), _) => {
                 spread(&mut flat, name, counts, inner)?;
@@ -142,14 +142,14 @@ fn flat(columns: &Columns) -> Result<Vec<Flat<'_>>, String> {
             }
             _ => own(column),
         };
-        flat.push(Flat { name: name.clone(), ..of });
+        flat.push(FlatColumn { name: name.clone(), ..of });
     }
     Ok(flat)
 }
 
 /// Appends a column for each index and field of nested rows.
 fn spread<'a>(
-    flat: &mut Vec<Flat<'a>>,
+    flat: &mut Vec<FlatColumn<'a>>,
     name: &str,
     counts: &'a [u32],
     inner: &'a Columns,
@@ -172,44 +172,44 @@ fn spread<'a>(
     for index in 0..widest {
         for (field, column) in &inner.columns {
             let dot = if field.is_empty() { "" } else { "." };
-            let cells = Cells::Within(index, counts, Rc::clone(&before));
-            flat.push(Flat { name: format!("{name}[{index}]{dot}{field}"), column, cells });
+            let cells = CellSource::Within(index, counts, Rc::clone(&before));
+            flat.push(FlatColumn { name: format!("{name}[{index}]{dot}{field}"), column, cells });
         }
     }
     Ok(())
 }
 
-impl Flat<'_> {
-    fn cell(&self, row: usize) -> Cell<'_> {
+impl FlatColumn<'_> {
+    fn cell(&self, row: usize) -> ExportCell<'_> {
         let place = match &self.cells {
-            Cells::Own => row,
-            Cells::Exact(whole, part) => return Cell::Exact(whole[row], part[row]),
-            Cells::Within(index, counts, before) if *index < counts[row] as usize => before[row] + index,
-            Cells::Within(..) => return Cell::Empty,
+            CellSource::Own => row,
+            CellSource::Exact(whole, part) => return ExportCell::Exact(whole[row], part[row]),
+            CellSource::Within(index, counts, before) if *index < counts[row] as usize => before[row] + index,
+            CellSource::Within(..) => return ExportCell::Empty,
         };
         match self.column {
-            Column::Numbers(values) => Cell::Number(values[place]),
-            Column::Counts(values) => Cell::Count(values[place]),
-            Column::Integers(values) => Cell::Integer(values[place]),
-            Column::Texts(values) => Cell::Text(&values[place]),
-            Column::Labels(values, labels) => {
-                labels.get(usize::from(values[place])).map_or(Cell::Empty, |label| Cell::Text(label))
-            }
-            Column::Rows(counts, _) => Cell::Count(u64::from(counts[place])),
+            Column::Numbers(values) => ExportCell::Number(values[place]),
+            Column::Counts(values) => ExportCell::Count(values[place]),
+            Column::Integers(values) => ExportCell::Integer(values[place]),
+            Column::Texts(values) => ExportCell::Text(&values[place]),
+            Column::Labels(values, labels) => labels
+                .get(usize::from(values[place]))
+                .map_or(ExportCell::Empty, |label| ExportCell::Text(label)),
+            Column::Rows(counts, _) => ExportCell::Count(u64::from(counts[place])),
         }
     }
 }
 
-fn csv(columns: &[Flat<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
+fn csv(columns: &[FlatColumn<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
     let mut writer = ::csv::Writer::from_writer(out);
-    let text = |cell: Cell<'_>| match cell {
-        Cell::Empty => String::new(),
+    let text = |cell: ExportCell<'_>| match cell {
+        ExportCell::Empty => String::new(),
         // The shortest text that reads back as the same double.
-        Cell::Number(number) => format!("{number:e}"),
-        Cell::Exact(whole, femtoseconds) => format!("{whole}.{femtoseconds:015}"),
-        Cell::Text(text) => text.to_owned(),
-        Cell::Count(count) => count.to_string(),
-        Cell::Integer(number) => number.to_string(),
+        ExportCell::Number(number) => format!("{number:e}"),
+        ExportCell::Exact(whole, femtoseconds) => format!("{whole}.{femtoseconds:015}"),
+        ExportCell::Text(text) => text.to_owned(),
+        ExportCell::Count(count) => count.to_string(),
+        ExportCell::Integer(number) => number.to_string(),
     };
     // The kind distinguishes a closed pipe from other errors.
     let io = |error: ::csv::Error| match error.into_kind() {
@@ -223,14 +223,16 @@ fn csv(columns: &[Flat<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()>
     writer.flush()
 }
 
-fn jsonl(columns: &[Flat<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
-    let value = |cell: Cell<'_>| match cell {
-        Cell::Empty => Json::Null,
-        Cell::Number(number) => json!(number),
-        Cell::Exact(whole, part) => json!(format!("{whole}.{part:015}").parse::<f64>().unwrap_or(f64::NAN)),
-        Cell::Count(count) => json!(count),
-        Cell::Integer(number) => json!(number),
-        Cell::Text(text) => json!(text),
+fn jsonl(columns: &[FlatColumn<'_>], rows: usize, out: &mut dyn Write) -> io::Result<()> {
+    let value = |cell: ExportCell<'_>| match cell {
+        ExportCell::Empty => Json::Null,
+        ExportCell::Number(number) => json!(number),
+        ExportCell::Exact(whole, part) => {
+            json!(format!("{whole}.{part:015}").parse::<f64>().unwrap_or(f64::NAN))
+        }
+        ExportCell::Count(count) => json!(count),
+        ExportCell::Integer(number) => json!(number),
+        ExportCell::Text(text) => json!(text),
     };
     for row in 0..rows {
         let object: Map<String, Json> =

@@ -3,20 +3,20 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use flexsc_core::campaign::{CampaignRun, ColumnCells, Commanded, Work};
+use flexsc_core::campaign::{CampaignRun, ColumnCells, CommandLog, RowMaker};
 use flexsc_core::record::{Detail, Log};
 use flexsc_core::time::Instant;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour};
 
-use crate::logged;
-use crate::plot::{self, What};
+use crate::memory_log;
+use crate::plot::{self, FigureKind};
 
 /// Returns the log, in memory and with events, of a run under these commands up to an instant.
 ///
 /// # Errors
 /// A failed run.
-pub fn log_of(run: &CampaignRun, commanded: &Commanded, until: Instant) -> Result<Log, String> {
-    logged::of_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
+pub fn log_of(run: &CampaignRun, commanded: &CommandLog, until: Instant) -> Result<Log, String> {
+    memory_log::of_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
         .map_err(|failure| failure.to_string())
 }
 
@@ -26,7 +26,7 @@ pub fn log_of(run: &CampaignRun, commanded: &Commanded, until: Instant) -> Resul
 /// An invalid log.
 pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
     let there = plot::there(log, path).map_err(|failure| failure.to_string())?;
-    Ok(there.into_iter().map(What::name).collect())
+    Ok(there.into_iter().map(FigureKind::name).collect())
 }
 
 /// Returns a figure of a log by its name.
@@ -43,12 +43,12 @@ pub fn of_log(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
 /// # Errors
 /// A figure or a metric that the campaign does not have.
 pub fn of_columns(
-    work: &Work,
+    work: &RowMaker,
     column: &dyn Fn(&str) -> Option<ColumnCells>,
     kind: Option<&str>,
     metrics: &[String],
 ) -> Result<Vec<Named>, String> {
-    let kind = kind.map(|kind| What::from_str(kind, false)).transpose()?;
+    let kind = kind.map(|kind| FigureKind::from_str(kind, false)).transpose()?;
     plot::of_columns(work, column, kind, metrics).map_err(|failure| failure.to_string())
 }
 
@@ -57,7 +57,8 @@ pub fn of_columns(
 /// # Errors
 /// A directory without a campaign, or a figure or a metric that they do not have.
 pub fn of_directory(path: &Path, kind: Option<&str>, metrics: &[String]) -> Result<Vec<Named>, String> {
-    let kinds: Vec<What> = kind.map(|kind| What::from_str(kind, false)).transpose()?.into_iter().collect();
+    let kinds: Vec<FigureKind> =
+        kind.map(|kind| FigureKind::from_str(kind, false)).transpose()?.into_iter().collect();
     plot::of_directory(path, &kinds, metrics).map_err(|failure| failure.to_string())
 }
 

@@ -3,21 +3,21 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use flexsc_core::whole;
+use flexsc_core::atomic_file;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::stop;
 
 /// Writes a file that the user named, creating its directory. A file with other content is replaced only with `force`.
-pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failure> {
+pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), CliError> {
     refuse_other(path, bytes, force)?;
     make_parent(path)?;
     let _writing = stop::writing();
-    whole::write(path, bytes).map_err(Failure::write(path))
+    atomic_file::write(path, bytes).map_err(CliError::write(path))
 }
 
 /// Returns an error if the file exists with other content, unless `force`: the same command may write it again.
-pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failure> {
+pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), CliError> {
     let there = fs::metadata(path).ok().filter(fs::Metadata::is_file);
     let is_other = |there: fs::Metadata| {
         there.len() != bytes.len() as u64 || fs::read(path).is_ok_and(|there| there != bytes)
@@ -29,35 +29,35 @@ pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), Failur
 }
 
 /// Returns an error if the file exists, unless `force`: checked before long work whose result differs each time.
-pub fn refuse_existing(path: &Path, force: bool) -> Result<(), Failure> {
+pub fn refuse_existing(path: &Path, force: bool) -> Result<(), CliError> {
     if force || !fs::symlink_metadata(path).is_ok_and(|there| there.is_file() || there.is_symlink()) {
         return Ok(());
     }
     Err(exists(path, "already exists"))
 }
 
-fn exists(path: &Path, why: &str) -> Failure {
-    Failure::Arguments(format!("{}: {why}\n\nhint: --force replaces it", path.display()))
+fn exists(path: &Path, why: &str) -> CliError {
+    CliError::Arguments(format!("{}: {why}\n\nhint: --force replaces it", path.display()))
 }
 
 /// Writes files whose names the command chose into a directory, which is created. Links and pipes of such names are
 /// refused.
-pub fn write_within(files: &[(PathBuf, Vec<u8>)]) -> Result<(), Failure> {
+pub fn write_within(files: &[(PathBuf, Vec<u8>)]) -> Result<(), CliError> {
     for (path, _) in files {
         make_parent(path)?;
-        whole::unlinked(path).map_err(Failure::write(path))?;
+        atomic_file::unlinked(path).map_err(CliError::write(path))?;
     }
     let _writing = stop::writing();
-    whole::write_all(files).map_err(|(path, error)| Failure::write(&path)(error))
+    atomic_file::write_all(files).map_err(|(path, error)| CliError::write(&path)(error))
 }
 
 /// Creates a directory if it does not exist.
-pub fn make_directory(path: &Path) -> Result<(), Failure> {
-    fs::create_dir_all(path).map_err(Failure::write(path))
+pub fn make_directory(path: &Path) -> Result<(), CliError> {
+    fs::create_dir_all(path).map_err(CliError::write(path))
 }
 
 /// Creates the directory of a file if it does not exist.
-pub fn make_parent(path: &Path) -> Result<(), Failure> {
+pub fn make_parent(path: &Path) -> Result<(), CliError> {
     match path.parent().filter(|parent| !parent.as_os_str().is_empty() && !parent.exists()) {
         Some(parent) => make_directory(parent),
         None => Ok(()),

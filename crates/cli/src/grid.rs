@@ -6,16 +6,16 @@ use flexsc_core::analysis::sampled_loop::Gains;
 
 /// LO:HI:COUNT: `COUNT` evenly spaced numbers from the first to the last, each above 0.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Even(pub Vec<f64>);
+pub struct PositiveGrid(pub Vec<f64>);
 
 /// LO:HI:COUNT: evenly spaced gains of any sign.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Tried(pub Gains);
+pub struct SignedGrid(pub Gains);
 
 /// Largest number of points of a grid.
 const MOST: u32 = 100_000;
 
-impl Even {
+impl PositiveGrid {
     pub fn new(low: f64, high: f64, count: u32) -> Self {
         let steps = f64::from(count.max(2) - 1);
         Self((0..count).map(|i| (low * (steps - f64::from(i)) + high * f64::from(i)) / steps).collect())
@@ -28,7 +28,7 @@ fn three(text: &str) -> Option<[&str; 3]> {
     parts.next().is_none().then_some(three)
 }
 
-impl FromStr for Even {
+impl FromStr for PositiveGrid {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -46,7 +46,7 @@ impl FromStr for Even {
     }
 }
 
-impl FromStr for Tried {
+impl FromStr for SignedGrid {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -73,15 +73,15 @@ mod tests {
     fn a_count_of_gains_is_that_of_the_gains_tried() {
         for (text, count, last) in [("-2:6:161", 161, 6.0), ("-1:2:13", 13, 2.0), ("0:1:50001", 50_001, 1.0)]
         {
-            let Tried(gains) = text.parse().expect(text);
+            let SignedGrid(gains) = text.parse().expect(text);
             let values = gains.values();
             assert_eq!(values.len(), count, "{text}");
             assert!((values[count - 1] - last).abs() < 1e-12, "{text}");
         }
-        assert_eq!("-2:6:161".parse(), Ok(Tried(Gains { low: -2.0, high: 6.0, step: 0.05 })));
-        assert_eq!("3:3:1".parse::<Tried>().map(|Tried(gains)| gains.values()), Ok(vec![3.0]));
+        assert_eq!("-2:6:161".parse(), Ok(SignedGrid(Gains { low: -2.0, high: 6.0, step: 0.05 })));
+        assert_eq!("3:3:1".parse::<SignedGrid>().map(|SignedGrid(gains)| gains.values()), Ok(vec![3.0]));
         for text in ["-2:6:0.05", "6:-2:5", "1:2", "1:2:1", "0:inf:3", "0:1:0"] {
-            assert!(text.parse::<Tried>().is_err_and(|why| why.contains("LO:HI:COUNT")), "{text}");
+            assert!(text.parse::<SignedGrid>().is_err_and(|why| why.contains("LO:HI:COUNT")), "{text}");
         }
     }
 }

@@ -253,8 +253,8 @@ pub fn completed(command: Command) -> Command {
         format!("{{about}}\n\n{{usage-heading}} {{usage}}\n{verbs}\nOptions:\n{{options}}\n\n{hint}\n");
     let all = GROUPS.into_iter().flat_map(|(_, members)| members);
     all.fold(command.help_template(template), |command, (name, examples)| {
-        let told = examples.map(|(line, what)| format!("  {line}\n      {what}")).join("\n");
-        command.mut_subcommand(name, |verb| verb.after_help(format!("Examples:\n{told}")))
+        let reported = examples.map(|(line, what)| format!("  {line}\n      {what}")).join("\n");
+        command.mut_subcommand(name, |verb| verb.after_help(format!("Examples:\n{reported}")))
     })
 }
 

@@ -6,8 +6,8 @@ use flexsc_core::Scenario;
 use flexsc_core::layout::Layout;
 use flexsc_core::record::{Detail, Log};
 
-use crate::failure::Failure;
-use crate::logged::logged;
+use crate::error::CliError;
+use crate::memory_log::logged;
 use crate::{files, out, print, scenario};
 
 /// Limits of the time on one core (s) and of the memory (bytes) for making a log; beyond them viewers choose the axes.
@@ -30,7 +30,7 @@ pub struct Args {
     force: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     if let Some(path) = &args.out {
         out::file(path, &["json"], &[&args.path])?;
     }
@@ -40,7 +40,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         of_log(&args.path)?
     } else {
         let path = args.path.display();
-        return Err(Failure::Arguments(format!("--set: {path} is a log, whose scenario is what was run")));
+        return Err(CliError::Arguments(format!("--set: {path} is a log, whose scenario is what was run")));
     };
     let layout = layout.to_json();
     match &args.out {
@@ -50,18 +50,19 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Returns the layout for a scenario's log with a scene; a simulation determines the range of each value.
-fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, Failure> {
-    let layout = Layout::of(&scenario).of_detail(Detail::Scene);
+fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, CliError> {
+    let layout = Layout::for_scenario(&scenario).for_detail(Detail::Scene);
     let cost = scenario.cost(Some(Detail::Full), true);
     if cost.seconds > LONGEST || cost.memory > LARGEST {
         return Ok(layout);
     }
-    Ok(layout.fitted(&logged(scenario, path, Detail::Full)?)?)
+    Ok(layout.with_limits(&logged(scenario, path, Detail::Full)?)?)
 }
 
-fn of_log(path: &Path) -> Result<Layout, Failure> {
+fn of_log(path: &Path) -> Result<Layout, CliError> {
     let log = Log::open(path)?;
-    let scenario = Scenario::parse(&path.display().to_string(), log.own_scenario()?)?;
-    let layout = Layout::of(&scenario).of_topics(|topic| log.topics().iter().any(|own| own == topic));
-    Ok(layout.fitted(&log)?)
+    let scenario = Scenario::parse(&path.display().to_string(), log.require_scenario()?)?;
+    let layout =
+        Layout::for_scenario(&scenario).for_topics(|topic| log.topics().iter().any(|own| own == topic));
+    Ok(layout.with_limits(&log)?)
 }

@@ -2,13 +2,13 @@
 
 mod campaign;
 mod check;
-mod consent;
+mod confirm_cost;
 mod cycle;
 mod damping;
-mod drawing;
+mod error;
 mod examples;
 mod export;
-mod failure;
+mod figure_files;
 pub mod figures;
 mod files;
 mod grid;
@@ -16,13 +16,11 @@ mod help;
 mod human;
 mod identify;
 mod layout;
-#[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
-mod left_out;
-#[cfg_attr(not(feature = "live"), path = "live/left_out.rs")]
+#[cfg_attr(not(feature = "live"), path = "live/unavailable.rs")]
 mod live;
 mod log;
-mod logged;
 mod map;
+mod memory_log;
 mod merge;
 mod modes;
 mod number;
@@ -31,28 +29,30 @@ mod out;
 mod plan;
 mod plot;
 mod progress;
-#[cfg_attr(not(feature = "papers"), path = "reproduce/left_out.rs")]
+#[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
 mod results;
-mod sampled;
+mod runs_table;
+mod sampled_loop;
 mod scenario;
 mod schema;
 mod simulate;
 mod stop;
 mod summary;
 mod sweep;
-mod table;
 mod terminal;
 mod top;
 mod tune;
+#[cfg(not(all(feature = "live", feature = "papers", feature = "png")))]
+mod unavailable;
 
 use std::ffi::OsString;
 use std::io::Write;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 
+use error::CliError;
 pub use examples::EXAMPLES;
-use failure::Failure;
 
 /// Exact, fast and reproducible simulation of the attitude control of flexible spacecraft
 #[derive(Parser)]
@@ -131,7 +131,7 @@ pub fn command() -> clap::Command {
 /// Runs the command with these arguments, the program's name first, and returns its exit code: 0 done, 1 a run
 /// failed or a file could not be written, 2 bad input, 130 interrupted.
 pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
-    terminal::settle_colours();
+    terminal::configure_colours();
     let parsed = command().try_get_matches_from(args);
     let cli = match parsed.and_then(|matches| Cli::from_arg_matches(&matches)) {
         Ok(cli) => cli,
@@ -141,13 +141,13 @@ pub fn main(args: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(error.exit_code()).unwrap_or(2);
         }
     };
-    stop::watched(move || match execute(cli.verb) {
+    stop::run_watched(move || match execute(cli.verb) {
         Ok(()) => 0,
-        Err(failure) => failure.tell(),
+        Err(failure) => failure.print(),
     })
 }
 
-fn execute(verb: Verb) -> Result<(), Failure> {
+fn execute(verb: Verb) -> Result<(), CliError> {
     match verb {
         Verb::Simulate(args) => simulate::run(&args),
         Verb::Sweep(args) => sweep::run(&args),
@@ -179,9 +179,9 @@ fn execute(verb: Verb) -> Result<(), Failure> {
 }
 
 /// Writes data to stdout.
-fn print(data: &[u8]) -> Result<(), Failure> {
+fn print(data: &[u8]) -> Result<(), CliError> {
     let mut out = std::io::stdout().lock();
-    out.write_all(data).and_then(|()| out.flush()).map_err(Failure::Stdout)
+    out.write_all(data).and_then(|()| out.flush()).map_err(CliError::Stdout)
 }
 
 /// Writes a line of text to stderr.

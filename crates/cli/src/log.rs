@@ -8,7 +8,7 @@ use flexsc_core::count::counted;
 use flexsc_core::record::{Log, recover};
 use serde_json::json;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::{files, out, print, say};
 
 #[derive(clap::Args)]
@@ -40,7 +40,7 @@ enum Verb {
     },
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     match &args.verb {
         Verb::Recover { torn, out, force, json } => {
             let name = torn.display().to_string();
@@ -56,6 +56,6 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             say!("{} saved in {}", counted(saved, "message"), whole.display());
             Ok(())
         }
-        Verb::Scenario { log } => print(Log::open(log)?.own_scenario()?.as_bytes()),
+        Verb::Scenario { log } => print(Log::open(log)?.require_scenario()?.as_bytes()),
     }
 }

@@ -7,15 +7,15 @@ use std::path::{Path, PathBuf};
 use flexsc_core::campaign::{Directory, Merge};
 use flexsc_core::count::counted;
 
-use crate::campaign::{Kind, file, parts};
-use crate::failure::Failure;
+use crate::campaign::{TableFormat, file, part_files};
+use crate::error::CliError;
 use crate::out::Out;
 use crate::{files, say, stop};
 
 /// Largest number of cells in a file, by the memory that it needs.
 const MOST_CELLS: u64 = 1 << 29;
 /// Largest number of missing ranges that are printed.
-const TOLD: usize = 8;
+const MAX_LISTED: usize = 8;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -30,25 +30,25 @@ pub struct Args {
     force: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     let out = Out::new(&args.out, &["csv", "parquet"], &[])?;
-    let open = |path: &Path| Directory::open(path).map_err(parts::failure);
+    let open = |path: &Path| Directory::open(path).map_err(part_files::failure);
     let mut all = args.directories.iter().map(|path| open(path)).collect::<Result<Vec<_>, _>>()?;
     // The existing target comes first, unless it is another campaign that is replaced.
     let mut is_first = false;
     if let Out::Directory(path) = &out
-        && Directory::is_one(path)
+        && Directory::is_campaign_directory(path)
     {
         let there = open(path)?;
-        let differs = there.work().manifest.difference(&all[0].work().manifest).is_some();
+        let differs = there.work().manifest.first_difference(&all[0].work().manifest).is_some();
         if !(args.force && differs) {
             all.insert(0, there);
             is_first = true;
         }
     }
-    let merge = Merge::new(&all).map_err(parts::failure)?;
+    let merge = Merge::new(&all).map_err(part_files::failure)?;
     let missing = merge.missing();
-    let tell_taken = || {
+    let report_taken = || {
         for (directory, taken) in all.iter().zip(merge.taken()).skip(usize::from(is_first)) {
             say!("{}: {}", directory.path().display(), counted(taken, "run"));
         }
@@ -63,23 +63,23 @@ pub fn run(args: &Args) -> Result<(), Failure> {
             let runs = merge.manifest().runs();
             if (runs.end - runs.start).saturating_mul(merge.work().fields().len() as u64) > MOST_CELLS {
                 let why = "has too many rows for one file\n\nhint: give a directory";
-                return Err(Failure::Arguments(format!("{}: {why}", path.display())));
+                return Err(CliError::Arguments(format!("{}: {why}", path.display())));
             }
-            let kind = if *ending == "csv" { Kind::Csv } else { Kind::Parquet };
-            let rows = merge.rows().map_err(parts::failure)?;
+            let kind = if *ending == "csv" { TableFormat::Csv } else { TableFormat::Parquet };
+            let rows = merge.rows().map_err(part_files::failure)?;
             file::write(path, kind, merge.work(), &rows)?;
-            tell_taken();
+            report_taken();
             say!("{}: {}", path.display(), counted(rows.len(), "run"));
         }
         Out::Directory(path) => {
             let into =
-                Directory::create(path, merge.manifest().clone(), args.force).map_err(parts::failure)?;
-            merge.write(&into, is_first).map_err(parts::failure)?;
-            tell_taken();
+                Directory::create(path, merge.manifest().clone(), args.force).map_err(part_files::failure)?;
+            merge.write(&into, is_first).map_err(part_files::failure)?;
+            report_taken();
             let left: u64 = missing.iter().map(|runs| runs.end - runs.start).sum();
-            let told = parts::told(&into, &merge.manifest().runs())?;
-            say!("{}: {}, {left} missing", path.display(), counted(told.runs, "run"));
-            told.say();
+            let reported = part_files::summary(&into, &merge.manifest().runs())?;
+            say!("{}: {}, {left} missing", path.display(), counted(reported.runs, "run"));
+            reported.say();
             if !missing.is_empty() {
                 return Err(incomplete(
                     &missing,
@@ -91,9 +91,9 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     Ok(())
 }
 
-fn incomplete(missing: &[Range<u64>], hint: &str) -> Failure {
-    let told: Vec<String> =
-        missing.iter().take(TOLD).map(|runs| format!("{}:{}", runs.start, runs.end)).collect();
-    let more = if missing.len() > TOLD { ", ..." } else { "" };
-    Failure::Incomplete(format!("runs {}{more} are missing\n\nhint: {hint}", told.join(", ")))
+fn incomplete(missing: &[Range<u64>], hint: &str) -> CliError {
+    let reported: Vec<String> =
+        missing.iter().take(MAX_LISTED).map(|runs| format!("{}:{}", runs.start, runs.end)).collect();
+    let more = if missing.len() > MAX_LISTED { ", ..." } else { "" };
+    CliError::Incomplete(format!("runs {}{more} are missing\n\nhint: {hint}", reported.join(", ")))
 }

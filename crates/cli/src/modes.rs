@@ -5,15 +5,15 @@ mod spacecraft;
 use std::io::Write;
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::influence::Influences;
-use flexsc_core::analysis::modal::ModalColumns;
-use flexsc_core::analysis::parts::ModalParts;
+use flexsc_core::analysis::mode_influence::ModeInfluences;
+use flexsc_core::analysis::one_axis_modes::OneAxisModes;
+use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::attitude::AXES;
-use flexsc_core::body::{Axes, Drive};
+use flexsc_core::body::{BodyAxes, CommandedQuantity};
 use flexsc_core::count::counted;
 use serde_json::{Value as Json, json};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario, show};
@@ -48,7 +48,7 @@ struct Style {
 struct Planar {
     /// Name of the scenario.
     name: String,
-    modal: ModalColumns,
+    modal: OneAxisModes,
     style: Style,
 }
 
@@ -56,7 +56,7 @@ struct Planar {
 struct Spatial {
     /// Name of the scenario.
     name: String,
-    modes: Influences,
+    modes: ModeInfluences,
     /// True for each axis with jets; for the other axes the influence of a torque of 1 N m is printed.
     jets: [bool; 3],
     style: Style,
@@ -67,24 +67,24 @@ pub fn results(scenario: &Scenario, args: &Args) -> Box<dyn Results> {
     let name = scenario.name.clone();
     let style = Style { units: args.units.units, all: args.all };
     if let Some(craft) = scenario.model.craft() {
-        let (parts, jets) = (ModalParts::of(scenario, craft), scenario.study.fired);
+        let (parts, jets) = (SpacecraftModes::from_scenario(scenario, craft), scenario.study.jet_only_axes);
         return Box::new(spacecraft::Spacecraft { name, parts, jets, style });
     }
     match scenario.model.axes() {
-        Axes::Three(body) => {
-            let (modes, jets) = (Influences::of(scenario, body), scenario.study.fired);
+        BodyAxes::Three(body) => {
+            let (modes, jets) = (ModeInfluences::from_scenario(scenario, body), scenario.study.jet_only_axes);
             Box::new(Spatial { name, modes, jets, style })
         }
-        Axes::One(body) => Box::new(Planar { name, modal: ModalColumns::of(body), style }),
+        BodyAxes::One(body) => Box::new(Planar { name, modal: OneAxisModes::from_body(body), style }),
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     show(&*results(&args.scenario.load()?, args), None, args.scenario.json)
 }
 
 /// Prints rows of text in columns.
-fn tell_table(rows: &[Vec<String>], left: usize) {
+fn print_table(rows: &[Vec<String>], left: usize) {
     for line in columns(rows, left) {
         say!("  {line}");
     }
@@ -100,7 +100,7 @@ fn frequency(units: Units, frequency: f64, damping: f64) -> [String; 3] {
 }
 
 /// Prints the influence of a three-axis body's actuator on its modes.
-fn tell_influences(modes: &Influences, jets: [bool; 3], style: Style) {
+fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
     let giver = match jets {
         [true, true, true] => "the jets give",
         [false, false, false] => "a torque gives",
@@ -111,7 +111,7 @@ fn tell_influences(modes: &Influences, jets: [bool; 3], style: Style) {
         let by = if jets { "by the jets" } else { "by a torque of 1 N m" };
         rows.push(vec![format!("{axis}, {by}"), digits(plus), digits(-minus), String::new()]);
     }
-    tell_table(&rows, 0);
+    print_table(&rows, 0);
     say!("  influence: elastic rate at the gyro for each rigid rate that {giver} about the same axis");
     let mut rows = vec![texts(&["mode", style.units.frequency().1, "period, s", "damping"])];
     rows[0].extend(AXES.map(str::to_owned));
@@ -121,7 +121,7 @@ fn tell_influences(modes: &Influences, jets: [bool; 3], style: Style) {
         row.extend([0, 1, 2].map(|axis: usize| unsigned_zero(modes.influences[axis][index], 5)));
         rows.push(row);
     }
-    tell_table(&rows, 0);
+    print_table(&rows, 0);
 }
 
 impl Results for Spatial {
@@ -129,10 +129,10 @@ impl Results for Spatial {
         vec![of_scenario(&self.name, json!(self.modes))]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let Self { name, modes, jets, style } = self;
         say!("{name}   {}", counted(modes.dampings.len(), "mode"));
-        tell_influences(modes, *jets, *style);
+        print_influences(modes, *jets, *style);
         Ok(())
     }
 }
@@ -142,17 +142,17 @@ impl Results for Planar {
         vec![of_scenario(&self.name, json!(self.modal))]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let Self { name, modal, style } = self;
         let hub = match modal.drive {
-            Drive::Torque => "free",
-            Drive::Motion => "held",
+            CommandedQuantity::Torque => "free",
+            CommandedQuantity::Motion => "held",
         };
         say!("{name}   {}, hub {hub}", counted(modal.gains.len(), "mode"));
         let strongest = modal.excitabilities_s2.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
         let other = match modal.drive {
-            Drive::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
-            Drive::Motion => ("hub free", &modal.free_frequencies_rad_s),
+            CommandedQuantity::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
+            CommandedQuantity::Motion => ("hub free", &modal.free_frequencies_rad_s),
         };
         let (factor, unit) = style.units.frequency();
         let mut rows = vec![
@@ -183,7 +183,7 @@ impl Results for Planar {
             row.push(other.1.as_ref().map_or_else(|| "none".to_owned(), |w| digits(w[index] * factor)));
             rows.push(row);
         }
-        tell_table(&rows, 0);
+        print_table(&rows, 0);
         for output in &modal.outputs {
             let shown: Vec<_> = output.weights.iter().take(WEIGHTS).map(|weight| digits(*weight)).collect();
             let more = if output.weights.len() > WEIGHTS { " ..." } else { "" };

@@ -1,13 +1,13 @@
 //! Formatting of numbers in tables for people.
 
 /// Formats a number by `tell`, or as missing.
-pub fn or_none(value: Option<f64>, tell: impl Fn(f64) -> String) -> String {
+pub fn number_or_none(value: Option<f64>, tell: impl Fn(f64) -> String) -> String {
     value.map_or_else(|| "none".to_owned(), tell)
 }
 
 /// Formats a number with `decimals` decimals, or as missing.
 pub fn fixed(value: Option<f64>, decimals: usize) -> String {
-    or_none(value, |value| format!("{value:.decimals$}"))
+    number_or_none(value, |value| format!("{value:.decimals$}"))
 }
 
 /// Formats a number with `decimals` decimals, without the sign of one that is rounded to 0.

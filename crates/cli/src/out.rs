@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 
 /// File extensions that flexsc or other programs write, and with which no directory is expected to be named.
 const ENDINGS: [&str; 22] = [
@@ -26,7 +26,7 @@ impl Out {
     ///
     /// # Errors
     /// A file with another extension, or one that is an input.
-    pub fn new(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Self, Failure> {
+    pub fn new(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Self, CliError> {
         match at(path, accepted, inputs)? {
             Some(ending) => Ok(Self::File(path.to_owned(), ending)),
             None => Ok(Self::Directory(path.to_owned())),
@@ -38,18 +38,18 @@ impl Out {
 ///
 /// # Errors
 /// A file with another extension or none, or one that is an input.
-pub fn file(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<&'static str, Failure> {
+pub fn file(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<&'static str, CliError> {
     match at(path, accepted, inputs)? {
         Some(ending) => Ok(ending),
-        None => Err(Failure::Arguments(format!("-o {}: must end in {}", path.display(), listed(accepted)))),
+        None => Err(CliError::Arguments(format!("-o {}: must end in {}", path.display(), listed(accepted)))),
     }
 }
 
 /// Returns the accepted extension of a file; `None` for a directory.
-fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option<&'static str>, Failure> {
+fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option<&'static str>, CliError> {
     if let Some(input) = inputs.iter().find(|input| is_same(path, input)) {
         let (path, input) = (path.display(), input.display());
-        return Err(Failure::Arguments(format!("-o {path}: is the input {input}, which would be lost")));
+        return Err(CliError::Arguments(format!("-o {path}: is the input {input}, which would be lost")));
     }
     if path.is_dir() {
         return Ok(None);
@@ -63,7 +63,7 @@ fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option
         return Ok(Some(accepted));
     }
     let (path, accepted) = (path.display(), listed(accepted));
-    Err(Failure::Arguments(format!(
+    Err(CliError::Arguments(format!(
         "-o {path}: cannot be written as .{ending}\n\nhint: give a file that ends in {accepted}, or a directory"
     )))
 }

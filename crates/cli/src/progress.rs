@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::motion::Stretch;
+use flexsc_core::motion::MotionPiece;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
 use indicatif::{ProgressBar, ProgressStyle};
@@ -111,7 +111,7 @@ impl Record for Progress {
         Ok(())
     }
 
-    fn stretch(&mut self, _: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+    fn piece(&mut self, _: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
         self.see(stretch.from);
         Ok(())
     }

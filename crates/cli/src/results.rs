@@ -3,8 +3,8 @@
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
-use crate::drawing::Drawing;
-use crate::failure::Failure;
+use crate::error::CliError;
+use crate::figure_files::FigureOutput;
 use crate::print;
 
 /// Results of an analysis.
@@ -18,19 +18,19 @@ pub trait Results {
     }
 
     /// Prints the results as text.
-    fn tell(&self) -> Result<(), Failure>;
+    fn print(&self) -> Result<(), CliError>;
 }
 
 /// Draws the figures if the arguments ask for them, and prints text or JSON.
-pub fn show(results: &dyn Results, drawing: Option<&Drawing>, as_json: bool) -> Result<(), Failure> {
+pub fn show(results: &dyn Results, drawing: Option<&FigureOutput>, as_json: bool) -> Result<(), CliError> {
     if let Some(drawing) = drawing {
         drawing.save(|| results.figures())?;
     }
-    if as_json { print_lines(&results.json()) } else { results.tell() }
+    if as_json { print_lines(&results.json()) } else { results.print() }
 }
 
 /// Prints objects, one per line.
-pub fn print_lines(objects: &[Json]) -> Result<(), Failure> {
+pub fn print_lines(objects: &[Json]) -> Result<(), CliError> {
     let lines: Vec<String> = objects.iter().map(|object| format!("{object}\n")).collect();
     print(lines.concat().as_bytes())
 }

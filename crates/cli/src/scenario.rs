@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use flexsc_core::{Document, LONGEST, Scenario};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 
 /// Largest integer of TOML.
 pub const LARGEST_SEED: u64 = i64::MAX as u64;
@@ -26,33 +26,33 @@ pub struct Args {
 
 impl Args {
     /// Loads the scenario.
-    pub fn load(&self) -> Result<Scenario, Failure> {
+    pub fn load(&self) -> Result<Scenario, CliError> {
         load(&self.scenario, &self.set, None)
     }
 }
 
 /// Reads a scenario file with some keys set.
-pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
+pub fn load(path: &Path, set: &[String], seed: Option<u64>) -> Result<Scenario, CliError> {
     with(document(path)?, set, seed)
 }
 
 /// Reads a document; `-` is stdin.
-pub fn document(path: &Path) -> Result<Document, Failure> {
+pub fn document(path: &Path) -> Result<Document, CliError> {
     if path != Path::new("-") {
         return Ok(Document::load(path)?);
     }
     let unread =
-        |why: std::io::Error| Failure::Arguments(format!("cannot read a scenario from stdin: {why}"));
+        |why: std::io::Error| CliError::Arguments(format!("cannot read a scenario from stdin: {why}"));
     let mut text = Vec::new();
     std::io::stdin().lock().take(LONGEST + 1).read_to_end(&mut text).map_err(unread)?;
     Ok(Document::read_bytes(Path::new("stdin"), text)?)
 }
 
 /// Returns a document's scenario with some keys set.
-pub fn with(mut document: Document, set: &[String], seed: Option<u64>) -> Result<Scenario, Failure> {
+pub fn with(mut document: Document, set: &[String], seed: Option<u64>) -> Result<Scenario, CliError> {
     for text in set {
         let Some((key, value)) = text.split_once('=') else {
-            return Err(Failure::Arguments(format!(
+            return Err(CliError::Arguments(format!(
                 "--set {text}: not a KEY=VALUE, such as law.relay.k_t=0.34"
             )));
         };

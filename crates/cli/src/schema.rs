@@ -5,7 +5,7 @@ use flexsc_core::metrics;
 use flexsc_core::record::description;
 use serde_json::json;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::print;
 
 #[derive(clap::Args)]
@@ -18,9 +18,9 @@ pub struct Args {
     topics: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     let document = if args.metrics {
-        let meaning = |m: &metrics::Meaning| json!({"name": m.name, "unit": m.unit, "doc": m.doc});
+        let meaning = |m: &metrics::MetricDescription| json!({"name": m.name, "unit": m.unit, "doc": m.doc});
         metrics::ALL.iter().map(meaning).collect()
     } else if args.topics {
         description::topics()

@@ -8,20 +8,20 @@ use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
 use flexsc_core::SimulationError;
-use flexsc_core::campaign::{Campaign, CampaignRun, Directory, PointDesign};
+use flexsc_core::campaign::{Campaign, CampaignRun, Design, Directory};
 use flexsc_core::metrics::Selection;
 use flexsc_core::record::{Detail, RecordError};
 use flexsc_core::scenario::{Cost, MOST_RUNS};
 
-use crate::campaign::logs::{self, LogDetail, logged};
-use crate::campaign::{self, Kind, Options, parts};
-use crate::consent::Consent;
-use crate::failure::Failure;
+use crate::campaign::logs::{self, LogDetail, simulate_to_log};
+use crate::campaign::{self, CampaignOptions, TableFormat, part_files};
+use crate::confirm_cost::CostConfirmation;
+use crate::error::CliError;
 use crate::human::UnitsArgs;
 use crate::out::Out;
 use crate::progress::Progress;
 use crate::results::print_lines;
-use crate::stop::{self, Stop};
+use crate::stop::{self, StopRecord};
 use crate::{files, say, scenario, summary};
 
 #[derive(clap::Args)]
@@ -44,7 +44,7 @@ pub struct Args {
     pub set: Vec<String>,
     /// Monte Carlo campaign over the [uncertain] keys and the noise: N runs, or runs LO to HI - 1
     #[arg(long, value_name = "N|LO:HI", value_parser = runs)]
-    pub runs: Option<Runs>,
+    pub runs: Option<RunRange>,
     /// Seed [default: the scenario's]
     #[arg(long, value_name = "S", value_parser = clap::value_parser!(u64).range(..=scenario::LARGEST_SEED))]
     pub seed: Option<u64>,
@@ -63,16 +63,16 @@ pub struct Args {
     #[command(flatten)]
     units: UnitsArgs,
     #[command(flatten)]
-    options: Options,
+    options: CampaignOptions,
     #[command(flatten)]
-    consent: Consent,
+    consent: CostConfirmation,
     #[command(flatten)]
     live: crate::live::Args,
 }
 
 /// Range of the runs of a campaign, and true if it was given as a part.
 #[derive(Clone)]
-pub struct Runs {
+pub struct RunRange {
     pub range: Range<u64>,
     part: bool,
 }
@@ -81,7 +81,7 @@ pub struct Runs {
 struct Place {
     path: PathBuf,
     /// File format of a campaign's rows.
-    kind: Kind,
+    kind: TableFormat,
     /// True if the target of the rows is one file.
     is_file: bool,
 }
@@ -94,7 +94,7 @@ impl Place {
 }
 
 /// Parses `N` or `LO:HI`.
-pub fn runs(text: &str) -> Result<Runs, String> {
+pub fn runs(text: &str) -> Result<RunRange, String> {
     let number = |text: &str| {
         text.parse::<u64>().map_err(|_| format!("`{text}` is not a number of runs; give N or LO:HI"))
     };
@@ -109,21 +109,21 @@ pub fn runs(text: &str) -> Result<Runs, String> {
     if count > MOST_RUNS {
         return Err(format!("a campaign has at most {MOST_RUNS} runs, got {count}"));
     }
-    Ok(Runs { range, part })
+    Ok(RunRange { range, part })
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     if let (Some(from), Some(row)) = (&args.from, args.row) {
         return args.again(from, row);
     }
     let selection = args.options.selection()?;
     if args.runs.is_none() && !args.options.are_default() {
         let why = "--table, --metrics, --fail-fast, --sample, --replicas and --scheduler apply only to campaigns (--runs)";
-        return Err(Failure::Arguments(why.to_owned()));
+        return Err(CliError::Arguments(why.to_owned()));
     }
     if args.live.live.is_some() && args.scenarios.len() > 1 {
         let count = args.scenarios.len();
-        return Err(Failure::Arguments(format!("--live follows one scenario, got {count}")));
+        return Err(CliError::Arguments(format!("--live follows one scenario, got {count}")));
     }
     let place = args.place()?;
     // All scenarios are checked before any file is written.
@@ -131,12 +131,12 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         .scenarios
         .iter()
         .map(|path| Ok((scenario::load(path, &args.set, args.seed)?, path.display().to_string())))
-        .collect::<Result<Vec<_>, Failure>>()?;
+        .collect::<Result<Vec<_>, CliError>>()?;
     let mut names = BTreeSet::new();
     for (scenario, origin) in &scenarios {
         if !names.insert(&scenario.name) {
             let name = &scenario.name;
-            return Err(Failure::Arguments(format!(
+            return Err(CliError::Arguments(format!(
                 "{origin}: another scenario is named `{name}` too, and their logs would have one name\n\n\
                  hint: give it a `name`, or run them one by one"
             )));
@@ -146,11 +146,11 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         .into_iter()
         .map(|(scenario, origin)| {
             let design = args.design(!scenario.uncertain.is_empty())?;
-            let study = Campaign::of(scenario, &origin, design)?;
-            args.consent.to(&args.cost(&study)?)?;
+            let study = Campaign::from_design(scenario, &origin, design)?;
+            args.consent.check(&args.cost(&study)?)?;
             Ok(Arc::new(study))
         })
-        .collect::<Result<Vec<_>, Failure>>()?;
+        .collect::<Result<Vec<_>, CliError>>()?;
     args.make_room(&place)?;
     let prefixed = studies.len() > 1;
     let mut failures = Vec::new();
@@ -158,50 +158,49 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         let done = match &args.runs {
             None => {
                 let log = (place.log(&study.scenario().name), args.detail(LogDetail::Events));
-                single(&study, &itself(&study), args, log)
+                single(&study, &scenario_run(&study), args, log)
             }
             Some(runs) => several(&study, (args, &place), runs, (prefixed, &selection)),
         };
         match done {
             // The other scenarios are still run.
-            Err(failure @ (Failure::Run { .. } | Failure::Runs { .. })) => failures.push(failure),
+            Err(failure @ (CliError::Run { .. } | CliError::Runs { .. })) => failures.push(failure),
             done => done?,
         }
     }
     let last = failures.pop();
     for failure in failures {
-        failure.tell();
+        failure.print();
     }
     last.map_or(Ok(()), Err)
 }
 
 impl Args {
     /// Returns the point design of the campaign.
-    fn design(&self, uncertain: bool) -> Result<PointDesign, Failure> {
-        let Some(Runs { range, part }) = &self.runs else { return Ok(PointDesign::default()) };
+    fn design(&self, uncertain: bool) -> Result<Design, CliError> {
+        let Some(RunRange { range, part }) = &self.runs else { return Ok(Design::default()) };
         let whole = (!part).then(|| range.end.div_ceil(self.options.replicas));
-        let design =
-            self.options.complete(PointDesign::default(), uncertain, self.options.points().or(whole))?;
+        let design = self.options.complete(Design::default(), uncertain, self.options.points().or(whole))?;
         match design.runs() {
             Some(all) if range.end > all => {
-                Err(Failure::Arguments(format!("--runs: --sample has points for only {all} runs")))
+                Err(CliError::Arguments(format!("--runs: --sample has points for only {all} runs")))
             }
             _ => Ok(design),
         }
     }
 
     /// Repeats a run of a campaign's directory.
-    fn again(&self, from: &Path, row: u64) -> Result<(), Failure> {
-        let directory = Directory::open(from).map_err(parts::failure)?;
+    fn again(&self, from: &Path, row: u64) -> Result<(), CliError> {
+        let directory = Directory::open(from).map_err(part_files::failure)?;
         let work = directory.work();
         let runs = work.manifest.runs();
         if !runs.contains(&row) {
             let why = format!("has runs {} to {}, not {row}", runs.start, runs.end - 1);
-            return Err(Failure::Arguments(format!("{}: {why}", from.display())));
+            return Err(CliError::Arguments(format!("{}: {why}", from.display())));
         }
         let run = work.campaign.run(row)?;
         let detail = self.log.unwrap_or(LogDetail::Full).detail();
-        self.consent.to(&run.scenario.cost(detail, false))?;
+        self.consent.check(&run.scenario.cost(detail, false))?;
         let place = self.place()?;
         self.make_room(&place)?;
         let log = place.log(&format!("{}-{row}", run.scenario.name));
@@ -214,7 +213,7 @@ impl Args {
     }
 
     /// Returns the target of a run's log, or of a campaign's rows.
-    fn place(&self) -> Result<Place, Failure> {
+    fn place(&self) -> Result<Place, CliError> {
         let inputs: Vec<&Path> = self.scenarios.iter().map(PathBuf::as_path).collect();
         let Some(path) = &self.out else {
             return Ok(Place { path: PathBuf::new(), kind: self.options.table(), is_file: false });
@@ -230,14 +229,14 @@ impl Args {
             [(several, "is one file, and there are several scenarios"), (without, "--log none writes no log")]
         {
             if is {
-                return Err(Failure::Arguments(format!("-o {}: {why}", path.display())));
+                return Err(CliError::Arguments(format!("-o {}: {why}", path.display())));
             }
         }
         Ok(Place { path: path.clone(), kind, is_file })
     }
 
     /// Creates the directory of the results.
-    fn make_room(&self, place: &Place) -> Result<(), Failure> {
+    fn make_room(&self, place: &Place) -> Result<(), CliError> {
         match (&self.out, place.is_file) {
             (Some(path), true) => files::make_parent(path),
             (Some(path), false) => files::make_directory(path),
@@ -246,13 +245,13 @@ impl Args {
     }
 
     /// Returns the cost of a scenario's runs.
-    fn cost(&self, study: &Campaign) -> Result<Cost, Failure> {
-        let Some(Runs { range, .. }) = &self.runs else {
+    fn cost(&self, study: &Campaign) -> Result<Cost, CliError> {
+        let Some(RunRange { range, .. }) = &self.runs else {
             return Ok(study.scenario().cost(self.detail(LogDetail::Events), false));
         };
         let log = self.detail(LogDetail::None);
         let cost = study.cost(range.end - range.start, log);
-        let cost = cost.map_err(|why| Failure::Arguments(format!("--runs {why}")))?;
+        let cost = cost.map_err(|why| CliError::Arguments(format!("--runs {why}")))?;
         Ok(self.options.cost(cost, self.out.is_some() && !self.place()?.is_file))
     }
 }
@@ -261,11 +260,11 @@ impl Args {
 fn several(
     study: &Arc<Campaign>,
     (args, place): (&Args, &Place),
-    runs: &Runs,
+    runs: &RunRange,
     (prefixed, selection): (bool, &Selection),
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let detail = args.detail(LogDetail::None);
-    let job = campaign::Job {
+    let job = campaign::CampaignJob {
         range: runs.range.clone(),
         part: runs.part,
         table: args.out.as_deref(),
@@ -285,7 +284,7 @@ fn several(
 }
 
 /// Returns the run of the scenario itself, without drawn keys.
-pub fn itself(study: &Campaign) -> CampaignRun {
+pub fn scenario_run(study: &Campaign) -> CampaignRun {
     CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() }
 }
 
@@ -295,33 +294,34 @@ fn single(
     run: &CampaignRun,
     args: &Args,
     (path, detail): (PathBuf, Option<Detail>),
-) -> Result<(), Failure> {
+) -> Result<(), CliError> {
     let _writing = detail.map(|_| stop::writing());
     let name = run.scenario.name.clone();
     let mut live = args.live.serve(run)?;
     let began = WallInstant::now();
     // A live run has no bar, since the user types commands on that line.
     let mut progress = live.is_none().then(|| Progress::new(run.scenario.duration));
-    let record = (Stop, (&mut progress, &mut live));
+    let record = (StopRecord, (&mut progress, &mut live));
     let result = match detail {
         None => Campaign::simulate(run, record).map(|metrics| (metrics, None)),
-        Some(detail) => {
-            logged(run, &path, (detail, args.force), record).map(|(metrics, bytes)| (metrics, Some(bytes)))
-        }
+        Some(detail) => simulate_to_log(run, &path, (detail, args.force), record)
+            .map(|(metrics, bytes)| (metrics, Some(bytes))),
     };
     if let Some(progress) = progress {
         progress.finish();
     }
     let took = began.elapsed().as_secs_f64();
     let (metrics, bytes) = result.map_err(|source| match source {
-        SimulationError::Record(RecordError::Io(source)) => Failure::write(&path)(source),
-        SimulationError::Record(RecordError::Interrupted) => Failure::Interrupted(interrupted(detail, &path)),
-        source => Failure::Run { name: name.clone(), source },
+        SimulationError::Record(RecordError::Io(source)) => CliError::write(&path)(source),
+        SimulationError::Record(RecordError::Interrupted) => {
+            CliError::Interrupted(interrupted(detail, &path))
+        }
+        source => CliError::Run { name: name.clone(), source },
     })?;
     if args.json {
         print_lines(&[campaign::object(study, run.number, &run.drawn, Ok(&metrics))])?;
     } else {
-        summary::tell(&run.scenario, &metrics, took, args.units.units);
+        summary::print_summary(&run.scenario, &metrics, took, args.units.units);
         if let Some(bytes) = bytes {
             say!("  log            {} ({:.0} kB)", path.display(), bytes as f64 / 1e3);
         }

@@ -8,11 +8,11 @@ use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::SimulationError;
-use flexsc_core::motion::Stretch;
+use flexsc_core::motion::MotionPiece;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
@@ -23,7 +23,7 @@ const PATIENCE: Duration = Duration::from_millis(50);
 /// Time for the writing of files to end after it is asked to stop.
 const PATIENCE_OF_FILES: Duration = Duration::from_secs(2);
 /// Time limit of the last message, whose reader may be blocked.
-const PATIENCE_OF_READERS: Duration = Duration::from_secs(1);
+const LAST_MESSAGE_TIMEOUT: Duration = Duration::from_secs(1);
 /// Stack size of a program's main thread on most systems (bytes).
 const STACK: usize = 8 << 20;
 
@@ -31,15 +31,15 @@ const STACK: usize = 8 << 20;
 static FILES: Mutex<(u32, bool)> = Mutex::new((0, false));
 
 /// Guard of file writing: while it exists, the program does not end, unless the writing takes too long to stop.
-pub struct Writing(());
+pub struct WriteGuard(());
 
 /// Waits until files may be written, and returns the guard.
-pub fn writing() -> Writing {
+pub fn writing() -> WriteGuard {
     loop {
         let mut files = files();
         if !files.1 {
             files.0 += 1;
-            return Writing(());
+            return WriteGuard(());
         }
         drop(files);
         // The program is ending.
@@ -47,7 +47,7 @@ pub fn writing() -> Writing {
     }
 }
 
-impl Drop for Writing {
+impl Drop for WriteGuard {
     fn drop(&mut self) {
         files().0 -= 1;
     }
@@ -62,14 +62,14 @@ fn files() -> MutexGuard<'static, (u32, bool)> {
 /// From this call on, the first Ctrl-C, SIGTERM or SIGHUP asks to stop: simulations end with finished files, and work
 /// that does not check the flag is abandoned. A second one ends the program. Ignored signals, as by `nohup` or in the
 /// background of a script, stay ignored.
-pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
+pub fn run_watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
     static ONCE: Once = Once::new();
     ONCE.call_once(handle);
     let (done, wait) = channel();
     let builder = thread::Builder::new().stack_size(STACK);
     let working = match builder.spawn(move || done.send(work())) {
         Ok(working) => working,
-        Err(source) => return Failure::Thread(source).tell(),
+        Err(source) => return CliError::Thread(source).print(),
     };
     let mut noticed = None;
     loop {
@@ -80,13 +80,13 @@ pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
                 Err(panic) => resume_unwind(panic),
                 Ok(_) => return 1,
             },
-            Err(RecvTimeoutError::Timeout) if asked() => {
+            Err(RecvTimeoutError::Timeout) if stop_requested() => {
                 let waited = noticed.get_or_insert_with(WallInstant::now).elapsed();
                 let mut files = files();
                 if waited >= PATIENCE && (files.0 == 0 || waited >= PATIENCE_OF_FILES) {
                     files.1 = true;
                     drop(files);
-                    return tell_interrupted();
+                    return print_interrupted();
                 }
             }
             Err(RecvTimeoutError::Timeout) => {}
@@ -96,11 +96,11 @@ pub fn watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
 
 /// Reports that the user asked to stop, and returns the exit code. A blocked reader of the output, such as a pager,
 /// does not delay it.
-fn tell_interrupted() -> u8 {
+fn print_interrupted() -> u8 {
     let (told, wait) = channel();
     // Without a thread, only the exit code reports it.
-    let _ = thread::Builder::new().spawn(move || told.send(Failure::Interrupted(String::new()).tell()));
-    wait.recv_timeout(PATIENCE_OF_READERS).unwrap_or(130)
+    let _ = thread::Builder::new().spawn(move || told.send(CliError::Interrupted(String::new()).print()));
+    wait.recv_timeout(LAST_MESSAGE_TIMEOUT).unwrap_or(130)
 }
 
 #[cfg(unix)]
@@ -138,12 +138,12 @@ fn handle() {
 
 /// Asks the program to stop, as Ctrl-C does.
 #[cfg(feature = "live")]
-pub fn ask() {
+pub fn request_stop() {
     ASKED.store(true, Ordering::Relaxed);
 }
 
 /// Returns true if the user asked to stop.
-pub fn asked() -> bool {
+pub fn stop_requested() -> bool {
     ASKED.load(Ordering::Relaxed)
 }
 
@@ -153,18 +153,18 @@ pub fn interrupted() -> SimulationError {
 }
 
 /// Record that ends the simulation when the user asks to stop.
-pub struct Stop;
+pub struct StopRecord;
 
-impl Record for Stop {
+impl Record for StopRecord {
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
         Ok(())
     }
 
     fn poll(&mut self) -> Result<(), RecordError> {
-        if asked() { Err(RecordError::Interrupted) } else { Ok(()) }
+        if stop_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 
-    fn stretch(&mut self, _: Instant, _: &Stretch) -> Result<(), RecordError> {
-        if asked() { Err(RecordError::Interrupted) } else { Ok(()) }
+    fn piece(&mut self, _: Instant, _: &MotionPiece) -> Result<(), RecordError> {
+        if stop_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 }

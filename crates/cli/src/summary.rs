@@ -9,8 +9,8 @@ use std::io::Write;
 use flexsc_core::Scenario;
 use flexsc_core::actuator::{EndState, Saturation};
 use flexsc_core::count::counted;
-use flexsc_core::estimator::Estimator;
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::estimator::EstimatorKind;
+use flexsc_core::metrics::{MetricValue, Metrics};
 
 use crate::human::{Units, digits};
 use crate::say;
@@ -23,7 +23,7 @@ struct Summary<'a> {
 }
 
 /// Prints the result of a run, which took `took` seconds of real time.
-pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64, units: Units) {
+pub fn print_summary(scenario: &Scenario, metrics: &Metrics, took: f64, units: Units) {
     let (duration, modes) = (scenario.duration.seconds(), scenario.mode_count());
     let head = format!("{}   {duration} s, {}", scenario.name, counted(modes, "mode"));
     let took = format!("{:.1} ms", took * 1e3);
@@ -32,7 +32,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64, units: Units) {
         say!("{head}, {took}");
         summary.three_axes();
         summary.adaptation();
-    } else if scenario.law.switches() {
+    } else if scenario.law.is_switching() {
         say!("{head}, {}, {took}", counted(summary.number("switchings"), "switching"));
         summary.switchings();
         summary.goal(&[]);
@@ -49,7 +49,7 @@ pub fn tell(scenario: &Scenario, metrics: &Metrics, took: f64, units: Units) {
 /// Returns warnings about a run.
 pub fn warnings(scenario: &Scenario, metrics: &Metrics) -> Vec<String> {
     let mut warnings = Vec::new();
-    if let (Some(Value::Word(word)), Some(share)) =
+    if let (Some(MetricValue::Word(word)), Some(share)) =
         (metrics.get("actuator_end"), metrics.number("actuator_limit_late_share"))
     {
         let seconds = Saturation::late_seconds(scenario.duration.seconds());
@@ -74,7 +74,7 @@ impl Summary<'_> {
 
     /// Prints the goal; `bands` are those about each of three axes (rad), if there are several.
     fn goal(&self, bands: &[f64]) {
-        let Some(Value::Word(word)) = self.metrics.get("goal") else { return };
+        let Some(MetricValue::Word(word)) = self.metrics.get("goal") else { return };
         let (band, outside) = (self.number("goal_band_rad"), self.number("time_outside_s"));
         if !band.is_finite() {
             say!("  goal           {word}");
@@ -102,7 +102,7 @@ impl Summary<'_> {
 
     /// Prints the envelope, the adaptation and the limit cycle of a relay law.
     fn switchings(&self) {
-        if let Some(Value::Numbers(means)) = self.metrics.get("envelope_window_means_rad")
+        if let Some(MetricValue::Numbers(means)) = self.metrics.get("envelope_window_means_rad")
             && let (Some(first), Some(last)) = (means.first(), means.last())
         {
             let change = 100.0 * (last / first - 1.0);
@@ -110,7 +110,7 @@ impl Summary<'_> {
             say!("  envelope       {both}  (window means, {change:+.0} %)");
         }
         self.adaptation();
-        if let Some(Value::Word(kind)) = self.metrics.get("cycle_kind") {
+        if let Some(MetricValue::Word(kind)) = self.metrics.get("cycle_kind") {
             let (period, largest) = (self.number("cycle_period_s"), self.number("cycle_multiplier_max"));
             if period.is_finite() {
                 let multiplier = if largest.is_finite() {
@@ -132,7 +132,7 @@ impl Summary<'_> {
             let objective = adaptation.objective();
             let unit = objective.unit(self.scenario.torque_unit());
             let both = [self.number("objective_initial"), self.number("objective_final")];
-            say!("  objective      {}: {}", objective.word(), self.units.list(&both, " -> ", unit));
+            say!("  objective      {}: {}", objective.key(), self.units.list(&both, " -> ", unit));
         }
         let frozen = self.number("gain_frozen_at_s");
         let end = if frozen.is_finite() {
@@ -158,7 +158,7 @@ impl Summary<'_> {
             digits(to)
         );
         if states > 0 {
-            let [low, high] = Estimator::inside(states);
+            let [low, high] = EstimatorKind::inside(states);
             let _ = write!(text, "; 95 % of the samples within NEES {low:.2} to {high:.2}");
         }
         text + ")"

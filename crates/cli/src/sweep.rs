@@ -8,16 +8,16 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flexsc_core::Scenario;
-use flexsc_core::campaign::{Campaign, DesignBlock, KeyRange, PointDesign};
+use flexsc_core::campaign::{Campaign, Design, DesignBlock, KeyRange};
 use flexsc_core::count::counted;
 use flexsc_core::record::Detail;
 
 use crate::campaign::logs::{self, LogDetail};
-use crate::campaign::{Kind, Options};
-use crate::consent::Consent;
-use crate::failure::Failure;
+use crate::campaign::{CampaignOptions, TableFormat};
+use crate::confirm_cost::CostConfirmation;
+use crate::error::CliError;
 use crate::human::Units;
-use crate::simulate::{Runs, runs};
+use crate::simulate::{RunRange, runs};
 use crate::{campaign, files, say, scenario};
 
 /// Largest number of combinations of a sweep.
@@ -30,13 +30,13 @@ pub struct Args {
     /// A key and its values: LO:HI:COUNT for evenly spaced values, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a
     /// range LO:HI for --sample. Repeat it for more keys: grids and lists are combined, ranges are sampled together
     #[arg(long, required_unless_present = "points", value_name = "KEY=VALUES", value_parser = varied)]
-    vary: Vec<Varied>,
+    vary: Vec<VariedKey>,
     /// CSV file of points: one column per key, one row per point; combined with --vary
     #[arg(long, value_name = "FILE")]
     points: Option<PathBuf>,
     /// Only runs LO to HI - 1 of the sweep
     #[arg(long, value_name = "LO:HI", value_parser = runs)]
-    runs: Option<Runs>,
+    runs: Option<RunRange>,
     /// Directory for the tables, created if missing, or FILE.csv or FILE.parquet for the rows
     #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
@@ -62,47 +62,47 @@ pub struct Args {
     #[arg(long, value_name = "DETAIL")]
     log: Option<LogDetail>,
     #[command(flatten)]
-    options: Options,
+    options: CampaignOptions,
     #[command(flatten)]
-    consent: Consent,
+    consent: CostConfirmation,
 }
 
 /// Key and its values.
 #[derive(Clone)]
-struct Varied {
+struct VariedKey {
     key: String,
-    values: Values,
+    values: KeyValues,
 }
 
 #[derive(Clone)]
-enum Values {
+enum KeyValues {
     Even { first: f64, last: f64, count: u32 },
     List(Vec<f64>),
     Range { from: f64, to: f64 },
 }
 
-fn varied(text: &str) -> Result<Varied, String> {
+fn varied(text: &str) -> Result<VariedKey, String> {
     let form = || {
         format!("`{text}` is not KEY=LO:HI:COUNT, such as law.relay.k_t=0.28:0.40:25, KEY=A,B,C or KEY=LO:HI")
     };
     let (key, values) = text.split_once('=').ok_or_else(form)?;
     let number = |text: &str| text.trim().parse().ok().filter(|v: &f64| v.is_finite()).ok_or_else(form);
     let values = if values.contains(',') {
-        Values::List(values.split(',').map(number).collect::<Result<_, _>>()?)
+        KeyValues::List(values.split(',').map(number).collect::<Result<_, _>>()?)
     } else {
         match values.split(':').collect::<Vec<_>>()[..] {
-            [start, end] => Values::Range { from: number(start)?, to: number(end)? },
+            [start, end] => KeyValues::Range { from: number(start)?, to: number(end)? },
             [start, end, count] => {
                 let count: u64 = count.parse().ok().filter(|count| *count > 0).ok_or_else(form)?;
                 if count > u64::from(MOST_VALUES) {
                     return Err(format!("a sweep has at most {MOST_VALUES} values, got {count}"));
                 }
-                Values::Even { first: number(start)?, last: number(end)?, count: count as u32 }
+                KeyValues::Even { first: number(start)?, last: number(end)?, count: count as u32 }
             }
             _ => return Err(form()),
         }
     };
-    Ok(Varied { key: key.to_owned(), values })
+    Ok(VariedKey { key: key.to_owned(), values })
 }
 
 impl Args {
@@ -112,74 +112,74 @@ impl Args {
     }
 
     /// Returns the file format of the rows, and true if they go to one file.
-    fn place(&self) -> Result<(Kind, bool), Failure> {
+    fn place(&self) -> Result<(TableFormat, bool), CliError> {
         let inputs: Vec<&Path> =
             [&self.scenario].into_iter().chain(&self.points).map(PathBuf::as_path).collect();
         self.options.place(self.out.as_deref(), &inputs, self.detail().is_some())
     }
 
     /// Returns the points, and their number.
-    fn design(&self, uncertain: bool) -> Result<(PointDesign, u64), Failure> {
+    fn design(&self, uncertain: bool) -> Result<(Design, u64), CliError> {
         let mut blocks = Vec::new();
         if let Some(path) = &self.points {
             blocks.push(points::read(path)?);
         }
         let mut ranges = Vec::new();
-        for Varied { key, values } in &self.vary {
+        for VariedKey { key, values } in &self.vary {
             let key = key.clone();
             match *values {
-                Values::Even { first, last, count } => {
+                KeyValues::Even { first, last, count } => {
                     blocks.push(DesignBlock::Even { key, first, last, count });
                 }
-                Values::List(ref values) => blocks.push(DesignBlock::List { key, values: values.clone() }),
-                Values::Range { from, to } => ranges.push(KeyRange { key, from, to }),
+                KeyValues::List(ref values) => blocks.push(DesignBlock::List { key, values: values.clone() }),
+                KeyValues::Range { from, to } => ranges.push(KeyRange { key, from, to }),
             }
         }
         if let Some(range) = ranges.first() {
             let Some(count) = self.options.points() else {
                 let why = "is a range, from which --sample takes points, such as --sample sobol:1024";
-                return Err(Failure::Arguments(format!("--vary {}: {why}", range.key)));
+                return Err(CliError::Arguments(format!("--vary {}: {why}", range.key)));
             };
             blocks.push(DesignBlock::Sample { sampling: self.options.sampling(), count, ranges });
         }
         let too_many = || {
             let why = format!("a sweep has at most {MOST_VALUES} combinations of values");
-            Failure::Arguments(format!("--vary: {why}"))
+            CliError::Arguments(format!("--vary: {why}"))
         };
         let points = blocks.iter().try_fold(1_u64, |points, block| points.checked_mul(block.count()));
         let points = points.ok_or_else(too_many)?;
-        let design = self.options.complete(PointDesign::of(blocks), uncertain, Some(points))?;
+        let design = self.options.complete(Design::from_blocks(blocks), uncertain, Some(points))?;
         let runs = points.checked_mul(self.options.replicas).filter(|runs| *runs <= u64::from(MOST_VALUES));
         let runs = runs.ok_or_else(too_many)?;
-        if let Some(problem) = design.problem(usize::from(uncertain)) {
-            return Err(Failure::Arguments(format!("--vary {problem}")));
+        if let Some(problem) = design.validate(usize::from(uncertain)) {
+            return Err(CliError::Arguments(format!("--vary {problem}")));
         }
         Ok((design, runs))
     }
 
     /// Returns the sweep over a scenario of this origin, and the range of its runs.
-    pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), Failure> {
+    pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), CliError> {
         let scenario = if self.uncertain { scenario } else { Campaign::undrawn(scenario) };
         let (design, all) = self.design(!scenario.uncertain.is_empty())?;
         let range = self.runs.as_ref().map_or(0..all, |runs| runs.range.clone());
         if range.end > all {
-            return Err(Failure::Arguments(format!("--runs: the sweep has {}", counted(all, "run"))));
+            return Err(CliError::Arguments(format!("--runs: the sweep has {}", counted(all, "run"))));
         }
-        let study = Campaign::of(scenario, origin, design)?;
+        let study = Campaign::from_design(scenario, origin, design)?;
         let runs = range.end - range.start;
         let cost =
-            study.cost(runs, self.detail()).map_err(|why| Failure::Arguments(format!("--vary: {why}")))?;
-        self.consent.to(&self.options.cost(cost, self.out.is_some() && !self.place()?.1))?;
+            study.cost(runs, self.detail()).map_err(|why| CliError::Arguments(format!("--vary: {why}")))?;
+        self.consent.check(&self.options.cost(cost, self.out.is_some() && !self.place()?.1))?;
         Ok((study, range))
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     let (kind, is_file) = args.place()?;
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
     if args.uncertain && scenario.uncertain.is_empty() {
         let path = args.scenario.display();
-        return Err(Failure::Arguments(format!("--uncertain: {path} has no [uncertain] keys")));
+        return Err(CliError::Arguments(format!("--uncertain: {path} has no [uncertain] keys")));
     }
     let undrawn = !args.uncertain && !scenario.uncertain.is_empty();
     let selection = args.options.selection()?;
@@ -191,7 +191,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         files::make_directory(out)?;
     }
     let detail = args.detail();
-    let job = campaign::Job {
+    let job = campaign::CampaignJob {
         range,
         part: args.runs.is_some(),
         table: args.out.as_deref(),

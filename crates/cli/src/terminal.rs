@@ -10,7 +10,7 @@ pub fn is_plain() -> bool {
 /// Disables colours on a terminal that prints escape sequences, unless `CLICOLOR_FORCE` is set.
 ///
 /// `anstream` colours every terminal if `CI` is set.
-pub fn settle_colours() {
+pub fn configure_colours() {
     if is_dumb() && !is_set("CLICOLOR_FORCE") {
         anstream::ColorChoice::Never.write_global();
     }

@@ -14,8 +14,8 @@ use flexsc_core::metrics::goal;
 use indicatif::{HumanDuration, MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::json;
 
-use crate::campaign::{MAIN, Running, parts, table_so_far};
-use crate::failure::Failure;
+use crate::campaign::{MAIN, RunningMean, part_files, table_so_far};
+use crate::error::CliError;
 use crate::terminal::is_plain;
 use crate::{print, stop};
 
@@ -44,21 +44,22 @@ pub struct Args {
 }
 
 /// Data of the parts that have been read, each once.
-struct Seen {
+struct ReadParts {
     parts: Vec<(Range<u64>, SystemTime)>,
-    metrics: Vec<(String, Running)>,
+    metrics: Vec<(String, RunningMean)>,
     failed: u64,
     /// Total time of all runs on one core (s).
     seconds: f64,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     if !(args.every.is_finite() && (0.05..=86_400.0).contains(&args.every)) {
-        return Err(Failure::Arguments(format!("--every must be from 0.05 to 86400 s, got {}", args.every)));
+        return Err(CliError::Arguments(format!("--every must be from 0.05 to 86400 s, got {}", args.every)));
     }
-    let directory = Directory::open(&args.directory).map_err(parts::failure)?;
-    let mut seen = Seen { parts: Vec::new(), metrics: metrics(args, &directory)?, failed: 0, seconds: 0.0 };
-    seen.look(&directory)?;
+    let directory = Directory::open(&args.directory).map_err(part_files::failure)?;
+    let mut seen =
+        ReadParts { parts: Vec::new(), metrics: metrics(args, &directory)?, failed: 0, seconds: 0.0 };
+    seen.refresh(&directory)?;
     if args.json {
         return print(format!("{}\n", seen.to_json(&directory)).as_bytes());
     }
@@ -71,15 +72,15 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     loop {
         shown.set_message(seen.text(&directory));
         shown.tick();
-        if seen.done() >= wanted(&directory) || stop::asked() {
+        if seen.done() >= wanted(&directory) || stop::stop_requested() {
             shown.abandon();
             return Ok(());
         }
         let began = Instant::now();
-        while began.elapsed().as_secs_f64() < args.every && !stop::asked() {
+        while began.elapsed().as_secs_f64() < args.every && !stop::stop_requested() {
             thread::sleep(Duration::from_millis(20));
         }
-        seen.look(&directory)?;
+        seen.refresh(&directory)?;
     }
 }
 
@@ -89,7 +90,7 @@ fn wanted(directory: &Directory) -> u64 {
 }
 
 /// Returns the metrics to show: the named ones, or the main ones.
-fn metrics(args: &Args, directory: &Directory) -> Result<Vec<(String, Running)>, Failure> {
+fn metrics(args: &Args, directory: &Directory) -> Result<Vec<(String, RunningMean)>, CliError> {
     let work = directory.work();
     let numeric = |name: &str| {
         work.fields().iter().any(|field| {
@@ -104,28 +105,28 @@ fn metrics(args: &Args, directory: &Directory) -> Result<Vec<(String, Running)>,
     }
     if let Some(other) = names.iter().find(|name| !numeric(name)) {
         let why = format!("there is no metric `{other}` that is a number");
-        return Err(Failure::Arguments(format!("{}: {why}", args.directory.display())));
+        return Err(CliError::Arguments(format!("{}: {why}", args.directory.display())));
     }
-    Ok(names.into_iter().map(|name| (name, Running::default())).collect())
+    Ok(names.into_iter().map(|name| (name, RunningMean::default())).collect())
 }
 
-impl Seen {
+impl ReadParts {
     /// Reads the new parts.
-    fn look(&mut self, directory: &Directory) -> Result<(), Failure> {
-        let all = directory.parts().map_err(parts::failure)?;
+    fn refresh(&mut self, directory: &Directory) -> Result<(), CliError> {
+        let all = directory.parts().map_err(part_files::failure)?;
         let new: Vec<_> =
             all.into_iter().filter(|runs| self.parts.iter().all(|(seen, _)| seen != runs)).collect();
         let mut names: Vec<&str> = vec![ERROR, SECONDS];
         names.extend(self.metrics.iter().map(|(name, _)| name.as_str()));
         let mut columns = Vec::new();
         for runs in &new {
-            columns.push(directory.columns_of(runs, &names).map_err(parts::failure)?);
+            columns.push(directory.columns_of(runs, &names).map_err(part_files::failure)?);
         }
         for (runs, columns) in new.into_iter().zip(columns) {
             let written = fs::metadata(directory.file(&runs)).and_then(|file| file.modified());
             self.parts.push((runs, written.unwrap_or(SystemTime::UNIX_EPOCH)));
             let mut columns = columns.into_iter();
-            self.failed += columns.next().map_or(0, |errors| errors.told() as u64);
+            self.failed += columns.next().map_or(0, |errors| errors.non_null_count() as u64);
             self.seconds += columns.next().map_or(0.0, |seconds| seconds.numbers().iter().sum());
             for ((_, running), column) in self.metrics.iter_mut().zip(columns) {
                 column.numbers().into_iter().for_each(|value| running.add(value));

@@ -1,19 +1,19 @@
 //! The control system of a spacecraft: from sensor measurements to actuator outputs.
 //!
-//! Each role is a trait: [`sensor::Sense`], [`estimator::Estimate`], [`adaptation::Adapt`], [`law::Control`],
-//! [`actuator::Actuate`]. `docs/extending.md` describes how to add a kind.
+//! Each role is a trait: [`sensor::Sensor`], [`estimator::Estimator`], [`adaptation::AdaptationSpec`], [`law::Law`],
+//! [`actuator::Actuator`]. `docs/extending.md` describes how to add a kind.
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 
 pub mod actuator;
 pub mod adaptation;
-pub mod belief;
+pub mod custom;
 pub mod estimator;
+pub mod interval;
 pub mod law;
-pub mod outage;
-pub mod own;
-pub mod parts;
+pub mod one_or_many;
 pub mod sensor;
+pub mod state_estimate;
 
 use flexsc_formats::{count, document};
 use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};

@@ -2,23 +2,23 @@
 
 #[cfg(feature = "parquet")]
 mod checksum;
-mod commanded;
+mod command_log;
 #[cfg(feature = "parquet")]
 mod contained;
-mod crew;
 mod design;
 mod directory;
 mod draws;
 mod error;
 mod manifest;
 mod merge;
-#[cfg_attr(not(feature = "parquet"), path = "campaign/left_out.rs")]
+#[cfg_attr(not(feature = "parquet"), path = "campaign/unavailable.rs")]
 mod parquet;
 mod part;
+mod row_maker;
 mod rows;
 mod sampling;
 mod summary;
-mod work;
+mod workers;
 
 use std::time::Instant as WallInstant;
 
@@ -27,22 +27,22 @@ use toml::{Table, Value};
 
 use crate::document::{Document, ScenarioError, key};
 use crate::layout::Layout;
-use crate::metrics::{self, Gather, Metrics, Selection};
+use crate::metrics::{self, Metrics, MetricsCollector, Selection};
 use crate::record::{Attachment, Detail, OutputName, Provenance, Record};
 use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 
-pub use commanded::Commanded;
-pub use design::{DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS, PointDesign};
+pub use command_log::CommandLog;
+pub use design::{Design, DesignBlock, KeyRange, MOST_NUMBERS, MOST_POINTS};
 pub use directory::{Directory, MANIFEST, STATISTICS};
 pub use error::DirectoryError;
 pub use manifest::Manifest;
 pub use merge::Merge;
 pub use parquet::parquet_is_built_in;
-pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, Rows, SECONDS, SEED};
+pub use row_maker::RowMaker;
+pub use rows::{ColumnCells, ColumnHeading, ColumnKind, ERROR, RUN, RunRows, SECONDS, SEED};
 pub use sampling::Sampling;
-pub use summary::Summary;
-pub use work::Work;
+pub use summary::CampaignSummary;
 
 /// Error of a run.
 #[derive(Debug, Error)]
@@ -61,7 +61,7 @@ pub struct Campaign {
     scenario: Scenario,
     table: Table,
     origin: String,
-    design: PointDesign,
+    design: Design,
 }
 
 /// Key with a list of values. Run i of a campaign over one grid has value i; over several, the combinations are counted
@@ -76,8 +76,8 @@ pub struct Grid {
 
 impl Grid {
     /// Returns the grid of `count` equidistant values from the first to the last.
-    pub fn even(key: String, first: f64, last: f64, count: u32) -> Self {
-        Self { key, values: (0..count).map(|index| design::even(first, last, count, index)).collect() }
+    pub fn linspace(key: String, first: f64, last: f64, count: u32) -> Self {
+        Self { key, values: (0..count).map(|index| design::linspace(first, last, count, index)).collect() }
     }
 }
 
@@ -112,12 +112,12 @@ impl Campaign {
         origin: &str,
         grids: impl IntoIterator<Item = Grid>,
     ) -> Result<Self, ScenarioError> {
-        Self::of(scenario, origin, PointDesign::of(grids.into_iter().map(DesignBlock::from)))
+        Self::from_design(scenario, origin, Design::from_blocks(grids.into_iter().map(DesignBlock::from)))
     }
 
     /// Returns the campaign of a scenario over its `[uncertain]` keys and the points of a design.
-    pub fn of(mut scenario: Scenario, origin: &str, design: PointDesign) -> Result<Self, ScenarioError> {
-        scenario.written.forget_files();
+    pub fn from_design(mut scenario: Scenario, origin: &str, design: Design) -> Result<Self, ScenarioError> {
+        scenario.written.inline_files();
         // A key with values is not drawn.
         let varied = design.keys();
         let tied = scenario
@@ -131,16 +131,16 @@ impl Campaign {
         }
         scenario.written.uncertain.retain(|key, _| !varied.contains(&key.as_str()));
         // Custom parts of a program have no text: runs inherit them.
-        let mut table = scenario.table_beside_own_parts();
+        let mut table = scenario.table_without_custom_parts();
         // The drawn keys replace the `[uncertain]` table.
         table.remove("uncertain");
         table.remove("correlated");
-        if let Some(why) = design.problem(scenario.uncertain.len()) {
+        if let Some(why) = design.validate(scenario.uncertain.len()) {
             return Err(ScenarioError::Key { origin: origin.to_owned(), key: "design".to_owned(), why });
         }
         let campaign = Self { scenario, table, origin: origin.to_owned(), design };
         // A key that does not exist, or a range that is not accepted, fails all runs: report it at once.
-        for (key, value) in campaign.design.ends() {
+        for (key, value) in campaign.design.bounds() {
             campaign.scenario_with(&[(key, campaign.like(key, value))])?;
         }
         Ok(campaign)
@@ -162,13 +162,15 @@ impl Campaign {
             return Err(format!("must be at most {MOST_RUNS} runs, got {runs}"));
         }
         let mut cost = self.scenario.cost(log, false);
-        for (key, value) in self.design.ends() {
+        for (key, value) in self.design.bounds() {
             let ends = self.scenario_with(&[(key, self.like(key, value))]);
             cost = cost.max(ends.map_err(|error| error.to_string())?.cost(log, false));
         }
-        let side_by_side =
-            runs > 1 && log.is_none() && crate::batch::takes(&self.scenario) && !self.scenario.law.switches();
-        Ok(if side_by_side { cost.in_lanes() } else { cost }.times(runs))
+        let side_by_side = runs > 1
+            && log.is_none()
+            && crate::batch::accepts(&self.scenario)
+            && !self.scenario.law.is_switching();
+        Ok(if side_by_side { cost.in_lanes() } else { cost }.scaled_by(runs))
     }
 
     /// Returns the scenario from which the runs are drawn as TOML; the same campaign can be created from it. It refers
@@ -230,26 +232,26 @@ impl Campaign {
 
     /// Simulates a run with a record, and returns its metrics.
     pub fn simulate(run: &CampaignRun, record: impl Record) -> Result<Metrics, SimulationError> {
-        Self::simulate_for(run, &Selection::ALL, record)
+        Self::simulate_metrics(run, &Selection::ALL, record)
     }
 
     /// Simulates a run with a record, and returns the selected metrics.
-    pub fn simulate_for(
+    pub fn simulate_metrics(
         run: &CampaignRun,
         selection: &Selection,
         record: impl Record,
     ) -> Result<Metrics, SimulationError> {
-        let mut both = (Gather::of(&run.scenario, selection), record);
+        let mut both = (MetricsCollector::for_selection(&run.scenario, selection), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);
-        if both.scene() {
-            simulation.draw(&run.scenario);
+        if both.wants_scene() {
+            simulation.enable_scene(&run.scenario);
         }
         simulation.run(&mut both)?;
-        Ok(selection.of_run(both.0.finish(&run.scenario)))
+        Ok(selection.select(both.0.finish(&run.scenario)))
     }
 
     /// Returns the outcome of a run; `work` simulates it.
-    pub(crate) fn outcome(
+    pub(crate) fn run_outcome(
         &self,
         number: u64,
         selection: &Selection,
@@ -267,13 +269,13 @@ impl Campaign {
     }
 
     /// Returns the points of the campaign.
-    pub fn design(&self) -> &PointDesign {
+    pub fn design(&self) -> &Design {
         &self.design
     }
 
     /// Returns the provenance in the log of a run in this detail, with a layout for viewers.
     pub fn provenance(run: &CampaignRun, detail: Detail) -> Provenance {
-        let layout = Layout::of(&run.scenario).of_detail(detail).to_json();
+        let layout = Layout::for_scenario(&run.scenario).for_detail(detail).to_json();
         Provenance {
             scenario: run.scenario.name.clone(),
             toml: run.scenario.self_contained().to_toml(),
@@ -287,7 +289,7 @@ impl Campaign {
                 .iter()
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
-            own_parts: run.scenario.own_parts().each(),
+            own_parts: run.scenario.custom_parts().each(),
             attachments: vec![Attachment {
                 name: "layout.json",
                 media_type: "application/json",
@@ -307,12 +309,12 @@ impl Campaign {
     }
 
     fn scenario_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
-        Scenario::from_document_like(&self.document_with(keys)?, &self.scenario)
+        Scenario::from_document_reusing(&self.document_with(keys)?, &self.scenario)
     }
 
     /// Returns the scenario with drawn values of keys that hold numbers already.
     fn drawn_with(&self, keys: &[(&str, Value)]) -> Result<Scenario, ScenarioError> {
-        Scenario::from_numbers_like(&self.document_with(keys)?, &self.scenario)
+        Scenario::from_numbers_reusing(&self.document_with(keys)?, &self.scenario)
     }
 
     fn document_with(&self, keys: &[(&str, Value)]) -> Result<Document, ScenarioError> {

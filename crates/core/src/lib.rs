@@ -12,9 +12,9 @@
 //!                   manoeuvre or target --goal-----------------+--waveform------+
 //! ```
 //!
-//! One loop runs one-axis and three-axis bodies (relay runs of one axis may run in the kernel of `flexsc_flight`
+//! One loop runs one-axis and three-axis bodies (relay runs of one axis may run in the kernel of `flexsc_relay_kernel`
 //! instead, with the same records); each axis has an estimate, a law and a goal. Each role is a trait:
-//! [`sensor::Sense`], [`estimator::Estimate`], [`law::Control`], [`actuator::Actuate`]. `docs/extending.md` describes
+//! [`sensor::Sensor`], [`estimator::Estimator`], [`law::Law`], [`actuator::Actuator`]. `docs/extending.md` describes
 //! how to add a kind.
 //!
 //! ```
@@ -42,21 +42,23 @@
 pub mod analysis;
 pub mod batch;
 pub mod campaign;
-mod flight;
 pub mod layout;
 pub mod metrics;
+mod relay_setup;
 pub mod scenario;
 pub mod scene;
 mod sim;
 pub mod statistics;
 pub mod uncertain;
 
-pub use flexsc_control::{actuator, adaptation, belief, estimator, law, outage, own, parts, sensor};
+pub use flexsc_control::{
+    actuator, adaptation, custom, estimator, interval, law, one_or_many, sensor, state_estimate,
+};
 pub use flexsc_formats::{count, document, structure};
 pub use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};
-pub use flexsc_output::{record, whole};
+pub use flexsc_output::{atomic_file, record};
 pub use flexsc_spacecraft::{axes, body, disturbance, environment, flow, manoeuvre, sine, wrench};
 
-pub use document::{Document, LONGEST, Mistake, ScenarioError, nearest};
+pub use document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
 pub use scenario::Scenario;
-pub use sim::{LookField, LookGroup, Occasion, Simulation, SimulationError};
+pub use sim::{ObservationField, ObservationGroup, Simulation, SimulationError, StopAt};

@@ -1,6 +1,6 @@
 //! Statistics of a campaign: mean, standard deviation and quantiles of every metric.
 
-use crate::metrics::{Meaning, MetricValue, Metrics, Value, goal};
+use crate::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, goal};
 
 /// Quantiles that are reported.
 pub const QUANTILES: [f64; 5] = [0.05, 0.25, 0.5, 0.75, 0.95];
@@ -26,19 +26,19 @@ pub struct Statistics {
 
 /// Numeric metrics of runs, as columns for the statistics.
 #[derive(Clone, Debug, Default)]
-pub struct Gathered {
+pub struct MetricColumns {
     runs: usize,
-    columns: Vec<(&'static Meaning, Vec<f64>)>,
+    columns: Vec<(&'static MetricDescription, Vec<f64>)>,
 }
 
-impl Gathered {
+impl MetricColumns {
     /// Adds a run.
     pub fn add(&mut self, run: &Metrics) {
         if self.runs == 0 {
-            let counts = |(meaning, value): &MetricValue| match value {
-                Value::Count(_) | Value::Number(_) => true,
-                Value::Word(_) => goal::NAMES.contains(&meaning.name),
-                Value::Numbers(_) | Value::Quantities(_) => false,
+            let counts = |(meaning, value): &NamedMetric| match value {
+                MetricValue::Count(_) | MetricValue::Number(_) => true,
+                MetricValue::Word(_) => goal::NAMES.contains(&meaning.name),
+                MetricValue::Numbers(_) | MetricValue::Quantities(_) => false,
             };
             self.columns =
                 run.0.iter().filter(|told| counts(told)).map(|told| (told.0, Vec::new())).collect();
@@ -46,9 +46,9 @@ impl Gathered {
         self.runs += 1;
         for (meaning, values) in &mut self.columns {
             values.push(match run.get(meaning.name) {
-                Some(Value::Count(count)) => *count as f64,
-                Some(Value::Number(number)) => *number,
-                Some(Value::Word(word)) => goal::score(word).unwrap_or(f64::NAN),
+                Some(MetricValue::Count(count)) => *count as f64,
+                Some(MetricValue::Number(number)) => *number,
+                Some(MetricValue::Word(word)) => goal::score(word).unwrap_or(f64::NAN),
                 _ => f64::NAN,
             });
         }
@@ -62,15 +62,15 @@ impl Gathered {
     /// Returns the statistics of each metric. A goal or a requirement counts as 1 if it is met and as 0 if it is
     /// missed: the mean is the fraction of runs that meet it.
     pub fn finish(self) -> Vec<Statistics> {
-        self.columns.into_iter().map(|(meaning, values)| Statistics::of(meaning, values)).collect()
+        self.columns.into_iter().map(|(meaning, values)| Statistics::from_values(meaning, values)).collect()
     }
 }
 
 impl Statistics {
     /// Computes the statistics of a metric from its values, which are NaN for runs without one.
-    pub fn of(meaning: &Meaning, mut values: Vec<f64>) -> Self {
+    pub fn from_values(meaning: &MetricDescription, mut values: Vec<f64>) -> Self {
         values.retain(|v| !v.is_nan());
-        let told = values.len();
+        let described = values.len();
         values.retain(|v| v.is_finite());
         values.sort_by(f64::total_cmp);
         let (mean, sd) = mean_and_sd(&values);
@@ -78,7 +78,7 @@ impl Statistics {
             name: meaning.name,
             unit: meaning.unit,
             runs: values.len(),
-            infinite: told - values.len(),
+            infinite: described - values.len(),
             mean,
             sd,
             quantiles: QUANTILES.map(|q| quantile(&values, q)),
@@ -144,18 +144,21 @@ mod tests {
     #[test]
     fn the_mean_of_goals_is_the_fraction_that_is_met() {
         let run = |band: f64, until: f64| {
-            let mut verdict = goal::Verdict::new(0.0, band);
-            verdict.outside(0.0, until);
+            let mut verdict = goal::GoalMetrics::new(0.0, band);
+            verdict.add_outside(0.0, until);
             Metrics(verdict.finish(10.0).into())
         };
         let runs = [run(1.0, 1.0), run(1.0, 9.5), run(f64::NAN, 0.0), run(1.0, 0.0), run(1.0, 3.0)];
-        let mut gathered = Gathered::default();
+        let mut gathered = MetricColumns::default();
         for run in runs {
             gathered.add(&run);
         }
-        let told = gathered.finish();
-        assert_eq!((told[0].name, told[0].runs, told[0].mean), ("goal", 4, 0.75));
-        assert_eq!((told[2].name, told[2].runs, told[2].mean), ("time_outside_s", 4, 13.5 / 4.0));
+        let described = gathered.finish();
+        assert_eq!((described[0].name, described[0].runs, described[0].mean), ("goal", 4, 0.75));
+        assert_eq!(
+            (described[2].name, described[2].runs, described[2].mean),
+            ("time_outside_s", 4, 13.5 / 4.0)
+        );
     }
 
     #[test]

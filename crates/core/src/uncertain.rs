@@ -42,7 +42,7 @@ pub struct Normal {
 
 impl Distribution {
     /// Returns the first inconsistency of the distribution for a key with the value `nominal`.
-    pub fn problem(&self, nominal: Option<&Value>) -> Option<String> {
+    pub fn validate(&self, nominal: Option<&Value>) -> Option<String> {
         match self {
             Self::Uniform([low, high]) if low >= high => {
                 Some(format!("needs [low, high] in this order, got [{}, {}]", low.get(), high.get()))

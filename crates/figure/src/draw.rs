@@ -39,7 +39,7 @@ struct Layout {
 
 impl Layout {
     /// The layout of a figure of this width, each of whose plots is higher than usual (px).
-    fn of(figure: &Figure, width: u32, higher: u32) -> Self {
+    fn new(figure: &Figure, width: u32, higher: u32) -> Self {
         let part = f64::from(width.min(WIDTH)) / f64::from(WIDTH);
         // Narrow figures are also lower, but less than proportionally.
         let plot = f64::from(figure.panel_height) * part.powf(0.6);
@@ -115,12 +115,12 @@ fn title_lines(title: &str, width: u32) -> Vec<String> {
 
 /// Returns the height (px) of a figure of this width (px).
 pub fn height(figure: &Figure, width: u32) -> u32 {
-    Layout::of(figure, width, 0).height(figure, title_lines(&figure.title, width).len())
+    Layout::new(figure, width, 0).height(figure, title_lines(&figure.title, width).len())
 }
 
 /// Returns the figure as SVG of this width (px), each plot higher than usual by `higher` (px).
 pub fn svg(figure: &Figure, width: u32, higher: u32) -> Result<String, Error> {
-    let layout = Layout::of(figure, width, higher);
+    let layout = Layout::new(figure, width, higher);
     let lines = title_lines(&figure.title, width);
     let title = TITLE + LINE * (lines.len().max(1) as u32 - 1);
     let height = layout.height(figure, lines.len());

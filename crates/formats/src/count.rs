@@ -14,7 +14,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn one_thing_is_no_plural() {
+    fn singular_counts_have_no_plural_s() {
         assert_eq!(counted(1, "mode"), "1 mode");
         assert_eq!(counted(1.0, "run"), "1 run");
         assert_eq!(counted(0, "mode"), "0 modes");

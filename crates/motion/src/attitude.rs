@@ -72,7 +72,7 @@ impl JsonSchema for Attitude {
 }
 
 /// Returns the attitude after rotations by yaw, then pitch, then roll about the rotated axes (rad; sequence 3-2-1).
-pub fn turned(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
+pub fn from_yaw_pitch_roll(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
     let about = |axis: usize, angle: f64| {
         let (sin, cos) = libm::sincos(0.5 * angle);
         let mut vector = Vector::zeros();
@@ -83,7 +83,7 @@ pub fn turned(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
 }
 
 /// Returns the attitude of a body with the axes x, y and z, right-handed unit vectors in inertial axes.
-pub fn of_axes([x, y, z]: &[Vector; 3]) -> Quaternion<f64> {
+pub fn from_axes([x, y, z]: &[Vector; 3]) -> Quaternion<f64> {
     // Four times the square of each component; the largest one is the divisor.
     let squares =
         [1.0 + x.x + y.y + z.z, 1.0 + x.x - y.y - z.z, 1.0 - x.x + y.y - z.z, 1.0 - x.x - y.y + z.z];
@@ -177,19 +177,19 @@ mod tests {
             let turn = |axis: Vector| -> Vector {
                 (q * Quaternion::from_imag(axis) * q.conjugate()).vector().into_owned()
             };
-            let found = of_axes(&[turn(Vector::x()), turn(Vector::y()), turn(Vector::z())]);
+            let found = from_axes(&[turn(Vector::x()), turn(Vector::y()), turn(Vector::z())]);
             assert!(rotation_vector(&q, &found).norm() < 1e-14, "{by:?}");
         }
     }
 
     #[test]
     fn angles_come_back_and_errors_are_small_rotations() {
-        let at = turned(0.3, -0.7, 2.1);
+        let at = from_yaw_pitch_roll(0.3, -0.7, 2.1);
         for (found, exact) in angles(&at).into_iter().zip([0.3, -0.7, 2.1]) {
             assert!((found - exact).abs() < 1e-15, "{found} {exact}");
         }
         // Rotates further by a small angle about the body's y axis, with both signs of the quaternion.
-        let further = at * turned(0.0, 1e-3, 0.0);
+        let further = at * from_yaw_pitch_roll(0.0, 1e-3, 0.0);
         for q in [further, -further] {
             let error = rotation_vector(&at, &q);
             assert!((error - Vector::new(0.0, 1e-3, 0.0)).norm() < 1e-15, "{error}");
@@ -206,7 +206,7 @@ mod tests {
             rotation_vector(&Quaternion::new(1.0, 0.0, 0.0, 0.0), &Quaternion::new(1.0, 2e-300, 0.0, 0.0));
         assert_eq!(least, Vector::new(4e-300, 0.0, 0.0));
         // Yaw first: a quarter turn rotates the body's x to the inertial y.
-        let quarter = turned(0.0, 0.0, std::f64::consts::FRAC_PI_2);
+        let quarter = from_yaw_pitch_roll(0.0, 0.0, std::f64::consts::FRAC_PI_2);
         let x = quarter * Quaternion::from_imag(Vector::x()) * quarter.conjugate();
         assert!((x.vector() - Vector::y()).norm() < 1e-15);
     }

@@ -3,12 +3,12 @@
 //! The search strides only as far as bounds on the motion prove that no guard can trip, so that no crossing is
 //! missed, however brief, and no tolerance is needed. `docs/events.md` derives the stride.
 
-use super::Sensed;
+use super::AngleObservation;
 use crate::time::Span;
 
 /// Guard that tripped, with the instant and the observation there.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Trip<S = Sensed> {
+pub struct Crossing<S = AngleObservation> {
     /// Time since the start of the segment.
     pub after: Span,
     /// Index of the guard.
@@ -18,31 +18,37 @@ pub struct Trip<S = Sensed> {
 }
 
 /// Motion in closed form with bounded derivatives, on which guards can be searched.
-pub trait Approach {
+pub trait BoundedMotion {
     /// Threshold that is monitored.
     type Guard: Copy;
     /// Scratch state of the motion at one instant, with its bounds.
     type State;
     /// Observed quantities at one instant.
-    type Sensed: Copy;
+    type Observation: Copy;
 
     /// Evaluates the start of the segment and returns the observation there.
-    fn begin(&self, state: &mut Self::State) -> Self::Sensed;
+    fn initial(&self, state: &mut Self::State) -> Self::Observation;
     /// Evaluates the motion `h` (s) after the start of the segment and returns the observation.
-    fn go(&self, h: f64, state: &mut Self::State) -> Self::Sensed;
+    fn evaluate(&self, h: f64, state: &mut Self::State) -> Self::Observation;
     /// Returns true if the evaluated motion is finite.
-    fn is_finite(state: &Self::State, sensed: Self::Sensed) -> bool;
+    fn is_finite(state: &Self::State, sensed: Self::Observation) -> bool;
     /// Returns true if the guard's condition holds.
-    fn holds(guard: Self::Guard, state: &Self::State, sensed: Self::Sensed) -> bool;
+    fn holds(guard: Self::Guard, state: &Self::State, sensed: Self::Observation) -> bool;
     /// Returns the time for which the current bounds are valid (s).
-    fn window(state: &Self::State) -> f64;
+    fn bounds_valid_for(state: &Self::State) -> f64;
     /// Returns a time (s) after the start of the segment before which the guard cannot trip, for a motion of length
     /// `horizon`; 0 if none is known at once.
-    fn earliest(&self, guard: Self::Guard, horizon: Span, state: &Self::State) -> f64;
+    fn earliest_crossing(&self, guard: Self::Guard, horizon: Span, state: &Self::State) -> f64;
     /// Returns a time (s) for which the guard cannot trip, starting at the current instant.
-    fn stride(&self, guard: Self::Guard, state: &Self::State, sensed: Self::Sensed) -> f64;
+    fn safe_stride(&self, guard: Self::Guard, state: &Self::State, sensed: Self::Observation) -> f64;
     /// Returns true if the guard cannot trip within `time` (s) from the current instant.
-    fn is_clear(&self, guard: Self::Guard, state: &Self::State, sensed: Self::Sensed, time: f64) -> bool;
+    fn has_no_crossing(
+        &self,
+        guard: Self::Guard,
+        state: &Self::State,
+        sensed: Self::Observation,
+        time: f64,
+    ) -> bool;
 }
 
 /// Number of strides between two calls of `go_on` (cancellation check).
@@ -53,20 +59,20 @@ const STRIDES: u32 = 256;
 ///
 /// # Errors
 /// The error of `go_on`, which is called regularly, ends the search, however small its strides are.
-pub fn locate<M: Approach, E>(
+pub fn first_crossing<M: BoundedMotion, E>(
     motion: &M,
     guards: &[M::Guard],
     horizon: Span,
     state: &mut M::State,
     mut go_on: impl FnMut() -> Result<(), E>,
-) -> Result<Option<Trip<M::Sensed>>, E> {
-    let mut sensed = motion.begin(state);
+) -> Result<Option<Crossing<M::Observation>>, E> {
+    let mut sensed = motion.initial(state);
     if let Some(guard) = guards.iter().position(|guard| M::holds(*guard, state, sensed)) {
-        motion.go(0.0, state);
-        return Ok(Some(Trip { after: Span::ZERO, guard, sight: sensed }));
+        motion.evaluate(0.0, state);
+        return Ok(Some(Crossing { after: Span::ZERO, guard, sight: sensed }));
     }
-    let first = |&guard| match motion.earliest(guard, horizon, state) {
-        0.0 => motion.stride(guard, state, sensed),
+    let first = |&guard| match motion.earliest_crossing(guard, horizon, state) {
+        0.0 => motion.safe_stride(guard, state, sensed),
         jump => jump,
     };
     let mut stride = guards.iter().map(first).fold(f64::INFINITY, f64::min);
@@ -74,7 +80,7 @@ pub fn locate<M: Approach, E>(
     let mut base = Span::ZERO;
     let mut strides = 0_u32;
     loop {
-        let (base_s, last) = (base.seconds(), horizon.minus(base).leading_femtoseconds());
+        let (base_s, last) = (base.seconds(), horizon.remaining_after(base).leading_femtoseconds());
         let mut ticks = 0;
         while ticks < last && M::is_finite(state, sensed) {
             strides = strides.wrapping_add(1);
@@ -83,15 +89,15 @@ pub fn locate<M: Approach, E>(
             }
             // The tick before the stride's end cannot trip: the next one is the first that can.
             ticks = ticks.saturating_add((stride * 1e15) as i64).saturating_add(1).min(last);
-            sensed = motion.go(base_s + ticks as f64 / 1e15, state);
-            stride = M::window(state);
+            sensed = motion.evaluate(base_s + ticks as f64 / 1e15, state);
+            stride = M::bounds_valid_for(state);
             for (index, &guard) in guards.iter().enumerate() {
                 if M::holds(guard, state, sensed) {
                     let after = base + Span::from_femtoseconds(ticks);
-                    return Ok(Some(Trip { after, guard: index, sight: sensed }));
+                    return Ok(Some(Crossing { after, guard: index, sight: sensed }));
                 }
-                if !motion.is_clear(guard, state, sensed, stride) {
-                    stride = stride.min(motion.stride(guard, state, sensed));
+                if !motion.has_no_crossing(guard, state, sensed, stride) {
+                    stride = stride.min(motion.safe_stride(guard, state, sensed));
                 }
             }
         }

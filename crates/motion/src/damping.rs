@@ -7,8 +7,8 @@
 
 use std::fmt::Debug;
 
-use crate::lanes::Real;
-use crate::numerics::decay::{exp, exp_short};
+use crate::lanes::LaneFloat;
+use crate::numerics::exp_branch_free::{exp, exp_short};
 use crate::numerics::trig::{sincos, sincos_short};
 
 /// Angle (rad) below which a rotation is computed by a polynomial of order 5, exact to rounding.
@@ -16,25 +16,25 @@ pub const TINY: f64 = 3e-3;
 
 /// Damping rule of a mode; its deviation is the displacement from equilibrium and the rate divided by the frequency
 /// (rad).
-pub trait Damping<R: Real>: Copy + Debug {
+pub trait DampingRule<R: LaneFloat>: Copy + Debug {
     /// True if modes of this kind can be damped.
     const IS_DAMPED: bool;
 
     /// Returns no damping; `kind` only determines the number type.
-    fn none(kind: R) -> Self;
+    fn undamped(kind: R) -> Self;
 
     /// Sets the damping in one lane to that of a mode with the given frequency (rad/s) and damping ratio.
     #[must_use]
     fn with_lane(self, lane: usize, frequency: f64, ratio: f64) -> Self;
 
     /// Returns the deviation after the time `t` (s).
-    fn go(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
+    fn advance(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
 
     /// Returns the deviation after `t` (s), for at most 3/4 rad of phase, forwards or backwards.
-    fn go_short(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
+    fn advance_short(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
 
     /// Returns the deviation after `t` (s), for a phase below [`TINY`].
-    fn go_tiny(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
+    fn advance_tiny(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2];
 
     /// Returns the derivatives x', -x'', -x''' and x'''' of the displacement x.
     fn derivatives(self, frequency: R, deviation: [R; 2]) -> [R; 4];
@@ -43,10 +43,10 @@ pub trait Damping<R: Real>: Copy + Debug {
     fn stiffness(self, frequency: R) -> R;
 
     /// Returns the frequency of the motion (rad/s), reduced by damping.
-    fn turning(self, frequency: R) -> R;
+    fn frequency(self, frequency: R) -> R;
 
     /// Returns the decay rate (1/s); `kind` only determines the number type.
-    fn decay(self, kind: R) -> R;
+    fn decay_rate(self, kind: R) -> R;
 }
 
 /// Rule of a mode without damping.
@@ -86,7 +86,7 @@ impl Damped<f64> {
     }
 }
 
-impl<R: Real> Damped<R> {
+impl<R: LaneFloat> Damped<R> {
     /// Returns the 2 x 2 transition matrix of the deviation, row by row, from sine and cosine of the damped phase and
     /// the decay factor `left`.
     #[inline(always)]
@@ -105,30 +105,30 @@ impl<R: Real> Damped<R> {
 
 /// Returns sine and cosine of an angle below [`TINY`].
 #[inline(always)]
-fn tiny<R: Real>(x: R) -> (R, R) {
+fn tiny<R: LaneFloat>(x: R) -> (R, R) {
     let z = x * x;
-    let (sixth, half) = (x.of(1.0 / 6.0), x.of(0.5));
-    let sin = x - x * z * (sixth - z * x.of(1.0 / 120.0));
-    (sin, x.of(1.0) - z * (half - z * x.of(1.0 / 24.0)))
+    let (sixth, half) = (x.splat(1.0 / 6.0), x.splat(0.5));
+    let sin = x - x * z * (sixth - z * x.splat(1.0 / 120.0));
+    (sin, x.splat(1.0) - z * (half - z * x.splat(1.0 / 24.0)))
 }
 
 /// Returns the exponential of a number below [`TINY`].
 #[inline(always)]
-fn exp_tiny<R: Real>(x: R) -> R {
-    let rest = x.of(1.0 / 6.0) + x * (x.of(1.0 / 24.0) + x * x.of(1.0 / 120.0));
-    x.of(1.0) + (x + x * x * (x.of(0.5) + x * rest))
+fn exp_tiny<R: LaneFloat>(x: R) -> R {
+    let rest = x.splat(1.0 / 6.0) + x * (x.splat(1.0 / 24.0) + x * x.splat(1.0 / 120.0));
+    x.splat(1.0) + (x + x * x * (x.splat(0.5) + x * rest))
 }
 
 #[inline(always)]
-fn turned<R: Real>([x, y]: [R; 2], (sin, cos): (R, R)) -> [R; 2] {
+fn turned<R: LaneFloat>([x, y]: [R; 2], (sin, cos): (R, R)) -> [R; 2] {
     [cos * x + sin * y, cos * y - sin * x]
 }
 
-impl<R: Real> Damping<R> for Undamped {
+impl<R: LaneFloat> DampingRule<R> for Undamped {
     const IS_DAMPED: bool = false;
 
     #[inline(always)]
-    fn none(_: R) -> Self {
+    fn undamped(_: R) -> Self {
         Self
     }
 
@@ -138,17 +138,17 @@ impl<R: Real> Damping<R> for Undamped {
     }
 
     #[inline(always)]
-    fn go(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
+    fn advance(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
         turned(deviation, sincos(frequency * t))
     }
 
     #[inline(always)]
-    fn go_short(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
+    fn advance_short(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
         turned(deviation, sincos_short(frequency * t))
     }
 
     #[inline(always)]
-    fn go_tiny(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
+    fn advance_tiny(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
         turned(deviation, tiny(frequency * t))
     }
 
@@ -165,22 +165,22 @@ impl<R: Real> Damping<R> for Undamped {
     }
 
     #[inline(always)]
-    fn turning(self, frequency: R) -> R {
+    fn frequency(self, frequency: R) -> R {
         frequency
     }
 
     #[inline(always)]
-    fn decay(self, kind: R) -> R {
-        kind.of(0.0)
+    fn decay_rate(self, kind: R) -> R {
+        kind.splat(0.0)
     }
 }
 
-impl<R: Real> Damping<R> for Damped<R> {
+impl<R: LaneFloat> DampingRule<R> for Damped<R> {
     const IS_DAMPED: bool = true;
 
     #[inline(always)]
-    fn none(kind: R) -> Self {
-        let (zero, one) = (kind.of(0.0), kind.of(1.0));
+    fn undamped(kind: R) -> Self {
+        let (zero, one) = (kind.splat(0.0), kind.splat(1.0));
         Self { decay: zero, frequency: one, tilt: zero, stretch: one, drag: zero, stiffness: one }
     }
 
@@ -198,17 +198,17 @@ impl<R: Real> Damping<R> for Damped<R> {
     }
 
     #[inline(always)]
-    fn go(self, _: R, deviation: [R; 2], t: R) -> [R; 2] {
+    fn advance(self, _: R, deviation: [R; 2], t: R) -> [R; 2] {
         self.pass(deviation, sincos(self.frequency * t), exp(-(self.decay * t)))
     }
 
     #[inline(always)]
-    fn go_short(self, _: R, deviation: [R; 2], t: R) -> [R; 2] {
+    fn advance_short(self, _: R, deviation: [R; 2], t: R) -> [R; 2] {
         self.pass(deviation, sincos_short(self.frequency * t), exp_short(-(self.decay * t)))
     }
 
     #[inline(always)]
-    fn go_tiny(self, _: R, deviation: [R; 2], t: R) -> [R; 2] {
+    fn advance_tiny(self, _: R, deviation: [R; 2], t: R) -> [R; 2] {
         self.pass(deviation, tiny(self.frequency * t), exp_tiny(-(self.decay * t)))
     }
 
@@ -226,12 +226,12 @@ impl<R: Real> Damping<R> for Damped<R> {
     }
 
     #[inline(always)]
-    fn turning(self, _: R) -> R {
+    fn frequency(self, _: R) -> R {
         self.frequency
     }
 
     #[inline(always)]
-    fn decay(self, _: R) -> R {
+    fn decay_rate(self, _: R) -> R {
         self.decay
     }
 }

@@ -2,14 +2,14 @@
 
 /// Direction of a guard.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Side {
+pub enum GuardDirection {
     /// Trips at or above its level.
     AtLeast,
     /// Trips at or below its level.
     AtMost,
 }
 
-impl Side {
+impl GuardDirection {
     /// Returns the direction of motion that closes the gap: +1 or -1.
     pub const fn sign(self) -> f64 {
         match self {
@@ -24,7 +24,7 @@ impl Side {
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct Guard {
     /// Direction from which the threshold is reached.
-    pub side: Side,
+    pub side: GuardDirection,
     /// Threshold angle (rad).
     pub level: f64,
 }
@@ -32,12 +32,12 @@ pub struct Guard {
 impl Guard {
     /// Creates a guard that trips at or above an angle (rad).
     pub const fn at_least(level: f64) -> Self {
-        Self { side: Side::AtLeast, level }
+        Self { side: GuardDirection::AtLeast, level }
     }
 
     /// Creates a guard that trips at or below an angle (rad).
     pub const fn at_most(level: f64) -> Self {
-        Self { side: Side::AtMost, level }
+        Self { side: GuardDirection::AtMost, level }
     }
 
     /// Returns the distance of the angle from the threshold (rad): the guard holds at 0 and below.

@@ -2,7 +2,7 @@
 //!
 //! This crate is independent of laws, sensors and scenarios: `flexsc-core` combines them.
 //!
-//! - [`State`], [`Stretch`], [`crossing`]: modes in closed form, and the certified search for crossings;
+//! - [`State`], [`MotionPiece`], [`crossing`]: modes in closed form, and the certified search for crossings;
 //! - [`linear`]: coupled linear motion by poles and residues; [`turning`]: three-axis bodies;
 //! - [`numerics`]: special functions, quadrature, roots; [`lanes`]: the same arithmetic on many runs in SIMD lanes;
 //! - [`time`], [`quantity`], [`random`], [`attitude`], [`guard`], [`waveform`]: instants, validated numbers, seeded
@@ -14,17 +14,17 @@ pub mod attitude;
 pub mod crossing;
 pub mod damping;
 pub mod guard;
-pub mod guess;
 pub mod lanes;
 pub mod linear;
 pub mod numerics;
+mod one_axis_state;
+pub mod polynomial_piece;
+pub mod predicted_crossing;
 pub mod quantity;
 pub mod random;
-mod state;
-pub mod stretch;
+pub mod three_axis;
 pub mod time;
-pub mod turning;
 pub mod waveform;
 
-pub use state::{Phase, Sensed, State};
-pub use stretch::{Expansion, Stretch};
+pub use one_axis_state::{AngleObservation, AxisState, ModeState};
+pub use polynomial_piece::{MotionPiece, SeriesExpansion};

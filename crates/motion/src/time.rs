@@ -64,7 +64,7 @@ impl Ticks {
         Self { whole: self.whole + other.whole + carry, part: part - carry * FEMTOSECONDS }
     }
 
-    fn minus(self, other: Self) -> Self {
+    fn remaining_after(self, other: Self) -> Self {
         let part = self.part - other.part;
         let borrow = i64::from(part < 0);
         Self { whole: self.whole - other.whole - borrow, part: part + borrow * FEMTOSECONDS }
@@ -83,7 +83,7 @@ impl Instant {
     }
 
     /// Creates an instant from whole seconds and the femtoseconds past them, less than a second.
-    pub fn of_parts(whole: u64, part: u64) -> Self {
+    pub fn from_parts(whole: u64, part: u64) -> Self {
         Self(Ticks { whole: whole as i64, part: part as i64 })
     }
 
@@ -100,13 +100,13 @@ impl Instant {
     /// Returns the instant a span earlier.
     #[must_use]
     pub fn before(self, span: Span) -> Self {
-        Self(self.0.minus(span.0))
+        Self(self.0.remaining_after(span.0))
     }
 
     /// Returns the span since an earlier instant.
     #[inline]
     pub fn since(self, earlier: Self) -> Span {
-        Span(self.0.minus(earlier.0))
+        Span(self.0.remaining_after(earlier.0))
     }
 }
 
@@ -136,8 +136,8 @@ impl Span {
 
     /// Returns the difference of the span and another.
     #[must_use]
-    pub fn minus(self, other: Self) -> Self {
-        Self(self.0.minus(other.0))
+    pub fn remaining_after(self, other: Self) -> Self {
+        Self(self.0.remaining_after(other.0))
     }
 
     /// Returns the span in seconds, rounded to a double.

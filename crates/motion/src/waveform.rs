@@ -49,12 +49,12 @@ pub enum TermShape {
 impl Waveform {
     /// Returns the value at a time (s), right-continuous.
     pub fn at(&self, t: f64) -> f64 {
-        self.on_piece(t, t)
+        self.value_on_piece(t, t)
     }
 
     /// Returns the value at `t` (s) of the terms that are active at `middle` (s): at a break, the limit from that
     /// side.
-    pub fn on_piece(&self, middle: f64, t: f64) -> f64 {
+    pub fn value_on_piece(&self, middle: f64, t: f64) -> f64 {
         let active = self.terms.iter().filter(|term| term.from <= middle && middle < term.to);
         active.map(|term| term.value(t)).sum()
     }

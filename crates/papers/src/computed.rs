@@ -38,8 +38,8 @@ impl Computed {
     ///
     /// # Errors
     /// If the command is unknown or fails.
-    pub fn tell(&self, command: &str) -> Result<Value, Error> {
-        self.once(&self.told, command, || value(self.laboratory.tell(command)?))
+    pub fn run(&self, command: &str) -> Result<Value, Error> {
+        self.once(&self.told, command, || value(self.laboratory.run(command)?))
     }
 
     /// Returns the times (s) and the values of a column of a run's full log.

@@ -28,7 +28,7 @@ pub trait Laboratory: Send + Sync {
     ///
     /// # Errors
     /// If the command is unknown or fails.
-    fn tell(&self, command: &str) -> Result<Value, String>;
+    fn run(&self, command: &str) -> Result<Value, String>;
 
     /// Returns the times (s) and the values of a column of a run's full log.
     ///

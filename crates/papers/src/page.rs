@@ -66,11 +66,11 @@ pub fn environment(computed: &Arc<Computed>) -> Result<Environment<'static>, Str
     chart::add_to(&mut environment);
 
     let known = Arc::clone(computed);
-    environment.add_function("run", move |command: &str| known.tell(command));
+    environment.add_function("run", move |command: &str| known.run(command));
     let known = Arc::clone(computed);
     environment.add_function("each", move |command: &str, values: Vec<Value>| {
         let with = |value: &Value| command.replace("{}", &value.to_string());
-        values.iter().map(|value| known.tell(&with(value))).collect::<Result<Vec<_>, _>>()
+        values.iter().map(|value| known.run(&with(value))).collect::<Result<Vec<_>, _>>()
     });
     let known = Arc::clone(computed);
     environment.add_function("column", move |command: &str, topic: &str, name: &str| {
@@ -103,12 +103,12 @@ pub fn fill(computed: &Arc<Computed>, template: &str, form: Form) -> Result<(Str
         let list = Arc::clone(&outcome);
         environment.add_function(word, move |name: &str, holds: bool| {
             let verdict = Verdict { name: name.to_owned(), holds, expected };
-            let told = match form {
+            let reported = match form {
                 Form::Markdown => verdict.word().to_owned(),
                 Form::Html => format!("<b class=\"{}\">{0}</b>", verdict.word()),
             };
             locked(&list).verdicts.push(verdict);
-            told
+            reported
         });
     }
     let text = environment.render_str(template, ()).map_err(|error| explained(&error))?;
@@ -145,7 +145,7 @@ mod tests {
     struct Toy;
 
     impl Laboratory for Toy {
-        fn tell(&self, command: &str) -> Result<Json, String> {
+        fn run(&self, command: &str) -> Result<Json, String> {
             match command {
                 "simulate quiet" => Ok(json!({"pushes_right": 21, "angle_rad": 1.5e-4})),
                 _ => Err(format!("{command}: not known")),

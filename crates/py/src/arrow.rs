@@ -63,8 +63,9 @@ fn batch(columns: Vec<Given<'_>>, about: HashMap<String, String>) -> PyResult<Re
             (None, None) => inner,
         };
         let field = Field::new(name, array.data_type().clone(), true);
-        let told: HashMap<_, _> = (!unit.is_empty()).then(|| ("unit".to_owned(), unit)).into_iter().collect();
-        fields.push(field.with_metadata(told));
+        let reported: HashMap<_, _> =
+            (!unit.is_empty()).then(|| ("unit".to_owned(), unit)).into_iter().collect();
+        fields.push(field.with_metadata(reported));
         arrays.push(array);
     }
     let schema = Arc::new(Schema::new_with_metadata(fields, about));
@@ -92,6 +93,6 @@ pub fn arrow_schema<'py>(
     about: HashMap<String, String>,
 ) -> PyResult<Bound<'py, PyCapsule>> {
     let schema = batch(columns, about)?.schema();
-    let told = FFI_ArrowSchema::try_from(schema.as_ref()).map_err(refused)?;
-    PyCapsule::new_with_value(py, told, c"arrow_schema")
+    let reported = FFI_ArrowSchema::try_from(schema.as_ref()).map_err(refused)?;
+    PyCapsule::new_with_value(py, reported, c"arrow_schema")
 }

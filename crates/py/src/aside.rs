@@ -6,7 +6,7 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::motion::Stretch;
+use flexsc_core::motion::MotionPiece;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::Instant;
 use pyo3::exceptions::PyRuntimeError;
@@ -42,7 +42,7 @@ impl Record for Stop {
         if self.asked() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 
-    fn stretch(&mut self, _: Instant, _: &Stretch) -> Result<(), RecordError> {
+    fn piece(&mut self, _: Instant, _: &MotionPiece) -> Result<(), RecordError> {
         if self.asked() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 }

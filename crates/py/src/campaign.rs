@@ -6,8 +6,8 @@ use std::path::PathBuf;
 use std::sync::Arc;
 
 use flexsc_core::campaign::{
-    Campaign, CampaignRun, ColumnCells, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest,
-    PointDesign, Rows, SECONDS, Sampling, Work as Whole,
+    Campaign, CampaignRun, ColumnCells, Design, Directory as Parts, DirectoryError, Grid, MANIFEST, Manifest,
+    RowMaker as Whole, RunRows, SECONDS, Sampling,
 };
 use flexsc_core::metrics::Selection;
 use flexsc_core::statistics::{QUANTILES, Statistics};
@@ -69,7 +69,7 @@ pub struct Work(pub Arc<Whole>);
 impl Work {
     /// The work, if a file can describe it.
     fn on_file(&self) -> PyResult<&Whole> {
-        if self.0.campaign.scenario().has_own_parts() {
+        if self.0.campaign.scenario().has_custom_parts() {
             let why = "the scenario has parts written in Python, which are in this process alone and in no file: leave out \
                        `out` and `progress`, and its runs are made on threads here, or on an `executor`";
             return Err(PyValueError::new_err(why));
@@ -84,7 +84,7 @@ impl Work {
     /// are drawn.
     #[staticmethod]
     #[expect(clippy::too_many_arguments, reason = "the arguments of Python's functions")]
-    fn of(
+    fn create(
         scenario: &Scenario,
         runs: Span,
         grids: Vec<(String, Vec<f64>)>,
@@ -101,28 +101,28 @@ impl Work {
         let (_, draws) =
             known.ok_or_else(|| wrong(format!("sample must be one of {names}, got {sampling:?}")))?;
         let hypercube = if draws == Sampling::LatinHypercube { runs.1.div_ceil(replicas.max(1)) } else { 0 };
-        let design = PointDesign {
+        let design = Design {
             draws,
             hypercube,
             replicas,
-            ..PointDesign::of(grids.into_iter().map(|(key, values)| Grid { key, values }.into()))
+            ..Design::from_blocks(grids.into_iter().map(|(key, values)| Grid { key, values }.into()))
         };
-        let selection = metrics.map_or(Ok(Selection::ALL), Selection::of).map_err(wrong)?;
+        let selection = metrics.map_or(Ok(Selection::ALL), Selection::from_names).map_err(wrong)?;
         let inner = scenario.inner.clone();
         let inner = if drawn { inner } else { Campaign::undrawn(inner) };
-        let campaign = Campaign::of(inner, &scenario.origin, design).map_err(scenario_error)?;
+        let campaign = Campaign::from_design(inner, &scenario.origin, design).map_err(scenario_error)?;
         let count = runs.1.saturating_sub(runs.0);
         let cost = campaign.cost(count, None).map_err(|why| wrong(format!("runs {why}")))?;
         allowed(&cost, yes)?;
-        if scenario.inner.has_own_parts() {
-            let whole = Whole::here(campaign, runs.0..runs.1, selection).map_err(wrong)?;
+        if scenario.inner.has_custom_parts() {
+            let whole = Whole::in_memory(campaign, runs.0..runs.1, selection).map_err(wrong)?;
             return Ok(Self(Arc::new(whole)));
         }
         let mut manifest = Manifest::new(&campaign, runs.0..runs.1, &selection).map_err(wrong)?;
         if let Some(part_s) = part_s {
-            manifest.shorten(part_s);
+            manifest.limit_part_size(part_s);
         }
-        Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
+        Ok(Self(Arc::new(Whole::from_manifest(manifest, MANIFEST.as_ref()).map_err(failed)?)))
     }
 
     /// The work that a manifest describes.
@@ -130,12 +130,12 @@ impl Work {
     fn parse(manifest: &str) -> PyResult<Self> {
         let manifest =
             Manifest::parse(manifest).map_err(|why| PyValueError::new_err(format!("{MANIFEST}: {why}")))?;
-        Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
+        Ok(Self(Arc::new(Whole::from_manifest(manifest, MANIFEST.as_ref()).map_err(failed)?)))
     }
 
     /// In what the campaign of another manifest differs.
     fn difference(&self, there: &Self) -> Option<String> {
-        there.0.manifest.difference(&self.0.manifest)
+        there.0.manifest.first_difference(&self.0.manifest)
     }
 
     #[getter]
@@ -179,7 +179,7 @@ impl Work {
         manifest.part = there.0.manifest.part;
         manifest.from = manifest.from.min(there.0.manifest.from);
         manifest.to = manifest.to.max(there.0.manifest.to);
-        Ok(Self(Arc::new(Whole::of(manifest, MANIFEST.as_ref()).map_err(failed)?)))
+        Ok(Self(Arc::new(Whole::from_manifest(manifest, MANIFEST.as_ref()).map_err(failed)?)))
     }
 
     /// The parts that are missing beside these files.
@@ -196,11 +196,11 @@ impl Work {
     ) -> PyResult<(Bound<'py, PyDict>, Vec<Summary>)> {
         let work = self.0.clone();
         let (rows, statistics) = aside(py, move |stop| {
-            let is_own = work.campaign.scenario().has_own_parts();
+            let is_own = work.campaign.scenario().has_custom_parts();
             let simulate = move |run: &CampaignRun, selection: &Selection, stop| {
-                known_thread(is_own, || Campaign::simulate_for(run, selection, stop))
+                known_thread(is_own, || Campaign::simulate_metrics(run, selection, stop))
             };
-            let rows = work.make_by(runs.0..runs.1, jobs, stop, simulate)?;
+            let rows = work.make_rows_with(runs.0..runs.1, jobs, stop, simulate)?;
             let columns = |names: &[&str]| -> Result<_, DirectoryError> {
                 Ok(names.iter().map(|name| rows.column(name).cloned()).collect())
             };
@@ -208,12 +208,12 @@ impl Work {
             Ok((rows, statistics))
         })?
         .map_err(failed)?;
-        let Rows { fields, columns } = rows;
-        let told = PyDict::new(py);
+        let RunRows { fields, columns } = rows;
+        let reported = PyDict::new(py);
         for (field, column) in fields.iter().zip(columns) {
-            told.set_item(&field.name, array(py, column)?)?;
+            reported.set_item(&field.name, array(py, column)?)?;
         }
-        Ok((told, statistics.into_iter().map(summary).collect()))
+        Ok((reported, statistics.into_iter().map(summary).collect()))
     }
 
     /// Makes a part: the name of its file, and its bytes.
@@ -235,13 +235,13 @@ pub fn campaign_statistics(
     let columns: HashMap<String, ColumnCells> =
         columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
     let work = work.0.clone();
-    let told = aside(py, move |_| {
+    let reported = aside(py, move |_| {
         let of = |names: &[&str]| -> Result<_, DirectoryError> {
             Ok(names.iter().map(|name| columns.get(*name).cloned()).collect())
         };
         work.statistics(rows, of)
     })?;
-    Ok(told.map_err(failed)?.into_iter().map(summary).collect())
+    Ok(reported.map_err(failed)?.into_iter().map(summary).collect())
 }
 
 fn spans(ranges: Vec<Range<u64>>) -> Vec<Span> {
@@ -286,7 +286,7 @@ impl Directory {
 
     fn statistics(&self, py: Python<'_>) -> PyResult<Vec<Summary>> {
         let directory = self.0.clone();
-        let told = aside(py, move |_| directory.summary())?.map_err(failed)?;
-        Ok(told.statistics.into_iter().map(summary).collect())
+        let reported = aside(py, move |_| directory.summary())?.map_err(failed)?;
+        Ok(reported.statistics.into_iter().map(summary).collect())
     }
 }

@@ -1,6 +1,6 @@
 //! Rows and metrics as Python takes them: numbers as arrays that it owns from then on.
 
-use flexsc_core::metrics::{Metrics, Value};
+use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::{Column, Columns};
 use numpy::IntoPyArray;
 use pyo3::prelude::*;
@@ -38,13 +38,13 @@ pub fn of_metrics<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py
     let dict = PyDict::new(py);
     for (meaning, value) in &metrics.0 {
         match value {
-            Value::Count(count) => dict.set_item(meaning.name, count)?,
-            Value::Number(number) if number.is_nan() => dict.set_item(meaning.name, py.None())?,
-            Value::Number(number) => dict.set_item(meaning.name, number)?,
-            Value::Numbers(_) | Value::Quantities(_) => {
+            MetricValue::Count(count) => dict.set_item(meaning.name, count)?,
+            MetricValue::Number(number) if number.is_nan() => dict.set_item(meaning.name, py.None())?,
+            MetricValue::Number(number) => dict.set_item(meaning.name, number)?,
+            MetricValue::Numbers(_) | MetricValue::Quantities(_) => {
                 dict.set_item(meaning.name, value.numbers().into_pyarray(py))?;
             }
-            Value::Word(word) => dict.set_item(meaning.name, word)?,
+            MetricValue::Word(word) => dict.set_item(meaning.name, word)?,
         }
     }
     Ok(dict)

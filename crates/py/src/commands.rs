@@ -1,6 +1,6 @@
 //! Commands of a stepped run and the instant that it reached: enough to repeat it.
 
-use flexsc_core::campaign::Commanded;
+use flexsc_core::campaign::CommandLog;
 use flexsc_core::time::Instant;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -9,14 +9,14 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone)]
 pub struct Commands {
-    pub given: Commanded,
+    pub given: CommandLog,
     pub until: Instant,
 }
 
 impl Commands {
     /// Of a run as it is in its scenario, unless it was stepped.
-    pub fn of(stepped: Option<&Self>) -> Self {
-        stepped.cloned().unwrap_or_else(|| Self { given: Commanded::default(), until: Instant::END })
+    pub fn from_stepped(stepped: Option<&Self>) -> Self {
+        stepped.cloned().unwrap_or_else(|| Self { given: CommandLog::default(), until: Instant::END })
     }
 }
 
@@ -26,8 +26,8 @@ impl Commands {
     #[new]
     fn new(until: (u64, u64), text: &str) -> PyResult<Self> {
         let given =
-            Commanded::parse(text).ok_or_else(|| PyValueError::new_err("not the text of commands"))?;
-        Ok(Self { given, until: Instant::of_parts(until.0, until.1) })
+            CommandLog::parse(text).ok_or_else(|| PyValueError::new_err("not the text of commands"))?;
+        Ok(Self { given, until: Instant::from_parts(until.0, until.1) })
     }
 
     fn __getnewargs__(&self) -> ((u64, u64), String) {

@@ -3,9 +3,9 @@
 use std::sync::Arc;
 use std::sync::mpsc::{RecvTimeoutError, channel};
 
-use flexsc_core::campaign::{Campaign, Commanded, RunError};
+use flexsc_core::campaign::{Campaign, CommandLog, RunError};
 use flexsc_core::record::Record;
-use flexsc_core::{LookField, Simulation};
+use flexsc_core::{ObservationField, Simulation};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
@@ -26,7 +26,7 @@ struct Flight {
     number: u64,
     simulation: Option<Simulation>,
     /// Commands of the run from its start; `None` if they were not kept.
-    given: Option<Commanded>,
+    given: Option<CommandLog>,
     failed: Option<String>,
 }
 
@@ -43,9 +43,12 @@ impl Flight {
             Ok(simulation)
         });
         match opened {
-            Ok(simulation) => {
-                Self { number, simulation: Some(simulation), given: Some(Commanded::default()), failed: None }
-            }
+            Ok(simulation) => Self {
+                number,
+                simulation: Some(simulation),
+                given: Some(CommandLog::default()),
+                failed: None,
+            },
             Err(error) => Self { number, simulation: None, given: None, failed: Some(error.to_string()) },
         }
     }
@@ -54,13 +57,13 @@ impl Flight {
     fn go(
         &mut self,
         row: &mut [f64],
-        on: impl FnOnce(&mut Simulation, &mut Option<Commanded>) -> Result<(), RunError>,
+        on: impl FnOnce(&mut Simulation, &mut Option<CommandLog>) -> Result<(), RunError>,
     ) {
         let Self { simulation, given, failed, .. } = self;
         let Some(simulation) = simulation.as_mut().filter(|_| failed.is_none()) else {
             return row.fill(f64::NAN);
         };
-        if let Err(error) = on(simulation, given).and_then(|()| Ok(simulation.look(row)?)) {
+        if let Err(error) = on(simulation, given).and_then(|()| Ok(simulation.observe(row)?)) {
             *failed = Some(error.to_string());
             row.fill(f64::NAN);
         }
@@ -71,7 +74,7 @@ impl Flight {
 pub struct Simulators {
     campaign: Arc<Campaign>,
     flights: Vec<Flight>,
-    fields: Vec<LookField>,
+    fields: Vec<ObservationField>,
     width: usize,
     pool: Arc<ThreadPool>,
     keeps: bool,
@@ -128,12 +131,12 @@ impl Simulators {
         let campaign = Campaign::new(scenario.inner.clone(), name, []).map_err(scenario_error)?;
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
-        let fields = Simulation::new(&scenario.inner, 0).fields(&scenario.inner);
+        let fields = Simulation::new(&scenario.inner, 0).observation_fields(&scenario.inner);
         let flight = |number| Flight { number, simulation: None, given: None, failed: None };
         let mut simulators = Self {
             campaign: Arc::new(campaign),
             flights: runs.into_iter().map(flight).collect(),
-            width: fields.iter().map(LookField::width).sum(),
+            width: fields.iter().map(ObservationField::width).sum(),
             fields,
             pool: Arc::new(pool),
             keeps,
@@ -181,7 +184,7 @@ impl Simulators {
 
     #[getter]
     fn done<'py>(&self, py: Python<'py>) -> Bound<'py, PyArray1<bool>> {
-        let done = |flight: &Flight| flight.simulation.as_ref().is_some_and(Simulation::is_done);
+        let done = |flight: &Flight| flight.simulation.as_ref().is_some_and(Simulation::is_finished);
         self.flights.iter().map(done).collect::<Vec<_>>().into_pyarray(py)
     }
 
@@ -250,7 +253,7 @@ impl Simulators {
         let flight = &self.flights[index];
         match (&flight.simulation, &flight.failed) {
             (Some(simulation), None) => {
-                Ok(Simulator::of(simulation.clone(), self.campaign.scenario(), flight.given.clone()))
+                Ok(Simulator::new(simulation.clone(), self.campaign.scenario(), flight.given.clone()))
             }
             (_, why) => {
                 let why = why.clone().unwrap_or_default();

@@ -2,7 +2,7 @@
 
 use flexsc_core::actuator::PulseTiming;
 use flexsc_core::analysis::damping::{Convergence, PulsedDamping, persistence as least_eigenvalue};
-use flexsc_core::analysis::identification::Trial;
+use flexsc_core::analysis::identification::IdentificationTrial;
 use flexsc_core::quantity::NonNegative;
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
@@ -74,7 +74,7 @@ pub fn identify_json(
 ) -> PyResult<String> {
     let (runs, cycles, seed) = extent;
     let squared = (modes.len() * modes.len()) as f64;
-    let mut trial = Trial::of(modes, off.0);
+    let mut trial = IdentificationTrial::published(modes, off.0);
     (trial.off[1], trial.cycles, trial.seed) = (off.1, cycles, seed);
     let Some(rate) = NonNegative::new(rate) else {
         return Err(PyValueError::new_err(format!("rate must be 0 or more, got {rate}")));
@@ -86,7 +86,7 @@ pub fn identify_json(
             "runs and cycles must be from 1 to 1000000, got {runs} and {cycles}"
         )));
     }
-    allowed(&Trial::cost(runs as f64, cycles, squared), yes)?;
+    allowed(&IdentificationTrial::cost(runs as f64, cycles, squared), yes)?;
     let row = aside(py, move |stop| {
         let runs = (0..runs).into_par_iter();
         let found = runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some();

@@ -54,13 +54,13 @@ pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {
     let mistakes = error.mistakes();
     Python::attach(|py| {
         let each = mistakes.iter().map(|mistake| {
-            let told = PyDict::new(py);
-            told.set_item("line", mistake.place.as_ref().map(|place| place.line))?;
-            told.set_item("column", mistake.place.as_ref().map(|place| place.column))?;
-            told.set_item("key", mistake.key.as_ref())?;
-            told.set_item("message", &mistake.message)?;
-            told.set_item("suggestion", mistake.suggestion)?;
-            Ok(told)
+            let reported = PyDict::new(py);
+            reported.set_item("line", mistake.place.as_ref().map(|place| place.line))?;
+            reported.set_item("column", mistake.place.as_ref().map(|place| place.column))?;
+            reported.set_item("key", mistake.key.as_ref())?;
+            reported.set_item("message", &mistake.message)?;
+            reported.set_item("suggestion", mistake.suggestion)?;
+            Ok(reported)
         });
         let set =
             each.collect::<PyResult<Vec<_>>>().and_then(|all| raised.value(py).setattr("mistakes", all));
@@ -71,7 +71,7 @@ pub fn scenario_error(error: flexsc_core::ScenarioError) -> PyErr {
 
 /// Refuses work that costs too much, unless it is wanted.
 pub fn allowed(cost: &flexsc_core::scenario::Cost, yes: bool) -> PyResult<()> {
-    match cost.excess() {
+    match cost.limit_exceeded() {
         Some(why) if !yes => Err(PyValueError::new_err(format!("{why}\n\nhint: `yes=True` runs it anyway"))),
         _ => Ok(()),
     }

@@ -5,9 +5,9 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use flexsc_cli::figures;
-use flexsc_core::analysis::influence::Influences;
-use flexsc_core::analysis::modal::ModalColumns;
-use flexsc_core::body::Axes;
+use flexsc_core::analysis::mode_influence::ModeInfluences;
+use flexsc_core::analysis::one_axis_modes::OneAxisModes;
+use flexsc_core::body::BodyAxes;
 use flexsc_core::campaign::ColumnCells;
 use flexsc_figure::{FigureAxis, Layer, LayerShape, Named, Panel, RGBColor, Scale};
 use numpy::PyArray2;
@@ -57,27 +57,27 @@ impl Figure {
 }
 
 fn panel<'py>(py: Python<'py>, panel: &Panel, y: &FigureAxis) -> PyResult<Bound<'py, PyDict>> {
-    let told = PyDict::new(py);
-    told.set_item("x", axis(py, &panel.x)?)?;
-    told.set_item("y", axis(py, y)?)?;
+    let reported = PyDict::new(py);
+    reported.set_item("x", axis(py, &panel.x)?)?;
+    reported.set_item("y", axis(py, y)?)?;
     let layers = panel.layers.iter().map(|of| layer(py, of)).collect::<PyResult<Vec<_>>>()?;
-    told.set_item("layers", layers)?;
+    reported.set_item("layers", layers)?;
     let bar = panel.bar.as_ref().map(|bar| {
         (bar.name.as_str(), bar.colours.iter().copied().map(hex).collect::<Vec<_>>(), bar.edges.clone())
     });
-    told.set_item("bar", bar)?;
-    Ok(told)
+    reported.set_item("bar", bar)?;
+    Ok(reported)
 }
 
 fn axis<'py>(py: Python<'py>, axis: &FigureAxis) -> PyResult<Bound<'py, PyDict>> {
-    let told = PyDict::new(py);
-    told.set_item("label", axis.label())?;
-    told.set_item("unit", axis.unit)?;
-    told.set_item("low", axis.range.start)?;
-    told.set_item("high", axis.range.end)?;
-    told.set_item("factor", axis.factor())?;
-    told.set_item("logarithmic", axis.scale == Scale::Logarithmic)?;
-    Ok(told)
+    let reported = PyDict::new(py);
+    reported.set_item("label", axis.label())?;
+    reported.set_item("unit", axis.unit)?;
+    reported.set_item("low", axis.range.start)?;
+    reported.set_item("high", axis.range.end)?;
+    reported.set_item("factor", axis.factor())?;
+    reported.set_item("logarithmic", axis.scale == Scale::Logarithmic)?;
+    Ok(reported)
 }
 
 fn layer<'py>(py: Python<'py>, layer: &Layer) -> PyResult<Bound<'py, PyDict>> {
@@ -92,15 +92,15 @@ fn layer<'py>(py: Python<'py>, layer: &Layer) -> PyResult<Bound<'py, PyDict>> {
         LayerShape::Square => ("square", 1.0),
         LayerShape::Diamond => ("diamond", 1.0),
     };
-    let told = PyDict::new(py);
-    told.set_item("name", &layer.name)?;
-    told.set_item("colour", hex(layer.colour))?;
-    told.set_item("shape", shape)?;
-    told.set_item("size", size)?;
+    let reported = PyDict::new(py);
+    reported.set_item("name", &layer.name)?;
+    reported.set_item("colour", hex(layer.colour))?;
+    reported.set_item("shape", shape)?;
+    reported.set_item("size", size)?;
     let points: Vec<Vec<f64>> =
         [|p: &(f64, f64)| p.0, |p: &(f64, f64)| p.1].map(|of| layer.points.iter().map(of).collect()).into();
-    told.set_item("points", PyArray2::from_vec2(py, &points)?)?;
-    Ok(told)
+    reported.set_item("points", PyArray2::from_vec2(py, &points)?)?;
+    Ok(reported)
 }
 
 /// The name that a log's errors give it.
@@ -111,7 +111,7 @@ fn place(log: &Log) -> PathBuf {
 /// A log of a run in memory, with its events.
 #[pyfunction]
 pub fn log_of(py: Python<'_>, scenario: &Scenario, run: u64, stepped: Option<&Commands>) -> PyResult<Log> {
-    let (run, Commands { given, until }) = (scenario.run(run), Commands::of(stepped));
+    let (run, Commands { given, until }) = (scenario.run(run), Commands::from_stepped(stepped));
     let log = aside(py, move |_| figures::log_of(&run, &given, until))?.map_err(PyValueError::new_err)?;
     Ok(Log(Arc::new(log)))
 }
@@ -165,12 +165,12 @@ pub fn directory_figures(
 pub fn modes_figure(scenario: &Scenario) -> Option<Figure> {
     let size = |values: &[f64]| values.iter().map(|value| value.abs()).collect::<Vec<_>>();
     let figure = match scenario.inner.model.axes() {
-        Axes::One(body) => {
-            let modal = ModalColumns::of(body);
+        BodyAxes::One(body) => {
+            let modal = OneAxisModes::from_body(body);
             figures::modes(&modal.frequencies_rad_s, &size(&modal.gains), ("modal gain", ""))
         }
-        Axes::Three(body) => {
-            let of = Influences::of(&scenario.inner, body);
+        BodyAxes::Three(body) => {
+            let of = ModeInfluences::from_scenario(&scenario.inner, body);
             let most = |mode: usize| of.influences.iter().map(|axis| axis[mode].abs()).fold(0.0, f64::max);
             let most: Vec<f64> = (0..of.frequencies_rad_s.len()).map(most).collect();
             figures::modes(&of.frequencies_rad_s, &most, ("influence", ""))

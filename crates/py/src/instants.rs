@@ -20,10 +20,10 @@ pub fn sample<'py>(
     times: Vec<f64>,
     stepped: Option<&Commands>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (run, Commands { given, .. }) = (scenario.run(run), Commands::of(stepped));
+    let (run, Commands { given, .. }) = (scenario.run(run), Commands::from_stepped(stepped));
     let seen = aside(py, move |mut stop| -> Result<Trace, SimulationError> {
         let mut trace = Trace::new(Detail::Full);
-        given.sample(&run, &times, &mut stop, &mut trace)?;
+        given.sample_motion(&run, &times, &mut stop, &mut trace)?;
         Ok(trace)
     })?;
     let seen = seen.map_err(|error| simulation_error(&scenario.inner.name, error))?;

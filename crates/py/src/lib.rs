@@ -26,17 +26,17 @@ use std::ffi::OsString;
 use std::path::PathBuf;
 use std::sync::Arc;
 
-use flexsc_core::analysis::influence::Influences;
-use flexsc_core::analysis::modal::ModalColumns;
+use flexsc_core::analysis::mode_influence::ModeInfluences;
+use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
-use flexsc_core::body::{Axes, Planar};
+use flexsc_core::body::{BodyAxes, Planar};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::law::Law;
-use flexsc_core::manoeuvre::{CommandCost, FieldCommon, Manoeuvre, Plan, Report, compare};
+use flexsc_core::law::LawKind;
+use flexsc_core::manoeuvre::{CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare};
 use flexsc_core::metrics;
 use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
-use flexsc_core::{Document, ScenarioError, whole};
+use flexsc_core::{Document, ScenarioError, atomic_file};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -149,11 +149,11 @@ impl Scenario {
     }
 
     fn with_keys(&self, keys: Vec<(String, String)>) -> PyResult<Self> {
-        let mut document = Document::from_table(&self.origin, self.inner.table_beside_own_parts());
+        let mut document = Document::from_table(&self.origin, self.inner.table_without_custom_parts());
         for (key, value) in keys {
             document.set_text(&key, &value).map_err(scenario_error)?;
         }
-        Self::new(&self.origin, flexsc_core::Scenario::from_document_like(&document, &self.inner))
+        Self::new(&self.origin, flexsc_core::Scenario::from_document_reusing(&document, &self.inner))
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
@@ -188,8 +188,8 @@ impl Scenario {
 
     fn modes_json(&self) -> String {
         match self.inner.model.axes() {
-            Axes::One(body) => json!(ModalColumns::of(body)).to_string(),
-            Axes::Three(body) => json!(Influences::of(&self.inner, body)).to_string(),
+            BodyAxes::One(body) => json!(OneAxisModes::from_body(body)).to_string(),
+            BodyAxes::Three(body) => json!(ModeInfluences::from_scenario(&self.inner, body)).to_string(),
         }
     }
 
@@ -227,8 +227,8 @@ fn simulate<'py>(
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
-    let Commands { given, until } = Commands::of(stepped);
-    let is_own = scenario.inner.has_own_parts();
+    let Commands { given, until } = Commands::from_stepped(stepped);
+    let is_own = scenario.inner.has_custom_parts();
     let (metrics, trace) = aside(py, move |stop| {
         let metrics = parts::known_thread(is_own, || given.simulate(&run, until, (&mut trace, stop)));
         (metrics, trace)
@@ -252,8 +252,8 @@ fn to_mcap(
 ) -> PyResult<u64> {
     let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
-    let Commands { given, until } = Commands::of(stepped);
-    let (place, is_own) = (path.clone(), scenario.inner.has_own_parts());
+    let Commands { given, until } = Commands::from_stepped(stepped);
+    let (place, is_own) = (path.clone(), scenario.inner.has_custom_parts());
     let written = aside(py, move |stop| {
         let mut file = LogFile::create(&place, &given.provenance(&run, detail), detail)?;
         let metrics = parts::known_thread(is_own, || given.simulate(&run, until, (&mut file, stop)))?;
@@ -265,11 +265,11 @@ fn to_mcap(
 #[pyfunction]
 fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
     let body = scenario.inner.one_angle().map_err(scenario_error)?;
-    let Law::Relay(law) = &scenario.inner.law else {
+    let LawKind::Relay(law) = &scenario.inner.law else {
         let why = format!("{}: limit cycles are computed for a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };
-    if scenario.inner.actuator.wheel().is_some() {
+    if scenario.inner.actuator.flywheel().is_some() {
         let why = "limit cycles are computed for an ideal torque, not for a wheel";
         return Err(PyValueError::new_err(format!("{}: {why}", scenario.inner.name)));
     }
@@ -294,7 +294,7 @@ fn checked_band(band: f64) -> PyResult<f64> {
 #[pyfunction]
 fn plan_json(scenario: &Scenario, band: f64) -> PyResult<String> {
     let (_, plan, body) = planned(scenario)?;
-    Ok(Report::new(plan, body, checked_band(band)?).to_json(plan, body).to_string())
+    Ok(PlanReport::new(plan, body, checked_band(band)?).to_json(plan, body).to_string())
 }
 
 #[pyfunction]
@@ -314,7 +314,7 @@ fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Opti
     let band = checked_band(band)?;
     let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));
     let limit = peak_torque.map(|peak| Positive::new(peak).ok_or_else(|| none(peak))).transpose()?;
-    let common = FieldCommon::of(manoeuvre, limit, plan);
+    let common = ComparisonBasis::from_manoeuvre(manoeuvre, limit, plan);
     let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).clone());
     let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
     Ok(serde_json::Value::from(rows.iter().map(CommandCost::to_json).collect::<Vec<_>>()).to_string())
@@ -356,7 +356,7 @@ impl Log {
 /// Writes a text file, which is whole or not there.
 #[pyfunction]
 fn write(path: PathBuf, text: &str) -> PyResult<()> {
-    whole::write(&path, text.as_bytes()).map_err(no_file(&path))
+    atomic_file::write(&path, text.as_bytes()).map_err(no_file(&path))
 }
 
 /// Names and texts of the shipped scenarios.
@@ -372,7 +372,7 @@ fn schema_json() -> String {
 
 #[pyfunction]
 fn metrics_json() -> String {
-    let meaning = |m: &metrics::Meaning| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc}));
+    let meaning = |m: &metrics::MetricDescription| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc}));
     serde_json::Value::Object(metrics::ALL.iter().map(meaning).collect()).to_string()
 }
 
@@ -381,8 +381,8 @@ fn metrics_json() -> String {
 fn meanings_json(scenario: &Scenario) -> String {
     let names = metrics::ALL.iter().map(|meaning| meaning.name);
     let meanings = names.filter_map(|name| metrics::meaning(name, Some(&scenario.inner)));
-    let told = meanings.map(|m| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc})));
-    serde_json::Value::Object(told.collect()).to_string()
+    let reported = meanings.map(|m| (m.name.to_owned(), json!({"unit": m.unit, "doc": m.doc})));
+    serde_json::Value::Object(reported.collect()).to_string()
 }
 
 #[pyfunction]

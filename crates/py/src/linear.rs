@@ -1,8 +1,8 @@
 //! Linear models of bodies, and the exponential that samples them.
 
 use flexsc_core::ScenarioError;
+use flexsc_core::analysis::linear_loop::LinearLoop;
 use flexsc_core::analysis::linear_model::LinearModel;
-use flexsc_core::analysis::loop_parts::LoopParts;
 use flexsc_core::numerics::exponential::exponential as of_matrix;
 use nalgebra::DMatrix;
 use numpy::{PyArray2, PyArrayMethods, PyReadonlyArray2, ToPyArray};
@@ -16,7 +16,7 @@ use super::error::scenario_error;
 /// The body of a scenario as a linear system, with natural frequencies as they are at a time (s).
 #[pyfunction]
 pub fn linear_json(scenario: &Scenario, at: f64) -> PyResult<String> {
-    let model = LinearModel::of(&scenario.inner, at).map_err(|fault| {
+    let model = LinearModel::from_scenario(&scenario.inner, at).map_err(|fault| {
         let origin = scenario.inner.name.clone();
         scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
     })?;
@@ -26,7 +26,7 @@ pub fn linear_json(scenario: &Scenario, at: f64) -> PyResult<String> {
 /// The parts of a scenario's loop that its keys do not hold as numbers.
 #[pyfunction]
 pub fn loop_json(scenario: &Scenario) -> PyResult<String> {
-    let parts = LoopParts::of(&scenario.inner).map_err(|fault| {
+    let parts = LinearLoop::from_scenario(&scenario.inner).map_err(|fault| {
         let origin = scenario.inner.name.clone();
         scenario_error(ScenarioError::Key { origin, key: fault.key, why: fault.why })
     })?;

@@ -1,9 +1,10 @@
 //! Analyses of a scenario's sampled loop.
 
 use flexsc_core::analysis::sampled_loop::{
-    Doubt, Gains, Loop, RobustGoal, RobustSearch, Scaling, SettlingWindow, map, regions, robust,
+    Gains, ModelUncertainty, RobustGoal, RobustSearch, SampledLoop, Scaling, SettlingWindow, map, optimize,
+    regions,
 };
-use flexsc_core::document::Fault;
+use flexsc_core::document::ConfigError;
 use flexsc_core::law::Pd;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -19,22 +20,28 @@ type Settled = (Option<f64>, f64, bool, bool);
 
 /// Refuses to close a loop so often, with this shortest period (s) and up to this delay more (s), if that is more than can be
 /// done, or more than is wanted.
-fn allow(of: &Loop, times: usize, shortest: f64, delay: f64, (_, horizon, _, yes): Settled) -> PyResult<()> {
-    let cost = of.watched(times as f64, horizon, shortest, delay);
+fn allow(
+    of: &SampledLoop,
+    times: usize,
+    shortest: f64,
+    delay: f64,
+    (_, horizon, _, yes): Settled,
+) -> PyResult<()> {
+    let cost = of.simulation_cost(times as f64, horizon, shortest, delay);
     allowed(&cost.map_err(PyValueError::new_err)?, yes)
 }
 
-fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(Loop, &Pd, SettlingWindow, Scaling)> {
-    let refused = |Fault { key, why }: Fault| {
+fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(SampledLoop, &Pd, SettlingWindow, Scaling)> {
+    let refused = |ConfigError { key, why }: ConfigError| {
         let origin = scenario.inner.name.clone();
         scenario_error(flexsc_core::ScenarioError::Key { origin, key, why })
     };
     let (band, horizon, alone, _) = settled;
-    let (of, law) = Loop::of(&scenario.inner).map_err(refused)?;
+    let (of, law) = SampledLoop::from_scenario(&scenario.inner).map_err(refused)?;
     if !(horizon.is_finite() && horizon > 0.0) {
         return Err(PyValueError::new_err(format!("horizon must be a positive number, got {horizon}")));
     }
-    let window = of.window(band, horizon).map_err(refused)?;
+    let window = of.settling_window(band, horizon).map_err(refused)?;
     Ok((of, law, window, if alone { Scaling::First } else { Scaling::All }))
 }
 
@@ -97,14 +104,14 @@ pub fn robust_gains_json(
         gains: stepped(gains)?,
         scaling,
         window,
-        doubt: Doubt { frequency: part, modal_gain: part, authority: part, delay },
+        doubt: ModelUncertainty { frequency: part, modal_gain: part, authority: part, delay },
         goal: if itae { RobustGoal::Itae } else { RobustGoal::Settling },
         quantile,
         margin,
     };
-    let closed = frequencies.len() * search.gains.values().len() * search.doubt.most_loops();
+    let closed = frequencies.len() * search.gains.values().len() * search.doubt.max_loops();
     allow(&of, closed, of.period, delay, settled)?;
-    Ok(json!(aside(py, move |_| robust(&of, &frequencies, search))?).to_string())
+    Ok(json!(aside(py, move |_| optimize(&of, &frequencies, search))?).to_string())
 }
 
 #[pyfunction]

@@ -2,11 +2,11 @@
 
 use std::time::Instant as WallInstant;
 
-use flexsc_core::campaign::Commanded;
+use flexsc_core::campaign::CommandLog;
 use flexsc_core::law::Command;
 use flexsc_core::record::{Record, RecordError, Sample};
 use flexsc_core::time::{Instant, Span};
-use flexsc_core::{LookField, LookGroup, Occasion, Simulation, SimulationError};
+use flexsc_core::{ObservationField, ObservationGroup, Simulation, SimulationError, StopAt};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -20,29 +20,32 @@ use crate::error::simulation_error;
 pub type FieldRow = (&'static str, &'static str, &'static str, Option<usize>);
 
 /// The fields of a simulation's row.
-pub fn fields(fields: &[LookField]) -> Vec<FieldRow> {
+pub fn fields(fields: &[ObservationField]) -> Vec<FieldRow> {
     let group = |of| match of {
-        LookGroup::State => "state",
-        LookGroup::Measured => "measured",
-        LookGroup::Believed => "believed",
+        ObservationGroup::True => "state",
+        ObservationGroup::Measured => "measured",
+        ObservationGroup::Estimated => "believed",
     };
     fields.iter().map(|field| (group(field.group), field.name, field.unit, field.count)).collect()
 }
 
 /// The unit of commands to a scenario.
 pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
-    use flexsc_core::actuator::Actuator;
-    match scenario.actuator.alone() {
-        Some(Actuator::Wheel(_)) => "",
-        _ => scenario.model.commanded().1,
+    use flexsc_core::actuator::ActuatorKind;
+    match scenario.actuator.only_actuator() {
+        Some(ActuatorKind::Wheel(_)) => "",
+        _ => scenario.model.commanded_quantity().1,
     }
 }
 
 /// The largest command about each axis that the actuator of a scenario can execute; infinite without a limit.
 pub fn command_limit(scenario: &flexsc_core::Scenario) -> Vec<f64> {
-    use flexsc_core::actuator::Actuator;
-    let gain =
-        if let Some(Actuator::Wheel(wheel)) = scenario.actuator.alone() { wheel.gain.get() } else { 1.0 };
+    use flexsc_core::actuator::ActuatorKind;
+    let gain = if let Some(ActuatorKind::Wheel(wheel)) = scenario.actuator.only_actuator() {
+        wheel.gain.get()
+    } else {
+        1.0
+    };
     let axes = scenario.study.axes.iter().zip(&scenario.study.authorities);
     axes.map(|(axis, can)| can.accelerations[0].min(can.accelerations[1]) * axis.commanded_inertia() / gain)
         .collect()
@@ -54,12 +57,12 @@ pub fn about_axes(values: &[f64]) -> [f64; 3] {
 }
 
 /// Gives a simulation commands, and keeps them where they are kept.
-pub fn steer(simulation: &mut Simulation, given: Option<&mut Commanded>, values: &[f64]) {
+pub fn steer(simulation: &mut Simulation, given: Option<&mut CommandLog>, values: &[f64]) {
     let values = about_axes(values);
-    if let Some(given) = given.filter(|_| !simulation.is_done()) {
+    if let Some(given) = given.filter(|_| !simulation.is_finished()) {
         given.push(simulation.time(), values);
     }
-    simulation.steer(values.map(Command::Torque));
+    simulation.set_external_command(values.map(Command::Torque));
 }
 
 /// A length of time that Python gave.
@@ -100,17 +103,17 @@ pub struct Simulator {
     axes: usize,
     unit: &'static str,
     limit: Vec<f64>,
-    fields: Vec<LookField>,
+    fields: Vec<ObservationField>,
     /// Commands of the run, if they were kept.
-    given: Option<Commanded>,
+    given: Option<CommandLog>,
     /// Why it cannot go on.
     failed: Option<String>,
 }
 
 impl Simulator {
-    pub fn of(simulation: Simulation, scenario: &flexsc_core::Scenario, given: Option<Commanded>) -> Self {
+    pub fn new(simulation: Simulation, scenario: &flexsc_core::Scenario, given: Option<CommandLog>) -> Self {
         Self {
-            fields: simulation.fields(scenario),
+            fields: simulation.observation_fields(scenario),
             simulation,
             name: scenario.name.clone(),
             axes: scenario.axis_count(),
@@ -147,7 +150,7 @@ impl Simulator {
     #[new]
     fn new(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Self> {
         let mut simulator =
-            Self::of(Simulation::new(&scenario.inner, run), &scenario.inner, Some(Commanded::default()));
+            Self::new(Simulation::new(&scenario.inner, run), &scenario.inner, Some(CommandLog::default()));
         simulator.go(py, |simulation, record| simulation.open(record))?;
         Ok(simulator)
     }
@@ -159,7 +162,7 @@ impl Simulator {
 
     #[getter]
     fn done(&self) -> bool {
-        self.simulation.is_done()
+        self.simulation.is_finished()
     }
 
     #[getter]
@@ -183,8 +186,8 @@ impl Simulator {
     }
 
     fn look<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray1<f64>>> {
-        let mut row = vec![0.0; self.fields.iter().map(LookField::width).sum()];
-        self.simulation.look(&mut row).map_err(|error| simulation_error(&self.name, error))?;
+        let mut row = vec![0.0; self.fields.iter().map(ObservationField::width).sum()];
+        self.simulation.observe(&mut row).map_err(|error| simulation_error(&self.name, error))?;
         Ok(row.into_pyarray(py))
     }
 
@@ -196,7 +199,7 @@ impl Simulator {
 
     /// Returns the commands of the run and the instant that it has reached; `None` if the commands were not kept.
     fn commands(&self) -> Option<Commands> {
-        let until = if self.simulation.is_done() { Instant::END } else { self.simulation.time() };
+        let until = if self.simulation.is_finished() { Instant::END } else { self.simulation.time() };
         Some(Commands { given: self.given.clone()?, until })
     }
 
@@ -212,10 +215,10 @@ impl Simulator {
 
     fn run_to_next(&mut self, py: Python<'_>, occasion: &str, time: f64) -> PyResult<bool> {
         let occasion = match occasion {
-            "sample" => Occasion::Sample,
-            "decision" => Occasion::Decision,
-            "switching" => Occasion::Switching,
-            "window" => Occasion::Window,
+            "sample" => StopAt::Sample,
+            "decision" => StopAt::Decision,
+            "switching" => StopAt::Switching,
+            "window" => StopAt::Window,
             _ => {
                 let why = "an event is 'sample', 'decision', 'switching' or 'window'";
                 return Err(PyValueError::new_err(format!("{why}, got {occasion:?}")));

@@ -33,14 +33,14 @@ impl Axis {
 
 /// One value for all axes, or one each for roll, pitch and yaw.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Each<T> {
+pub enum PerAxis<T> {
     /// One value for all axes.
     All(T),
     /// One value each for roll, pitch and yaw.
     Three([T; 3]),
 }
 
-impl<T: Copy> Each<T> {
+impl<T: Copy> PerAxis<T> {
     /// Returns the value about the axis of index `axis`.
     pub fn about(&self, axis: usize) -> T {
         match self {
@@ -55,13 +55,13 @@ impl<T: Copy> Each<T> {
     }
 }
 
-impl<T: Default> Default for Each<T> {
+impl<T: Default> Default for PerAxis<T> {
     fn default() -> Self {
         Self::All(T::default())
     }
 }
 
-impl<T: Serialize> Serialize for Each<T> {
+impl<T: Serialize> Serialize for PerAxis<T> {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self {
             Self::All(value) => value.serialize(serializer),
@@ -70,7 +70,7 @@ impl<T: Serialize> Serialize for Each<T> {
     }
 }
 
-impl<'de, T: DeserializeOwned> Deserialize<'de> for Each<T> {
+impl<'de, T: DeserializeOwned> Deserialize<'de> for PerAxis<T> {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         use serde::de::Error;
         let value = toml::Value::deserialize(deserializer)?;
@@ -86,7 +86,7 @@ impl<'de, T: DeserializeOwned> Deserialize<'de> for Each<T> {
     }
 }
 
-impl<T: JsonSchema> JsonSchema for Each<T> {
+impl<T: JsonSchema> JsonSchema for PerAxis<T> {
     fn schema_name() -> Cow<'static, str> {
         format!("Each{}", T::schema_name()).into()
     }

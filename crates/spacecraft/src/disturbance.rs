@@ -6,12 +6,12 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::{Vector, vector};
 use crate::axes::Axis;
 use crate::body::Spatial;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Stream;
 use crate::sine::Sine;
 use crate::time::{Instant, Span};
-use crate::wrench::{Push, Wrench};
+use crate::wrench::{ForceEffect, Wrench};
 
 /// A disturbance: a torque about an axis, or a force at a point.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -61,22 +61,22 @@ pub struct Pulses {
 
 impl Disturbance {
     /// Returns the instants at which the disturbance begins and ends.
-    pub fn edges(&self) -> impl Iterator<Item = Instant> {
+    pub fn change_times(&self) -> impl Iterator<Item = Instant> {
         [Some(self.from), self.to].into_iter().flatten().map(at)
     }
 
     /// Returns the effect of the force on a body; `None` for a torque.
-    pub fn push(&self, body: &Spatial) -> Option<Push> {
+    pub fn force_effect(&self, body: &Spatial) -> Option<ForceEffect> {
         let force = vector(self.force.as_ref()?);
         let first = body.points.first().map_or("", |point| &point.name);
-        let mut push = Push::default();
+        let mut push = ForceEffect::default();
         push.add(body, self.point.as_deref().unwrap_or(first), &Vector::zeros(), &force);
         Some(push)
     }
 
     /// Returns a key that is inconsistent on a three-axis body, with the reason.
-    pub fn three_axes_fault(&self) -> Option<Fault> {
-        let refused = |key: &str, why: &str| Some(Fault::new(key, why));
+    pub fn validate_three_axis(&self) -> Option<ConfigError> {
+        let refused = |key: &str, why: &str| Some(ConfigError::new(key, why));
         let noisy = self.noise.get() > 0.0;
         match (&self.force, self.about) {
             (None, None) => refused(
@@ -108,9 +108,9 @@ impl Disturbance {
 
 /// Run-time state of a disturbance.
 #[derive(Clone, Debug)]
-pub struct Disturbing {
+pub struct DisturbanceState {
     what: Disturbance,
-    push: Option<Push>,
+    push: Option<ForceEffect>,
     /// Pulse train: start of the last pulse, true if the pulse is on, and instant of the next switching.
     beat: Option<(Instant, bool, Instant)>,
     draws: Stream,
@@ -119,14 +119,14 @@ pub struct Disturbing {
     next: Option<Instant>,
 }
 
-impl Disturbing {
+impl DisturbanceState {
     /// Creates a disturbance before its start, with a random stream of its own; `body` is given if it has three axes.
     pub fn new(disturbance: &Disturbance, body: Option<&Spatial>, draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
         Self {
             next: noisy.then(|| at(disturbance.from)),
             beat: disturbance.pulse.map(|_| (at(disturbance.from), false, at(disturbance.from))),
-            push: body.and_then(|body| disturbance.push(body)),
+            push: body.and_then(|body| disturbance.force_effect(body)),
             what: disturbance.clone(),
             draws,
             drawn: 0.0,
@@ -146,7 +146,7 @@ impl Disturbing {
     }
 
     /// Draws the noise anew and starts or ends pulses, if that is due by `now`.
-    pub fn serve(&mut self, now: Instant) {
+    pub fn update(&mut self, now: Instant) {
         if let (Some(pulses), Some((began, on, next))) = (self.what.pulse, &mut self.beat) {
             while *next <= now {
                 *on = !*on;
@@ -167,7 +167,7 @@ impl Disturbing {
     }
 
     /// Returns the torque on the hub about an axis at an instant (N m), right-continuous.
-    pub fn on_hub(&self, now: Instant, axis: usize) -> f64 {
+    pub fn torque_on_hub(&self, now: Instant, axis: usize) -> f64 {
         let about = self.what.about.map_or(0, Axis::index);
         let acts = self.push.is_none() && about == axis && self.acts(now);
         if acts { self.what.torque.get() + self.drawn } else { 0.0 }
@@ -184,19 +184,19 @@ impl Disturbing {
     pub fn torque(&self, now: Instant, axis: usize) -> f64 {
         match &self.push {
             Some(push) if self.acts(now) => push.torque[axis],
-            _ => self.on_hub(now, axis) + self.swinging(now, axis),
+            _ => self.torque_on_hub(now, axis) + self.swinging(now, axis),
         }
     }
 
     /// Adds the effect of a force, or the sine terms of a torque, to `onto` from `now` on.
-    pub fn push(&self, now: Instant, onto: &mut Wrench) {
+    pub fn force_effect(&self, now: Instant, onto: &mut Wrench) {
         if !self.what.sines.is_empty() && self.acts(now) {
             let axis = self.what.about.map_or(0, Axis::index);
             let about = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
             onto.sines.extend(self.what.sines.iter().map(|sine| (about, *sine)));
         }
         if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
-            onto.push(push);
+            onto.add_force_effect(push);
         }
     }
 }

@@ -4,8 +4,8 @@ use std::ops::AddAssign;
 
 use crate::attitude::Vector;
 use crate::body::Spatial;
-use crate::flow::Forced;
-use crate::motion::turning::{Gimbal, Rotor};
+use crate::flow::ActiveWaveform;
+use crate::motion::three_axis::{Gimbal, Rotor};
 use crate::sine::Sine;
 
 /// Torques, forces, rotors and waveform that act on a body from an instant on.
@@ -32,7 +32,7 @@ pub struct Wrench {
     /// Sine terms of time in the torque at the hub of a spacecraft, each with its axis.
     pub sines: Vec<(Vector, Sine)>,
     /// Waveform about the first axis, and the time reached within it.
-    pub waveform: Option<Forced>,
+    pub waveform: Option<ActiveWaveform>,
 }
 
 impl Wrench {
@@ -50,15 +50,15 @@ impl Wrench {
     }
 
     /// Adds a waveform that began at the same instant as the present one, if there is one.
-    pub fn force(&mut self, by: Option<Forced>) {
+    pub fn add_waveform(&mut self, by: Option<ActiveWaveform>) {
         self.waveform = match (self.waveform.take(), by) {
-            (Some(own), Some(by)) => Some(own.changed(1.0, &by.waveform)),
+            (Some(own), Some(by)) => Some(own.scaled_and_added(1.0, &by.waveform)),
             (own, by) => own.or(by),
         };
     }
 
     /// Adds the effect of forces at points.
-    pub fn push(&mut self, push: &Push) {
+    pub fn add_force_effect(&mut self, push: &ForceEffect) {
         self.torque += push.torque;
         self.force += push.force;
         self.forces.resize(push.forces.len(), 0.0);
@@ -70,7 +70,7 @@ impl Wrench {
 
 /// Effect of forces at points on a body, in the body's axes.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Push {
+pub struct ForceEffect {
     /// Torque about the centre of mass of the undeformed body (N m).
     pub torque: Vector,
     /// Modal forces (N/sqrt(kg)).
@@ -81,7 +81,7 @@ pub struct Push {
     pub levers: Vec<Vector>,
 }
 
-impl AddAssign<&Self> for Push {
+impl AddAssign<&Self> for ForceEffect {
     fn add_assign(&mut self, other: &Self) {
         self.torque += other.torque;
         self.force += other.force;
@@ -92,7 +92,7 @@ impl AddAssign<&Self> for Push {
     }
 }
 
-impl Push {
+impl ForceEffect {
     /// Adds the effect of a force (N) that acts at an offset (m) from a named point.
     pub fn add(&mut self, body: &Spatial, point: &str, offset: &Vector, force: &Vector) {
         let moment = offset.cross(force);
@@ -103,7 +103,7 @@ impl Push {
         for (sum, (translation, rotation)) in self.forces.iter_mut().zip(shapes) {
             *sum += translation.dot(force) + rotation.dot(&moment);
         }
-        let shifts = body.shifts(point, offset);
+        let shifts = body.displacements(point, offset);
         self.levers.resize(shifts.len(), Vector::zeros());
         self.levers.iter_mut().zip(shifts).for_each(|(sum, shift)| *sum += shift.cross(force));
     }

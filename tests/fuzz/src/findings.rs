@@ -59,7 +59,7 @@ impl Findings {
     }
 
     /// Prints a finding, and saves its input.
-    pub fn tell(&self, found: &Found, case: &Case, alone: bool) -> io::Result<()> {
+    pub fn report(&self, found: &Found, case: &Case, alone: bool) -> io::Result<()> {
         let kept = self.keep(case, &Found::kind(&found.why))?;
         let surface = crate::name(found.surface);
         let Found { seed, number, since, why, .. } = found;

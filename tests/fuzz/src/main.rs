@@ -183,7 +183,7 @@ fn one(args: &Args, surface: Surface, findings: Findings, scratch: &Path) -> io:
                         findings
                             .lock()
                             .unwrap_or_else(std::sync::PoisonError::into_inner)
-                            .tell(&found, &case, alone)?;
+                            .report(&found, &case, alone)?;
                     }
                 }
                 if at == was {

@@ -74,7 +74,7 @@ pub fn watch(
     arguments: &[String],
     directory: &Path,
     deadline: Instant,
-    mut tell: impl FnMut(News),
+    mut report: impl FnMut(News),
 ) -> io::Result<()> {
     let _ = fs::remove_dir_all(directory);
     fs::create_dir_all(directory)?;
@@ -107,7 +107,7 @@ pub fn watch(
                     ["run", number, stop] => running = Some(Running::new(number, stop, child.id())),
                     ["done", number, code, memory, micros, wrong] => {
                         running = None;
-                        tell(News::Done {
+                        report(News::Done {
                             number: number.parse().unwrap_or(0),
                             code: code.parse().unwrap_or(u8::MAX),
                             memory: memory.parse().unwrap_or(0),
@@ -123,7 +123,7 @@ pub fn watch(
             }
             Err(RecvTimeoutError::Disconnected) => {
                 let status = child.wait()?;
-                return end(status, running.as_ref(), panic, &directory.join(MESSAGES), tell);
+                return end(status, running.as_ref(), panic, &directory.join(MESSAGES), report);
             }
             Err(RecvTimeoutError::Timeout) => {}
         }
@@ -134,11 +134,11 @@ pub fn watch(
         match late(now, child.id()) {
             Late::No => {}
             Late::Ended => {
-                tell(News::Ended { number: now.number });
+                report(News::Ended { number: now.number });
                 return kill(&mut child);
             }
             Late::Hangs(why) => {
-                tell(now.broken(why));
+                report(now.broken(why));
                 return kill(&mut child);
             }
         }
@@ -201,7 +201,7 @@ fn end(
     running: Option<&Running>,
     panic: Option<String>,
     messages: &Path,
-    mut tell: impl FnMut(News),
+    mut report: impl FnMut(News),
 ) -> io::Result<()> {
     let said = String::from_utf8_lossy(&fs::read(messages).unwrap_or_default()).into_owned();
     let Some(running) = running else {
@@ -216,14 +216,14 @@ fn end(
         return Err(io::Error::other(format!("a worker failed, {status}: {said}")));
     }
     if running.asked.is_some() && (status.signal() == Some(15) || status.code() == Some(130)) {
-        tell(News::Ended { number: running.number });
+        report(News::Ended { number: running.number });
         return Ok(());
     }
     // What the system says as it gives up: of memory, of the stack.
     let last =
         said.lines().rev().find(|line| line.contains("memory allocation") || line.contains("overflow"));
     let why = panic.unwrap_or_else(|| format!("{status}: {}", last.unwrap_or_default()));
-    tell(running.broken(why));
+    report(running.broken(why));
     Ok(())
 }
 

@@ -2,24 +2,24 @@
 
 use std::path::Path;
 
-use flexsc_core::campaign::{ColumnCells, RUN, Rows, SECONDS, SEED, Work};
+use flexsc_core::campaign::{ColumnCells, RUN, RowMaker, RunRows, SECONDS, SEED};
 use serde_json::json;
 
-use super::Kind;
-use crate::failure::Failure;
+use super::TableFormat;
+use crate::error::CliError;
 use crate::files;
 
 /// Writes rows as one file.
-pub fn write(path: &Path, kind: Kind, work: &Work, rows: &Rows) -> Result<(), Failure> {
+pub fn write(path: &Path, kind: TableFormat, work: &RowMaker, rows: &RunRows) -> Result<(), CliError> {
     let bytes = match kind {
-        Kind::Parquet => work.encode(rows).map_err(Failure::write(path))?,
-        Kind::Csv => csv(work, rows).map_err(|error| Failure::write(path)(error.into()))?,
+        TableFormat::Parquet => work.encode(rows).map_err(CliError::write(path))?,
+        TableFormat::Csv => csv(work, rows).map_err(|error| CliError::write(path)(error.into()))?,
     };
     // The target was checked before the runs were made.
     files::write(path, &bytes, true)
 }
 
-fn csv(work: &Work, rows: &Rows) -> Result<Vec<u8>, csv::Error> {
+fn csv(work: &RowMaker, rows: &RunRows) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     // Run times differ from one repetition to the next: they are left out.
     let columns: Vec<_> =

@@ -8,12 +8,12 @@ use clap::ValueEnum;
 use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
-use flexsc_core::record::{Detail, LogFile, Record, RecordError, RunEnd, There, there};
+use flexsc_core::record::{Detail, ExistingLog, LogFile, Record, RecordError, RunEnd, existing_log};
 
-use super::{Job, run as run_all};
-use crate::failure::{Failure, Refused};
+use super::{CampaignJob, run as run_all};
+use crate::error::{CliError, NotReplaced};
 use crate::say;
-use crate::stop::{self, Stop};
+use crate::stop::{self, StopRecord};
 
 /// Contents of a log.
 #[derive(Copy, Clone, PartialEq, ValueEnum)]
@@ -41,7 +41,7 @@ impl LogDetail {
 }
 
 /// Runs a campaign; if a detail is given, the log of each run is NAME-NUMBER.mcap beside the tables.
-pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Result<(), Failure> {
+pub fn run(study: &Arc<Campaign>, job: &CampaignJob<'_>, detail: Option<Detail>) -> Result<(), CliError> {
     let directory = job.table.map(Path::to_owned).unwrap_or_default();
     let (name, force) = (study.scenario().name.clone(), job.force);
     let log = move |number: u64| -> PathBuf { directory.join(format!("{name}-{number}.mcap")) };
@@ -49,9 +49,11 @@ pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Resu
         let (log, selection) = (log.clone(), job.selection.clone());
         move |run| match detail {
             // Runs that had not started before the interruption have no log.
-            _ if stop::asked() => Err(stop::interrupted().into()),
-            None => Ok(Campaign::simulate_for(run, &selection, Stop)?),
-            Some(detail) => Ok(selection.of_run(logged(run, &log(run.number), (detail, force), Stop)?.0)),
+            _ if stop::stop_requested() => Err(stop::interrupted().into()),
+            None => Ok(Campaign::simulate_metrics(run, &selection, StopRecord)?),
+            Some(detail) => {
+                Ok(selection.select(simulate_to_log(run, &log(run.number), (detail, force), StopRecord)?.0))
+            }
         }
     })?;
     if detail.is_some() && !job.json {
@@ -67,7 +69,7 @@ pub fn run(study: &Arc<Campaign>, job: &Job<'_>, detail: Option<Detail>) -> Resu
 
 /// Simulates a run with its log file, and returns the file's size. An interrupted or a failed run leaves a finished
 /// log, and a log that cannot be written leaves no file.
-pub fn logged(
+pub fn simulate_to_log(
     run: &CampaignRun,
     path: &Path,
     (detail, force): (Detail, bool),
@@ -76,12 +78,12 @@ pub fn logged(
     let provenance = Campaign::provenance(run, detail);
     let mut log = LogFile::create(path, &provenance, detail)?;
     // From here on, this process has the file to itself.
-    if let (There::Other(what), false) = (there(path, &provenance), force) {
+    if let (ExistingLog::Other(what), false) = (existing_log(path, &provenance), force) {
         let text = format!(
             "{}: {what}\n\nhint: give another directory with -o, or use --force to replace it",
             path.display()
         );
-        return Err(RecordError::Io(Refused(text).into()).into());
+        return Err(RecordError::Io(NotReplaced(text).into()).into());
     }
     match Campaign::simulate(run, (&mut log, record)) {
         Ok(metrics) => {

@@ -3,11 +3,11 @@
 use std::path::Path;
 
 use clap::ValueEnum;
-use flexsc_core::campaign::{PointDesign, Sampling, parquet_is_built_in};
+use flexsc_core::campaign::{Design, Sampling, parquet_is_built_in};
 use flexsc_core::metrics::Selection;
 use flexsc_core::scenario::Cost;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::out::Out;
 
 /// Memory that a campaign with a directory of parts needs (bytes), apart from its runs.
@@ -19,10 +19,10 @@ const MOST_REPLICAS: u64 = 1_000_000;
 
 #[derive(clap::Args, Clone)]
 #[group(skip)]
-pub struct Options {
+pub struct CampaignOptions {
     /// Format of the table in DIR [default: parquet; csv in a build without it], as the ending of a FILE says by itself
     #[arg(long, value_name = "TABLE", requires = "out")]
-    table: Option<Kind>,
+    table: Option<TableFormat>,
     /// Metrics to keep, separated by commas [default: all]
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     metrics: Option<Vec<String>>,
@@ -31,7 +31,7 @@ pub struct Options {
     pub fail_fast: bool,
     /// Sampling of [uncertain] keys and of the ranges of a sweep: random, latin-hypercube or sobol
     #[arg(long, value_name = "METHOD[:POINTS]", value_parser = sample)]
-    sample: Option<Sample>,
+    sample: Option<SamplePlan>,
     /// Run on the workers of a Dask scheduler, which share DIR; needs `pip install flexsc[dask]`
     #[arg(long, value_name = "ADDRESS", requires = "out")]
     pub scheduler: Option<String>,
@@ -42,7 +42,7 @@ pub struct Options {
 
 /// The form of a campaign's rows.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Kind {
+pub enum TableFormat {
     /// A directory of Parquet files; an interrupted campaign resumes
     Parquet,
     /// One file, runs.csv
@@ -51,12 +51,12 @@ pub enum Kind {
 
 /// Value of `--sample`: the sampling method and, if given, the number of points.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub struct Sample {
+pub struct SamplePlan {
     pub sampling: Sampling,
     pub points: Option<u64>,
 }
 
-fn sample(text: &str) -> Result<Sample, String> {
+fn sample(text: &str) -> Result<SamplePlan, String> {
     let (name, points) = text.split_once(':').map_or((text, None), |(name, points)| (name, Some(points)));
     let found = Sampling::ALL.into_iter().find(|(known, _)| *known == name);
     let names = Sampling::ALL.map(|(name, _)| name).join(", ");
@@ -64,11 +64,11 @@ fn sample(text: &str) -> Result<Sample, String> {
     let points = points.map(|text| text.parse().ok().filter(|points| *points > 0));
     match points {
         Some(None) => Err("needs a number of points after the colon".to_owned()),
-        points => Ok(Sample { sampling, points: points.flatten() }),
+        points => Ok(SamplePlan { sampling, points: points.flatten() }),
     }
 }
 
-impl Options {
+impl CampaignOptions {
     /// Returns true if no option is given.
     pub fn are_default(&self) -> bool {
         let Self { table, metrics, fail_fast, sample, replicas, scheduler } = self;
@@ -81,23 +81,23 @@ impl Options {
     }
 
     /// Returns the file format of the rows.
-    pub fn table(&self) -> Kind {
-        self.table.unwrap_or(if cfg!(feature = "parquet") { Kind::Parquet } else { Kind::Csv })
+    pub fn table(&self) -> TableFormat {
+        self.table.unwrap_or(if cfg!(feature = "parquet") { TableFormat::Parquet } else { TableFormat::Csv })
     }
 
     /// Returns the address of the scheduler whose workers make the runs; `None` for this process.
     ///
     /// # Errors
     /// Options that the workers of a scheduler cannot satisfy.
-    pub fn scheduler(&self, log: bool, json: bool) -> Result<Option<&str>, Failure> {
+    pub fn scheduler(&self, log: bool, json: bool) -> Result<Option<&str>, CliError> {
         let other = [
-            ("--table csv", self.table() == Kind::Csv),
+            ("--table csv", self.table() == TableFormat::Csv),
             ("--log", log),
             ("--json", json),
             ("--fail-fast", self.fail_fast),
         ];
         match (&self.scheduler, other.into_iter().find(|(_, given)| *given)) {
-            (Some(address), Some((option, _))) => Err(Failure::Arguments(format!(
+            (Some(address), Some((option, _))) => Err(CliError::Arguments(format!(
                 "--scheduler {address}: its workers write only Parquet files; leave out {option}"
             ))),
             (address, _) => Ok(address.as_deref()),
@@ -105,18 +105,18 @@ impl Options {
     }
 
     /// Returns the selected metrics.
-    pub fn selection(&self) -> Result<Selection, Failure> {
-        if self.table == Some(Kind::Parquet) {
-            parquet_is_built_in().map_err(|error| Failure::Arguments(format!("--table: {error}")))?;
+    pub fn selection(&self) -> Result<Selection, CliError> {
+        if self.table == Some(TableFormat::Parquet) {
+            parquet_is_built_in().map_err(|error| CliError::Arguments(format!("--table: {error}")))?;
         }
         let Some(names) = &self.metrics else { return Ok(Selection::ALL) };
-        Selection::of(names).map_err(|why| Failure::Arguments(format!("--metrics: {why}")))
+        Selection::from_names(names).map_err(|why| CliError::Arguments(format!("--metrics: {why}")))
     }
 
     /// Returns the cost of a campaign; with a directory of parts, few rows are held in memory.
     pub fn cost(&self, cost: Cost, in_directory: bool) -> Cost {
         match self.table() {
-            Kind::Parquet if in_directory => Cost { memory: HELD + cost.runs * HELD_OF_RUN, ..cost },
+            TableFormat::Parquet if in_directory => Cost { memory: HELD + cost.runs * HELD_OF_RUN, ..cost },
             _ => cost,
         }
     }
@@ -125,15 +125,20 @@ impl Options {
     ///
     /// # Errors
     /// A file whose format contradicts `--table`, or a file where a directory is needed.
-    pub fn place(&self, out: Option<&Path>, inputs: &[&Path], log: bool) -> Result<(Kind, bool), Failure> {
+    pub fn place(
+        &self,
+        out: Option<&Path>,
+        inputs: &[&Path],
+        log: bool,
+    ) -> Result<(TableFormat, bool), CliError> {
         let out = out.map(|out| Out::new(out, &["csv", "parquet"], inputs)).transpose()?;
         let Some(Out::File(path, ending)) = out else { return Ok((self.table(), false)) };
-        let kind = if ending == "csv" { Kind::Csv } else { Kind::Parquet };
+        let kind = if ending == "csv" { TableFormat::Csv } else { TableFormat::Parquet };
         let refused = |why: &str| {
-            Err(Failure::Arguments(format!("-o {}: {why}\n\nhint: give a directory", path.display())))
+            Err(CliError::Arguments(format!("-o {}: {why}\n\nhint: give a directory", path.display())))
         };
-        if kind == Kind::Parquet {
-            parquet_is_built_in().map_err(|error| Failure::Arguments(format!("-o: {error}")))?;
+        if kind == TableFormat::Parquet {
+            parquet_is_built_in().map_err(|error| CliError::Arguments(format!("-o: {error}")))?;
         }
         match () {
             () if self.table.is_some_and(|table| table != kind) => refused("--table names another format"),
@@ -155,25 +160,20 @@ impl Options {
 
     /// Completes a design with the replicas and, if keys are uncertain, the method of their draws; `points` is the
     /// number of points of the whole campaign, if known.
-    pub fn complete(
-        &self,
-        design: PointDesign,
-        uncertain: bool,
-        points: Option<u64>,
-    ) -> Result<PointDesign, Failure> {
+    pub fn complete(&self, design: Design, uncertain: bool, points: Option<u64>) -> Result<Design, CliError> {
         let draws = if uncertain { self.sampling() } else { Sampling::Random };
         let hypercube = match (draws, points) {
             (Sampling::LatinHypercube, Some(points)) => points,
             (Sampling::LatinHypercube, None) => {
                 let why = "a Latin hypercube needs its number of points, such as latin-hypercube:1000";
-                return Err(Failure::Arguments(format!("--sample: {why}")));
+                return Err(CliError::Arguments(format!("--sample: {why}")));
             }
             _ => 0,
         };
         if !uncertain && design.blocks.is_empty() && self.sample.is_some() {
             let why = "no key is uncertain, and none is varied: there is nothing to draw";
-            return Err(Failure::Arguments(format!("--sample: {why}")));
+            return Err(CliError::Arguments(format!("--sample: {why}")));
         }
-        Ok(PointDesign { draws, hypercube, replicas: self.replicas, ..design })
+        Ok(Design { draws, hypercube, replicas: self.replicas, ..design })
     }
 }

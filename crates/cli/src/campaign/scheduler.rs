@@ -7,7 +7,7 @@ use std::process::{Child, Command, ExitStatus, Stdio};
 use std::thread;
 use std::time::{Duration, Instant};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::stop;
 
 /// Intended duration of a task (s): much longer than the scheduler's overhead.
@@ -19,23 +19,23 @@ const LOOK: Duration = Duration::from_millis(20);
 const PATIENCE: Duration = Duration::from_millis(1500);
 
 /// Makes the missing runs of a directory that all workers can reach, and waits for them.
-pub fn make(directory: &Path, address: &str) -> Result<(), Failure> {
+pub fn make(directory: &Path, address: &str) -> Result<(), CliError> {
     // The command of the Python wheel names its interpreter.
     let python = std::env::var_os("FLEXSC_PYTHON").unwrap_or_else(|| OsString::from("python3"));
-    let told = python.to_string_lossy().into_owned();
+    let reported = python.to_string_lossy().into_owned();
     let mut command = Command::new(&python);
     command.args(["-m", "flexsc.dask", "--until-stdin-closes", address]).arg(directory);
     // The process ends when its stdin is closed, which the death of this process does too.
     let status = command.stdin(Stdio::piped()).spawn().and_then(ended);
     let why = match status {
         Ok(status) if status.success() => return Ok(()),
-        Ok(_) if stop::asked() => return Err(Failure::Interrupted(String::new())),
-        Ok(status) => format!("`{told} -m flexsc.dask` ended with {status}"),
-        Err(error) if error.kind() == io::ErrorKind::NotFound => format!("there is no `{told}`"),
-        Err(error) => format!("`{told}` cannot be started: {error}"),
+        Ok(_) if stop::stop_requested() => return Err(CliError::Interrupted(String::new())),
+        Ok(status) => format!("`{reported} -m flexsc.dask` ended with {status}"),
+        Err(error) if error.kind() == io::ErrorKind::NotFound => format!("there is no `{reported}`"),
+        Err(error) => format!("`{reported}` cannot be started: {error}"),
     };
     let hint = "hint: it needs Python with `pip install flexsc[dask]`; FLEXSC_PYTHON names another Python";
-    Err(Failure::Arguments(format!("--scheduler {address}: {why}\n\n{hint}")))
+    Err(CliError::Arguments(format!("--scheduler {address}: {why}\n\n{hint}")))
 }
 
 /// Waits for the end of the Python process, or ends it when the user asks to stop.
@@ -44,7 +44,7 @@ fn ended(mut child: Child) -> io::Result<ExitStatus> {
         if let Some(status) = child.try_wait()? {
             return Ok(status);
         }
-        if stop::asked() {
+        if stop::stop_requested() {
             drop(child.stdin.take());
             let asked = Instant::now();
             while asked.elapsed() < PATIENCE {

@@ -9,11 +9,11 @@ use flexsc_core::analysis::damping::{DampedMode, PulsedDamping};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
-use crate::drawing::Drawing;
-use crate::failure::Failure;
-use crate::grid::Even;
+use crate::error::CliError;
+use crate::figure_files::FigureOutput;
+use crate::grid::PositiveGrid;
 use crate::human::{Units, UnitsArgs, columns, digits};
-use crate::number::or_none;
+use crate::number::number_or_none;
 use crate::results::{Results, show};
 use crate::say;
 
@@ -22,7 +22,7 @@ use crate::say;
 pub struct Args {
     /// Natural frequencies of the modes (rad/s)
     #[arg(long, value_name = "LO:HI:COUNT")]
-    frequency: Even,
+    frequency: PositiveGrid,
     /// Elastic acceleration of a push: the thrusters' rigid one times their influence on the mode (rad/s²)
     #[arg(long, value_name = "ACCELERATION")]
     acceleration: f64,
@@ -47,14 +47,14 @@ pub struct Args {
     #[command(flatten)]
     units: UnitsArgs,
     #[command(flatten)]
-    drawing: Drawing,
+    drawing: FigureOutput,
     /// Print one JSON object to stdout
     #[arg(long)]
     json: bool,
 }
 
 /// Effect of a relay of thrusters on elastic modes.
-pub struct Effect {
+pub struct DampingResults {
     timing: PulseTiming,
     /// Frequency above which the relay excites the modes (rad/s).
     limit: f64,
@@ -64,7 +64,7 @@ pub struct Effect {
 
 impl Args {
     /// Computes the effect of the relay on the modes.
-    pub fn results(&self) -> Result<Effect, Failure> {
+    pub fn results(&self) -> Result<DampingResults, CliError> {
         let timing = PulseTiming {
             period: self.period,
             delay: self.delay,
@@ -78,11 +78,11 @@ impl Args {
             threshold: self.threshold,
         };
         if let Some((name, why)) = pulsed.inconsistency() {
-            return Err(Failure::Arguments(format!("--{} {why}", name.replace('_', "-"))));
+            return Err(CliError::Arguments(format!("--{} {why}", name.replace('_', "-"))));
         }
-        let Even(frequencies) = &self.frequency;
+        let PositiveGrid(frequencies) = &self.frequency;
         if let Some(why) = pulsed.beyond(frequencies) {
-            return Err(Failure::Arguments(format!("a push {why}; see --frequency, --period and --delay")));
+            return Err(CliError::Arguments(format!("a push {why}; see --frequency, --period and --delay")));
         }
         let mut rows = pulsed.table(frequencies);
         if self.amplitude.is_none() {
@@ -90,15 +90,15 @@ impl Args {
                 (row.decay_s, row.thrust_s) = (None, None);
             }
         }
-        Ok(Effect { timing, limit: timing.frequency_limit(), rows, units: self.units.units })
+        Ok(DampingResults { timing, limit: timing.frequency_limit(), rows, units: self.units.units })
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     show(&args.results()?, Some(&args.drawing), args.json)
 }
 
-impl Results for Effect {
+impl Results for DampingResults {
     fn json(&self) -> Vec<Json> {
         // Infinite values are null in JSON.
         vec![json!({"frequency_limit_rad_s": self.limit, "rows": self.rows})]
@@ -108,7 +108,7 @@ impl Results for Effect {
         vec![("damping".to_owned(), figures::figure(&self.rows, self.limit))]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let PulseTiming { period, delay, on_time } = self.timing;
         let (factor, unit) = self.units.frequency();
         let damps = if self.limit.is_finite() {
@@ -141,11 +141,11 @@ impl Results for Effect {
                 digits(row.phase_factor),
                 digits(row.slope_rad_s2),
                 digits(row.delay_limit_s),
-                or_none(row.gain_limit_1_s, digits),
-                or_none(row.limit_cycle_rate_rad_s, digits),
-                or_none(row.limit_cycle_frequency_rad_s, |frequency| digits(frequency * factor)),
-                or_none(row.decay_s, digits),
-                or_none(row.thrust_s, digits),
+                number_or_none(row.gain_limit_1_s, digits),
+                number_or_none(row.limit_cycle_rate_rad_s, digits),
+                number_or_none(row.limit_cycle_frequency_rad_s, |frequency| digits(frequency * factor)),
+                number_or_none(row.decay_s, digits),
+                number_or_none(row.thrust_s, digits),
             ]);
         }
         for line in columns(&rows, 0) {

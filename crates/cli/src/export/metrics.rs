@@ -10,7 +10,7 @@ use super::Format;
 pub const TOPIC: &str = "/metrics";
 
 /// Row of the table: a metric, or one element of it.
-struct Row<'a> {
+struct MetricRow<'a> {
     name: String,
     value: Json,
     unit: &'a str,
@@ -26,7 +26,7 @@ pub fn table(columns: &Columns, format: Format) -> Option<Result<Vec<u8>, csv::E
     })
 }
 
-fn rows(columns: &Columns) -> Option<Vec<Row<'_>>> {
+fn rows(columns: &Columns) -> Option<Vec<MetricRow<'_>>> {
     let Some(Column::Rows(_, inner)) = columns.get("metrics") else { return None };
     let texts = |name: &str| match inner.get(name) {
         Some(Column::Texts(texts)) => Some(texts),
@@ -34,14 +34,14 @@ fn rows(columns: &Columns) -> Option<Vec<Row<'_>>> {
     };
     let (names, units, words) = (texts("name")?, texts("unit")?, texts("text")?);
     let values = inner.numbers("value")?;
-    let row = |(place, name): (usize, &String)| -> Option<Row<'_>> {
+    let row = |(place, name): (usize, &String)| -> Option<MetricRow<'_>> {
         let next_is_same = names.get(place + 1) == Some(name);
         let first = names[..place].iter().rposition(|before| before != name).map_or(0, |before| before + 1);
         let is_list = next_is_same || first < place;
         let (value, word) = (*values.get(place)?, words.get(place)?);
         // In a list, the first element has the description.
         let meaning = metrics::ALL.iter().find(|meaning| meaning.name == name.as_str() && first == place);
-        Some(Row {
+        Some(MetricRow {
             name: if is_list { format!("{name}[{}]", place - first) } else { name.clone() },
             value: if word.is_empty() { json!(value) } else { json!(word) },
             unit: units.get(place)?,
@@ -51,10 +51,10 @@ fn rows(columns: &Columns) -> Option<Vec<Row<'_>>> {
     names.iter().enumerate().map(row).collect()
 }
 
-fn csv(rows: &[Row<'_>]) -> Result<Vec<u8>, csv::Error> {
+fn csv(rows: &[MetricRow<'_>]) -> Result<Vec<u8>, csv::Error> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     writer.write_record(["name", "value", "unit", "meaning"])?;
-    for Row { name, value, unit, meaning } in rows {
+    for MetricRow { name, value, unit, meaning } in rows {
         writer.write_record([name.as_str(), &text(value), unit, meaning])?;
     }
     Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
@@ -69,6 +69,6 @@ fn text(value: &Json) -> String {
     }
 }
 
-fn jsonl(Row { name, value, unit, meaning }: &Row<'_>) -> String {
+fn jsonl(MetricRow { name, value, unit, meaning }: &MetricRow<'_>) -> String {
     format!("{}\n", json!({"name": name, "value": value, "unit": unit, "meaning": meaning}))
 }

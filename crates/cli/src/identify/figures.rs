@@ -4,16 +4,16 @@
 use flexsc_core::analysis::identification::IdentificationRow;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, RGBColor, colour, steps};
 
-use super::Set;
+use super::ModeSetResults;
 
 /// Colours of the relative frequency errors at the start, cyclic.
 const COLOURS: [RGBColor; 5] =
     [colour::BLUE, colour::GREEN, colour::ORANGE, colour::VERMILLION, colour::BLACK];
 
 /// Returns the figure; a run lasts `whole` seconds.
-pub fn figure(sets: &[Set], whole: f64) -> Figure {
+pub fn figure(sets: &[ModeSetResults], whole: f64) -> Figure {
     let x = FigureAxis::exact("time (s)", "", 0.0..whole);
-    let panel = |set: &Set| {
+    let panel = |set: &ModeSetResults| {
         let layer = |(index, row): (usize, &IdentificationRow)| {
             let found = row.times_s.iter().zip(1_u32..);
             let part = |count: u32| 100.0 * f64::from(count) / row.runs as f64;

@@ -6,16 +6,16 @@ use std::f64::consts::TAU;
 use std::io::Write;
 use std::str::FromStr;
 
-use flexsc_core::analysis::identification::{CYCLE, IdentificationRow, Trial};
+use flexsc_core::analysis::identification::{CYCLE, IdentificationRow, IdentificationTrial};
 use flexsc_core::count::counted;
 use flexsc_core::quantity::NonNegative;
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
-use crate::consent::Consent;
-use crate::drawing::Drawing;
-use crate::failure::Failure;
-use crate::number::{fixed, or_none};
+use crate::confirm_cost::CostConfirmation;
+use crate::error::CliError;
+use crate::figure_files::FigureOutput;
+use crate::number::{fixed, number_or_none};
 use crate::results::{Results, show};
 use crate::{progress, say};
 
@@ -35,7 +35,7 @@ pub struct Args {
     /// A set of modes by frequency (rad/s) and influence, such as 1.556:2.89,3.77:3.0; may be repeated. Left out, those of
     /// the space station's study
     #[arg(long, value_name = "W:MU,...")]
-    modes: Vec<Modes>,
+    modes: Vec<ModeSet>,
     /// Relative errors of the frequencies at the start
     #[arg(long, value_delimiter = ',', default_value = "0.05,0.1,0.2,0.3", value_name = "PARTS")]
     off: Vec<f64>,
@@ -55,26 +55,26 @@ pub struct Args {
     #[arg(long, default_value_t = 1)]
     seed: u64,
     #[command(flatten)]
-    drawing: Drawing,
+    drawing: FigureOutput,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    consent: Consent,
+    consent: CostConfirmation,
 }
 
 /// Frequency and influence of each mode of a set.
 #[derive(Clone, Debug)]
-struct Modes(Vec<(f64, f64)>);
+struct ModeSet(Vec<(f64, f64)>);
 
 /// Results for a set of modes, with a row for each initial error.
-struct Set {
+struct ModeSetResults {
     /// Frequency (rad/s) and influence of each mode.
     modes: Vec<(f64, f64)>,
     rows: Vec<IdentificationRow>,
 }
 
-impl Set {
+impl ModeSetResults {
     /// Returns the frequencies in hertz as text.
     fn hertz(&self) -> String {
         let names: Vec<String> = self.modes.iter().map(|(w, _)| format!("{:.4}", w / TAU)).collect();
@@ -83,8 +83,8 @@ impl Set {
 }
 
 /// Results for all sets.
-pub struct Identified {
-    sets: Vec<Set>,
+pub struct IdentifyResults {
+    sets: Vec<ModeSetResults>,
     /// Number of runs in each row.
     runs: u64,
     /// Duration of each run (s).
@@ -93,7 +93,7 @@ pub struct Identified {
     influence_off: f64,
 }
 
-impl FromStr for Modes {
+impl FromStr for ModeSet {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
@@ -108,60 +108,67 @@ impl FromStr for Modes {
 
 impl Args {
     /// Runs the trials of the observer.
-    pub fn results(&self) -> Result<Identified, Failure> {
+    pub fn results(&self) -> Result<IdentifyResults, CliError> {
         let shipped =
             SETS.iter().map(|(modes, rate)| (modes.iter().map(|(f, mu)| (TAU * f, *mu)).collect(), *rate));
         let asked: Vec<(Vec<(f64, f64)>, f64)> = if self.modes.is_empty() {
             shipped.collect()
         } else {
-            self.modes.iter().map(|Modes(modes)| (modes.clone(), self.rate)).collect()
+            self.modes.iter().map(|ModeSet(modes)| (modes.clone(), self.rate)).collect()
         };
         let Some(rate) = NonNegative::new(self.rate) else {
-            return Err(Failure::Arguments(format!("--rate must be 0 or more, got {}", self.rate)));
+            return Err(CliError::Arguments(format!("--rate must be 0 or more, got {}", self.rate)));
         };
         let modes: usize = asked.iter().map(|(modes, _)| modes.len() * modes.len()).sum();
-        self.consent.to(&Trial::cost(self.off.len() as f64 * self.runs as f64, self.cycles, modes as f64))?;
+        self.consent.check(&IdentificationTrial::cost(
+            self.off.len() as f64 * self.runs as f64,
+            self.cycles,
+            modes as f64,
+        ))?;
         let mut sets = Vec::new();
         let bar = progress::bar((asked.len() * self.off.len()) as u64, "rows");
         for (modes, rate_of_set) in asked {
             let mut rows = Vec::new();
             for off in &self.off {
-                let mut trial = Trial::of(modes.clone(), *off);
+                let mut trial = IdentificationTrial::published(modes.clone(), *off);
                 trial.observer.rate = NonNegative::new(rate_of_set).unwrap_or(rate);
                 (trial.off[1], trial.cycles, trial.seed) = (self.influence_off, self.cycles, self.seed);
                 if let Some((name, why)) = trial.inconsistency() {
-                    return Err(Failure::Arguments(format!("--{}: the modes {why}", name.replace('_', "-"))));
+                    return Err(CliError::Arguments(format!(
+                        "--{}: the modes {why}",
+                        name.replace('_', "-")
+                    )));
                 }
                 rows.push(trial.table(self.runs));
                 bar.inc(1);
             }
-            sets.push(Set { modes, rows });
+            sets.push(ModeSetResults { modes, rows });
         }
         bar.finish_and_clear();
         let (runs, whole) = (self.runs, CYCLE * f64::from(self.cycles));
-        Ok(Identified { sets, runs, whole, influence_off: self.influence_off })
+        Ok(IdentifyResults { sets, runs, whole, influence_off: self.influence_off })
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     show(&args.results()?, Some(&args.drawing), args.json)
 }
 
-impl Results for Identified {
+impl Results for IdentifyResults {
     fn json(&self) -> Vec<Json> {
-        let told = |set: &Set| -> Vec<Json> {
+        let reported = |set: &ModeSetResults| -> Vec<Json> {
             let (frequencies, influences): (Vec<f64>, Vec<f64>) = set.modes.iter().copied().unzip();
             let row = |row| json!({"frequencies_rad_s": frequencies, "influences": influences, "found": row});
             set.rows.iter().map(row).collect()
         };
-        vec![json!({"rows": self.sets.iter().flat_map(told).collect::<Vec<_>>()})]
+        vec![json!({"rows": self.sets.iter().flat_map(reported).collect::<Vec<_>>()})]
     }
 
     fn figures(&self) -> Vec<Named> {
         vec![("identification".to_owned(), figures::figure(&self.sets, self.whole))]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let Self { sets, runs, whole, influence_off } = self;
         say!(
             "identification   {} of {whole:.0} s a row; influences off by {} %; found is within 2 %",
@@ -179,7 +186,7 @@ impl Results for Identified {
             "influence",
             "persistence"
         );
-        let small = |value: Option<f64>| or_none(value, |value| format!("{value:.1e}"));
+        let small = |value: Option<f64>| number_or_none(value, |value| format!("{value:.1e}"));
         for (set, row) in sets.iter().flat_map(|set| set.rows.iter().map(move |row| (set, row))) {
             say!(
                 "  {:<26}{:>9}%{:>10}{:>12}{:>12}{:>14}{:>14}{:>14}",

@@ -10,11 +10,11 @@ use tungstenite::protocol::frame::coding::CloseCode;
 use tungstenite::protocol::{CloseFrame, WebSocketConfig};
 use tungstenite::{Error, WebSocket};
 
-use super::gate::Gate;
-use super::hub::{Hub, MOST_CLIENTS, Seat};
-use super::outbox::Frame;
+use super::access::AccessControl;
+use super::connection::{Connection, would_block};
+use super::hub::{ClientSlot, Hub, MOST_CLIENTS};
+use super::outbox::OutgoingFrame;
 use super::protocol::SUBPROTOCOLS;
-use super::wire::{Wire, is_silence};
 
 const SUBPROTOCOL: &str = "sec-websocket-protocol";
 /// Time limit for a client's request, and for its closing handshake.
@@ -24,8 +24,12 @@ const FAREWELL: Duration = Duration::from_secs(1);
 const LARGEST: usize = 64 << 10;
 
 /// Accepts a client, and returns its connection and its seat.
-pub fn greet(hub: &Hub, gate: &Gate, stream: TcpStream) -> Option<(WebSocket<Wire>, Seat)> {
-    let wire = Wire::new(stream, GREETING).ok()?;
+pub fn greet(
+    hub: &Hub,
+    gate: &AccessControl,
+    stream: TcpStream,
+) -> Option<(WebSocket<Connection>, ClientSlot)> {
+    let wire = Connection::new(stream, GREETING).ok()?;
     let config = WebSocketConfig::default().max_message_size(Some(LARGEST)).max_frame_size(Some(LARGEST));
     let mut seat = None;
     #[expect(clippy::result_large_err, reason = "the signature is the library's")]
@@ -39,8 +43,8 @@ pub fn greet(hub: &Hub, gate: &Gate, stream: TcpStream) -> Option<(WebSocket<Wir
 #[expect(clippy::result_large_err, reason = "the signature is the library's")]
 fn agree(
     hub: &Hub,
-    gate: &Gate,
-    seat: &mut Option<Seat>,
+    gate: &AccessControl,
+    seat: &mut Option<ClientSlot>,
     request: &Request,
     mut response: Response,
 ) -> Result<Response, ErrorResponse> {
@@ -72,14 +76,14 @@ fn agree(
 }
 
 /// Serves a client until it disconnects or is disconnected.
-pub fn serve(hub: &Hub, mut socket: WebSocket<Wire>) {
+pub fn serve(hub: &Hub, mut socket: WebSocket<Connection>) {
     let id = hub.join();
     // A broken connection is a client that has disconnected.
     let _ = converse(hub, id, &mut socket);
     hub.leave(id);
 }
 
-fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Error> {
+fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Connection>) -> Result<(), Error> {
     let mut frames = VecDeque::new();
     let mut last = false;
     loop {
@@ -88,8 +92,8 @@ fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Erro
             (frames, last) = next;
         }
         match send(socket, &mut frames) {
-            Ok(()) => socket.get_mut().settle(),
-            Err(Error::Io(error)) if is_silence(&error) => {
+            Ok(()) => socket.get_mut().all_sent(),
+            Err(Error::Io(error)) if would_block(&error) => {
                 // A client that does not read what it was sent may not send requests, which would grow without limit.
                 socket.get_mut().wait()?;
                 continue;
@@ -101,7 +105,7 @@ fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Erro
         }
         match socket.read() {
             Ok(frame) => hub.answer(id, &frame),
-            Err(Error::Io(error)) if is_silence(&error) => {}
+            Err(Error::Io(error)) if would_block(&error) => {}
             Err(Error::Capacity(_)) => {
                 let reason = format!("no message may have more than {LARGEST} bytes").into();
                 return part(socket, Some(CloseFrame { code: CloseCode::Size, reason }));
@@ -112,7 +116,7 @@ fn converse(hub: &Hub, id: u64, socket: &mut WebSocket<Wire>) -> Result<(), Erro
 }
 
 /// Sends frames; frames that were not sent stay in the queue.
-fn send(socket: &mut WebSocket<Wire>, frames: &mut VecDeque<Frame>) -> Result<(), Error> {
+fn send(socket: &mut WebSocket<Connection>, frames: &mut VecDeque<OutgoingFrame>) -> Result<(), Error> {
     // Flushed first, since the connection's own buffer would grow without limit.
     socket.flush()?;
     // A frame is buffered even if the connection cannot send it now.
@@ -123,10 +127,10 @@ fn send(socket: &mut WebSocket<Wire>, frames: &mut VecDeque<Frame>) -> Result<()
 }
 
 /// Closes the connection and waits for the client, since a connection that is cut may lose data in transit.
-fn part(socket: &mut WebSocket<Wire>, why: Option<CloseFrame>) -> Result<(), Error> {
+fn part(socket: &mut WebSocket<Connection>, why: Option<CloseFrame>) -> Result<(), Error> {
     let began = WallInstant::now();
     let silent = |result: Result<(), Error>| match result {
-        Err(Error::Io(error)) if is_silence(&error) => Ok(()),
+        Err(Error::Io(error)) if would_block(&error) => Ok(()),
         result => result,
     };
     silent(socket.close(why))?;
@@ -148,12 +152,12 @@ mod tests {
     fn a_client_that_takes_nothing_is_handed_no_more() {
         let listener = TcpListener::bind("127.0.0.1:0").expect("a port");
         let _silent = TcpStream::connect(listener.local_addr().expect("bound")).expect("connected");
-        let mut wire = Wire::new(listener.accept().expect("a client").0, GREETING).expect("set");
+        let mut wire = Connection::new(listener.accept().expect("a client").0, GREETING).expect("set");
         wire.greeted().expect("set");
         let mut socket = WebSocket::from_raw_socket(wire, Role::Server, None);
         // More data than the system buffers between server and client.
-        let mut frames: VecDeque<_> = (0..256).map(|_| Frame::binary(vec![0; 1 << 16])).collect();
-        let is_full = |sent: Result<(), Error>| matches!(sent, Err(Error::Io(error)) if is_silence(&error));
+        let mut frames: VecDeque<_> = (0..256).map(|_| OutgoingFrame::binary(vec![0; 1 << 16])).collect();
+        let is_full = |sent: Result<(), Error>| matches!(sent, Err(Error::Io(error)) if would_block(&error));
         assert!(is_full(send(&mut socket, &mut frames)));
         let left = frames.len();
         for _ in 0..3 {

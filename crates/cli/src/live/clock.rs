@@ -151,7 +151,7 @@ impl Clock {
     pub fn resume(&mut self, wall: WallInstant) {
         if self.paused {
             self.paused = false;
-            self.move_to_shown(wall);
+            self.jump_to_displayed(wall);
         }
     }
 
@@ -166,7 +166,7 @@ impl Clock {
         if self.speed.finite().is_some() {
             self.advance(wall);
         } else {
-            self.move_to_shown(wall);
+            self.jump_to_displayed(wall);
         }
         self.speed = speed;
     }
@@ -176,7 +176,7 @@ impl Clock {
         self.wall = wall;
     }
 
-    fn move_to_shown(&mut self, wall: WallInstant) {
+    fn jump_to_displayed(&mut self, wall: WallInstant) {
         self.position = self.shown.seconds();
         self.wall = wall;
     }

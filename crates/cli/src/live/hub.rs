@@ -5,13 +5,13 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::record::{Message, Messages, RecordError};
+use flexsc_core::record::{Message, MessageSink, RecordError};
 use flexsc_core::time::Instant;
 
 use super::clock::{Clock, LOOK};
-use super::outbox::Frame;
-use super::protocol::{self, Level, Request};
-use super::state::State;
+use super::outbox::OutgoingFrame;
+use super::protocol::{self, Request, StatusLevel};
+use super::server_state::ServerState;
 use crate::stop;
 
 /// Largest number of clients.
@@ -19,24 +19,24 @@ pub const MOST_CLIENTS: usize = 16;
 
 /// State shared by the run and its clients.
 pub struct Hub {
-    greeting: Frame,
-    state: Mutex<State>,
+    greeting: OutgoingFrame,
+    state: Mutex<ServerState>,
     changed: Condvar,
     seats: Arc<AtomicUsize>,
 }
 
 /// One of the places for clients, which is free again when this is dropped.
-pub struct Seat(Arc<AtomicUsize>);
+pub struct ClientSlot(Arc<AtomicUsize>);
 
-impl Seat {
-    fn of(count: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
+impl ClientSlot {
+    fn new(count: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
         let more = |taken: usize| (taken < most).then_some(taken + 1);
         let taken = count.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
         taken.is_ok().then(|| Self(count.clone()))
     }
 }
 
-impl Drop for Seat {
+impl Drop for ClientSlot {
     fn drop(&mut self) {
         self.0.fetch_sub(1, Ordering::Relaxed);
     }
@@ -44,23 +44,23 @@ impl Drop for Seat {
 
 impl Hub {
     /// Creates a hub for a run of this name.
-    pub fn new(name: &str, state: State) -> Self {
+    pub fn new(name: &str, state: ServerState) -> Self {
         let session = format!("{name}-{}", std::process::id());
         let greeting = protocol::server_info(name, &session);
         Self { greeting, state: Mutex::new(state), changed: Condvar::new(), seats: Arc::default() }
     }
 
     /// Returns a place for a client if one is free.
-    pub fn seat(&self) -> Option<Seat> {
-        Seat::of(&self.seats, MOST_CLIENTS)
+    pub fn seat(&self) -> Option<ClientSlot> {
+        ClientSlot::new(&self.seats, MOST_CLIENTS)
     }
 
-    fn lock(&self) -> MutexGuard<'_, State> {
+    fn lock(&self) -> MutexGuard<'_, ServerState> {
         // The state is consistent after every statement, so that a poisoned lock can be used.
         self.state.lock().unwrap_or_else(PoisonError::into_inner)
     }
 
-    fn wait<'a>(&self, state: MutexGuard<'a, State>, at_most: Duration) -> MutexGuard<'a, State> {
+    fn wait<'a>(&self, state: MutexGuard<'a, ServerState>, at_most: Duration) -> MutexGuard<'a, ServerState> {
         let woken = self.changed.wait_timeout(state, at_most);
         woken.unwrap_or_else(PoisonError::into_inner).0
     }
@@ -69,7 +69,7 @@ impl Hub {
     pub fn pace(&self, at: Instant) -> Result<(), RecordError> {
         let mut state = self.lock();
         while let Some(time) = state.clock.wait(at, WallInstant::now()) {
-            if stop::asked() {
+            if stop::stop_requested() {
                 return Err(RecordError::Interrupted);
             }
             state = self.wait(state, time);
@@ -97,7 +97,7 @@ impl Hub {
     }
 
     /// Returns the next frames for a client, and true if they are the last; `None` if the client is to be disconnected.
-    pub fn frames(&self, id: u64) -> Option<(VecDeque<Frame>, bool)> {
+    pub fn frames(&self, id: u64) -> Option<(VecDeque<OutgoingFrame>, bool)> {
         let mut state = self.lock();
         let closing = state.closing;
         let outbox = &mut state.clients.get_mut(&id)?.outbox;
@@ -108,11 +108,11 @@ impl Hub {
     }
 
     /// Handles a request of a client.
-    pub fn answer(&self, id: u64, frame: &Frame) {
+    pub fn answer(&self, id: u64, frame: &OutgoingFrame) {
         let mut state = self.lock();
         match Request::read(frame) {
             Ok(request) => state.answer(id, request),
-            Err(why) => state.send(id, protocol::status(Level::Error, &why)),
+            Err(why) => state.send(id, protocol::status(StatusLevel::Error, &why)),
         }
         self.changed.notify_all();
     }
@@ -151,10 +151,10 @@ impl Hub {
 /// Record that sends a run's messages to all subscribed clients, without loss: the run waits for the slowest client.
 pub struct Publisher(pub Arc<Hub>);
 
-impl Messages for Publisher {
-    fn take(&mut self, message: Message<'_>) -> Result<(), RecordError> {
+impl MessageSink for Publisher {
+    fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         let mut state = self.0.lock();
-        while state.clients.values().any(|client| client.outbox.is_full()) && !stop::asked() {
+        while state.clients.values().any(|client| client.outbox.is_full()) && !stop::stop_requested() {
             state = self.0.wait(state, LOOK);
         }
         state.publish(message);

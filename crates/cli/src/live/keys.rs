@@ -25,7 +25,7 @@ enum Key {
 }
 
 impl Key {
-    fn of(line: &str) -> Self {
+    fn parse(line: &str) -> Self {
         match line.trim() {
             "" => Self::Toggle,
             "." => Self::Step,
@@ -59,8 +59,8 @@ pub fn listen(hub: Arc<Hub>) {
     // The thread waits for a line that may never be typed, and ends with the program.
     thread::spawn(move || {
         for line in io::stdin().lock().lines().map_while(Result::ok) {
-            match Key::of(&line) {
-                Key::Stop => return stop::ask(),
+            match Key::parse(&line) {
+                Key::Stop => return stop::request_stop(),
                 Key::Unknown => say!("  {HELP}"),
                 _ if hub.ended() => say!("  the run has ended"),
                 key => {
@@ -92,6 +92,6 @@ mod tests {
             Key::Unknown,
             Key::Unknown,
         ];
-        assert_eq!(lines.map(Key::of), keys);
+        assert_eq!(lines.map(Key::parse), keys);
     }
 }

@@ -3,16 +3,16 @@
 //! A live run is recorded like any other: the record blocks until the clock releases an instant, and the messages are
 //! those of a log, byte for byte.
 
+mod access;
 mod client;
 mod clock;
-mod gate;
+mod connection;
 mod hub;
 mod keys;
 mod outbox;
 mod protocol;
-mod state;
+mod server_state;
 mod topics;
-mod wire;
 
 use std::collections::VecDeque;
 use std::io::{self, Write};
@@ -23,15 +23,15 @@ use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
-use flexsc_core::record::{Detail, Encode, Record, RecordError, RunEnd, Sample};
+use flexsc_core::record::{Detail, MessageEncoder, Record, RecordError, RunEnd, Sample};
 use flexsc_core::time::Instant;
 
+use access::AccessControl;
 use clock::{Clock, LOOK, Speed};
-use gate::Gate;
 use hub::{Hub, Publisher};
-use state::State;
+use server_state::ServerState;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::{say, stop};
 
 /// Time limit for clients to receive the remaining messages when the server closes.
@@ -64,7 +64,7 @@ pub struct Args {
     #[arg(long, requires = "live")]
     paused: bool,
     /// Let pages of this origin connect, such as https://viewer.example
-    #[arg(long, value_name = "ORIGIN", requires = "live", value_parser = gate::origin)]
+    #[arg(long, value_name = "ORIGIN", requires = "live", value_parser = access::origin)]
     allow_origin: Vec<String>,
 }
 
@@ -78,14 +78,14 @@ fn address(text: &str) -> Result<String, String> {
 /// Live run with its server.
 pub struct Live {
     hub: Arc<Hub>,
-    messages: Option<Encode<Publisher>>,
+    messages: Option<MessageEncoder<Publisher>>,
 }
 
 impl Args {
     /// Starts the server if a live run is requested.
-    pub fn serve(&self, run: &CampaignRun) -> Result<Option<Live>, Failure> {
+    pub fn serve(&self, run: &CampaignRun) -> Result<Option<Live>, CliError> {
         let Some(address) = &self.live else { return Ok(None) };
-        let failed = |source| Failure::Serve { address: address.clone(), source };
+        let failed = |source| CliError::Serve { address: address.clone(), source };
         let listener = TcpListener::bind(address).map_err(failed)?;
         listener.set_nonblocking(true).map_err(failed)?;
         let bound = listener.local_addr().map_err(failed)?;
@@ -99,13 +99,13 @@ impl Args {
             clock.begin(wall);
         }
         let provenance = Campaign::provenance(run, Detail::Scene);
-        let state = State::new(clock, topics::expected(run, &provenance));
+        let state = ServerState::new(clock, topics::expected(run, &provenance));
         let hub = Arc::new(Hub::new(&run.scenario.name, state));
-        let messages = Encode::new(Publisher(hub.clone()), &provenance, Detail::Scene);
+        let messages = MessageEncoder::new(Publisher(hub.clone()), &provenance, Detail::Scene);
         let messages = messages.map_err(|error| failed(io::Error::other(error)))?;
         let paused = if self.paused { ", paused" } else { "" };
         say!("  live           ws://{bound}, {speed}{paused}");
-        let gate = Arc::new(Gate::new(address, &self.allow_origin));
+        let gate = Arc::new(AccessControl::new(address, &self.allow_origin));
         thread::spawn({
             let hub = hub.clone();
             move || accept(&hub, &gate, &listener)
@@ -123,12 +123,12 @@ impl Live {
             let _ = messages.finish(metrics, RunEnd::Complete);
         }
         self.hub.end();
-        if self.hub.clients() > 0 && !stop::asked() {
+        if self.hub.clients() > 0 && !stop::stop_requested() {
             say!(
                 "  live           the run has ended; Ctrl-C ends the server, as does the last viewer when it disconnects"
             );
         }
-        while self.hub.clients() > 0 && !stop::asked() {
+        while self.hub.clients() > 0 && !stop::stop_requested() {
             thread::sleep(LOOK);
         }
     }
@@ -141,11 +141,11 @@ impl Drop for Live {
 }
 
 impl Record for Live {
-    fn dense(&self) -> bool {
+    fn wants_motion(&self) -> bool {
         true
     }
 
-    fn scene(&self) -> bool {
+    fn wants_scene(&self) -> bool {
         true
     }
 
@@ -157,7 +157,7 @@ impl Record for Live {
 
 /// Accepts clients, each on a thread of its own, until the hub closes. Clients do not wait for each other: of too many
 /// connections without a request, the oldest is closed.
-fn accept(hub: &Arc<Hub>, gate: &Arc<Gate>, listener: &TcpListener) {
+fn accept(hub: &Arc<Hub>, gate: &Arc<AccessControl>, listener: &TcpListener) {
     let mut silent: VecDeque<(Weak<()>, TcpStream)> = VecDeque::new();
     while !hub.closing() {
         let Ok((stream, _)) = listener.accept() else {

@@ -12,12 +12,12 @@ const BATCH: usize = 256 << 10;
 const FRAME: usize = 64;
 
 /// Frame of the protocol.
-pub type Frame = tungstenite::Message;
+pub type OutgoingFrame = tungstenite::Message;
 
 /// Queue of frames for a client.
 #[derive(Default)]
 pub struct Outbox {
-    frames: VecDeque<Frame>,
+    frames: VecDeque<OutgoingFrame>,
     bytes: usize,
     /// True if the queue has exceeded [`OVERFULL`].
     overflowed: bool,
@@ -25,7 +25,7 @@ pub struct Outbox {
 
 impl Outbox {
     /// Appends a frame.
-    pub fn push(&mut self, frame: Frame) {
+    pub fn push(&mut self, frame: OutgoingFrame) {
         if self.overflowed {
             return;
         }
@@ -39,7 +39,7 @@ impl Outbox {
     }
 
     /// Removes and returns the next batch of frames; `None` after an overflow.
-    pub fn take(&mut self) -> Option<VecDeque<Frame>> {
+    pub fn take(&mut self) -> Option<VecDeque<OutgoingFrame>> {
         let (mut count, mut bytes) = (0, 0);
         while let Some(frame) = self.frames.get(count).filter(|_| bytes < BATCH) {
             bytes += frame.len() + FRAME;
@@ -67,7 +67,7 @@ mod tests {
 
     #[test]
     fn what_waits_is_bounded() {
-        let frame = |bytes: usize| Frame::binary(vec![0; bytes - FRAME]);
+        let frame = |bytes: usize| OutgoingFrame::binary(vec![0; bytes - FRAME]);
         let mut outbox = Outbox::default();
         for _ in 0..31 {
             outbox.push(frame(FULL / 32));

@@ -17,7 +17,7 @@ pub const PARAMETERS: [&str; 2] = ["/paused", "/speed"];
 /// Largest number of items in a request.
 const MOST_NAMED: usize = 256;
 /// Largest number of characters that are quoted from a message that is not understood.
-const MOST_TOLD: usize = 200;
+const MAX_QUOTED: usize = 200;
 
 /// Request of a client.
 #[derive(Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub enum Request {
 
 /// Severity of a status message.
 #[derive(Copy, Clone)]
-pub enum Level {
+pub enum StatusLevel {
     Warning = 1,
     Error = 2,
 }
@@ -57,8 +57,8 @@ impl Request {
                 if lists.into_iter().any(|list| list.len() > MOST_NAMED) {
                     return Err(format!("a request may name at most {MOST_NAMED} things"));
                 }
-                let start = || text.chars().take(MOST_TOLD).collect::<String>();
-                Self::of(&json).ok_or_else(|| format!("not understood: {}", start()))
+                let start = || text.chars().take(MAX_QUOTED).collect::<String>();
+                Self::from_json(&json).ok_or_else(|| format!("not understood: {}", start()))
             }
             Message::Binary(bytes) => match bytes.split_first() {
                 Some((2, rest)) if rest.len() >= 8 => Ok(Self::Call(number(rest), number(&rest[4..]))),
@@ -68,7 +68,7 @@ impl Request {
         }
     }
 
-    fn of(json: &Json) -> Option<Self> {
+    fn from_json(json: &Json) -> Option<Self> {
         let list = |key: &str| json.get(key)?.as_array();
         let names = || {
             let names = list("parameterNames")?.iter();
@@ -233,7 +233,7 @@ fn parameter(name: &str, clock: &Clock) -> Json {
 }
 
 /// Returns a status message that viewers show.
-pub fn status(level: Level, message: &str) -> Message {
+pub fn status(level: StatusLevel, message: &str) -> Message {
     text(&json!({"op": "status", "level": level as u8, "message": message}))
 }
 

@@ -2,22 +2,22 @@
 
 use std::collections::BTreeSet;
 
-use flexsc_core::actuator::Firing;
+use flexsc_core::actuator::FiringMethod;
 use flexsc_core::campaign::CampaignRun;
-use flexsc_core::estimator::Estimator;
-use flexsc_core::law::Law;
-use flexsc_core::motion::turning::Bearing;
-use flexsc_core::record::{Detail, Encode, Message, Messages, Provenance, RecordError, TOPICS};
+use flexsc_core::estimator::EstimatorKind;
+use flexsc_core::law::LawKind;
+use flexsc_core::motion::three_axis::Bearing;
+use flexsc_core::record::{Detail, Message, MessageEncoder, MessageSink, Provenance, RecordError, TOPICS};
 use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, Simulation};
 
 /// Returns the expected topics of a run as indices into [`TOPICS`]: of its first instant, and of possible later events.
 pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
-    let mut topics = Topics::default();
-    if let Ok(mut messages) = Encode::new(&mut topics, from, Detail::Scene) {
+    let mut topics = TopicCollector::default();
+    if let Ok(mut messages) = MessageEncoder::new(&mut topics, from, Detail::Scene) {
         // A run that fails at its start reports the error when it is made.
         let mut simulation = Simulation::new(&run.scenario, run.number);
-        simulation.draw(&run.scenario);
+        simulation.enable_scene(&run.scenario);
         let _ = simulation.run_until(Instant::START, &mut messages);
     }
     let later = later(&run.scenario);
@@ -27,20 +27,23 @@ pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
 
 /// Returns the topics of events within a run or at its end.
 fn later(scenario: &Scenario) -> Vec<&'static str> {
-    let envelope = scenario.estimator.as_ref().and_then(Estimator::envelope);
+    let envelope = scenario.estimator.as_ref().and_then(EstimatorKind::envelope);
     let topics = [
-        ("/command", scenario.axis_count() == 1 && !matches!(scenario.law, Law::Open(_))),
+        ("/command", scenario.axis_count() == 1 && !matches!(scenario.law, LawKind::Open(_))),
         ("/envelope_mean", envelope.is_some()),
         ("/objective", scenario.adaptation.as_ref().is_some_and(|adaptation| adaptation.window().is_some())),
         ("/adaptation", scenario.adaptation.is_some()),
         ("/arrival", scenario.plan.is_some()),
         ("/jets", scenario.study.fires()),
-        ("/faults", !scenario.failing().is_empty()),
+        ("/faults", !scenario.failures().is_empty()),
         (
             "/thrusters",
-            scenario.actuator.jets().is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant),
+            scenario
+                .actuator
+                .jets()
+                .is_some_and(|(jets, _)| jets.allocation == FiringMethod::LeastPropellant),
         ),
-        ("/wheel_events", scenario.study.bearings.iter().any(Bearing::grips)),
+        ("/wheel_events", scenario.study.bearings.iter().any(Bearing::can_stick)),
         ("/summary", true),
         ("/metrics", true),
     ];
@@ -49,10 +52,10 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
 
 /// Record that collects the topics of messages.
 #[derive(Default)]
-struct Topics(BTreeSet<usize>);
+struct TopicCollector(BTreeSet<usize>);
 
-impl Messages for &mut Topics {
-    fn take(&mut self, message: Message<'_>) -> Result<(), RecordError> {
+impl MessageSink for &mut TopicCollector {
+    fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         self.0.insert(message.topic);
         Ok(())
     }
@@ -76,10 +79,10 @@ mod tests {
             let scenario = Scenario::load(&file.path()).expect("a scenario");
             let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
             let from = Campaign::provenance(&run, Detail::Scene);
-            let (expected, mut seen) = (expected(&run, &from), Topics::default());
-            let mut messages = Encode::new(&mut seen, &from, Detail::Scene).expect("messages");
+            let (expected, mut seen) = (expected(&run, &from), TopicCollector::default());
+            let mut messages = MessageEncoder::new(&mut seen, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, the windows of an adaptation, and a zero crossing of a wheel.
-            let grips = run.scenario.study.bearings.iter().any(Bearing::grips);
+            let grips = run.scenario.study.bearings.iter().any(Bearing::can_stick);
             let seconds = match (run.scenario.adaptation.is_some(), grips) {
                 (true, _) => 1100.0,
                 (_, true) => 60.0,
@@ -87,7 +90,7 @@ mod tests {
             };
             let until = Instant::START + Span::from_seconds(seconds);
             let mut simulation = Simulation::new(&run.scenario, 0);
-            simulation.draw(&run.scenario);
+            simulation.enable_scene(&run.scenario);
             simulation.run_until(until, &mut messages).expect("a run");
             let name = |index: &usize| TOPICS[*index].name;
             let unknown: Vec<_> = seen.0.difference(&expected).map(name).collect();

@@ -11,12 +11,12 @@ use flexsc_core::count::counted;
 use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
 
-use crate::drawing::{Drawing, Format};
-use crate::failure::Failure;
-use crate::grid::Even;
+use crate::error::CliError;
+use crate::figure_files::{FigureFormat, FigureOutput};
+use crate::grid::PositiveGrid;
 use crate::out::Out;
 use crate::results::{Results, show};
-use crate::sampled::{Settled, sampled};
+use crate::sampled_loop::{SettlingArgs, sampled};
 use crate::{files, print, say, scenario};
 
 #[derive(clap::Args)]
@@ -24,13 +24,13 @@ pub struct Args {
     #[command(flatten)]
     pub scenario: scenario::Args,
     #[command(flatten)]
-    settled: Settled,
+    settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s)
     #[arg(long, value_name = "LO:HI:COUNT")]
-    frequency: Even,
+    frequency: PositiveGrid,
     /// Sampling periods (s); the delay of the wheel scales with the period
     #[arg(long, value_name = "LO:HI:COUNT")]
-    period: Even,
+    period: PositiveGrid,
     /// Gain of the extra loop [default: the scenario's]
     #[arg(long, value_name = "GAIN", allow_hyphen_values = true)]
     gain: Option<f64>,
@@ -42,14 +42,14 @@ pub struct Args {
     figures: Option<PathBuf>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "figures")]
-    format: Option<Format>,
+    format: Option<FigureFormat>,
     /// Replace a FILE of other content
     #[arg(long)]
     force: bool,
 }
 
 /// Map of a scenario's sampled loop.
-pub struct Mapped {
+pub struct MapResults {
     /// Name of the scenario.
     name: String,
     cells: Vec<MapCell>,
@@ -59,22 +59,22 @@ pub struct Mapped {
 
 impl Args {
     /// Computes the map of a scenario.
-    pub fn results(&self, scenario: &Scenario) -> Result<Mapped, Failure> {
+    pub fn results(&self, scenario: &Scenario) -> Result<MapResults, CliError> {
         let (of, law) = sampled(scenario)?;
         let window = self.settled.window(&of, &scenario.name)?;
         if let Some(gain) = self.gain.filter(|gain| !gain.is_finite()) {
-            return Err(Failure::Arguments(format!("--gain must be a finite number, got {gain}")));
+            return Err(CliError::Arguments(format!("--gain must be a finite number, got {gain}")));
         }
-        let (Even(frequencies), Even(periods)) = (&self.frequency, &self.period);
+        let (PositiveGrid(frequencies), PositiveGrid(periods)) = (&self.frequency, &self.period);
         let shortest = periods.iter().copied().fold(f64::INFINITY, f64::min);
-        self.settled.allow(&of, frequencies.len() * periods.len(), shortest, 0.0)?;
+        self.settled.check_cost(&of, frequencies.len() * periods.len(), shortest, 0.0)?;
         let gain = |frequency: f64| self.gain.unwrap_or_else(|| law.extra_gain(frequency));
         let cells = map(&of, frequencies, periods, self.settled.scaling(), gain, window);
-        Ok(Mapped { name: scenario.name.clone(), cells, own: (of.frequency(), of.period) })
+        Ok(MapResults { name: scenario.name.clone(), cells, own: (of.frequency(), of.period) })
     }
 }
 
-impl Results for Mapped {
+impl Results for MapResults {
     fn json(&self) -> Vec<Json> {
         vec![json!({"scenario": self.name, "rows": self.cells})]
     }
@@ -83,14 +83,17 @@ impl Results for Mapped {
         vec![(format!("{}-map", self.name), figure::figure(&self.name, &self.cells, self.own))]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         print(csv(&self.cells).as_bytes())
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let drawing =
-        |figures: Option<&PathBuf>, format| Drawing { figures: figures.cloned(), format, force: args.force };
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let drawing = |figures: Option<&PathBuf>, format| FigureOutput {
+        figures: figures.cloned(),
+        format,
+        force: args.force,
+    };
     let also = drawing(args.figures.as_ref(), args.format);
     let input = args.scenario.scenario.as_path();
     also.check(input)?;
@@ -107,7 +110,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         }
     };
     files::write(path, csv(&mapped.cells).as_bytes(), args.force)?;
-    let Mapped { name, cells, .. } = &mapped;
+    let MapResults { name, cells, .. } = &mapped;
     let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();
     say!("{name}   {}, {stable} stable, in {}", counted(cells.len(), "cell"), path.display());
     Ok(())

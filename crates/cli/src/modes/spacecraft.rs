@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
-use flexsc_core::analysis::parts::ModalParts;
+use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::attitude::AXES;
 use flexsc_core::count::counted;
 use serde_json::{Value as Json, json};
 
-use super::{SMALL, Style, frequency, tell_influences, tell_table, texts};
-use crate::failure::Failure;
+use super::{SMALL, Style, frequency, print_influences, print_table, texts};
+use crate::error::CliError;
 use crate::human::digits;
 use crate::number::unsigned_zero;
 use crate::results::{Results, of_scenario};
@@ -18,7 +18,7 @@ use crate::say;
 pub struct Spacecraft {
     /// Name of the scenario.
     pub name: String,
-    pub parts: ModalParts,
+    pub parts: SpacecraftModes,
     /// True for each axis with jets; for the other axes the influence of a torque of 1 N m is printed.
     pub jets: [bool; 3],
     pub style: Style,
@@ -29,7 +29,7 @@ impl Results for Spacecraft {
         vec![of_scenario(&self.name, json!(self.parts))]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let Self { name, parts, jets, style } = self;
         let [x, y, z] = parts.centre_m.map(digits);
         say!("{name}   {} kg, centre of mass at {x}, {y}, {z} m", digits(parts.mass_kg));
@@ -38,7 +38,7 @@ impl Results for Spacecraft {
             cells.extend(moments.map(|moment| unsigned_zero(moment, 4)));
             cells
         });
-        tell_table(&inertia.collect::<Vec<_>>(), 0);
+        print_table(&inertia.collect::<Vec<_>>(), 0);
         say!(
             "  modes of the appendages, clamped, with effective masses and inertias in their own axes about the root"
         );
@@ -64,13 +64,13 @@ impl Results for Spacecraft {
             row.push(format!("{}{unknown}", mode.appendage));
             rows.push(row);
         }
-        tell_table(&rows, 1);
+        print_table(&rows, 1);
         say!(
             "  modes of the complete spacecraft, hub free; off-diagonal damping {}",
             digits(parts.damping_coupling)
         );
-        tell_influences(&parts.free, *jets, *style);
-        self.tell_points();
+        print_influences(&parts.free, *jets, *style);
+        self.print_points();
         if !parts.turned.is_empty() {
             let drives = parts.turned[0].angles_rad.len();
             let (factor, unit) = style.units.frequency();
@@ -82,7 +82,7 @@ impl Results for Spacecraft {
                 let numbers = [at.time_s].into_iter().chain(at.angles_rad.iter().copied()).chain(frequencies);
                 rows.push(numbers.map(digits).collect());
             }
-            tell_table(&rows, 0);
+            print_table(&rows, 0);
         }
         Ok(())
     }
@@ -90,7 +90,7 @@ impl Results for Spacecraft {
 
 impl Spacecraft {
     /// Prints the effect of a torque on the hub at the points of the spacecraft.
-    fn tell_points(&self) {
+    fn print_points(&self) {
         let parts = &self.parts;
         let (mut hub, ends): (Vec<_>, Vec<_>) =
             parts.points.iter().partition(|point| point.appendage.is_none());
@@ -100,7 +100,7 @@ impl Spacecraft {
         let largest = largest.fold(0.0, |most: f64, influence| most.max(influence.abs()));
         let least = if self.style.all { 0.0 } else { SMALL * largest };
         say!("  influence of a torque, on the hub (the same at all its points) and at points of appendages");
-        let (mut rows, mut left_out) = (vec![texts(&["mode"])], 0);
+        let (mut rows, mut omitted) = (vec![texts(&["mode"])], 0);
         rows[0].extend(AXES.map(str::to_owned));
         rows[0].push("point".to_owned());
         for point in points() {
@@ -108,7 +108,7 @@ impl Spacecraft {
             for index in 0..parts.clamped.len() {
                 let influences = [0, 1, 2].map(|axis: usize| point.influences[axis][index]);
                 if influences.iter().all(|influence| influence.abs() < least) {
-                    left_out += 1;
+                    omitted += 1;
                     continue;
                 }
                 let mut row = vec![index.to_string()];
@@ -117,11 +117,11 @@ impl Spacecraft {
                 rows.push(row);
             }
         }
-        tell_table(&rows, 1);
-        if left_out > 0 {
+        print_table(&rows, 1);
+        if omitted > 0 {
             say!(
                 "  {} below 1e-3 of the largest influence left out (--all prints them)",
-                counted(left_out, "line")
+                counted(omitted, "line")
             );
         }
     }

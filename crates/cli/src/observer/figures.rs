@@ -1,10 +1,10 @@
 //! Figure of the recurrence observer's convergence: the regions of its weights with a frozen regressor (\[Timakov14\],
 //! figure 2), and the error's contraction per sample over the gain of the identification.
 
-use flexsc_core::analysis::damping::{Convergence, Margin};
+use flexsc_core::analysis::damping::{Convergence, GainMargin};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, band, colour};
 
-use crate::grid::Even;
+use crate::grid::PositiveGrid;
 
 /// Least and largest gain of the second panel, and number of gains.
 const GAINS: (f64, f64, u32) = (1e-3, 1.0, 400);
@@ -14,7 +14,7 @@ const STEPS: u32 = 800;
 const COLOURS: [RGBColor; 5] = [colour::SKY, colour::ORANGE, colour::GREEN, colour::BLUE, colour::VERMILLION];
 
 /// Returns the figure, with a region for each gain.
-pub fn figure(of: &Convergence, kappas: &[f64], margin: Option<Margin>) -> Figure {
+pub fn figure(of: &Convergence, kappas: &[f64], margin: Option<GainMargin>) -> Figure {
     let title = format!("convergence of the recurrence observer of {:.4} rad/s", of.frequency);
     Figure { title, panels: vec![regions(of, kappas), radii(of, margin)], panel_height: 260 }
 }
@@ -56,9 +56,9 @@ fn regions(of: &Convergence, kappas: &[f64]) -> Panel {
 }
 
 /// Returns the panel of the error's contraction per sample over W4 V, with a turning regressor.
-fn radii(of: &Convergence, margin: Option<Margin>) -> Panel {
+fn radii(of: &Convergence, margin: Option<GainMargin>) -> Panel {
     let (low, high, count) = GAINS;
-    let Even(decades) = Even::new(low.log10(), high.log10(), count);
+    let PositiveGrid(decades) = PositiveGrid::new(low.log10(), high.log10(), count);
     let line: Vec<Point> = decades
         .iter()
         .map(|decade| 10_f64.powf(*decade))

@@ -5,13 +5,13 @@ mod figures;
 use std::f64::consts::TAU;
 use std::io::Write;
 
-use flexsc_core::analysis::damping::{Convergence, Margin};
+use flexsc_core::analysis::damping::{Convergence, GainMargin};
 use flexsc_figure::Named;
 use serde::Serialize;
 use serde_json::{Value as Json, json};
 
-use crate::drawing::Drawing;
-use crate::failure::Failure;
+use crate::error::CliError;
+use crate::figure_files::FigureOutput;
 use crate::results::{Results, show};
 use crate::say;
 
@@ -40,7 +40,7 @@ pub struct Args {
     #[arg(long, value_name = "KAPPA,...", value_delimiter = ',', default_value = "0,1.5,4")]
     kappa: Vec<f64>,
     #[command(flatten)]
-    drawing: Drawing,
+    drawing: FigureOutput,
     /// Print one JSON object on stdout
     #[arg(long)]
     json: bool,
@@ -48,7 +48,7 @@ pub struct Args {
 
 /// Convergence region of the observer with a frozen regressor at one gain.
 #[derive(Serialize)]
-struct Region {
+struct ConvergenceRegion {
     kappa: f64,
     /// Area of the region in the plane of W2 and W3.
     area: f64,
@@ -57,41 +57,42 @@ struct Region {
 }
 
 /// Convergence of a recurrence observer.
-pub struct Convergent {
+pub struct ObserverResults {
     of: Convergence,
-    regions: Vec<Region>,
-    margin: Option<Margin>,
+    regions: Vec<ConvergenceRegion>,
+    margin: Option<GainMargin>,
 }
 
 impl Args {
     /// Computes the convergence of the observer.
-    pub fn results(&self) -> Result<Convergent, Failure> {
+    pub fn results(&self) -> Result<ObserverResults, CliError> {
         let Ok(weights) = <[f64; 3]>::try_from(self.weights.as_slice()) else {
             let count = self.weights.len();
-            return Err(Failure::Arguments(format!(
+            return Err(CliError::Arguments(format!(
                 "--weights must be three numbers, W1,W2,W3, got {count}"
             )));
         };
         let of =
             Convergence { frequency: self.frequency, damping: self.damping, period: self.period, weights };
         if let Some((name, why)) = of.inconsistency() {
-            return Err(Failure::Arguments(format!("--{name} {why}")));
+            return Err(CliError::Arguments(format!("--{name} {why}")));
         }
         if let Some(wrong) = self.kappa.iter().find(|kappa| !(0.0..1e3).contains(*kappa)) {
-            return Err(Failure::Arguments(format!(
+            return Err(CliError::Arguments(format!(
                 "--kappa must be numbers of 0 or more below 1000, got {wrong}"
             )));
         }
-        let region = |&kappa: &f64| Region { kappa, area: of.area(kappa), converges: of.converges(kappa) };
-        Ok(Convergent { of, regions: self.kappa.iter().map(region).collect(), margin: of.margin() })
+        let region =
+            |&kappa: &f64| ConvergenceRegion { kappa, area: of.area(kappa), converges: of.converges(kappa) };
+        Ok(ObserverResults { of, regions: self.kappa.iter().map(region).collect(), margin: of.margin() })
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     show(&args.results()?, Some(&args.drawing), args.json)
 }
 
-impl Results for Convergent {
+impl Results for ObserverResults {
     fn json(&self) -> Vec<Json> {
         let (a, b) = self.of.recurrence();
         vec![json!({"a": a, "b": b, "frozen": self.regions, "turning": self.margin})]
@@ -102,7 +103,7 @@ impl Results for Convergent {
         vec![("observer".to_owned(), figures::figure(&self.of, &kappas, self.margin))]
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let Self { of, regions, margin } = self;
         let ((a, b), [w1, w2, w3]) = (of.recurrence(), of.weights);
         say!(
@@ -110,12 +111,12 @@ impl Results for Convergent {
             of.frequency / TAU,
             of.period
         );
-        for Region { kappa, area, converges } in regions {
+        for ConvergenceRegion { kappa, area, converges } in regions {
             let does = if *converges { "converges" } else { "does not converge" };
             say!("  frozen   W4 |g| = {kappa}: {does}; the region of W2 and W3 has an area of {area:.3}");
         }
         match margin {
-            Some(Margin { gain_max, gain_best, spectral_radius }) => say!(
+            Some(GainMargin { gain_max, gain_best, spectral_radius }) => say!(
                 "  turning  converges up to W4 V = {gain_max:.4}, soonest at {gain_best:.4}: a sample leaves {spectral_radius:.4} of \
                  an error"
             ),

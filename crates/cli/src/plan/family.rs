@@ -4,7 +4,7 @@
 use std::borrow::Cow;
 
 use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{BangBang, Command, Manoeuvre, Plan, Suppression};
+use flexsc_core::manoeuvre::{BangBang, Manoeuvre, ManoeuvreCommand, Plan, Suppression};
 use flexsc_core::time::Span;
 use flexsc_figure::{RGBColor, colour};
 
@@ -15,7 +15,7 @@ const COLOURS: [RGBColor; MOST] =
     [colour::ORANGE, colour::SKY, colour::GREEN, colour::VERMILLION, colour::BLUE];
 
 /// Content of the figures of a plan.
-pub struct Family<'a> {
+pub struct CommandFamily<'a> {
     /// Name of the scenario.
     pub name: &'a str,
     /// Body of the scenario.
@@ -25,11 +25,11 @@ pub struct Family<'a> {
     /// Index of the coordinate that is shown: the hub's angle or an output.
     pub shown: usize,
     /// Commands in their drawing order.
-    pub members: Vec<Member<'a>>,
+    pub members: Vec<FamilyMember<'a>>,
 }
 
 /// Command of the family.
-pub struct Member<'a> {
+pub struct FamilyMember<'a> {
     /// Name of the command in the legend.
     pub name: String,
     /// Colour of the command's lines.
@@ -38,7 +38,7 @@ pub struct Member<'a> {
     pub plan: Cow<'a, Plan>,
 }
 
-impl<'a> Family<'a> {
+impl<'a> CommandFamily<'a> {
     /// Returns the family of a plan: its series with up to as many zeros, or the rigid bang-bang, all in the same time.
     /// Commands without a feasible plan are left out.
     pub fn new(
@@ -50,15 +50,20 @@ impl<'a> Family<'a> {
         shown: usize,
     ) -> Self {
         let time = Some(Span::from_seconds(plan.time));
-        let in_time = |command: Command, shaped: bool| {
+        let in_time = |command: ManoeuvreCommand, shaped: bool| {
             let shaper = if shaped { manoeuvre.shaper.clone() } else { None };
             let other = Manoeuvre { time, peak_torque: None, command, shaper, ..manoeuvre.clone() };
             other.plan(planned_for).ok().map(Cow::Owned)
         };
-        let own = |name: &str, colour| Member { name: name.to_owned(), colour, plan: Cow::Borrowed(plan) };
+        let own =
+            |name: &str, colour| FamilyMember { name: name.to_owned(), colour, plan: Cow::Borrowed(plan) };
         let series = match &manoeuvre.command {
-            Command::Sine(own) => Some((Command::Sine as fn(Suppression) -> Command, own)),
-            Command::Cosine(own) => Some((Command::Cosine as fn(Suppression) -> Command, own)),
+            ManoeuvreCommand::Sine(own) => {
+                Some((ManoeuvreCommand::Sine as fn(Suppression) -> ManoeuvreCommand, own))
+            }
+            ManoeuvreCommand::Cosine(own) => {
+                Some((ManoeuvreCommand::Cosine as fn(Suppression) -> ManoeuvreCommand, own))
+            }
             _ => None,
         };
         let members = if let Some((kind, suppression)) = series {
@@ -72,7 +77,7 @@ impl<'a> Family<'a> {
                     return Some(own(&name, colour));
                 }
                 let lowest = Suppression { suppress: p, zeros: Vec::new() };
-                Some(Member { name, colour, plan: in_time(kind(lowest), true)? })
+                Some(FamilyMember { name, colour, plan: in_time(kind(lowest), true)? })
             };
             let first = (most + 1).saturating_sub(count);
             let lower = (first..=most).filter_map(member);
@@ -81,10 +86,10 @@ impl<'a> Family<'a> {
             let words = manoeuvre.command.kind().replace('_', " ");
             let shaped = if manoeuvre.shaper.is_some() { ", shaped" } else { "" };
             let own = own(&format!("{words}{shaped}"), colour::BLUE);
-            let bang_bang = Command::BangBang(BangBang {});
+            let bang_bang = ManoeuvreCommand::BangBang(BangBang {});
             let same = manoeuvre.command == bang_bang && manoeuvre.shaper.is_none();
             let rigid = if same { None } else { in_time(bang_bang, false) };
-            let rigid = rigid.map(|plan| Member {
+            let rigid = rigid.map(|plan| FamilyMember {
                 name: "bang-bang, rigid".to_owned(),
                 colour: colour::ORANGE,
                 plan,

@@ -4,12 +4,12 @@
 use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
 
-use flexsc_core::body::{Drive, Planar};
-use flexsc_core::flow::{Forced, ForcedInput, Segment};
+use flexsc_core::body::{CommandedQuantity, Planar};
+use flexsc_core::flow::{ActiveWaveform, SegmentInput, UncoupledSegment};
 use flexsc_core::manoeuvre::Plan;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour, name_and_unit};
 
-use super::family::{Family, Member};
+use super::family::{CommandFamily, FamilyMember};
 use crate::plot::readable;
 
 /// Fewest and largest number of points of a line.
@@ -21,7 +21,7 @@ const BAND: u32 = 401;
 const PERIODS: f64 = 4.0;
 
 /// Returns all figures; `band` is the relative uncertainty of the frequencies.
-pub fn all(family: &Family, band: f64) -> Vec<Named> {
+pub fn all(family: &CommandFamily, band: f64) -> Vec<Named> {
     let named = |what: &str, figure| (format!("{}-plan-{what}", family.name), figure);
     let mut all = vec![named("torque", family.torque()), named("angle", family.angle())];
     // The hub's angle has a figure of its own.
@@ -37,7 +37,7 @@ fn in_a_path(name: &str) -> String {
     name.chars().map(|c| if c.is_alphanumeric() || "-_.".contains(c) { c } else { '-' }).collect()
 }
 
-impl Family<'_> {
+impl CommandFamily<'_> {
     /// Returns the name and the unit of the shown coordinate.
     fn coordinate(&self) -> (String, String) {
         match self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index)) {
@@ -52,7 +52,7 @@ impl Family<'_> {
         let y = FigureAxis::around(name, self.body.torque_unit(), heights(&lines));
         let zero =
             Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (self.plan.time, 0.0)]);
-        let moves = if self.body.drive == Drive::Motion { " that moves the hub" } else { "" };
+        let moves = if self.body.drive == CommandedQuantity::Motion { " that moves the hub" } else { "" };
         self.figure(&format!("{name}{moves}"), time(self.plan.time), y, vec![zero], lines)
     }
 
@@ -81,7 +81,7 @@ impl Family<'_> {
 
     fn robustness(&self, band: f64) -> Figure {
         let factor = |i: u32| band * (2.0 * f64::from(i) / f64::from(BAND - 1) - 1.0);
-        let left = |plan: &Plan, off: f64| plan.left(self.body, 1.0 + off)[self.shown];
+        let left = |plan: &Plan, off: f64| plan.residual_at(self.body, 1.0 + off)[self.shown];
         let lines =
             self.lines(|plan| (0..BAND).map(factor).map(|off| (1e2 * off, left(plan, off))).collect());
         let (name, unit) = self.coordinate();
@@ -103,7 +103,7 @@ impl Family<'_> {
         below: Vec<Layer>,
         lines: Vec<Vec<Point>>,
     ) -> Figure {
-        let layer = |(Member { name, colour, .. }, points): (&Member, Vec<Point>)| {
+        let layer = |(FamilyMember { name, colour, .. }, points): (&FamilyMember, Vec<Point>)| {
             Layer::new(name, *colour, LayerShape::Line(1.5), points)
         };
         let layers = below.into_iter().chain(self.members.iter().zip(lines).map(layer)).collect();
@@ -135,14 +135,14 @@ impl Family<'_> {
     fn motion(&self, plan: &Plan) -> Vec<(f64, [f64; 2])> {
         let end = self.end();
         let count = (end / self.step(end)).ceil();
-        let mut segment = Segment::new(self.body);
-        let mut state = self.body.start();
-        let waveform = Some(Forced::new(Shared::new(plan.waveform.clone()), 0.0));
-        segment.depart(&state.clone(), &ForcedInput { constant: 0.0, waveform });
+        let mut segment = UncoupledSegment::new(self.body);
+        let mut state = self.body.initial_state();
+        let waveform = Some(ActiveWaveform::new(Shared::new(plan.waveform.clone()), 0.0));
+        segment.depart(&state.clone(), &SegmentInput { constant: 0.0, waveform });
         let mut at = |t: f64| {
             let angle = segment.at(t, &mut state).angle;
             let output = self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index));
-            (t, [angle, output.map_or(angle, |output| output.of(&state))])
+            (t, [angle, output.map_or(angle, |output| output.evaluate(&state))])
         };
         (0..=count as u32).map(|i| at(end * (f64::from(i) / count))).collect()
     }

@@ -1,24 +1,24 @@
 //! `flexsc plan`: the plan of a scenario's manoeuvre, its figures, and its comparison with all other commands.
 
+mod alternatives;
 mod family;
-mod field;
 mod figures;
 mod planned;
 
 use std::path::PathBuf;
 
 use flexsc_core::body::Planar;
-use flexsc_core::document::Fault;
-use flexsc_core::manoeuvre::{FieldCommon, Manoeuvre, Report, compare};
+use flexsc_core::document::ConfigError;
+use flexsc_core::manoeuvre::{ComparisonBasis, Manoeuvre, PlanReport, compare};
 use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::{Scenario, ScenarioError};
 
-use crate::drawing::{Drawing, Format};
-use crate::failure::Failure;
+use crate::error::CliError;
+use crate::figure_files::{FigureFormat, FigureOutput};
 use crate::results::{Results, show};
 use crate::scenario;
-use field::Field;
-use planned::Planned;
+use alternatives::AlternativesResults;
+use planned::PlanResults;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -39,7 +39,7 @@ pub struct Args {
     figures: Option<PathBuf>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum, requires = "figures")]
-    format: Option<Format>,
+    format: Option<FigureFormat>,
     /// Replace a FILE of other content
     #[arg(long, requires = "figures")]
     force: bool,
@@ -50,27 +50,27 @@ pub struct Args {
 
 impl Args {
     /// Computes the plan of a scenario's manoeuvre, or its comparison with all other commands.
-    pub fn results(&self, scenario: Scenario) -> Result<Box<dyn Results>, Failure> {
+    pub fn results(&self, scenario: Scenario) -> Result<Box<dyn Results>, CliError> {
         let body = scenario.one_angle()?.clone();
         let (Some(manoeuvre), Some(plan)) = (scenario.manoeuvre.clone(), scenario.plan.clone()) else {
-            return Err(Failure::Arguments(format!("{}: there is no `[manoeuvre]` to plan", scenario.name)));
+            return Err(CliError::Arguments(format!("{}: there is no `[manoeuvre]` to plan", scenario.name)));
         };
         let band = self.band;
         if Fraction::new(band).is_none() {
-            return Err(Failure::Arguments(format!("--band must be between 0 and 1, got {band}")));
+            return Err(CliError::Arguments(format!("--band must be between 0 and 1, got {band}")));
         }
         let limit = self.limit()?;
         let shown = chosen(self.coordinate.as_deref(), &body)?;
         let model = manoeuvre.planned_for(&body).clone();
         let name = scenario.written.name;
         if self.compare {
-            let common = FieldCommon::of(&manoeuvre, limit, &plan);
+            let common = ComparisonBasis::from_manoeuvre(&manoeuvre, limit, &plan);
             let rows = compare(&manoeuvre, common, &model, band);
-            return Ok(Box::new(Field { name, body, band, shown, common, rows }));
+            return Ok(Box::new(AlternativesResults { name, body, band, shown, common, rows }));
         }
         let plan = if limit.is_some() {
             let slower = Manoeuvre { time: None, peak_torque: limit, ..manoeuvre.clone() };
-            let refused = |fault: Fault| ScenarioError::Key {
+            let refused = |fault: ConfigError| ScenarioError::Key {
                 origin: name.clone(),
                 key: "--peak-torque".to_owned(),
                 why: fault.why,
@@ -79,22 +79,22 @@ impl Args {
         } else {
             plan
         };
-        let report = Report::new(&plan, &body, band);
-        Ok(Box::new(Planned { name, body, model, manoeuvre, plan, report, shown }))
+        let report = PlanReport::new(&plan, &body, band);
+        Ok(Box::new(PlanResults { name, body, model, manoeuvre, plan, report, shown }))
     }
 
     /// Returns the peak torque that is planned for, if given.
-    fn limit(&self) -> Result<Option<Positive>, Failure> {
+    fn limit(&self) -> Result<Option<Positive>, CliError> {
         let Some(peak) = self.peak_torque else { return Ok(None) };
         let limit = Positive::new(peak).ok_or_else(|| {
-            Failure::Arguments(format!("--peak-torque must be a positive number, got {peak}"))
+            CliError::Arguments(format!("--peak-torque must be a positive number, got {peak}"))
         })?;
         Ok(Some(limit))
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
-    let drawing = Drawing { figures: args.figures.clone(), format: args.format, force: args.force };
+pub fn run(args: &Args) -> Result<(), CliError> {
+    let drawing = FigureOutput { figures: args.figures.clone(), format: args.format, force: args.force };
     drawing.check(&args.scenario.scenario)?;
     let results = args.results(args.scenario.load()?)?;
     show(&*results, Some(&drawing), args.scenario.json)
@@ -106,11 +106,11 @@ fn percent(band: f64) -> f64 {
 }
 
 /// Returns the index of the shown coordinate: the chosen one, else the last output, else the hub's angle.
-fn chosen(coordinate: Option<&str>, body: &Planar) -> Result<usize, Failure> {
+fn chosen(coordinate: Option<&str>, body: &Planar) -> Result<usize, CliError> {
     let names: Vec<&str> =
         std::iter::once("angle").chain(body.outputs.iter().map(|output| output.name.as_str())).collect();
     let Some(chosen) = coordinate else { return Ok(names.len() - 1) };
     names.iter().position(|name| *name == chosen).ok_or_else(|| {
-        Failure::Arguments(format!("--coordinate must be one of {}, got {chosen}", names.join(", ")))
+        CliError::Arguments(format!("--coordinate must be one of {}, got {chosen}", names.join(", ")))
     })
 }

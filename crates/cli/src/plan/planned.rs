@@ -3,18 +3,18 @@
 use std::io::Write;
 
 use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{Manoeuvre, Plan, Report};
+use flexsc_core::manoeuvre::{Manoeuvre, Plan, PlanReport};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
-use super::family::Family;
+use super::family::CommandFamily;
 use super::{figures, percent};
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::results::{Results, of_scenario};
 use crate::say;
 
 /// Plan of a scenario's manoeuvre.
-pub struct Planned {
+pub struct PlanResults {
     /// Name of the scenario.
     pub name: String,
     /// Body of the scenario.
@@ -23,12 +23,12 @@ pub struct Planned {
     pub model: Planar,
     pub manoeuvre: Manoeuvre,
     pub plan: Plan,
-    pub report: Report,
+    pub report: PlanReport,
     /// Index of the coordinate in the figures: the hub's angle or an output.
     pub shown: usize,
 }
 
-impl Results for Planned {
+impl Results for PlanResults {
     fn json(&self) -> Vec<Json> {
         let mut object = of_scenario(&self.name, json!({"command": self.manoeuvre.command.kind()}));
         if let (Some(object), Json::Object(told)) =
@@ -41,11 +41,11 @@ impl Results for Planned {
 
     fn figures(&self) -> Vec<Named> {
         let Self { name, body, plan, manoeuvre, model, shown, .. } = self;
-        let family = Family::new(name, body, plan, manoeuvre, model, *shown);
+        let family = CommandFamily::new(name, body, plan, manoeuvre, model, *shown);
         figures::all(&family, self.report.band)
     }
 
-    fn tell(&self) -> Result<(), Failure> {
+    fn print(&self) -> Result<(), CliError> {
         let Self { name, body, manoeuvre, plan, report, .. } = self;
         let (angle, time) = (plan.angle, plan.time);
         let kind = manoeuvre.command.kind().replace('_', " ");

@@ -2,18 +2,18 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
 const COLOURS: [plotters::style::RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
 
 /// Returns true if a scenario has accelerometers.
-pub fn of(story: &Story) -> bool {
+pub fn applies_to(story: &RunEvents) -> bool {
     story.scenario.sensor.accelerometers().next().is_some()
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let scenario = &story.scenario;
     let all: Vec<_> = scenario.sensor.accelerometers().collect();
     let panel = |(place, (index, accelerometer)): (usize, &(usize, &flexsc_core::sensor::Accelerometer))| {
@@ -27,7 +27,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
         let axes = if own { 3 } else { accelerometer.along.len() };
         let layers: Vec<Layer> = (0..axes).map(layer).collect();
         let values = layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value);
-        let y = FigureAxis::around(&scenario.study.sensed_at[*index], "m/s²", values.collect::<Vec<_>>());
+        let y = FigureAxis::around(&scenario.study.sensor_points[*index], "m/s²", values.collect::<Vec<_>>());
         let x = time(0.0..story.end);
         Panel::new(if place + 1 == all.len() { x } else { x.unnamed() }, y, layers)
     };

@@ -2,8 +2,8 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::motion::Motion;
-use super::story::Story;
+use super::motion::MotionData;
+use super::run_events::RunEvents;
 use super::{arrival, time, title};
 
 /// Errors below this fraction of the goal are rounding errors, and shown as zero on an axis that ends at `SMALL` (rad).
@@ -12,12 +12,12 @@ const SMALL: f64 = 2e-9;
 /// Half height of the second panel for a body that is brought to angle 0, as a multiple of the band.
 const BANDS: f64 = 4.0;
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let over_time =
         |values: &[f64]| -> Vec<Point> { motion.time.iter().copied().zip(values.iter().copied()).collect() };
     let x = time(0.0..story.end);
     let error: Vec<f64> = motion.angle.iter().zip(&motion.goal).map(|(angle, goal)| angle - goal).collect();
-    let settled = Settled::of(story, &motion.time, &error);
+    let settled = SettlingCurve::from_events(story, &motion.time, &error);
     let marks =
         |y: &FigureAxis| settled.iter().flat_map(|settled| settled.layers(story, y)).collect::<Vec<_>>();
     let panels = if story.scenario.plan.is_some() {
@@ -62,7 +62,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
 }
 
 /// Settling to the goal, as defined by the metric `settling_time_s`.
-struct Settled {
+struct SettlingCurve {
     /// Half width of the band in which the angle has settled (rad).
     band: f64,
     /// Start of the goal (s).
@@ -71,12 +71,12 @@ struct Settled {
     at: Option<f64>,
 }
 
-impl Settled {
+impl SettlingCurve {
     /// Returns `None` without motion, or if no band is given after a manoeuvre, which may end anywhere near its goal.
-    fn of(story: &Story, times: &[f64], error: &[f64]) -> Option<Self> {
+    fn from_events(story: &RunEvents, times: &[f64], error: &[f64]) -> Option<Self> {
         let from = story.scenario.plan.as_ref().map_or(0.0, |plan| plan.time);
         let given = story.scenario.reference.band.map(flexsc_core::quantity::Positive::get);
-        let promise = story.scenario.promise();
+        let promise = story.scenario.expected_band();
         let promised = if from > 0.0 { None } else { error.first().map(|first| promise.band(first.abs())) };
         let band = given.or(promised).filter(|band| *band > 0.0)?;
         let outside = |(time, error): &(&f64, &f64)| **time >= from - 1e-9 && error.abs() > band;
@@ -85,7 +85,7 @@ impl Settled {
         Some(Self { band, from, at })
     }
 
-    fn layers(&self, story: &Story, y: &FigureAxis) -> Vec<Layer> {
+    fn layers(&self, story: &RunEvents, y: &FigureAxis) -> Vec<Layer> {
         let level = |height: f64| [(self.from, height), (story.end, height)];
         let width = format!("within ±{} mrad", super::short(1e3 * self.band));
         let within = band(&level(-self.band), &level(self.band));

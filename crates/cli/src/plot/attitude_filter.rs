@@ -5,14 +5,14 @@ use flexsc_core::record::AxisEstimate;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::pointing::{decades, norm};
-use super::spatial::{Cycles, panels};
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::{CycleData, panels};
 use super::{consistency, time, title};
 
 /// Bounds of chi-square with six degrees of freedom, divided by six, that contain 95 % of its probability.
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let over_time = |axis: usize, of: &dyn Fn(&AxisEstimate) -> f64| -> Vec<Point> {
         cycles.attitude.iter().map(|(time, row)| (*time, of(&row.axes[axis]))).collect()
     };

@@ -2,10 +2,10 @@
 
 use flexsc_core::record::{Column, Columns, Log};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 
 /// Returns the columns of some topics; empty for a topic that the log does not have.
-pub fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], Failure> {
+pub fn topics<const N: usize>(log: &Log, names: [&str; N]) -> Result<[Columns; N], CliError> {
     let mut tables = log.tables(&names)?.into_iter();
     Ok(names.map(|_| tables.next().flatten().unwrap_or_default()))
 }

@@ -4,21 +4,25 @@
 use flexsc_core::estimator::chi_square;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::motion::{Estimate, Motion};
-use super::story::Story;
-use super::{lock, time, title};
+use super::motion::{DominantModeEstimate, MotionData};
+use super::run_events::RunEvents;
+use super::{filter_lock, time, title};
 
 /// Number of samples in an average, as in the filter's own test of lost lock.
 const WINDOW: usize = 50;
 /// Value above which an axis is logarithmic.
 const FAR: f64 = 10.0;
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let scenario = &story.scenario;
     let measurements = 1 + usize::from(scenario.sensor.rate_noise(0).is_some());
     let states = scenario.estimator.as_ref().map_or(0, |e| e.states(scenario.mode_count()));
     let window = WINDOW.min(motion.estimates.len()).max(1);
-    let panel = |name: &str, ratio: fn(&Estimate) -> f64, degrees: usize, averaged: usize, named: bool| {
+    let panel = |name: &str,
+                 ratio: fn(&DominantModeEstimate) -> f64,
+                 degrees: usize,
+                 averaged: usize,
+                 named: bool| {
         let values: Vec<Point> = motion.estimates.iter().map(|e| (e.time, ratio(e))).collect();
         let line = averages(&values, window);
         let [low, high] = chi_square(degrees * averaged).map(|bound| bound / (degrees * averaged) as f64);
@@ -29,7 +33,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         } else {
             FigureAxis::from_zero(name, "", shown())
         };
-        let mut layers = lock::spans(motion, &y, named);
+        let mut layers = filter_lock::spans(motion, &y, named);
         let level = |height: f64| [(0.0, height), (story.end, height)];
         let of = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
         layers.extend([
@@ -59,7 +63,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
 }
 
 /// Returns a line at the mean of the values over the interval that the metrics assess; `None` without values.
-pub fn mean(story: &Story, values: &[Point]) -> Option<Layer> {
+pub fn mean(story: &RunEvents, values: &[Point]) -> Option<Layer> {
     let [from, to] = story.scenario.estimator.as_ref()?.assess();
     let to = to.min(story.end);
     let inside = || values.iter().filter(|(time, value)| (from..=to).contains(time) && value.is_finite());

@@ -1,13 +1,13 @@
 //! Figure `angle` for a switching law: the angle at the end of the run, with the dead zone and the switchings.
 
-use flexsc_core::law::{Law, Sides};
+use flexsc_core::law::{LawKind, RelaySides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::motion::Motion;
-use super::story::Story;
+use super::motion::MotionData;
+use super::run_events::RunEvents;
 use super::{time, title, torque};
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let shown = torque::shown(story);
     let line = motion.time.iter().copied().zip(motion.angle.iter().copied());
     let line: Vec<Point> = line.filter(|(time, _)| *time >= shown.start - 1e-9).collect();
@@ -19,9 +19,9 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
         seen.map(|s| (s.time, s.angle)).collect()
     };
     let borders: Vec<f64> = match &story.scenario.law {
-        Law::Relay(relay) => match relay.sides {
-            Sides::Two => vec![relay.dead_zone.get(), -relay.dead_zone.get()],
-            Sides::One => vec![relay.dead_zone.get()],
+        LawKind::Relay(relay) => match relay.sides {
+            RelaySides::Two => vec![relay.dead_zone.get(), -relay.dead_zone.get()],
+            RelaySides::One => vec![relay.dead_zone.get()],
         },
         _ => Vec::new(),
     };

@@ -4,8 +4,8 @@
 use flexsc_core::attitude::Vector;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
 /// Largest number of points with a panel each.
@@ -18,12 +18,12 @@ const ROUNDING: f64 = 1e-9;
 
 /// Returns the points that modes move relative to the first, each with its displacement for a unit of each mode
 /// (1/sqrt(kg)). Empty if drives or hinges turn the appendages, since modes then have no fixed shapes.
-fn points(story: &Story) -> Vec<(&str, Vec<Vector>)> {
+fn points(story: &RunEvents) -> Vec<(&str, Vec<Vector>)> {
     let Some(body) = story.scenario.model.spatial() else { return Vec::new() };
     if story.scenario.study.drives.is_some() {
         return Vec::new();
     }
-    let shifts = |point: &str| body.shifts(point, &Vector::zeros());
+    let shifts = |point: &str| body.displacements(point, &Vector::zeros());
     let first = body.points.first().map_or_else(Vec::new, |point| shifts(&point.name));
     let against =
         |point: &str| shifts(point).iter().zip(&first).map(|(shift, first)| shift - first).collect();
@@ -34,11 +34,11 @@ fn points(story: &Story) -> Vec<(&str, Vec<Vector>)> {
 }
 
 /// Returns true if modes move any point relative to the first.
-pub fn of(story: &Story) -> bool {
+pub fn applies_to(story: &RunEvents) -> bool {
     !points(story).is_empty()
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let all = points(story);
     let last = all.len().min(PANELS).saturating_sub(1);
     let panel = |(index, (name, shifts)): (usize, &(&str, Vec<Vector>))| {

@@ -4,8 +4,8 @@
 use flexsc_core::record::DrivesMotion;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
 /// Colours of drives, hinges and modes, cyclic.
@@ -31,7 +31,7 @@ pub fn alike(x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, 
     Panel::new(x, FigureAxis::around(name, unit, values), layers.collect())
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
         cycles.drives.iter().map(|(time, row)| (*time, of(row))).collect()
     };

@@ -3,11 +3,11 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::motion::Motion;
-use super::story::{Mean, Story};
+use super::motion::MotionData;
+use super::run_events::{RunEvents, WindowMean};
 use super::{swings, time, title};
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let all = motion.envelope.iter().map(|(_, value)| *value);
     let whole = Panel::new(
         time(0.0..story.end),
@@ -41,7 +41,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
 }
 
 /// Returns the figure of the window means alone, for three axes.
-pub fn over_windows(story: &Story) -> Figure {
+pub fn over_windows(story: &RunEvents) -> Figure {
     let all = story.means.iter().map(|mean| mean.value);
     let line = Layer::new("window means", colour::VERMILLION, LayerShape::Line(2.0), means(&story.means));
     let panel = Panel::new(time(0.0..story.end), FigureAxis::from_zero("envelope a", "rad", all), vec![line]);
@@ -50,6 +50,6 @@ pub fn over_windows(story: &Story) -> Figure {
 }
 
 /// Returns the window means as a line, constant over each window.
-pub fn means(means: &[Mean]) -> Vec<Point> {
+pub fn means(means: &[WindowMean]) -> Vec<Point> {
     means.iter().flat_map(|m| [(m.from, m.value), (m.to, m.value)]).collect()
 }

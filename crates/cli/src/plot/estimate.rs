@@ -3,11 +3,11 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::motion::Motion;
-use super::story::Story;
-use super::{lock, time, title};
+use super::motion::MotionData;
+use super::run_events::RunEvents;
+use super::{filter_lock, time, title};
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let samples = &motion.estimates;
     let estimated: Vec<Point> = samples.iter().map(|e| (e.time, e.displacement)).collect();
     let truth: Vec<Point> = samples.iter().map(|e| (e.time, motion.displacement(e.mode, e.time))).collect();
@@ -15,14 +15,14 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let x = time(0.0..story.end);
     let heights = estimated.iter().chain(&truth).map(|point| point.1);
     let y = FigureAxis::around("displacement", "rad", heights);
-    let mut layers = lock::spans(motion, &y, true);
+    let mut layers = filter_lock::spans(motion, &y, true);
     layers.extend([
         Layer::new("estimated, as the law reads it", colour::ORANGE, LayerShape::Line(2.0), estimated),
         Layer::new("true", colour::BLACK, LayerShape::Dashes, truth),
     ]);
     let whole = Panel::new(x.unnamed(), y, layers);
     let y = FigureAxis::around("error", "rad", error.iter().map(|point| point.1));
-    let mut layers = lock::spans(motion, &y, false);
+    let mut layers = filter_lock::spans(motion, &y, false);
     layers.push(Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]));
     layers.push(Layer::new("", colour::BLUE, LayerShape::Line(1.0), error));
     let panels = vec![whole, Panel::new(x, y, layers)];

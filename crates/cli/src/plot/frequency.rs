@@ -3,15 +3,15 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::motion::{Estimate, Motion};
-use super::story::Story;
-use super::{lock, time, title};
+use super::motion::{DominantModeEstimate, MotionData};
+use super::run_events::RunEvents;
+use super::{filter_lock, time, title};
 
 /// Upper end of the axis, as a multiple of the largest frequency, even if the filter's uncertainty is larger.
 const BEYOND: f64 = 1.5;
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
-    let line = |value: &dyn Fn(&Estimate) -> f64| -> Vec<Point> {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+    let line = |value: &dyn Fn(&DominantModeEstimate) -> f64| -> Vec<Point> {
         motion.estimates.iter().map(|estimate| (estimate.time, value(estimate))).collect()
     };
     let (estimated, truth) = (line(&|e| e.frequency), line(&|e| e.true_frequency));
@@ -21,14 +21,14 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let shown = [&estimated, &truth, &lower, &upper].into_iter().flat_map(|points| heights(points));
     let y = FigureAxis::around("frequency (rad/s)", "", shown.map(|value| value.clamp(0.0, most)));
     let x = time(0.0..story.end);
-    let mut layers = lock::spans(motion, &y, true);
+    let mut layers = filter_lock::spans(motion, &y, true);
     layers.extend([
         Layer::new("± 2 standard deviations", colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),
         Layer::new("estimated", colour::BLUE, LayerShape::Line(1.4), estimated),
         Layer::new("true", colour::BLACK, LayerShape::Dashes, truth),
     ]);
     if motion.estimates.iter().any(|estimate| estimate.read_frequency != estimate.frequency) {
-        let apart = |e: &Estimate| e.read_frequency != e.frequency;
+        let apart = |e: &DominantModeEstimate| e.read_frequency != e.frequency;
         let read = line(&|e| if apart(e) { e.read_frequency } else { f64::NAN });
         layers.push(Layer::new("held for the law", colour::ORANGE, LayerShape::Line(1.2), read));
     }
@@ -38,7 +38,7 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let [lower, upper] = [-2.0, 2.0].map(|deviations| line(&|e| deviations * e.frequency_sd));
     let shown = [&error, &lower, &upper].into_iter().flat_map(|points| heights(points));
     let y = FigureAxis::around("error", "rad/s", shown.map(|value| value.clamp(-most, most)));
-    let mut layers = lock::spans(motion, &y, false);
+    let mut layers = filter_lock::spans(motion, &y, false);
     layers.extend([
         Layer::new("", colour::SKY, LayerShape::Area(0.35), band(&lower, &upper)),
         Layer::new("", colour::GREY, LayerShape::Line(0.8), vec![(0.0, 0.0), (story.end, 0.0)]),

@@ -3,10 +3,10 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::envelope::means;
-use super::story::{Mean, Story};
+use super::run_events::{RunEvents, WindowMean};
 use super::{time, title};
 
-pub fn figure(story: &Story) -> Figure {
+pub fn figure(story: &RunEvents) -> Figure {
     let x = time(0.0..story.end);
     let gains = story.steps.iter().map(|step| (step.time, step.gain));
     let line = steps([(0.0, story.start.1)].into_iter().chain(gains), story.end);
@@ -39,12 +39,12 @@ pub fn figure(story: &Story) -> Figure {
 }
 
 /// Returns the objective of the adaptation: its name, its unit, the name of its windows, and the windows.
-fn learnt(story: &Story) -> (String, &'static str, &'static str, &[Mean]) {
+fn learnt(story: &RunEvents) -> (String, &'static str, &'static str, &[WindowMean]) {
     match story.scenario.objective().filter(|_| !story.objective.is_empty()) {
         None => ("mean envelope".to_owned(), "rad", "window means", &story.means),
         Some(objective) => {
             let unit = objective.unit(story.scenario.torque_unit());
-            (objective.word().replace('_', " "), unit, "windows", &story.objective)
+            (objective.key().replace('_', " "), unit, "windows", &story.objective)
         }
     }
 }

@@ -5,8 +5,8 @@ use flexsc_core::quantity::Positive;
 use flexsc_core::record::ControlMomentGyros;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
 /// Colours of gimbals, cyclic.
@@ -14,11 +14,11 @@ const COLOURS: [plotters::style::RGBColor; 5] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
 
 /// Returns true if a scenario has control moment gyros.
-pub fn of(story: &Story) -> bool {
+pub fn applies_to(story: &RunEvents) -> bool {
     !story.scenario.study.gimbals.is_empty()
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |of: &dyn Fn(&ControlMomentGyros) -> f64| -> Vec<Point> {
         cycles.gimbals.iter().map(|(time, row)| (*time, of(row))).collect()
     };

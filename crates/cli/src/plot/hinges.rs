@@ -4,11 +4,11 @@ use flexsc_core::record::HingeMotion;
 use flexsc_figure::{Figure, Point};
 
 use super::drives::alike;
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let hinges = cycles.hinges.first().map_or(0, |(_, row)| row.hinges.len());
     let lines = |of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {
         let line =

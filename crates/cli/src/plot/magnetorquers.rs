@@ -1,22 +1,22 @@
 //! Figure `magnetorquers` of three axes: magnetic moments with their limits, and the momentum of the wheels or the
 //! body.
 
-use flexsc_core::record::SpatialCycle;
+use flexsc_core::record::ThreeAxisCycle;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =
     [("x", colour::BLUE), ("y", colour::VERMILLION), ("z", colour::GREEN)];
 
 /// Returns true if a scenario has magnetorquers.
-pub fn of(story: &Story) -> bool {
+pub fn applies_to(story: &RunEvents) -> bool {
     story.scenario.actuator.magnetorquers().is_some()
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let limits = story.scenario.actuator.magnetorquers().map(|(torquers, _)| {
         [0, 1, 2].map(|axis| torquers.moment.about(axis).get()).into_iter().fold(0.0, f64::max)
     });
@@ -37,7 +37,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
     let moments = Panel::new(x.unnamed(), y, layers);
     let wheels = story.scenario.study.wheels.is_some();
     let norm = |of: [f64; 3]| of.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let points = cycles.over_time(|cycle: &SpatialCycle| {
+    let points = cycles.over_time(|cycle: &ThreeAxisCycle| {
         norm(if wheels { cycle.stored_nm_s } else { cycle.rigid_rate_rad_s })
     });
     let (name, unit) = if wheels { ("momentum of the wheels", "N m s") } else { ("rate", "rad/s") };

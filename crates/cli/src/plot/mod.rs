@@ -8,37 +8,37 @@ mod columns;
 mod consistency;
 mod dead_zone;
 mod deflection;
-mod drive;
 mod drives;
 mod envelope;
 mod estimate;
-mod extra;
-mod failing;
+mod extra_loop;
+mod failures;
+mod figure_kind;
+mod filter_lock;
+mod flywheel;
 mod frequency;
 mod gain;
 mod gimbals;
 mod hinges;
-mod identified;
-mod lock;
+mod identified_frequencies;
+mod interpolation;
 mod magnetorquers;
+mod manoeuvre_torque;
 mod modes;
 mod motion;
 mod orbit;
-mod outdated;
 mod outputs;
 mod overlay;
 mod phase_plane;
 mod pointing;
-mod smooth;
+mod run_events;
 mod spatial;
-mod story;
+mod stale_check;
+mod time_range;
 mod title;
 mod torque;
 mod torques;
-mod what;
-mod wheel;
 mod wheels;
-mod window;
 
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
@@ -47,15 +47,15 @@ use clap::ValueEnum;
 use flexsc_core::record::Log;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_to_nice};
 
-use crate::drawing::{Format, Target};
-use crate::failure::Failure;
+use crate::error::CliError;
+use crate::figure_files::{FigureFormat, FigureTarget};
 pub use campaign::{of_columns, of_directory};
-use motion::Motion;
-use spatial::Cycles;
-use story::Story;
+pub use figure_kind::FigureKind;
+use motion::MotionData;
+use run_events::RunEvents;
+use spatial::CycleData;
 pub use title::readable;
 use title::{short, title};
-pub use what::What;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -71,10 +71,10 @@ pub struct Args {
     out: Option<PathBuf>,
     /// Figures to draw [default: all of a log; the usual ones of a campaign]
     #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
-    what: Vec<What>,
+    what: Vec<FigureKind>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum)]
-    format: Option<Format>,
+    format: Option<FigureFormat>,
     /// Replace a FILE of other content
     #[arg(long, requires = "out")]
     force: bool,
@@ -103,23 +103,24 @@ pub struct Args {
 
 impl Args {
     /// Returns the style of the figures with their size.
-    fn style(&self) -> Result<Style, Failure> {
-        Style::new(self.width, self.font).map_err(|why| Failure::Arguments(format!("--width, --font: {why}")))
+    fn style(&self) -> Result<Style, CliError> {
+        Style::new(self.width, self.font)
+            .map_err(|why| CliError::Arguments(format!("--width, --font: {why}")))
     }
 }
 
 impl Args {
     /// Returns the figures of a log over the requested time.
-    fn own(&self, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
+    fn own(&self, path: &Path, asked: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
         let log = Log::open(path)?;
         if !self.json {
-            outdated::warn(&log, path);
+            stale_check::warn_if_stale(&log, path);
         }
         drawn_over(&log, path, asked, (self.from, self.to))
     }
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
-    fn together(&self) -> Result<Vec<(What, Figure)>, Failure> {
+    fn together(&self) -> Result<Vec<(FigureKind, Figure)>, CliError> {
         let paths: Vec<&PathBuf> = std::iter::once(&self.path).chain(&self.others).collect();
         let all = paths.iter().map(|path| self.own(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
         let names: Vec<String> = paths
@@ -133,7 +134,7 @@ impl Args {
         };
         let mut figures = Vec::new();
         let mut runs: Vec<_> = all.into_iter().map(Vec::into_iter).map(Iterator::collect::<Vec<_>>).collect();
-        let kinds: Vec<What> = runs[0].iter().map(|(what, _)| *what).collect();
+        let kinds: Vec<FigureKind> = runs[0].iter().map(|(what, _)| *what).collect();
         for what in kinds {
             let mut of_kind = Vec::new();
             for (run, own) in runs.iter_mut().enumerate() {
@@ -148,7 +149,7 @@ impl Args {
         }
         if figures.is_empty() {
             let why = "these logs have no figure with the same axes, which could show them together";
-            return Err(Failure::Arguments(format!("{why}\n\nhint: draw them one by one")));
+            return Err(CliError::Arguments(format!("{why}\n\nhint: draw them one by one")));
         }
         Ok(figures)
     }
@@ -158,19 +159,19 @@ impl Args {
 ///
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
-pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, Failure> {
-    let what = What::from_str(name, false).map_err(Failure::Arguments)?;
+pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, CliError> {
+    let what = FigureKind::from_str(name, false).map_err(CliError::Arguments)?;
     let drawn = drawn(log, path, &[what])?.into_iter().next();
-    let nothing = || Failure::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
+    let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
 /// Returns the figures that a log has.
-pub fn there(log: &Log, path: &Path) -> Result<Vec<What>, Failure> {
-    Ok(What::all_in(&Story::read(log, path)?))
+pub fn there(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliError> {
+    Ok(FigureKind::all_in(&RunEvents::read(log, path)?))
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     if args.path.is_dir() {
         let of_logs = [
             ("more than one path", !args.others.is_empty()),
@@ -179,18 +180,18 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         ];
         if let Some((given, _)) = of_logs.into_iter().find(|(_, given)| *given) {
             let path = args.path.display();
-            return Err(Failure::Arguments(format!("{given}: only for logs, and {path} is a directory")));
+            return Err(CliError::Arguments(format!("{given}: only for logs, and {path} is a directory")));
         }
         return campaign::run(args);
     }
     let of_campaigns = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
     if let Some((option, _)) = of_campaigns.into_iter().find(|(_, given)| *given) {
         let path = args.path.display();
-        return Err(Failure::Arguments(format!("--{option}: {path} is not the directory of a campaign")));
+        return Err(CliError::Arguments(format!("--{option}: {path} is not the directory of a campaign")));
     }
     let beside = args.path.parent().unwrap_or(Path::new(""));
     let logs: Vec<&Path> = std::iter::once(&args.path).chain(&args.others).map(PathBuf::as_path).collect();
-    let target = Target::new(args.out.as_deref().unwrap_or(beside), args.format, &logs, args.force)?;
+    let target = FigureTarget::new(args.out.as_deref().unwrap_or(beside), args.format, &logs, args.force)?;
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
     let figures = if args.others.is_empty() { args.own(&args.path, &args.what)? } else { args.together()? };
     let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{}", what.name()), figure));
@@ -198,7 +199,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 }
 
 /// Returns figures of a log: the named ones, or all that it has.
-fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, Failure> {
+fn drawn(log: &Log, path: &Path, asked: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
     drawn_over(log, path, asked, (None, None))
 }
 
@@ -206,24 +207,30 @@ fn drawn(log: &Log, path: &Path, asked: &[What]) -> Result<Vec<(What, Figure)>, 
 fn drawn_over(
     log: &Log,
     path: &Path,
-    asked: &[What],
+    asked: &[FigureKind],
     (from, to): (Option<f64>, Option<f64>),
-) -> Result<Vec<(What, Figure)>, Failure> {
-    let mut story = Story::read(log, path)?;
-    story.shown = window::of(from, to, story.end)?;
-    let chosen = what::chosen(asked, &What::all_in(&story)).map_err(|(missing, there)| {
+) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+    let mut story = RunEvents::read(log, path)?;
+    story.shown = time_range::resolve(from, to, story.end)?;
+    let chosen = figure_kind::select(asked, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();
-        Failure::Arguments(format!(
+        CliError::Arguments(format!(
             "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
         ))
     })?;
-    let any = |of: &[What]| of.iter().any(|what| chosen.contains(what));
-    let moving = any(&[What::PhasePlane, What::Envelope, What::Modes, What::Angle]);
-    let all = any(&[What::Wheel, What::Frequency, What::Estimate, What::Consistency, What::Extra]);
+    let any = |of: &[FigureKind]| of.iter().any(|what| chosen.contains(what));
+    let moving = any(&[FigureKind::PhasePlane, FigureKind::Envelope, FigureKind::Modes, FigureKind::Angle]);
+    let all = any(&[
+        FigureKind::Wheel,
+        FigureKind::Frequency,
+        FigureKind::Estimate,
+        FigureKind::Consistency,
+        FigureKind::Extra,
+    ]);
     let is_spatial = story.scenario.axis_count() == 3;
-    let cycles = if is_spatial { Cycles::read(&story, log, path)? } else { Cycles::default() };
+    let cycles = if is_spatial { CycleData::read(&story, log, path)? } else { CycleData::default() };
     let motion = if is_spatial {
-        Motion::default()
+        MotionData::default()
     } else if all || !story.switches() {
         story.motion(log, path, 0.0, 0.0)?
     } else if moving {
@@ -231,26 +238,26 @@ fn drawn_over(
         let late = story.shown.as_ref().map_or(late, |shown| shown.start.min(late));
         story.motion(log, path, phase_plane::early(&story), late)?
     } else {
-        Motion::default()
+        MotionData::default()
     };
     let drawn = chosen.into_iter().filter_map(|what| {
         let figure = what.figure(&story, &motion, &cycles)?;
         let figure = match &story.shown {
-            Some(shown) => window::cut(figure, shown),
+            Some(shown) => time_range::crop(figure, shown),
             None => figure,
         };
-        Some((what, failing::shaded(figure, &story)))
+        Some((what, failures::shaded(figure, &story)))
     });
     Ok(drawn.collect())
 }
 
 /// Returns the unit of the torque: of an acceleration for a body without inertia.
-fn unit_of_torque(story: &Story) -> &'static str {
-    story.scenario.model.commanded().1
+fn unit_of_torque(story: &RunEvents) -> &'static str {
+    story.scenario.model.commanded_quantity().1
 }
 
 /// Returns a line at the end of the manoeuvre, if there is one.
-fn arrival(story: &Story, y: &FigureAxis) -> Option<Layer> {
+fn arrival(story: &RunEvents, y: &FigureAxis) -> Option<Layer> {
     let plan = story.scenario.plan.as_ref()?;
     let ends = vec![(plan.time, y.range.start), (plan.time, y.range.end)];
     Some(Layer::new("end of the manoeuvre", colour::GREY, LayerShape::Dashes, ends))
@@ -258,7 +265,7 @@ fn arrival(story: &Story, y: &FigureAxis) -> Option<Layer> {
 
 /// Returns the interval of figures of the modes: the whole run, or for a switching law about seven periods of the
 /// slowest mode at the end of the run.
-fn swings(story: &Story) -> std::ops::Range<f64> {
+fn swings(story: &RunEvents) -> std::ops::Range<f64> {
     if let Some(shown) = &story.shown {
         return shown.clone();
     }

@@ -2,14 +2,14 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::motion::Motion;
-use super::story::Story;
+use super::motion::MotionData;
+use super::run_events::RunEvents;
 use super::{swings, time, title};
 
 /// Largest number of modes with a panel each.
 const PANELS: usize = 6;
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let shown = swings(story);
     let frequencies = story.scenario.model.frequencies();
     let since = if story.scenario.drift.is_some() { " at the start" } else { "" };

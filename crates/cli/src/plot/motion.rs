@@ -4,11 +4,11 @@ use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Sampl
 use flexsc_core::time::Instant;
 
 use super::columns::{labels, rows, topics};
-use crate::failure::Failure;
+use crate::error::CliError;
 
 /// Motion of a run. All but the envelope and the estimates may be left out if no figure shows them.
 #[derive(Default)]
-pub struct Motion {
+pub struct MotionData {
     pub time: Vec<f64>,
     pub angle: Vec<f64>,
     pub rate: Vec<f64>,
@@ -29,12 +29,12 @@ pub struct Motion {
     /// Times and values of the total envelope; empty without an observer.
     pub envelope: Vec<(f64, f64)>,
     /// Estimates of a filter at each sample; empty without a filter.
-    pub estimates: Vec<Estimate>,
+    pub estimates: Vec<DominantModeEstimate>,
 }
 
 /// Filter estimates of the dominant mode at a sample.
 #[derive(Copy, Clone)]
-pub struct Estimate {
+pub struct DominantModeEstimate {
     pub time: f64,
     /// Index of the mode.
     pub mode: usize,
@@ -56,9 +56,9 @@ pub struct Estimate {
     pub lost: bool,
 }
 
-impl Motion {
+impl MotionData {
     /// Reads the motion from a full log.
-    pub fn read(log: &Log) -> Result<Self, Failure> {
+    pub fn read(log: &Log) -> Result<Self, CliError> {
         let [attitude, rate, modes, envelope] = topics(log, ["/attitude", "/rate", "/modes", "/envelope"])?;
         let [goal, torque, outputs] = topics(log, ["/goal", "/torque", "/outputs"])?;
         let [wheel, estimator] = topics(log, ["/wheel", "/estimator"])?;
@@ -90,9 +90,9 @@ impl Motion {
         let Self { time, angle, rate, elastic, modes, mode_rates, goal, torques, wheel, outputs, .. } = self;
         let others = modes.iter_mut().chain(mode_rates).chain(torques).chain(wheel).chain(outputs);
         let mut others: Vec<_> = others.chain([goal]).filter(|column| !column.is_empty()).collect();
-        let told = needed.into_iter().chain(others.iter().map(|column| column.len())).min().unwrap_or(0);
+        let reported = needed.into_iter().chain(others.iter().map(|column| column.len())).min().unwrap_or(0);
         for column in [time, angle, rate, elastic].into_iter().chain(others.iter_mut().map(|c| &mut **c)) {
-            column.truncate(told);
+            column.truncate(reported);
         }
     }
 
@@ -117,7 +117,7 @@ impl Motion {
     }
 }
 
-fn estimates(columns: &Columns) -> Vec<Estimate> {
+fn estimates(columns: &Columns) -> Vec<DominantModeEstimate> {
     let modes = match columns.get("dominant") {
         Some(Column::Counts(values)) => values.as_slice(),
         _ => &[],
@@ -139,7 +139,7 @@ fn estimates(columns: &Columns) -> Vec<Estimate> {
         let mode = modes.get(index).copied().unwrap_or_default() as usize;
         let frequency = own.get(mode).and_then(|of| of.get(index)).copied().unwrap_or(f64::NAN);
         let (gated, lost) = (is(&gated, index, "gated"), is(&lock, index, "lost"));
-        Estimate {
+        DominantModeEstimate {
             time,
             mode,
             read_frequency,
@@ -168,17 +168,17 @@ fn inner(columns: &Columns, rows: &str, name: &str) -> Vec<Vec<f64>> {
 }
 
 /// Record that keeps the motion of a repeated run: all of it, or only until `early` and from `late` on.
-pub struct Repeat {
-    pub motion: Motion,
+pub struct MotionRecorder {
+    pub motion: MotionData,
     early: f64,
     late: f64,
     /// Times of the switchings, for comparison with the log.
     pub switchings: Vec<f64>,
 }
 
-impl Repeat {
+impl MotionRecorder {
     pub fn new(early: f64, late: f64) -> Self {
-        Self { motion: Motion::default(), early, late, switchings: Vec::new() }
+        Self { motion: MotionData::default(), early, late, switchings: Vec::new() }
     }
 
     fn see(&mut self, time: f64, motion: &record::Motion) {
@@ -207,8 +207,8 @@ impl Repeat {
     }
 }
 
-impl Record for Repeat {
-    fn dense(&self) -> bool {
+impl Record for MotionRecorder {
+    fn wants_motion(&self) -> bool {
         true
     }
 
@@ -216,15 +216,17 @@ impl Record for Repeat {
         match sample {
             Sample::Switching(command, _) => self.switchings.push(command.time_s),
             Sample::Motion(motion) => self.see(now.seconds(), motion),
-            Sample::Estimate(estimate) => self.motion.estimates.push(Estimate::of(now.seconds(), estimate)),
+            Sample::Estimate(estimate) => {
+                self.motion.estimates.push(DominantModeEstimate::from_row(now.seconds(), estimate));
+            }
             _ => {}
         }
         Ok(())
     }
 }
 
-impl Estimate {
-    fn of(time: f64, row: &record::Estimate) -> Self {
+impl DominantModeEstimate {
+    fn from_row(time: f64, row: &record::Estimate) -> Self {
         let mode = row.dominant as usize;
         Self {
             time,
@@ -261,7 +263,7 @@ mod tests {
         let time: Vec<f64> = (0..20).map(f64::from).collect();
         let modes = vec![time.iter().map(|t| (0.3 * t).sin()).collect()];
         let mode_rates = vec![time.iter().map(|t| 0.3 * (0.3 * t).cos()).collect()];
-        let motion = Motion { time, modes, mode_rates, ..Motion::default() };
+        let motion = MotionData { time, modes, mode_rates, ..MotionData::default() };
         assert_eq!(motion.displacement(0, 7.0).to_bits(), motion.modes[0][7].to_bits());
         for t in [0.2, 6.5, 18.9] {
             assert!((motion.displacement(0, t) - (0.3 * t).sin()).abs() < 3e-5, "{t}");

@@ -4,23 +4,23 @@
 use flexsc_core::record::{Light, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
 /// Function that reads a component of an axis.
-type Of = fn(&OrbitAxis) -> f64;
+type AxisSeries = fn(&OrbitAxis) -> f64;
 
 const COLOURS: [(&str, plotters::style::RGBColor); 3] =
     [("x", colour::BLUE), ("y", colour::VERMILLION), ("z", colour::GREEN)];
 
 /// Returns true if a scenario has an orbit.
-pub fn of(story: &Story) -> bool {
+pub fn applies_to(story: &RunEvents) -> bool {
     story.scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some())
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
-    let shown: [(&str, &str, Of); 3] =
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+    let shown: [(&str, &str, AxisSeries); 3] =
         [("field", "T", |axis| axis.field_t), ("nadir", "", |axis| axis.nadir), ("Sun", "", |axis| axis.sun)];
     let mut panels = Vec::new();
     for (name, unit, of) in shown {
@@ -55,7 +55,7 @@ pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
 }
 
 /// Returns the intervals of the log in shadow (s).
-fn shadows(cycles: &Cycles, end: f64) -> Vec<[f64; 2]> {
+fn shadows(cycles: &CycleData, end: f64) -> Vec<[f64; 2]> {
     let mut shadows = Vec::new();
     let mut since = None;
     for (time, row) in &cycles.orbit {

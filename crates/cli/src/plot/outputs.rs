@@ -2,14 +2,14 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, name_and_unit};
 
-use super::motion::Motion;
-use super::story::Story;
+use super::motion::MotionData;
+use super::run_events::RunEvents;
 use super::{arrival, time, title};
 
 /// Largest number of coordinates with a panel each: the last ones, such as the outermost of a solar panel.
 const PANELS: usize = 6;
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let outputs = story.scenario.model.outputs();
     let skipped = motion.outputs.len().saturating_sub(PANELS);
     let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::body::Output))| {

@@ -74,7 +74,7 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
         let width = |layer: &Layer| if let LayerShape::Line(width) = layer.shape { width } else { 0.0 };
         let main = (0..own.len()).max_by(|a, b| width(own[*a]).total_cmp(&width(own[*b])));
         let mut lines = 0;
-        let mut told = false;
+        let mut reported = false;
         for (place, layer) in own.iter().enumerate() {
             let mut layer = (*layer).clone();
             let is_line = matches!(layer.shape, LayerShape::Line(_) | LayerShape::Dashes);
@@ -87,11 +87,11 @@ fn layers(panels: &[(&str, &Panel)], named: bool) -> Vec<Layer> {
             layer.colour = lighter(COLOURS[run % COLOURS.len()], shade);
             layer.name = match (layer.name.as_str(), named) {
                 (_, true) if layer.points.is_empty() => String::new(),
-                ("", true) if Some(place) == main && !told => (*name).to_owned(),
+                ("", true) if Some(place) == main && !reported => (*name).to_owned(),
                 ("", _) => String::new(),
                 (own, _) => format!("{name}, {own}"),
             };
-            told |= !layer.name.is_empty();
+            reported |= !layer.name.is_empty();
             layers.push(layer);
         }
     }
@@ -129,8 +129,8 @@ mod tests {
         assert_eq!(both.title, "angle: a, b");
         let panel = &both.panels[0];
         assert_eq!((panel.x.range.clone(), panel.y.range.clone()), (0.0..10.0, 0.0..3.0));
-        let told: Vec<_> = panel.layers.iter().map(|layer| (layer.name.as_str(), layer.colour)).collect();
-        assert_eq!(told, [("dead zone", colour::GREY), ("a", colour::BLUE), ("b", colour::VERMILLION)]);
+        let reported: Vec<_> = panel.layers.iter().map(|layer| (layer.name.as_str(), layer.colour)).collect();
+        assert_eq!(reported, [("dead zone", colour::GREY), ("a", colour::BLUE), ("b", colour::VERMILLION)]);
     }
 
     #[test]

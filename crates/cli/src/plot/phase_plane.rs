@@ -1,29 +1,29 @@
 //! Figure `phase-plane`: rate against angle, with the law's switching lines and switchings.
 
-use flexsc_core::law::{Law, Relay, Sides};
+use flexsc_core::law::{LawKind, Relay, RelaySides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::motion::Motion;
-use super::story::{Story, Switching};
+use super::motion::MotionData;
+use super::run_events::{RunEvents, SwitchingEvent};
 use super::title;
 
 /// Number of cycles that are shown at the start of a run, and at its end.
 const CYCLES: usize = 10;
 
 /// Returns the start of the last cycles (s), or the requested time.
-pub fn late(story: &Story) -> f64 {
+pub fn late(story: &RunEvents) -> f64 {
     story.shown.as_ref().map_or_else(|| story.last_cycles(CYCLES), |shown| shown.start)
 }
 
 /// Returns the end of the first cycles (s); a time before the start if a time is requested.
-pub fn early(story: &Story) -> f64 {
+pub fn early(story: &RunEvents) -> f64 {
     if story.shown.is_some() {
         return -1.0;
     }
     story.first_cycles(CYCLES, late(story))
 }
 
-pub fn figure(story: &Story, motion: &Motion) -> Figure {
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let (early, late) = (early(story), late(story));
     let end = story.shown.as_ref().map_or(story.end, |shown| shown.end);
     let path = |shown: &dyn Fn(f64) -> bool| -> Vec<Point> {
@@ -33,13 +33,13 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let first = path(&|time| time <= early && late > 0.0);
     // The times of a log are whole nanoseconds.
     let last = path(&|time| time >= late - 1e-9 && time <= end + 1e-9);
-    let shown = |s: &&Switching| (s.time >= late && s.time <= end) || s.time <= early;
+    let shown = |s: &&SwitchingEvent| (s.time >= late && s.time <= end) || s.time <= early;
     let points = |timeout: bool| -> Vec<Point> {
         let of_kind = story.switchings.iter().filter(shown).filter(|s| s.timeout == timeout);
         of_kind.map(|s| (s.angle, s.rate)).collect()
     };
     let relay = match &story.scenario.law {
-        Law::Relay(relay) => Some(relay),
+        LawKind::Relay(relay) => Some(relay),
         _ => None,
     };
     let zone = relay.into_iter().flat_map(|relay| [-relay.dead_zone.get(), relay.dead_zone.get()]);
@@ -53,13 +53,13 @@ pub fn figure(story: &Story, motion: &Motion) -> Figure {
     let lines = |relay: &Relay| {
         let (dead_zone, back) = (relay.dead_zone.get(), relay.dead_zone.get() - relay.hysteresis.get());
         match relay.sides {
-            Sides::Two => vec![
+            RelaySides::Two => vec![
                 line("±ε", boundary, dead_zone),
                 line("", boundary, -dead_zone),
                 line("±(ε − γ)", brake, back),
                 line("", brake, -back),
             ],
-            Sides::One => vec![line("ε", boundary, dead_zone), line("ε − γ", brake, back)],
+            RelaySides::One => vec![line("ε", boundary, dead_zone), line("ε − γ", brake, back)],
         }
     };
     let mut layers = relay.map_or_else(Vec::new, lines);

@@ -1,16 +1,16 @@
 //! Figure `pointing` of three axes: the pointing error about each axis, with its goal and the dead zone.
 
-use flexsc_core::law::Law;
+use flexsc_core::law::LawKind;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
-use super::spatial::{Cycles, panels};
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::{CycleData, panels};
 use super::{time, title};
 
 /// Ratio of a band to the errors above which the band does not determine the height of a panel.
 const WIDE: f64 = 3.0;
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |axis: usize| {
         let points = cycles.over_time(|cycle| cycle.error_rad[axis]);
         let name = if axis == 0 { "pointing error" } else { "" };
@@ -63,19 +63,19 @@ pub fn norm(vector: [f64; 3]) -> f64 {
 }
 
 /// Returns a panel of angles (rad) over time with a logarithmic axis, which shows small errors after a large transient.
-pub fn decades(story: &Story, name: &str, layers: Vec<Layer>) -> Panel {
+pub fn decades(story: &RunEvents, name: &str, layers: Vec<Layer>) -> Panel {
     let y =
         FigureAxis::decades(name, "rad", layers.iter().flat_map(|layer| &layer.points).map(|point| point.1));
     Panel::new(time(0.0..story.end), y, layers)
 }
 
 /// Returns half widths about an axis: of the goal, and of the law's dead zone (rad).
-fn bands(story: &Story, axis: usize) -> [Option<f64>; 2] {
+fn bands(story: &RunEvents, axis: usize) -> [Option<f64>; 2] {
     let scenario = &story.scenario;
-    let own = scenario.study.bands.get(axis).copied().flatten();
+    let own = scenario.study.expected_bands.get(axis).copied().flatten();
     let goal = scenario.reference.band.map(flexsc_core::quantity::Positive::get).or(own);
     let zone = match scenario.law.about(axis) {
-        Law::PhasePlane(law) => Some(law.dead_zone.get()),
+        LawKind::PhasePlane(law) => Some(law.dead_zone.get()),
         _ => None,
     };
     [goal.filter(|half| *half > 0.0), zone.filter(|half| *half > 0.0)]

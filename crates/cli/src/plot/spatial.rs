@@ -7,15 +7,15 @@ use flexsc_core::Simulation;
 use flexsc_core::attitude::AXES;
 use flexsc_core::record::{
     Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion,
-    ElasticEstimates, Hinges, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample, SpatialCycle,
-    SpatialMotion, Torques, TrackedMode, Tracking, Wheels,
+    ElasticEstimates, Hinges, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample,
+    ThreeAxisCycle, ThreeAxisMotionSample, Torques, TrackedMode, Tracking, Wheels,
 };
 use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
-use super::story::{Story, unusable};
+use super::run_events::{RunEvents, unusable};
 use super::{time, title};
-use crate::failure::Failure;
+use crate::error::CliError;
 
 /// Number of marks above which they are small.
 const MANY: usize = 100;
@@ -24,8 +24,8 @@ const ROUNDING: f64 = 1e-9;
 
 /// Data of a repeated run.
 #[derive(Default)]
-pub struct Cycles {
-    all: Vec<(f64, SpatialCycle)>,
+pub struct CycleData {
+    all: Vec<(f64, ThreeAxisCycle)>,
     tracking: Vec<(f64, Tracking)>,
     /// Estimates of an attitude filter at each sample.
     pub attitude: Vec<(f64, AttitudeEstimate)>,
@@ -55,9 +55,9 @@ pub struct Cycles {
     pub hinges: Vec<(f64, Hinges)>,
 }
 
-impl Cycles {
+impl CycleData {
     /// Repeats the run of a log.
-    pub fn read(story: &Story, log: &Log, path: &Path) -> Result<Self, Failure> {
+    pub fn read(story: &RunEvents, log: &Log, path: &Path) -> Result<Self, CliError> {
         let mut cycles = Self::default();
         // The end of a torn log is rounded, and a cycle may lie on it.
         let end = Span::from_seconds(story.end + 1e-9).min(story.scenario.duration);
@@ -65,7 +65,7 @@ impl Cycles {
         story
             .commanded
             .run_until(&mut simulation, Instant::START + end, &mut cycles)
-            .map_err(|source| Failure::Run { name: story.scenario.name.clone(), source })?;
+            .map_err(|source| CliError::Run { name: story.scenario.name.clone(), source })?;
         let jets = log.tables(&["/jets"])?.pop().flatten().unwrap_or_default();
         let logged = jets.numbers("fuel_kg").unwrap_or_default();
         let fired = cycles.all.iter().filter(|(_, cycle)| cycle.pulses > 0);
@@ -78,13 +78,13 @@ impl Cycles {
         Ok(cycles)
     }
 
-    pub fn over_time(&self, of: impl Fn(&SpatialCycle) -> f64) -> Vec<Point> {
+    pub fn over_time(&self, of: impl Fn(&ThreeAxisCycle) -> f64) -> Vec<Point> {
         self.all.iter().map(|(time, cycle)| (*time, of(cycle))).collect()
     }
 }
 
-impl Record for Cycles {
-    fn dense(&self) -> bool {
+impl Record for CycleData {
+    fn wants_motion(&self) -> bool {
         true
     }
 
@@ -95,7 +95,7 @@ impl Record for Cycles {
             Sample::Accelerations(row) => self.accelerations.push((now.seconds(), row.clone())),
             Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
             Sample::ElasticEstimates(row) => self.elastic.push((now.seconds(), row.clone())),
-            Sample::SpatialMotion(SpatialMotion {
+            Sample::SpatialMotion(ThreeAxisMotionSample {
                 wheels,
                 gimbals,
                 orbit,
@@ -127,7 +127,7 @@ impl Record for Cycles {
 }
 
 /// Returns a panel for each axis, with lines of given names and colours.
-pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
+pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Vec<Layer>) -> Vec<Panel> {
     let all = [0, 1, 2].map(lines);
     let values = |layers: &[Layer]| -> Vec<f64> {
         layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value).collect()
@@ -148,7 +148,7 @@ pub fn panels(story: &Story, unit: &'static str, lines: impl Fn(usize) -> Vec<La
 }
 
 /// Returns the figure of the rigid rates, and of the rates with their elastic part, which an ideal gyro would measure.
-pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
+pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
         let seen = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
         let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
@@ -163,7 +163,7 @@ pub fn rates(story: &Story, cycles: &Cycles) -> Figure {
 }
 
 /// Returns the figure of the position of the first point, and its velocity.
-pub fn position(story: &Story, cycles: &Cycles) -> Figure {
+pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
     let panel = |x: FigureAxis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
         let line = |(axis, colour): (usize, _)| {
             let points = cycles.position.iter().map(|(time, position)| (*time, of[axis](position))).collect();
@@ -185,7 +185,7 @@ pub fn position(story: &Story, cycles: &Cycles) -> Figure {
 }
 
 /// Returns the figure of the elastic modes' energy, and of the jets' propellant.
-pub fn energy(story: &Story, cycles: &Cycles) -> Figure {
+pub fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
     let fuel = cycles.over_time(|cycle| cycle.jets.fuel_kg);
     let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
@@ -223,8 +223,8 @@ fn fires(panel: &Panel) -> bool {
 }
 
 /// Returns the figure of the jets' firing times in each cycle.
-pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
-    let on = |cycle: &SpatialCycle, axis: usize| {
+pub fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
+    let on = |cycle: &ThreeAxisCycle, axis: usize| {
         [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis]
     };
     let period = cycles.all.get(1).map_or(0.0, |(time, _)| time - cycles.all[0].0);
@@ -262,7 +262,7 @@ pub fn jets(story: &Story, cycles: &Cycles) -> Figure {
 }
 
 /// Returns the figure of the tracked modes' natural frequencies, estimated and true.
-pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
+pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     let ends = |points: Vec<Point>| -> Vec<Point> {
         points.first().into_iter().chain(points.last()).copied().collect()
     };
@@ -302,7 +302,7 @@ pub fn tracking(story: &Story, cycles: &Cycles) -> Figure {
 }
 
 /// Returns the figure of the elastic rates that active damping acts on, with its thresholds and its pulses.
-pub fn damping(story: &Story, cycles: &Cycles) -> Figure {
+pub fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
         let of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
             cycles.tracking.iter().map(|(time, tracking)| (*time, value(&tracking.channels[axis]))).collect()

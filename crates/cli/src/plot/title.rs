@@ -1,12 +1,12 @@
 //! Titles of figures.
 
-use super::story::Story;
+use super::run_events::RunEvents;
 
 /// Abbreviations within names.
 const ABBREVIATIONS: [&str; 9] = ["cmg", "ekf", "iss", "lqg", "lqr", "mc", "pd", "pid", "rw"];
 
 /// Returns the title of a figure: the scenario, the content of the figure, and the run.
-pub fn title(story: &Story, what: &str) -> String {
+pub fn title(story: &RunEvents, what: &str) -> String {
     let scenario = &story.scenario;
     let name = readable(&scenario.name);
     if !story.switches() {

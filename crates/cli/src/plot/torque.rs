@@ -2,14 +2,14 @@
 
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice, steps};
 
-use super::story::Story;
+use super::run_events::RunEvents;
 use super::{time, title};
 
 /// Approximate number of switchings that are shown: five cycles of a two-sided relay.
 const SWITCHINGS: usize = 30;
 
 /// Returns the interval at the end of the run that is shown (s): all of it if there are few switchings.
-pub fn shown(story: &Story) -> std::ops::Range<f64> {
+pub fn shown(story: &RunEvents) -> std::ops::Range<f64> {
     if let Some(shown) = &story.shown {
         return shown.clone();
     }
@@ -19,7 +19,7 @@ pub fn shown(story: &Story) -> std::ops::Range<f64> {
     from..story.end
 }
 
-pub fn figure(story: &Story) -> Figure {
+pub fn figure(story: &RunEvents) -> Figure {
     let commands = story.switchings.iter().map(|s| (s.time, s.torque));
     let line = steps([(0.0, story.start.0)].into_iter().chain(commands), story.end);
     let x = time(shown(story));
@@ -28,7 +28,7 @@ pub fn figure(story: &Story) -> Figure {
     let levels = line.iter().map(|(_, torque)| torque.abs()).filter(|torque| *torque > 0.0);
     let strong = levels.clone().fold(0.0, f64::max);
     let weak = levels.filter(|level| *level < 0.2 * strong).fold(0.0, f64::max);
-    let (what, unit) = story.scenario.model.commanded();
+    let (what, unit) = story.scenario.model.commanded_quantity();
     let panel = |x: FigureAxis, name: &str, most: f64, named: bool| {
         let most = if most > 0.0 { 1.3 * most } else { 1.0 };
         let marks = |timeout: bool| -> Vec<Point> {

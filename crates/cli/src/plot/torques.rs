@@ -5,19 +5,19 @@ use flexsc_core::attitude::AXES;
 use flexsc_core::record::Torque;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
-use super::spatial::{Cycles, panels};
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::{CycleData, panels};
 use super::{time, title};
 
 /// Colours of the axes.
 const COLOURS: [RGBColor; 3] = [colour::BLUE, colour::VERMILLION, colour::GREEN];
 
 /// Returns true if a log has torques: pulses of jets that act alone are in the figure `jets`.
-pub fn of(story: &Story) -> bool {
+pub fn applies_to(story: &RunEvents) -> bool {
     !story.scenario.study.jets_alone || story.scenario.environment.is_some()
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let about = |axis: usize, of: fn(&Torque) -> f64| -> Vec<Point> {
         cycles.torques.iter().map(|(time, row)| (*time, of(&row.axes[axis]))).collect()
     };

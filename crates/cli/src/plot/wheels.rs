@@ -3,13 +3,13 @@
 
 use flexsc_core::actuator::Wheels;
 use flexsc_core::attitude::AXES;
-use flexsc_core::motion::turning::Bearing;
+use flexsc_core::motion::three_axis::Bearing;
 use flexsc_core::quantity::Positive;
 use flexsc_core::record;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
-use super::spatial::Cycles;
-use super::story::Story;
+use super::run_events::RunEvents;
+use super::spatial::CycleData;
 use super::{time, title};
 
 /// Colours of wheels, cyclic.
@@ -17,17 +17,17 @@ const COLOURS: [plotters::style::RGBColor; 5] =
     [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
 
 /// Returns the wheels of a scenario, if it has them.
-pub fn of(story: &Story) -> Option<&Wheels> {
+pub fn wheels(story: &RunEvents) -> Option<&Wheels> {
     story.scenario.actuator.wheels().map(|(wheels, _)| wheels)
 }
 
-pub fn figure(story: &Story, cycles: &Cycles) -> Figure {
-    let (speed, torque) = of(story).map_or((None, None), |wheels| {
+pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
+    let (speed, torque) = wheels(story).map_or((None, None), |wheels| {
         let by_momentum = wheels.momentum.map(|momentum| momentum.get() / wheels.inertia.get());
         let speeds = [wheels.speed_limit.map(Positive::get), by_momentum];
         (speeds.into_iter().flatten().reduce(f64::min), wheels.torque.map(Positive::get))
     });
-    let rubs = story.scenario.study.bearings.iter().any(Bearing::grips);
+    let rubs = story.scenario.study.bearings.iter().any(Bearing::can_stick);
     let count = cycles.wheels.first().map_or(0, |(_, row)| row.wheels.len());
     let each = |of: fn(&record::Wheel) -> f64| -> Vec<Vec<Point>> {
         let line =

@@ -5,42 +5,42 @@ use std::path::PathBuf;
 use clap::Parser;
 use flexsc_core::Scenario;
 
-use super::shipped;
-use crate::failure::Failure;
+use super::shipped_scenarios;
+use crate::error::CliError;
 use crate::{Cli, Verb, scenario, simulate};
 
 /// Command on a page, without the program's name: every option is one that the program knows.
-pub struct Command {
+pub struct PageCommand {
     /// Text of the command on the page.
     pub text: String,
     /// The verb with its arguments.
     pub verb: Verb,
 }
 
-impl Command {
+impl PageCommand {
     /// Parses a command.
-    pub fn parse(text: &str) -> Result<Self, Failure> {
+    pub fn parse(text: &str) -> Result<Self, CliError> {
         let words = std::iter::once("flexsc".to_owned()).chain(words(text));
-        let unknown = |error: clap::Error| Failure::Arguments(format!("flexsc {text}: {error}"));
+        let unknown = |error: clap::Error| CliError::Arguments(format!("flexsc {text}: {error}"));
         let Cli { verb } = Cli::try_parse_from(words).map_err(unknown)?;
         Ok(Self { text: text.to_owned(), verb })
     }
 
     /// Returns the error for a command that cannot be executed here; `why` is the reason.
-    pub fn failure(&self, why: &str) -> Failure {
-        Failure::Arguments(format!("flexsc {}: {why}", self.text))
+    pub fn failure(&self, why: &str) -> CliError {
+        CliError::Arguments(format!("flexsc {}: {why}", self.text))
     }
 
     /// Returns the scenario of a simulation, and the path that the command gives it.
-    pub fn simulated<'a>(&self, args: &'a simulate::Args) -> Result<(Scenario, &'a PathBuf), Failure> {
+    pub fn simulated<'a>(&self, args: &'a simulate::Args) -> Result<(Scenario, &'a PathBuf), CliError> {
         let [path] = &args.scenarios[..] else { return Err(self.failure("one scenario at a time")) };
-        Ok((shipped::load(path, &args.set, args.seed)?, path))
+        Ok((shipped_scenarios::load(path, &args.set, args.seed)?, path))
     }
 }
 
 /// Returns the scenario of an analysis.
-pub fn analysed(args: &scenario::Args) -> Result<Scenario, Failure> {
-    shipped::load(&args.scenario, &args.set, None)
+pub fn analysed(args: &scenario::Args) -> Result<Scenario, CliError> {
+    shipped_scenarios::load(&args.scenario, &args.set, None)
 }
 
 /// Splits a command into words as a shell does: at blanks, except within apostrophes.

@@ -3,15 +3,15 @@
 use flexsc_core::record::{Detail, Log};
 use flexsc_figure::{Figure, Named};
 
-use super::command::Command;
-use crate::failure::Failure;
-use crate::logged::logged;
+use super::command::PageCommand;
+use crate::error::CliError;
+use crate::memory_log::logged;
 use crate::{Verb, plot, simulate};
 
-impl Command {
+impl PageCommand {
     /// Returns the figure that the command draws, for a simulation from its log; and the command as a user would type
     /// it.
-    pub fn draw(&self, what: &str) -> Result<(Figure, String), Failure> {
+    pub fn draw(&self, what: &str) -> Result<(Figure, String), CliError> {
         if let Verb::Simulate(args) = &self.verb {
             return self.plot(args, what);
         }
@@ -23,7 +23,7 @@ impl Command {
 
     /// Returns a figure of a run's log, with the motion of a single-axis body by repeating the run, as `flexsc plot`
     /// does.
-    fn plot(&self, args: &simulate::Args, what: &str) -> Result<(Figure, String), Failure> {
+    fn plot(&self, args: &simulate::Args, what: &str) -> Result<(Figure, String), CliError> {
         let (scenario, path) = self.simulated(args)?;
         let spatial = scenario.axis_count() == 3;
         let (detail, option) = if spatial { (Detail::Full, " --log full") } else { (Detail::Events, "") };
@@ -33,7 +33,7 @@ impl Command {
     }
 
     /// Returns the log of a simulation in this detail.
-    pub fn log(&self, detail: Detail) -> Result<Log, Failure> {
+    pub fn log(&self, detail: Detail) -> Result<Log, CliError> {
         let Verb::Simulate(args) = &self.verb else { return Err(self.failure("no simulation")) };
         let (scenario, path) = self.simulated(args)?;
         logged(scenario, path, detail)

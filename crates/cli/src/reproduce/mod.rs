@@ -1,12 +1,12 @@
 //! `flexsc reproduce`: every figure and number of the papers, on one HTML page, and in docs/papers.md.
 
 mod command;
-mod draw;
-mod laboratory;
+mod command_output;
+mod command_runner;
 #[cfg(test)]
-mod prose;
-mod shipped;
-mod tell;
+mod doc_numbers;
+mod draw;
+mod shipped_scenarios;
 
 use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
@@ -18,10 +18,10 @@ use flexsc_papers::{Computed, Drawn, Filled, Paper, Section, Verdict, documentat
 use indicatif::ProgressBar;
 use rayon::prelude::*;
 
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::out::Out;
 use crate::{files, progress, say, stop};
-use laboratory::Programme;
+use command_runner::CommandRunner;
 
 #[derive(clap::Args)]
 pub struct Args {
@@ -39,12 +39,12 @@ pub struct Args {
     force: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     let began = WallInstant::now();
     let page = args.docs.as_ref().map(|docs| docs.join("papers.md"));
     if let Some(page) = page.filter(|page| args.paper.is_some() && page.exists()) {
         let page = page.display();
-        return Err(Failure::Arguments(format!(
+        return Err(CliError::Arguments(format!(
             "--docs: {page} has a section of each paper: leave PAPER out"
         )));
     }
@@ -64,8 +64,8 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     let bar = progress::spinner();
     let filled = papers.par_iter().map(|paper| fill(*paper, &bar)).collect::<Result<Vec<_>, _>>();
     bar.finish_and_clear();
-    if stop::asked() {
-        return Err(Failure::Interrupted(String::new()));
+    if stop::stop_requested() {
+        return Err(CliError::Interrupted(String::new()));
     }
     let (sections, markdown): (Vec<Section>, Vec<String>) =
         filled?.into_iter().map(|filled| (filled.section, filled.markdown)).unzip();
@@ -89,36 +89,36 @@ pub fn run(args: &Args) -> Result<(), Failure> {
     }
     let all = || sections.iter().flat_map(|section| &section.outcome.verdicts);
     say!("{} verdicts in {took:.1} s", all().count());
-    let told = |verdict: &Verdict| {
+    let reported = |verdict: &Verdict| {
         let known = if verdict.expected { "yes" } else { "no" };
         format!("{}: {}, known as {known}", verdict.name, verdict.word())
     };
-    let unexpected: Vec<String> = all().filter(|verdict| !verdict.is_as_expected()).map(told).collect();
-    if unexpected.is_empty() { Ok(()) } else { Err(Failure::Verdicts(unexpected)) }
+    let unexpected: Vec<String> = all().filter(|verdict| !verdict.is_as_expected()).map(reported).collect();
+    if unexpected.is_empty() { Ok(()) } else { Err(CliError::Verdicts(unexpected)) }
 }
 
 /// Computes the section of a paper.
-fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, Failure> {
+fn fill(paper: Paper, bar: &ProgressBar) -> Result<Filled, CliError> {
     let (bar, name) = (bar.clone(), paper.name());
-    let computed = Computed::new(Programme, move |command: &str| {
+    let computed = Computed::new(CommandRunner, move |command: &str| {
         bar.set_message(format!("{name}: {command}"));
         bar.tick();
     });
-    flexsc_papers::fill(paper, computed).map_err(Failure::Page)
+    flexsc_papers::fill(paper, computed).map_err(CliError::Page)
 }
 
 /// Disk space for a page with its figures (bytes), well above its size of about 2 MB.
 const ROOM: usize = 16 << 20;
 
 /// Checks that a page can be written: that an existing file may be replaced, and that there is disk space.
-fn find_room(path: &Path) -> Result<(), Failure> {
+fn find_room(path: &Path) -> Result<(), CliError> {
     if let Ok(there) = std::fs::metadata(path) {
         let kind = match there.is_file() {
             true if there.permissions().readonly() => Some(ErrorKind::PermissionDenied),
             false if there.is_dir() => Some(ErrorKind::IsADirectory),
             _ => None,
         };
-        kind.map_or(Ok(()), |kind| Err(Failure::write(path)(kind.into())))?;
+        kind.map_or(Ok(()), |kind| Err(CliError::write(path)(kind.into())))?;
     }
     let mut room = path.as_os_str().to_owned();
     room.push(format!(".room.{}", std::process::id()));
@@ -133,6 +133,6 @@ fn find_room(path: &Path) -> Result<(), Failure> {
     let _ = std::fs::remove_file(&room);
     filled.map_err(|source| {
         let why = format!("{source} ({} MB are looked for before it is computed)", ROOM >> 20);
-        Failure::write(path)(std::io::Error::new(source.kind(), why))
+        CliError::write(path)(std::io::Error::new(source.kind(), why))
     })
 }

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use flexsc_core::estimator::Estimator;
+use flexsc_core::estimator::EstimatorKind;
 
 use super::Summary;
 use crate::human::digits;
@@ -26,7 +26,7 @@ impl Summary<'_> {
                 self.quantity("residual_energy_j", energy),
             );
         }
-        let (name, unit) = scenario.model.commanded();
+        let (name, unit) = scenario.model.commanded_quantity();
         let (given, asked) = (self.number("peak_torque_nm"), self.number("peak_feedback_torque_nm"));
         let of_law = if asked == 0.0 {
             String::new()
@@ -58,7 +58,7 @@ impl Summary<'_> {
             say!("  sampled loop   spectral radius {radius:.7}: {verdict}");
         }
         if self.metrics.number("lock_lost").is_some() {
-            if scenario.estimator.as_ref().is_some_and(Estimator::watches_only) {
+            if scenario.estimator.as_ref().is_some_and(EstimatorKind::is_assessed_only) {
                 say!("  filter         not used by the law");
             }
             self.filter();

@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flexsc_core::attitude::AXES;
 use flexsc_core::count::counted;
-use flexsc_core::metrics::Value;
+use flexsc_core::metrics::MetricValue;
 
 use super::Summary;
 use crate::human::digits;
@@ -47,10 +47,10 @@ impl Summary<'_> {
                 self.quantity("slew_error_rms_rad", "rad"),
             );
         }
-        if let Some(Value::Word(word)) = self.metrics.get("requirement") {
+        if let Some(MetricValue::Word(word)) = self.metrics.get("requirement") {
             say!("  requirement    {word}: {} rms in its window", self.quantity("pointing_rms_rad", "rad"));
         }
-        let own = self.scenario.study.bands.iter().map(|band| band.unwrap_or(f64::NAN));
+        let own = self.scenario.study.expected_bands.iter().map(|band| band.unwrap_or(f64::NAN));
         let bands: Vec<f64> = match self.scenario.reference.band {
             Some(band) => vec![band.get(); 3],
             None => own.collect(),
@@ -65,7 +65,7 @@ impl Summary<'_> {
             return;
         }
         let parts = |name: &str, names: &[String]| match self.metrics.get(name) {
-            Some(Value::Numbers(parts)) if parts.len() <= THRUSTERS && parts.len() == names.len() => {
+            Some(MetricValue::Numbers(parts)) if parts.len() <= THRUSTERS && parts.len() == names.len() => {
                 let part =
                     |(name, part): (&String, &f64)| format!("{name} {}", self.units.quantity(*part, "kg"));
                 format!(" ({})", names.iter().zip(parts).map(part).collect::<Vec<_>>().join(", "))
@@ -147,8 +147,9 @@ impl Summary<'_> {
 
     /// Prints the frequencies that a filter or an observer has identified, with the true ones, and active damping.
     fn frequencies(&self) {
-        let Some(Value::Numbers(found)) = self.metrics.get("frequency_estimates_hz") else { return };
-        let errors = self.metrics.get("frequency_estimate_errors").map_or_else(Vec::new, Value::numbers);
+        let Some(MetricValue::Numbers(found)) = self.metrics.get("frequency_estimates_hz") else { return };
+        let errors =
+            self.metrics.get("frequency_estimate_errors").map_or_else(Vec::new, MetricValue::numbers);
         let unit = self.units.frequency();
         let factor = std::f64::consts::TAU * unit.0;
         let both = |(found, error): (&f64, &f64)| {

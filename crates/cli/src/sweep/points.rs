@@ -4,11 +4,11 @@ use std::path::Path;
 
 use flexsc_core::campaign::{DesignBlock, MOST_NUMBERS};
 
-use crate::failure::Failure;
+use crate::error::CliError;
 
 /// Reads a table of points.
-pub fn read(path: &Path) -> Result<DesignBlock, Failure> {
-    let refused = |why: String| Failure::Arguments(format!("{}: {why}", path.display()));
+pub fn read(path: &Path) -> Result<DesignBlock, CliError> {
+    let refused = |why: String| CliError::Arguments(format!("{}: {why}", path.display()));
     let wrong = |error: csv::Error| refused(format!("is not a table of points: {error}"));
     let mut reader = csv::ReaderBuilder::new().trim(csv::Trim::All).from_path(path).map_err(wrong)?;
     let keys: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();

@@ -1,38 +1,39 @@
 //! Figures of tuned gains over the frequency of the dominant mode: their region (\[Wheel11, Sukhanov\], figure 5), and
 //! the settling time of the loop.
 
-use flexsc_core::analysis::sampled_loop::{Region, Robust};
+use flexsc_core::analysis::sampled_loop::{GainRegion, RobustGain};
 use flexsc_core::law::Extra;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, band, colour};
 
-use super::tuning::Tuning;
+use super::tuning::TuneSetup;
 use crate::plot::readable;
 
 /// Largest settling time that is shown, as a multiple of the limit.
 const BEYOND: f64 = 3.0;
 
 /// Data of the figures.
-struct Drawn<'a> {
-    tuning: &'a Tuning,
+struct TunedFigure<'a> {
+    tuning: &'a TuneSetup,
     /// Region at each frequency.
-    regions: &'a [Region],
+    regions: &'a [GainRegion],
     /// Robust gains and the model's relative error; `None` if they were not requested.
-    robust: Option<(&'a [Robust], f64)>,
+    robust: Option<(&'a [RobustGain], f64)>,
 }
 
 /// Returns all figures.
-pub fn all(tuning: &Tuning, regions: &[Region], robust: Option<(&[Robust], f64)>) -> Vec<Named> {
-    let (drawn, name) = (Drawn { tuning, regions, robust }, &tuning.name);
+pub fn all(tuning: &TuneSetup, regions: &[GainRegion], robust: Option<(&[RobustGain], f64)>) -> Vec<Named> {
+    let (drawn, name) = (TunedFigure { tuning, regions, robust }, &tuning.name);
     vec![(format!("{name}-tune-region"), drawn.region()), (format!("{name}-tune-settling"), drawn.settling())]
 }
 
-impl Drawn<'_> {
+impl TunedFigure<'_> {
     fn region(&self) -> Figure {
-        let line = |value: &dyn Fn(&Region) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
+        let line =
+            |value: &dyn Fn(&GainRegion) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
         let lower = line(&|r| r.gain.map(|gain| gain.0));
         let upper = line(&|r| r.gain.map(|gain| gain.1));
         let middle = line(&|r| r.midpoint);
-        let own: Vec<Point> = self.tuning.own.iter().flat_map(|own| self.of(own)).collect();
+        let own: Vec<Point> = self.tuning.own.iter().flat_map(|own| self.points(own)).collect();
         let robust: Vec<Point> =
             self.robust.map_or_else(Vec::new, |(of, _)| over(of, |r| r.frequency_rad_s, |r| r.gain));
         let shown = [&lower, &upper, &own, &robust].into_iter().flatten().map(|point| point.1);
@@ -62,9 +63,10 @@ impl Drawn<'_> {
     }
 
     fn settling(&self) -> Figure {
-        let of = |value: &dyn Fn(&Region) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
+        let of =
+            |value: &dyn Fn(&GainRegion) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
         let (middle, without) = (of(&|r| r.settling_s), of(&|r| r.settling_without_s));
-        let robust = |value: &dyn Fn(&Robust) -> Option<f64>| {
+        let robust = |value: &dyn Fn(&RobustGain) -> Option<f64>| {
             self.robust.map_or_else(Vec::new, |(rows, _)| over(rows, |r| r.frequency_rad_s, value))
         };
         let (nominal, worst) = (robust(&|r| r.settling_s), robust(&|r| r.settling_quantile_s));
@@ -96,7 +98,7 @@ impl Drawn<'_> {
     }
 
     /// Returns the gain of the scenario's own extra loop at the frequencies.
-    fn of(&self, own: &Extra) -> Vec<Point> {
+    fn points(&self, own: &Extra) -> Vec<Point> {
         self.regions.iter().map(|region| (region.frequency_rad_s, own.gain(region.frequency_rad_s))).collect()
     }
 }

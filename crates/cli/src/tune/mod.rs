@@ -6,29 +6,29 @@ mod tuned;
 mod tuning;
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::sampled_loop::{Doubt, RobustGoal, RobustSearch, robust};
+use flexsc_core::analysis::sampled_loop::{ModelUncertainty, RobustGoal, RobustSearch, optimize};
 
-use crate::drawing::Drawing;
-use crate::failure::Failure;
-use crate::grid::{Even, Tried};
+use crate::error::CliError;
+use crate::figure_files::FigureOutput;
+use crate::grid::{PositiveGrid, SignedGrid};
 use crate::results::{Results, show};
-use crate::sampled::{Settled, positive, sampled};
+use crate::sampled_loop::{SettlingArgs, positive, sampled};
 use crate::{print, scenario};
-use tuned::{Found, Tuned};
-use tuning::Tuning;
+use tuned::{TuneMethodResults, TuneResults};
+use tuning::TuneSetup;
 
 #[derive(clap::Args)]
 pub struct Args {
     #[command(flatten)]
     pub scenario: scenario::Args,
     #[command(flatten)]
-    settled: Settled,
+    settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s) [default: 36, from 1/6 to 4/3 of its own]
     #[arg(long, value_name = "LO:HI:COUNT")]
-    frequency: Option<Even>,
+    frequency: Option<PositiveGrid>,
     /// Gains to try
     #[arg(long, value_name = "LO:HI:COUNT", default_value = "-2:6:161", allow_hyphen_values = true)]
-    gain: Tried,
+    gain: SignedGrid,
     /// Longest settling time to accept (s)
     #[arg(long, value_name = "TIME", default_value_t = 200.0)]
     limit: f64,
@@ -52,26 +52,26 @@ pub struct Args {
     #[arg(long, conflicts_with = "json")]
     schedule: bool,
     #[command(flatten)]
-    drawing: Drawing,
+    drawing: FigureOutput,
 }
 
-fn part(name: &str, value: f64) -> Result<(), Failure> {
+fn part(name: &str, value: f64) -> Result<(), CliError> {
     let fits = (0.0..1.0).contains(&value);
     if fits {
         Ok(())
     } else {
-        Err(Failure::Arguments(format!("{name} must be 0 or more and below 1, got {value}")))
+        Err(CliError::Arguments(format!("{name} must be 0 or more and below 1, got {value}")))
     }
 }
 
 impl Args {
     /// Computes the tuning of a scenario's loop over the given gains.
-    pub fn results(&self, scenario: &Scenario) -> Result<Tuned, Failure> {
+    pub fn results(&self, scenario: &Scenario) -> Result<TuneResults, CliError> {
         let (of, law) = sampled(scenario)?;
         positive("--limit", self.limit)?;
-        let own = || Even::new(of.frequency() / 6.0, of.frequency() * 4.0 / 3.0, 36);
-        let Even(frequencies) = self.frequency.clone().unwrap_or_else(own);
-        let tuning = Tuning {
+        let own = || PositiveGrid::new(of.frequency() / 6.0, of.frequency() * 4.0 / 3.0, 36);
+        let PositiveGrid(frequencies) = self.frequency.clone().unwrap_or_else(own);
+        let tuning = TuneSetup {
             name: scenario.name.clone(),
             own: law.extra.clone(),
             window: self.settled.window(&of, &scenario.name)?,
@@ -84,39 +84,39 @@ impl Args {
         let closed = tuning.frequencies.len() * tuning.gains.values().len();
         let found = match self.robust {
             None => {
-                self.settled.allow(&tuning.of, closed, tuning.of.period, 0.0)?;
-                Found::Regions(tuning.regions())
+                self.settled.check_cost(&tuning.of, closed, tuning.of.period, 0.0)?;
+                TuneMethodResults::Regions(tuning.regions())
             }
             Some(off) => {
                 let search = self.search(&tuning, off)?;
-                self.settled.allow(
+                self.settled.check_cost(
                     &tuning.of,
-                    closed * search.doubt.most_loops(),
+                    closed * search.doubt.max_loops(),
                     tuning.of.period,
                     self.delay,
                 )?;
-                Found::Robust { off, rows: robust(&tuning.of, &tuning.frequencies, search) }
+                TuneMethodResults::Robust { off, rows: optimize(&tuning.of, &tuning.frequencies, search) }
             }
         };
-        Ok(Tuned { tuning, found })
+        Ok(TuneResults { tuning, found })
     }
 
     /// Returns the search for gains that are admissible with a relative model error.
-    fn search(&self, tuning: &Tuning, off: f64) -> Result<RobustSearch, Failure> {
+    fn search(&self, tuning: &TuneSetup, off: f64) -> Result<RobustSearch, CliError> {
         part("--robust", off)?;
         part("--margin", self.margin)?;
         if !(self.quantile > 0.0 && self.quantile <= 1.0) {
             let why = format!("--quantile must be above 0 and at most 1, got {}", self.quantile);
-            return Err(Failure::Arguments(why));
+            return Err(CliError::Arguments(why));
         }
         if !(self.delay.is_finite() && self.delay >= 0.0) {
-            return Err(Failure::Arguments(format!("--delay must be 0 or more, got {}", self.delay)));
+            return Err(CliError::Arguments(format!("--delay must be 0 or more, got {}", self.delay)));
         }
         Ok(RobustSearch {
             gains: tuning.gains,
             scaling: tuning.scaling,
             window: tuning.window,
-            doubt: Doubt { frequency: off, modal_gain: off, authority: off, delay: self.delay },
+            doubt: ModelUncertainty { frequency: off, modal_gain: off, authority: off, delay: self.delay },
             goal: if self.itae { RobustGoal::Itae } else { RobustGoal::Settling },
             quantile: self.quantile,
             margin: self.margin,
@@ -124,7 +124,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     args.drawing.check(&args.scenario.scenario)?;
     let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {

@@ -2,13 +2,13 @@
 
 use std::io::Write;
 
-use flexsc_core::analysis::sampled_loop::{Gains, Region, Robust};
+use flexsc_core::analysis::sampled_loop::{GainRegion, Gains, RobustGain};
 
 use crate::number::fixed;
 use crate::say;
 
 /// Prints the region of admissible gains.
-pub fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
+pub fn print(name: &str, limit: f64, gains: Gains, found: &[GainRegion]) {
     let Gains { low, high, step } = gains;
     say!(
         "{name}   gains of the extra loop that are stable and settle in {limit} s, of {low} to {high} by {step}"
@@ -39,7 +39,7 @@ pub fn tell(name: &str, limit: f64, gains: Gains, found: &[Region]) {
 }
 
 /// Prints the robust gains.
-pub fn tell_robust(name: &str, off: f64, found: &[Robust]) {
+pub fn print_robust(name: &str, off: f64, found: &[RobustGain]) {
     say!("{name}   gains of the extra loop that settle soonest with the model off by {} %", off * 100.0);
     say!(
         "  {:>10}{:>10}{:>12}{:>14}{:>12}{:>14}",

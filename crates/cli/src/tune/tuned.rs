@@ -1,46 +1,46 @@
 //! Results of tuning: the region of the gains or the robust ones, and the resulting schedule.
 
-use flexsc_core::analysis::sampled_loop::{Region, Robust, midpoints};
+use flexsc_core::analysis::sampled_loop::{GainRegion, RobustGain, midpoints};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
-use super::tuning::Tuning;
+use super::tuning::TuneSetup;
 use super::{figures, table};
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::results::Results;
 
 /// Admissible gains.
-pub enum Found {
+pub enum TuneMethodResults {
     /// Region of the gains at each frequency.
-    Regions(Vec<Region>),
+    Regions(Vec<GainRegion>),
     /// Gains that are admissible with a model error of up to `off`, relative.
-    Robust { off: f64, rows: Vec<Robust> },
+    Robust { off: f64, rows: Vec<RobustGain> },
 }
 
 /// Results of tuning.
-pub struct Tuned {
-    pub tuning: Tuning,
-    pub found: Found,
+pub struct TuneResults {
+    pub tuning: TuneSetup,
+    pub found: TuneMethodResults,
 }
 
-impl Tuned {
+impl TuneResults {
     /// Returns the frequencies (rad/s) and gains of the schedule, where there is a gain.
     fn schedule(&self) -> Vec<(f64, f64)> {
         match &self.found {
-            Found::Regions(regions) => midpoints(regions),
-            Found::Robust { rows, .. } => {
+            TuneMethodResults::Regions(regions) => midpoints(regions),
+            TuneMethodResults::Robust { rows, .. } => {
                 rows.iter().filter_map(|row| Some((row.frequency_rad_s, row.gain?))).collect()
             }
         }
     }
 
     /// Returns the schedule as `[law.pd.extra]` of a scenario.
-    pub fn extra(&self) -> Result<String, Failure> {
+    pub fn extra(&self) -> Result<String, CliError> {
         let point = |(w, gain): &(f64, f64)| format!("    {{ frequency = {w:.6}, gain = {gain:.4} }},\n");
         let points: String = self.schedule().iter().map(point).collect();
         if points.is_empty() {
             let name = &self.tuning.name;
-            return Err(Failure::Arguments(format!(
+            return Err(CliError::Arguments(format!(
                 "{name}: no gain is suitable at any of these frequencies"
             )));
         }
@@ -48,11 +48,11 @@ impl Tuned {
     }
 }
 
-impl Results for Tuned {
+impl Results for TuneResults {
     fn json(&self) -> Vec<Json> {
         let rows = match &self.found {
-            Found::Regions(regions) => json!(regions),
-            Found::Robust { rows, .. } => json!(rows),
+            TuneMethodResults::Regions(regions) => json!(regions),
+            TuneMethodResults::Robust { rows, .. } => json!(rows),
         };
         let point = |(frequency, gain)| json!({"frequency": frequency, "gain": gain});
         let schedule: Vec<Json> = self.schedule().into_iter().map(point).collect();
@@ -61,18 +61,18 @@ impl Results for Tuned {
 
     fn figures(&self) -> Vec<Named> {
         match &self.found {
-            Found::Regions(regions) => figures::all(&self.tuning, regions, None),
-            Found::Robust { off, rows } => {
+            TuneMethodResults::Regions(regions) => figures::all(&self.tuning, regions, None),
+            TuneMethodResults::Robust { off, rows } => {
                 figures::all(&self.tuning, &self.tuning.regions(), Some((rows, *off)))
             }
         }
     }
 
-    fn tell(&self) -> Result<(), Failure> {
-        let Tuning { name, limit, gains, .. } = &self.tuning;
+    fn print(&self) -> Result<(), CliError> {
+        let TuneSetup { name, limit, gains, .. } = &self.tuning;
         match &self.found {
-            Found::Regions(regions) => table::tell(name, *limit, *gains, regions),
-            Found::Robust { off, rows } => table::tell_robust(name, *off, rows),
+            TuneMethodResults::Regions(regions) => table::print(name, *limit, *gains, regions),
+            TuneMethodResults::Robust { off, rows } => table::print_robust(name, *off, rows),
         }
         Ok(())
     }

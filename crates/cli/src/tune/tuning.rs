@@ -1,16 +1,16 @@
 //! Input of `flexsc tune`.
 
-use flexsc_core::analysis::sampled_loop::{Gains, Loop, Region, Scaling, SettlingWindow, regions};
+use flexsc_core::analysis::sampled_loop::{GainRegion, Gains, SampledLoop, Scaling, SettlingWindow, regions};
 use flexsc_core::law::Extra;
 
 /// Loop to tune, with the tested gains and the criterion.
-pub struct Tuning {
+pub struct TuneSetup {
     /// Name of the scenario.
     pub name: String,
     /// Extra loop of the scenario, if it has one.
     pub own: Option<Extra>,
     /// Sampled loop of the scenario.
-    pub of: Loop,
+    pub of: SampledLoop,
     /// Frequencies of the dominant mode (rad/s).
     pub frequencies: Vec<f64>,
     /// Selection of the modes that are scaled with the dominant one.
@@ -23,9 +23,9 @@ pub struct Tuning {
     pub limit: f64,
 }
 
-impl Tuning {
+impl TuneSetup {
     /// Computes the region of the gains at each frequency.
-    pub fn regions(&self) -> Vec<Region> {
+    pub fn regions(&self) -> Vec<GainRegion> {
         regions(&self.of, &self.frequencies, self.scaling, self.gains, self.window, self.limit)
     }
 }

@@ -4,11 +4,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Failure;
-use super::failure::{Failing, Lasting};
+use super::failure::{ActiveFailures, FailureScope};
 use super::steering::{self, GyroAxes, NullMotion, Robustness, Steering};
 use crate::attitude::Vector;
 use crate::count::counted;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Positive};
 use crate::time::Span;
 
@@ -82,26 +82,31 @@ impl ControlMomentGyros {
     }
 
     /// Returns the gimbal angles at the start (rad).
-    pub(super) fn starts(&self) -> Vec<f64> {
+    pub(super) fn initial_angles(&self) -> Vec<f64> {
         (0..self.count()).map(|gyro| self.angles.get(gyro).map_or(0.0, |angle| angle.get())).collect()
     }
 
     /// Returns the weight of singularity-robust steering, if it is used.
-    pub(super) fn weight(&self) -> Option<Robustness> {
+    pub(super) fn steering_weight(&self) -> Option<Robustness> {
         (self.steering == Steering::SingularityRobust).then(|| self.robust.unwrap_or_default())
     }
 
     /// Returns the failures of a gimbal, if it has any.
-    pub(super) fn failing(&self, gyro: usize) -> Option<Failing> {
-        let own = |of: &Lasting<'_>| of.gimbal.is_none_or(|number| number.get() as usize == gyro + 1);
-        Failing::new(&self.faults, own)
+    pub(super) fn gimbal_failures(&self, gyro: usize) -> Option<ActiveFailures> {
+        let own = |of: &FailureScope<'_>| of.gimbal.is_none_or(|number| number.get() as usize == gyro + 1);
+        ActiveFailures::new(&self.faults, own)
     }
 
     /// Returns the largest torque about a single axis at the initial gimbal angles (N m).
-    pub fn most(&self, axes: &[GyroAxes], axis: usize) -> f64 {
+    pub fn largest_torque(&self, axes: &[GyroAxes], axis: usize) -> f64 {
         let limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
         let wanted = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
-        let rates = steering::rates(&steering::columns(axes, &self.starts()), None, &wanted, 0.0);
+        let rates = steering::gimbal_rates(
+            &steering::torque_directions(axes, &self.initial_angles()),
+            None,
+            &wanted,
+            0.0,
+        );
         let largest = rates.into_iter().map(f64::abs).fold(0.0, f64::max);
         if largest > 0.0 { self.momentum.get() * limit / largest } else { 0.0 }
     }
@@ -109,14 +114,14 @@ impl ControlMomentGyros {
     /// Checks all keys and returns the axes of each gyro.
     ///
     /// # Errors
-    /// A `Fault` with a key that does not fit the others and the reason.
-    pub fn axes(&self) -> Result<Vec<GyroAxes>, Fault> {
+    /// A `ConfigError` with a key that does not fit the others and the reason.
+    pub fn axes(&self) -> Result<Vec<GyroAxes>, ConfigError> {
         let axes = self.directions()?;
         let count = axes.len();
         let each = |key: &str, given: usize| {
             let why =
                 format!("must be one for each of {}, got {given}", counted(count, "control moment gyro"));
-            if given == count { Ok(()) } else { Err(Fault::new(key, why)) }
+            if given == count { Ok(()) } else { Err(ConfigError::new(key, why)) }
         };
         if !self.angles.is_empty() {
             each("angles", self.angles.len())?;
@@ -126,28 +131,28 @@ impl ControlMomentGyros {
                 let why = format!(
                     "needs four control moment gyros or more, whose torques can cancel each other, got {count}"
                 );
-                return Err(Fault::new("null_motion", why));
+                return Err(ConfigError::new("null_motion", why));
             }
             each("null_motion.angles", null.angles.len())?;
         }
         if let Some(robust) = &self.robust {
             if self.steering == Steering::PseudoInverse {
                 let why = "applies only to `steering = \"singularity_robust\"`: leave it out";
-                return Err(Fault::new("robust", why));
+                return Err(ConfigError::new("robust", why));
             }
             let dither = robust.dither.get();
             if dither >= 0.5 {
-                return Err(Fault::new("robust.dither", format!("must be below 0.5, got {dither}")));
+                return Err(ConfigError::new("robust.dither", format!("must be below 0.5, got {dither}")));
             }
         }
         Ok(axes)
     }
 
-    fn directions(&self) -> Result<Vec<GyroAxes>, Fault> {
+    fn directions(&self) -> Result<Vec<GyroAxes>, ConfigError> {
         let Some(GimbalArrangement::Pyramid) = self.arrangement else { return self.given() };
         for (key, axes) in [("gimbal_axes", &self.gimbal_axes), ("spin_axes", &self.spin_axes)] {
             if !axes.is_empty() {
-                return Err(Fault::new(key, "must be left out with an `arrangement`"));
+                return Err(ConfigError::new(key, "must be left out with an `arrangement`"));
             }
         }
         let (sin, cos) = libm::sincos(self.cant.map_or(EQUAL_CANT, Finite::get));
@@ -156,7 +161,7 @@ impl ControlMomentGyros {
                 "must tilt the gimbal axes away from each other, got {} rad: they are parallel, or nearly so",
                 self.cant.map_or(EQUAL_CANT, Finite::get)
             );
-            return Err(Fault::new("cant", why));
+            return Err(ConfigError::new("cant", why));
         }
         let faces = [[1.0, 0.0], [0.0, 1.0], [-1.0, 0.0], [0.0, -1.0]];
         Ok(faces
@@ -167,8 +172,8 @@ impl ControlMomentGyros {
             .to_vec())
     }
 
-    fn given(&self) -> Result<Vec<GyroAxes>, Fault> {
-        let refused = |key: &str, why: String| Err(Fault::new(key, why));
+    fn given(&self) -> Result<Vec<GyroAxes>, ConfigError> {
+        let refused = |key: &str, why: String| Err(ConfigError::new(key, why));
         if self.cant.is_some() {
             return refused("cant", "applies only to an `arrangement`, and none is given".to_owned());
         }
@@ -184,7 +189,7 @@ impl ControlMomentGyros {
         let unit = |key: &str, index: usize, axis: &[Finite; 3]| {
             let axis = Vector::from(axis.map(Finite::get));
             let length = axis.norm();
-            let why = || Fault::new(format!("{key}[{index}]"), "must not be zero, got [0, 0, 0]");
+            let why = || ConfigError::new(format!("{key}[{index}]"), "must not be zero, got [0, 0, 0]");
             if length > 0.0 && length.is_finite() { Ok(axis / length) } else { Err(why()) }
         };
         let (mut axes, mut gimbals) = (Vec::with_capacity(count), Vec::with_capacity(count));
@@ -209,12 +214,12 @@ impl ControlMomentGyros {
     }
 
     /// Returns the largest expected gimbal rate (rad/s): the limit, or 0 without one.
-    pub fn fastest(&self) -> f64 {
+    pub fn largest_gimbal_rate(&self) -> f64 {
         self.rate_limit.map_or(0.0, Positive::get)
     }
 
     /// Returns preferred angles (rad) and gain (1/s) of the null motion, if it is used.
-    pub(super) fn preferred(&self) -> Option<(Vec<f64>, f64)> {
+    pub(super) fn null_motion(&self) -> Option<(Vec<f64>, f64)> {
         let null = self.null_motion.as_deref()?;
         Some((null.angles.iter().map(|angle| angle.get()).collect(), null.gain.get()))
     }

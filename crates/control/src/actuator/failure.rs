@@ -6,8 +6,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::axes::Axis;
-use crate::document::Fault;
-use crate::outage::Outage;
+use crate::document::ConfigError;
+use crate::interval::Interval;
 use crate::quantity::{Finite, Time};
 use crate::sine::Sine;
 use crate::time::Instant;
@@ -41,10 +41,10 @@ macro_rules! kinds {
             }
 
             impl $name {
-                fn lasting(&self) -> Lasting<'_> {
-                    let outage = Outage { from: self.from, to: self.to };
+                fn scope(&self) -> FailureScope<'_> {
+                    let interval = Interval { from: self.from, to: self.to };
                     let (about, wheel, gimbal) = (self.about, self.wheel, self.gimbal);
-                    Lasting { outage, about, wheel, gimbal, thruster: self.thruster.as_deref() }
+                    FailureScope { interval, about, wheel, gimbal, thruster: self.thruster.as_deref() }
                 }
             }
         )+
@@ -93,9 +93,9 @@ pub enum Failure {
 
 /// Interval of a failure, and the component that fails.
 #[derive(Copy, Clone, Debug)]
-pub struct Lasting<'a> {
+pub struct FailureScope<'a> {
     /// Interval of the failure.
-    pub outage: Outage,
+    pub interval: Interval,
     /// Axis that fails; `None` for all.
     pub about: Option<Axis>,
     /// Wheel that fails, counted from 1; `None` for all.
@@ -108,7 +108,7 @@ pub struct Lasting<'a> {
 
 /// Components of an actuator that failures can name.
 #[derive(Copy, Clone, Debug)]
-pub(super) enum FailingPart<'a> {
+pub(super) enum FailingComponent<'a> {
     /// Number of axes with an actuator each; magnetorquers count so too.
     Axes(usize),
     /// Number of wheels.
@@ -121,12 +121,12 @@ pub(super) enum FailingPart<'a> {
 
 impl Failure {
     /// Returns the interval of the failure and the component that fails.
-    pub fn lasting(&self) -> Lasting<'_> {
+    pub fn scope(&self) -> FailureScope<'_> {
         match self {
-            Self::Dead(of) => of.lasting(),
-            Self::Scaled(of) => of.lasting(),
-            Self::Stuck(of) => of.lasting(),
-            Self::Added(of) => of.lasting(),
+            Self::Dead(of) => of.scope(),
+            Self::Scaled(of) => of.scope(),
+            Self::Stuck(of) => of.scope(),
+            Self::Added(of) => of.scope(),
         }
     }
 
@@ -147,17 +147,17 @@ impl Failure {
 
     /// Checks the failure against an actuator with these components; `turns`: it exerts torques. Returns a key and the
     /// reason.
-    pub(super) fn fault(&self, parts: FailingPart<'_>, turns: bool) -> Option<Fault> {
-        let Lasting { outage, about, wheel, gimbal, thruster } = self.lasting();
-        if let Some(fault) = outage.disorder() {
+    pub(super) fn validate(&self, parts: FailingComponent<'_>, turns: bool) -> Option<ConfigError> {
+        let FailureScope { interval, about, wheel, gimbal, thruster } = self.scope();
+        if let Some(fault) = interval.validate() {
             return Some(fault);
         }
-        let at = |key: &str, why: &str| Some(Fault::new(format!("{}.{key}", self.kind()), why));
+        let at = |key: &str, why: &str| Some(ConfigError::new(format!("{}.{key}", self.kind()), why));
         let (axes, wheels, gimbals, names): (usize, usize, usize, &[String]) = match parts {
-            FailingPart::Axes(axes) => (axes, 0, 0, &[]),
-            FailingPart::Wheels(wheels) => (0, wheels, 0, &[]),
-            FailingPart::Gimbals(gimbals) => (0, 0, gimbals, &[]),
-            FailingPart::Thrusters(names) => (0, 0, 0, names),
+            FailingComponent::Axes(axes) => (axes, 0, 0, &[]),
+            FailingComponent::Wheels(wheels) => (0, wheels, 0, &[]),
+            FailingComponent::Gimbals(gimbals) => (0, 0, gimbals, &[]),
+            FailingComponent::Thrusters(names) => (0, 0, 0, names),
         };
         if about.is_some() && axes < 3 {
             return at(
@@ -185,15 +185,15 @@ impl Failure {
             let why = "apply only to a torque on the body: wheels, gimbals, jets and magnetorquers can only add a constant; a `[[disturbance]]` can have sines";
             return at("sines", why);
         }
-        if let FailingPart::Thrusters(_) = parts {
+        if let FailingComponent::Thrusters(_) = parts {
             return self.thruster_fault();
         }
         None
     }
 
     /// Checks the failure of a thruster, whose thrust has a fixed direction.
-    fn thruster_fault(&self) -> Option<Fault> {
-        let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", self.kind()), why));
+    fn thruster_fault(&self) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(format!("{}.{key}", self.kind()), why));
         match self {
             Self::Scaled(of) if of.factor.get() < 0.0 => {
                 at("factor", format!("must be 0 or more for a thruster, got {}", of.factor.get()))
@@ -212,7 +212,7 @@ impl Failure {
 
 /// Failures that act on one value: a torque, a moment, or the fraction of a thrust.
 #[derive(Clone, Debug)]
-pub(super) struct Failing {
+pub(super) struct ActiveFailures {
     /// Failures, and the held value of a stuck one.
     failures: Vec<(Failure, Option<f64>)>,
     /// Times at which a failure begins or ends, latest first.
@@ -225,16 +225,16 @@ pub(super) struct Failing {
     sines: Vec<Sine>,
 }
 
-impl Failing {
+impl ActiveFailures {
     /// Creates the failures that concern a value, none of which has begun; `None` if there are none.
-    pub fn new(failures: &[Failure], concerns: impl Fn(&Lasting<'_>) -> bool) -> Option<Self> {
-        let own: Vec<_> = failures.iter().filter(|failure| concerns(&failure.lasting())).cloned().collect();
+    pub fn new(failures: &[Failure], concerns: impl Fn(&FailureScope<'_>) -> bool) -> Option<Self> {
+        let own: Vec<_> = failures.iter().filter(|failure| concerns(&failure.scope())).cloned().collect();
         if own.is_empty() {
             return None;
         }
         let of = |failure: &Failure| {
-            let outage = failure.lasting().outage;
-            [Some(outage.begins()), outage.ends()]
+            let interval = failure.scope().interval;
+            [Some(interval.start()), interval.end()]
         };
         let mut edges: Vec<Instant> = own.iter().flat_map(of).flatten().collect();
         edges.sort_by(|a, b| b.cmp(a));
@@ -249,7 +249,7 @@ impl Failing {
     }
 
     /// Starts and ends failures at `now`, given the commanded value. Returns true if any started or ended.
-    pub fn serve(&mut self, now: Instant, wanted: f64) -> bool {
+    pub fn update(&mut self, now: Instant, wanted: f64) -> bool {
         let before = self.edges.len();
         while self.edges.last().is_some_and(|edge| *edge <= now) {
             self.edges.pop();
@@ -263,7 +263,7 @@ impl Failing {
         self.sines.clear();
         let mut dead = false;
         for (failure, held) in &mut self.failures {
-            if !failure.lasting().outage.lasts(now) {
+            if !failure.scope().interval.contains(now) {
                 continue;
             }
             match failure {
@@ -285,12 +285,12 @@ impl Failing {
     }
 
     /// Returns the output for a commanded value, without the sines.
-    pub fn of(&self, wanted: f64) -> f64 {
+    pub fn output(&self, wanted: f64) -> f64 {
         self.fixed.unwrap_or(self.factor * wanted) + self.added
     }
 
     /// Returns the factor on the commanded value; `None` if the output is constant.
-    pub fn part(&self) -> Option<f64> {
+    pub fn fraction(&self) -> Option<f64> {
         if self.fixed.is_some() { None } else { Some(self.factor) }
     }
 
@@ -300,10 +300,10 @@ impl Failing {
     }
 
     /// Returns all sines of the failures, each with its interval.
-    pub fn all_sines(&self) -> impl Iterator<Item = (Sine, Outage)> + '_ {
+    pub fn scheduled_sines(&self) -> impl Iterator<Item = (Sine, Interval)> + '_ {
         let of = |(failure, _): &'_ (Failure, Option<f64>)| {
-            let outage = failure.lasting().outage;
-            failure.sines().iter().map(move |sine| (*sine, outage)).collect::<Vec<_>>()
+            let interval = failure.scope().interval;
+            failure.sines().iter().map(move |sine| (*sine, interval)).collect::<Vec<_>>()
         };
         self.failures.iter().flat_map(of)
     }

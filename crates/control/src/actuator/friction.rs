@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::per_wheel::PerWheel;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{NonNegative, shortest};
 
 /// Largest ratio of the Coulomb friction to the torque of a motor, which is then stalled ...
@@ -29,24 +29,24 @@ pub struct Friction {
 
 impl Friction {
     /// Returns the breakaway torque of a wheel's bearing (N m).
-    pub fn holds(&self, wheel: usize) -> f64 {
-        self.breakaway.as_ref().map_or(self.coulomb.of(wheel), |of| of.of(wheel)).get()
+    pub fn breakaway_torque(&self, wheel: usize) -> f64 {
+        self.breakaway.as_ref().map_or(self.coulomb.for_wheel(wheel), |of| of.for_wheel(wheel)).get()
     }
 
     /// Checks the values against each other and the number of wheels.
     ///
     /// # Errors
-    /// A `Fault` with a key within the friction and the reason.
-    pub fn check(&self, wheels: usize) -> Result<(), Fault> {
-        self.coulomb.check("coulomb", wheels)?;
-        self.viscous.check("viscous", wheels)?;
+    /// A `ConfigError` with a key within the friction and the reason.
+    pub fn validate(&self, wheels: usize) -> Result<(), ConfigError> {
+        self.coulomb.validate_count("coulomb", wheels)?;
+        self.viscous.validate_count("viscous", wheels)?;
         if let Some(breakaway) = &self.breakaway {
-            breakaway.check("breakaway", wheels)?;
+            breakaway.validate_count("breakaway", wheels)?;
             for wheel in 0..wheels {
-                let (coulomb, holds) = (self.coulomb.of(wheel).get(), self.holds(wheel));
+                let (coulomb, holds) = (self.coulomb.for_wheel(wheel).get(), self.breakaway_torque(wheel));
                 if holds < coulomb {
                     let why = format!("must be at least `coulomb`, {coulomb} N m, got {holds}");
-                    return Err(Fault::new("breakaway", why));
+                    return Err(ConfigError::new("breakaway", why));
                 }
             }
         }
@@ -57,8 +57,8 @@ impl Friction {
     ///
     /// # Errors
     /// A key within the friction, and why.
-    pub fn check_of(&self, (inertia, torque): (f64, Option<f64>), wheels: usize) -> Result<(), Fault> {
-        for coulomb in (0..wheels).map(|wheel| self.coulomb.of(wheel).get()) {
+    pub fn check_of(&self, (inertia, torque): (f64, Option<f64>), wheels: usize) -> Result<(), ConfigError> {
+        for coulomb in (0..wheels).map(|wheel| self.coulomb.for_wheel(wheel).get()) {
             let why = match torque {
                 Some(torque) if coulomb > STALLS * torque => {
                     format!(
@@ -72,7 +72,7 @@ impl Friction {
                 ),
                 _ => continue,
             };
-            return Err(Fault::new("coulomb", why));
+            return Err(ConfigError::new("coulomb", why));
         }
         Ok(())
     }

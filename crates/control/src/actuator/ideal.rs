@@ -5,8 +5,8 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Failure, TorquerSetting};
-use crate::flow::Forced;
+use super::{AxisActuator, AxisActuatorContext, Failure};
+use crate::flow::ActiveWaveform;
 use crate::time::Instant;
 use crate::waveform::Waveform;
 
@@ -21,14 +21,14 @@ pub struct Ideal {
 
 /// Run-time state of the ideal actuator.
 #[derive(Clone, Debug)]
-pub struct Executing {
+pub struct IdealState {
     torque: f64,
     waveform: Option<Arc<Waveform>>,
 }
 
-impl Executing {
+impl IdealState {
     /// Creates the actuator before its first command.
-    pub fn new(setting: &TorquerSetting) -> Self {
+    pub fn new(setting: &AxisActuatorContext) -> Self {
         let share = |waveform: &Arc<Waveform>| match setting.share {
             1.0 => Arc::clone(waveform),
             share => Arc::new(waveform.shifted(0.0, share)),
@@ -37,7 +37,7 @@ impl Executing {
     }
 }
 
-impl AxisActuate for Executing {
+impl AxisActuator for IdealState {
     fn command(&mut self, _: Instant, command: f64, _: f64) {
         self.torque = command;
     }
@@ -50,20 +50,20 @@ impl AxisActuate for Executing {
         self.torque
     }
 
-    fn follows(&self) -> bool {
+    fn executes_waveform(&self) -> bool {
         self.waveform.is_some()
     }
 
-    fn forced(&self, now: Instant) -> Option<Forced> {
+    fn waveform(&self, now: Instant) -> Option<ActiveWaveform> {
         let waveform = self.waveform.as_ref().filter(|waveform| now.seconds() < waveform.end())?;
-        Some(Forced::new(Arc::clone(waveform), now.seconds()))
+        Some(ActiveWaveform::new(Arc::clone(waveform), now.seconds()))
     }
 
     fn applied(&self, now: Instant, _: [f64; 2]) -> f64 {
         self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds())) + self.torque
     }
 
-    fn copy(&self) -> Box<dyn AxisActuate> {
+    fn copy(&self) -> Box<dyn AxisActuator> {
         Box::new(self.clone())
     }
 }

@@ -8,8 +8,8 @@ use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
 use crate::body::craft::HubRotor;
 use crate::count::counted;
-use crate::document::Fault;
-use crate::motion::turning::{Flexible, HarmonicLine};
+use crate::document::ConfigError;
+use crate::motion::three_axis::{FlexibleBody, HarmonicLine};
 use crate::quantity::{Finite, NonNegative, Positive};
 
 /// Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th.
@@ -63,15 +63,15 @@ impl Imbalance {
     /// Checks the values against the number of wheels.
     ///
     /// # Errors
-    /// A `Fault` with a key within the imbalance and the reason.
-    pub fn check(&self, wheels: usize) -> Result<(), Fault> {
-        self.static_.check("static", wheels)?;
-        self.dynamic.check("dynamic", wheels)?;
-        self.phase.check("phase", wheels)?;
+    /// A `ConfigError` with a key within the imbalance and the reason.
+    pub fn check(&self, wheels: usize) -> Result<(), ConfigError> {
+        self.static_.validate_count("static", wheels)?;
+        self.dynamic.validate_count("dynamic", wheels)?;
+        self.phase.validate_count("phase", wheels)?;
         if !self.positions.is_empty() && self.positions.len() != wheels {
             let why =
                 format!("must be one for each of {}, got {}", counted(wheels, "wheel"), self.positions.len());
-            return Err(Fault::new("positions", why));
+            return Err(ConfigError::new("positions", why));
         }
         Ok(())
     }
@@ -79,18 +79,18 @@ impl Imbalance {
     /// Returns the harmonic lines of a wheel that is mounted at its point of a body.
     ///
     /// # Errors
-    /// A `Fault` with a key within the imbalance and the reason.
-    pub fn lines(
+    /// A `ConfigError` with a key within the imbalance and the reason.
+    pub fn harmonic_lines(
         &self,
         wheel: usize,
         rotor: &HubRotor,
-        (body, flexible): (&Spatial, &Flexible),
-    ) -> Result<Vec<HarmonicLine>, Fault> {
+        (body, flexible): (&Spatial, &FlexibleBody),
+    ) -> Result<Vec<HarmonicLine>, ConfigError> {
         let first = body.points.first().map_or("", |point| point.name.as_str());
         let name = self.point.as_deref().unwrap_or(first);
         let Some(point) = body.point(name) else {
             let points = body.point_names();
-            return Err(Fault::new(
+            return Err(ConfigError::new(
                 "point",
                 format!("must be one of the body's points, {points}, got `{name}`"),
             ));
@@ -105,7 +105,7 @@ impl Imbalance {
                 let modes = shapes.iter().zip(&flexible.modes);
                 let of = |((translation, rotation), mode): (
                     &(Vector, Vector),
-                    &crate::motion::turning::FreeMode,
+                    &crate::motion::three_axis::FreeMode,
                 )| {
                     translation.dot(&force[part]) + rotation.dot(&moment[part])
                         - mode.rotation.dot(&torque[part])
@@ -122,10 +122,10 @@ impl Imbalance {
         };
         let times = |of: [Vector; 2], by: f64| of.map(|part| part * by);
         let plus = |a: [Vector; 2], b: [Vector; 2]| [a[0] + b[0], a[1] + b[1]];
-        let (force, torque) = (self.static_.of(wheel).get(), self.dynamic.of(wheel).get());
+        let (force, torque) = (self.static_.for_wheel(wheel).get(), self.dynamic.for_wheel(wheel).get());
         let mut lines = Vec::new();
         if force > 0.0 || torque > 0.0 {
-            let ahead = turning(self.phase.of(wheel).get());
+            let ahead = turning(self.phase.for_wheel(wheel).get());
             lines.push(line(1.0, times(turning(0.0), force), times(ahead, torque)));
         }
         for harmonic in &self.harmonics {

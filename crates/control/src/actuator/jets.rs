@@ -3,13 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuate, Allocated, Failure, PulseWidth, Pulsing, allocated};
+use super::{Actuator, AllocatedJets, Failure, JetsState, PulseWidth, jet_allocation};
 use crate::attitude::{AXES, vector};
 use crate::body::spatial::Spatial;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::time::Span;
-use crate::wrench::Push;
+use crate::wrench::ForceEffect;
 
 /// Standard gravity (m/s²), to which the specific impulse refers.
 const G_0: f64 = 9.806_65;
@@ -39,13 +39,13 @@ pub struct Jets {
     pub thrusters: Vec<Thruster>,
     /// How the demand is converted into pulses.
     #[serde(default, skip_serializing_if = "is_default")]
-    pub allocation: Firing,
+    pub allocation: FiringMethod,
     /// For `least_propellant`: whether the forces of the pulses must cancel.
     #[serde(default, skip_serializing_if = "is_default")]
     pub force_free: bool,
     /// For `groups`: the thrusters that act together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub groups: Option<Groups>,
+    pub groups: Option<ThrusterGroups>,
     /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
@@ -54,7 +54,8 @@ pub struct Jets {
 /// How the demand on the jets is converted into pulses.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Firing {
+#[schemars(rename = "Firing")]
+pub enum FiringMethod {
     /// One pulse per axis, by one group of thrusters.
     #[default]
     Groups,
@@ -86,21 +87,22 @@ pub struct Thruster {
 /// The groups: for each axis, names of the thrusters that turn the body about it one way and the other.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Groups {
+#[schemars(rename = "Groups")]
+pub struct ThrusterGroups {
     /// About x; needed if the jets act about it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub roll: Option<Pair>,
+    pub roll: Option<GroupPair>,
     /// About y; needed if the jets act about it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub pitch: Option<Pair>,
+    pub pitch: Option<GroupPair>,
     /// About z; needed if the jets act about it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub yaw: Option<Pair>,
+    pub yaw: Option<GroupPair>,
 }
 
-impl Groups {
+impl ThrusterGroups {
     /// Returns the groups of roll, pitch and yaw.
-    pub fn each(&self) -> [Option<&Pair>; 3] {
+    pub fn each(&self) -> [Option<&GroupPair>; 3] {
         [&self.roll, &self.pitch, &self.yaw].map(Option::as_ref)
     }
 }
@@ -108,7 +110,8 @@ impl Groups {
 /// The two groups of an axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Pair {
+#[schemars(rename = "Pair")]
+pub struct GroupPair {
     /// Thrusters whose torque is positive.
     pub plus: Vec<String>,
     /// Thrusters whose torque is negative.
@@ -117,28 +120,28 @@ pub struct Pair {
 
 /// Effect of a group while it fires.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct FiringGroup {
+pub struct GroupEffect {
     /// Total force, torque and modal forces of the group.
-    pub push: Push,
+    pub push: ForceEffect,
     /// Propellant flow (kg/s).
     pub flow: f64,
     /// Absolute acceleration about the group's axis, m = |M_a|/J_aa (rad/s²).
     pub acceleration: f64,
 }
 
-impl FiringGroup {
+impl GroupEffect {
     /// Returns two groups without effect on a body with `modes` modes.
-    pub(super) fn idle(modes: usize) -> [Self; 2] {
-        let push = Push { forces: vec![0.0; modes], ..Push::default() };
+    pub(super) fn without_effect(modes: usize) -> [Self; 2] {
+        let push = ForceEffect { forces: vec![0.0; modes], ..ForceEffect::default() };
         [(); 2].map(|()| Self { push: push.clone(), ..Self::default() })
     }
 }
 
 /// Effect of a thruster while it is open.
 #[derive(Clone, Debug, PartialEq)]
-pub struct OpenThruster {
+pub struct ThrusterEffect {
     /// Force, torque and modal forces of the thruster.
-    pub push: Push,
+    pub push: ForceEffect,
     /// Propellant flow (kg/s).
     pub flow: f64,
     /// Thrust (N).
@@ -147,13 +150,13 @@ pub struct OpenThruster {
 
 impl Jets {
     /// Returns the effect of each thruster on a body that has the thrusters' points.
-    pub fn nozzles_on(&self, body: &Spatial) -> Vec<OpenThruster> {
+    pub fn thruster_effects(&self, body: &Spatial) -> Vec<ThrusterEffect> {
         let nozzle = |thruster: &Thruster| {
             let thrust = thruster.thrust.get();
-            let mut push = Push { forces: vec![0.0; body.modes.len()], ..Push::default() };
+            let mut push = ForceEffect { forces: vec![0.0; body.modes.len()], ..ForceEffect::default() };
             let force = vector(&thruster.direction).normalize() * thrust;
             push.add(body, &thruster.point, &vector(&thruster.offset), &force);
-            OpenThruster { push, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
+            ThrusterEffect { push, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
         };
         self.thrusters.iter().map(nozzle).collect()
     }
@@ -177,10 +180,15 @@ impl Jets {
     /// which the jets act; about another axis without groups they have no effect.
     ///
     /// # Errors
-    /// A `Fault` with a key within the jets and the reason.
-    pub fn groups_on(&self, body: &Spatial, acts: [bool; 3]) -> Result<[[FiringGroup; 2]; 3], Fault> {
+    /// A `ConfigError` with a key within the jets and the reason.
+    pub fn group_effects(
+        &self,
+        body: &Spatial,
+        acts: [bool; 3],
+    ) -> Result<[[GroupEffect; 2]; 3], ConfigError> {
         for (index, thruster) in self.thrusters.iter().enumerate() {
-            let refused = |key: &str, why: String| Err(Fault::new(format!("thrusters[{index}].{key}"), why));
+            let refused =
+                |key: &str, why: String| Err(ConfigError::new(format!("thrusters[{index}].{key}"), why));
             let length = vector(&thruster.direction).norm();
             if (length - 1.0).abs() > 1e-6 {
                 return refused("direction", format!("must have length 1, got {length}"));
@@ -197,23 +205,26 @@ impl Jets {
                 );
             }
         }
-        if self.allocation == Firing::LeastPropellant {
+        if self.allocation == FiringMethod::LeastPropellant {
             if self.groups.is_some() {
                 let why = "apply only to `allocation = \"groups\"`: leave them out";
-                return Err(Fault::new("groups", why));
+                return Err(ConfigError::new("groups", why));
             }
-            let tensor = body.tensor();
+            let tensor = body.inertia_tensor();
             let inertia = [0, 1, 2].map(|axis| tensor[(axis, axis)]);
-            return allocated::largest(self, &self.nozzles_on(body), inertia, acts);
+            return jet_allocation::largest_torques(self, &self.thruster_effects(body), inertia, acts);
         }
         if self.force_free {
-            return Err(Fault::new("force_free", "applies only to `allocation = \"least_propellant\"`"));
+            return Err(ConfigError::new(
+                "force_free",
+                "applies only to `allocation = \"least_propellant\"`",
+            ));
         }
         let Some(given) = &self.groups else {
             let why = "must be given, or `allocation = \"least_propellant\"`";
-            return Err(Fault::new("groups", why));
+            return Err(ConfigError::new("groups", why));
         };
-        let mut groups = [(); 3].map(|()| FiringGroup::idle(body.modes.len()));
+        let mut groups = [(); 3].map(|()| GroupEffect::without_effect(body.modes.len()));
         for (axis, pair) in given.each().into_iter().enumerate() {
             match pair {
                 Some(pair) => {
@@ -224,7 +235,7 @@ impl Jets {
                 }
                 None if acts[axis] => {
                     let name = AXES[axis];
-                    return Err(Fault::new(
+                    return Err(ConfigError::new(
                         "groups",
                         format!("must have `{name}`, about which the jets act"),
                     ));
@@ -242,15 +253,15 @@ impl Jets {
         sign: &str,
         sense: f64,
         names: &[String],
-    ) -> Result<FiringGroup, Fault> {
+    ) -> Result<GroupEffect, ConfigError> {
         let key = format!("groups.{}.{sign}", AXES[axis]);
-        let mut push = Push { forces: vec![0.0; body.modes.len()], ..Push::default() };
+        let mut push = ForceEffect { forces: vec![0.0; body.modes.len()], ..ForceEffect::default() };
         let mut thrust = 0.0;
         for name in names {
             let Some(thruster) = self.thrusters.iter().find(|thruster| thruster.name == *name) else {
                 let known: Vec<_> = self.thrusters.iter().map(|t| format!("`{}`", t.name)).collect();
                 let why = format!("must name thrusters, {}, got `{name}`", known.join(", "));
-                return Err(Fault::new(key, why));
+                return Err(ConfigError::new(key, why));
             };
             let force = vector(&thruster.direction).normalize() * thruster.thrust.get();
             push.add(body, &thruster.point, &vector(&thruster.offset), &force);
@@ -260,16 +271,16 @@ impl Jets {
         if sense * torque[axis] <= 0.0 {
             let (turns, [x, y, z]) = (AXES[axis], [torque.x, torque.y, torque.z]);
             let why = format!("must give a torque to {sign} {turns}, got [{x}, {y}, {z}] N m");
-            return Err(Fault::new(key, why));
+            return Err(ConfigError::new(key, why));
         }
-        let acceleration = torque[axis].abs() / body.tensor()[(axis, axis)];
+        let acceleration = torque[axis].abs() / body.inertia_tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
-        Ok(FiringGroup { push, flow, acceleration })
+        Ok(GroupEffect { push, flow, acceleration })
     }
 
     /// Whether propellant is counted by thruster: each is commanded individually, or can fail.
     pub fn is_by_thruster(&self) -> bool {
-        self.allocation == Firing::LeastPropellant || !self.faults.is_empty()
+        self.allocation == FiringMethod::LeastPropellant || !self.faults.is_empty()
     }
 
     /// Returns the names of the thrusters.
@@ -279,15 +290,19 @@ impl Jets {
 
     /// Returns the run-time state before the first command, with the effects of groups and thrusters; `period` is the
     /// law's, for jets without their own.
-    pub fn start(&self, fitted: (&[[FiringGroup; 2]; 3], &[OpenThruster]), period: Span) -> Box<dyn Actuate> {
+    pub fn start(
+        &self,
+        fitted: (&[[GroupEffect; 2]; 3], &[ThrusterEffect]),
+        period: Span,
+    ) -> Box<dyn Actuator> {
         match self.allocation {
-            Firing::Groups => Box::new(Pulsing::new(self, fitted, period)),
-            Firing::LeastPropellant => Box::new(Allocated::new(self, fitted, period)),
+            FiringMethod::Groups => Box::new(JetsState::new(self, fitted, period)),
+            FiringMethod::LeastPropellant => Box::new(AllocatedJets::new(self, fitted, period)),
         }
     }
 
     /// Returns the quantisation of pulse lengths.
-    pub fn width(&self) -> PulseWidth {
+    pub fn pulse_width(&self) -> PulseWidth {
         PulseWidth { minimum: self.minimum_on, quantum: self.quantum }
     }
 }

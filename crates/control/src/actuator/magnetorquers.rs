@@ -6,10 +6,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::failure::{Failing, Lasting};
-use super::{Actuate, Demand, Failure, TorquerSetting};
+use super::failure::{ActiveFailures, FailureScope};
+use super::{Actuator, AxisActuatorContext, Demand, Failure};
 use crate::attitude::Vector;
-use crate::axes::Each;
+use crate::axes::PerAxis;
 use crate::quantity::Positive;
 use crate::record;
 use crate::time::Instant;
@@ -20,7 +20,7 @@ use crate::wrench::Wrench;
 #[serde(deny_unknown_fields)]
 pub struct Magnetorquers {
     /// Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three.
-    pub moment: Each<Positive>,
+    pub moment: PerAxis<Positive>,
     /// Intervals in which they fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
@@ -28,31 +28,31 @@ pub struct Magnetorquers {
 
 impl Magnetorquers {
     /// Creates the torquers before their first command.
-    pub fn start(&self, settings: &[TorquerSetting]) -> Torquing {
-        Torquing {
+    pub fn start(&self, settings: &[AxisActuatorContext]) -> MagnetorquersState {
+        MagnetorquersState {
             limits: [0, 1, 2].map(|axis| self.moment.about(axis).get()),
             settings: settings.to_vec(),
             field: None,
             wanted: Vector::zeros(),
             moment: Vector::zeros(),
             failing: [0, 1, 2].map(|axis| {
-                let own = |of: &Lasting<'_>| of.about.is_none_or(|about| about.index() == axis);
-                Failing::new(&self.faults, own)
+                let own = |of: &FailureScope<'_>| of.about.is_none_or(|about| about.index() == axis);
+                ActiveFailures::new(&self.faults, own)
             }),
         }
     }
 
     /// Returns the length of the largest magnetic moment (A m²).
-    pub fn largest(&self) -> f64 {
+    pub fn largest_moment(&self) -> f64 {
         Vector::from_fn(|axis, _| self.moment.about(axis).get()).norm()
     }
 }
 
 /// Run-time state of the magnetorquers.
 #[derive(Clone, Debug)]
-pub struct Torquing {
+pub struct MagnetorquersState {
     limits: [f64; 3],
-    settings: Vec<TorquerSetting>,
+    settings: Vec<AxisActuatorContext>,
     /// Magnetic field in the body's axes (T), as last measured; `None` before that.
     field: Option<Vector>,
     /// Demanded torque (N m).
@@ -60,15 +60,15 @@ pub struct Torquing {
     /// Commanded magnetic moment, in the body's axes (A m²).
     moment: Vector,
     /// Failures of each torquer.
-    failing: [Option<Failing>; 3],
+    failing: [Option<ActiveFailures>; 3],
 }
 
-impl Torquing {
+impl MagnetorquersState {
     /// Returns the actual moments (A m²), subject to failures.
     fn held(&self) -> Vector {
         let of = |axis: usize| {
             let wanted = self.moment[axis];
-            self.failing[axis].as_ref().map_or(wanted, |failing| failing.of(wanted))
+            self.failing[axis].as_ref().map_or(wanted, |failing| failing.output(wanted))
         };
         Vector::from_fn(|axis, _| of(axis))
     }
@@ -101,8 +101,8 @@ impl Torquing {
     }
 }
 
-impl Actuate for Torquing {
-    fn feel(&mut self, field: Vector) {
+impl Actuator for MagnetorquersState {
+    fn set_magnetic_field(&mut self, field: Vector) {
         self.field = Some(field);
     }
 
@@ -110,52 +110,52 @@ impl Actuate for Torquing {
         if demands.iter().any(|demand| matches!(demand, Demand::Moment(_))) {
             return self.hold(demands);
         }
-        let torque = |(demand, setting): (&Demand, &TorquerSetting)| setting.demanded(demand);
+        let torque = |(demand, setting): (&Demand, &AxisActuatorContext)| setting.demanded_torque(demand);
         let mut wanted = Vector::zeros();
         wanted.iter_mut().zip(demands.iter().zip(&self.settings).map(torque)).for_each(|(own, of)| *own = of);
         self.give(wanted);
     }
 
     fn due(&self) -> Option<Instant> {
-        self.failing.iter().flatten().filter_map(Failing::due).min()
+        self.failing.iter().flatten().filter_map(ActiveFailures::due).min()
     }
 
-    fn serve(&mut self, now: Instant, _: [f64; 3]) {
+    fn update(&mut self, now: Instant, _: [f64; 3]) {
         for (failing, moment) in self.failing.iter_mut().zip(&self.moment) {
             if let Some(failing) = failing {
-                failing.serve(now, *moment);
+                failing.update(now, *moment);
             }
         }
     }
 
-    fn exert(&self, _: Instant, onto: &mut Wrench) {
+    fn apply(&self, _: Instant, onto: &mut Wrench) {
         onto.moment += self.held();
     }
 
-    fn asked(&self, axis: usize) -> f64 {
+    fn demanded_torque(&self, axis: usize) -> f64 {
         self.wanted[axis]
     }
 
-    fn torque(&self, axis: usize) -> f64 {
+    fn held_torque(&self, axis: usize) -> f64 {
         self.given()[axis]
     }
 
     /// Returns -0: the torque depends on the current field and is computed by the plant; -0 leaves every sum unchanged.
-    fn applied(&self, _: Instant, _: usize, _: [f64; 2]) -> f64 {
+    fn applied_torque(&self, _: Instant, _: usize, _: [f64; 2]) -> f64 {
         -0.0
     }
 
-    fn moment(&self, axis: usize) -> f64 {
-        self.torque(axis) / self.settings[axis].inertia
+    fn reduced_moment(&self, axis: usize) -> f64 {
+        self.held_torque(axis) / self.settings[axis].inertia
     }
 
-    fn magnetic(&self) -> Option<record::Magnetorquers> {
+    fn magnetorquer_row(&self) -> Option<record::Magnetorquers> {
         let held = self.held();
         let axis = |axis: usize| record::Magnetorquer { moment_am2: held[axis] };
         Some(record::Magnetorquers { axes: [0, 1, 2].map(axis).into() })
     }
 
-    fn copy(&self) -> Box<dyn Actuate> {
+    fn copy(&self) -> Box<dyn Actuator> {
         Box::new(self.clone())
     }
 }
@@ -165,9 +165,9 @@ mod tests {
     use super::*;
     use crate::time::Span;
 
-    fn start(text: &str) -> Torquing {
+    fn start(text: &str) -> MagnetorquersState {
         let torquers: Magnetorquers = crate::document::from_text(text).unwrap();
-        let setting = |axis| TorquerSetting {
+        let setting = |axis| AxisActuatorContext {
             axis,
             inertia: 10.0,
             planned_inertia: 10.0,
@@ -185,19 +185,19 @@ mod tests {
         let (field, torque) = (Vector::new(2e-5, -1e-5, 3e-5), Vector::new(1e-4, 2e-4, -1e-4));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         assert_eq!(torquers.given(), Vector::zeros(), "no field is known");
-        torquers.feel(field);
+        torquers.set_magnetic_field(field);
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         let along = field.normalize();
         let exact = torque - along * along.dot(&torque);
         assert!((torquers.given() - exact).norm() < 1e-18);
         // Ten times the torque exceeds the limit: all of it is scaled down.
         let mut weak = start("moment = [4.0, 100.0, 100.0]");
-        weak.feel(field);
+        weak.set_magnetic_field(field);
         weak.command(Instant::START, &(torque * 10.0).data.0[0].map(Demand::Torque), [0.0; 3]);
         assert!((weak.moment.x.abs() - 4.0).abs() < 1e-14);
         assert!(weak.given().cross(&exact).norm() < 1e-18 && weak.given().dot(&exact) > 0.0);
         let mut wrench = Wrench::default();
-        weak.exert(Instant::START, &mut wrench);
+        weak.apply(Instant::START, &mut wrench);
         assert_eq!(wrench.moment, weak.moment);
     }
 

@@ -1,33 +1,33 @@
 //! Actuators: they execute commands ideally, through a hold, by wheels or gyros, or by pulses of thrusters.
 
-mod allocated;
-mod allocation;
-mod assigned;
+mod actuator_set;
+mod allocation_role;
+mod assignment;
+mod axis_actuators;
 mod control_moment_gyros;
+mod control_moment_gyros_state;
 mod failure;
+mod faulty;
+mod flywheel;
 mod friction;
-mod gimbals;
-mod hold;
 mod ideal;
 mod imbalance;
-mod impaired;
+mod jet_allocation;
 mod jets;
+mod jets_state;
 mod magnetorquers;
-mod member;
 mod per_wheel;
 mod pulse_timing;
 mod pulse_width;
-mod pulsing;
 mod saturation;
-mod several;
-mod spinning;
 mod steering;
 mod thrusters;
-mod torquers;
 mod unloading;
 mod valves;
-mod wheel;
+mod wheel_allocation;
 mod wheels;
+mod wheels_state;
+mod zero_order_hold;
 
 use std::any::Any;
 use std::fmt;
@@ -36,44 +36,45 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
-use crate::motion::turning::SlippedRotor;
-use crate::own::{Halt, Own};
+use crate::custom::{Custom, PartError};
+use crate::motion::three_axis::RotorObservation;
 use crate::quantity::{Share, Time};
-use crate::record::{self, Steered, WheelMotion};
+use crate::record::{self, SteeringRecord, WheelMotion};
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-pub use allocated::Allocated;
-pub use allocation::{Allocation, Choice};
-pub use assigned::Assigned;
+pub use actuator_set::ActuatorSet;
+pub use allocation_role::{ActuatorTask, AssignedMember};
+pub use assignment::AssignedActuator;
+pub use axis_actuators::{AxisActuator, AxisActuatorContext, AxisActuators};
 pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
-pub use failure::{Failure, Lasting};
+pub use control_moment_gyros_state::ControlMomentGyrosState;
+pub use failure::{Failure, FailureScope};
+pub use flywheel::{BackEmfRate, FlywheelRotor, Wheel};
 pub use friction::Friction;
-pub use gimbals::Gimbals;
-pub use hold::ZeroOrderHold;
 pub use ideal::Ideal;
 pub use imbalance::{Harmonic, Imbalance};
-pub use jets::{Firing, FiringGroup, Groups, Jets, OpenThruster, Pair, Thruster};
-pub use magnetorquers::{Magnetorquers, Torquing};
-pub use member::{ActuatorMember, ActuatorTask};
+pub use jet_allocation::AllocatedJets;
+pub use jets::{FiringMethod, GroupEffect, GroupPair, Jets, Thruster, ThrusterEffect, ThrusterGroups};
+pub use jets_state::{JetsState, Pulse};
+pub use magnetorquers::{Magnetorquers, MagnetorquersState};
 pub use per_wheel::PerWheel;
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
-pub use pulsing::{Pulse, Pulsing};
 pub use saturation::{EndState, Saturation};
-pub use several::Several;
-pub use spinning::Spinning;
 pub use steering::{GyroAxes, NullMotion, Robustness, Steering};
 pub use thrusters::Thrusters;
-pub use torquers::{AxisActuate, TorquerSetting, Torquers};
-pub use unloading::{Unloading, Unloads};
-pub use wheel::{Opposes, Rotor, Wheel};
-pub use wheels::{Arrangement, Compensation, SpeedBias, Wheels};
+pub use unloading::{UnloadingTask, WheelUnloading};
+pub use wheel_allocation::{Allocation, AllocationCriterion};
+pub use wheels::{Arrangement, FrictionCompensation, SpeedBias, Wheels};
+pub use wheels_state::WheelsState;
+pub use zero_order_hold::ZeroOrderHold;
 
 /// The kinds of actuator. On a body with three axes, an actuator for one angle acts about each of them.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Actuator {
+#[schemars(rename = "Actuator")]
+pub enum ActuatorKind {
     /// The command itself, at every instant.
     Ideal(Ideal),
     /// A zero-order hold: the mean of the manoeuvre's command over each period, and the feedback at its start.
@@ -91,7 +92,7 @@ pub enum Actuator {
     /// Magnetorquers of a spatial body in the field of its planet.
     Magnetorquers(Magnetorquers),
     /// An actuator from another crate; a scenario file cannot name it.
-    Own(Own<dyn Effector>),
+    Own(Custom<dyn ActuatorSpec>),
 }
 
 /// Demand on an actuator about an axis.
@@ -106,9 +107,9 @@ pub enum Demand {
 }
 
 /// Settings of an actuator that another crate provides.
-pub trait Effector: Send + Sync {
+pub trait ActuatorSpec: Send + Sync {
     /// Returns the run-time state of the actuator, from the setting of each axis.
-    fn start(&self, settings: &[TorquerSetting]) -> Box<dyn Actuate>;
+    fn start(&self, settings: &[AxisActuatorContext]) -> Box<dyn Actuator>;
 
     /// Returns the actuator's largest torque about an axis (N m); `None` without a limit.
     fn limit(&self, _axis: usize) -> Option<f64> {
@@ -122,15 +123,15 @@ pub trait Effector: Send + Sync {
 }
 
 /// Run-time state of an actuator.
-pub trait Actuate: fmt::Debug + Send + Sync {
+pub trait Actuator: fmt::Debug + Send + Sync {
     /// Sets the demands about the axes from `now` on, of a body with these rigid rates (rad/s).
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]);
 
     /// Sets the measured magnetic field in the body's axes (T), before the commands that depend on it.
-    fn feel(&mut self, _field: Vector) {}
+    fn set_magnetic_field(&mut self, _field: Vector) {}
 
     /// Makes wheels or gyros counteract a torque on the body (N m) from the next command on.
-    fn hold_against(&mut self, _torque: Vector) {}
+    fn set_counter_torque(&mut self, _torque: Vector) {}
 
     /// Returns the next time at which the output changes without a command.
     fn due(&self) -> Option<Instant> {
@@ -138,19 +139,19 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     }
 
     /// Executes the changes due at `now`, after the laws have decided.
-    fn serve(&mut self, _now: Instant, _rigid: [f64; 3]) {}
+    fn update(&mut self, _now: Instant, _rigid: [f64; 3]) {}
 
     /// Sets the state of the rotors in bearings, as computed by the motion.
-    fn turned(&mut self, _now: Instant, _rotors: &[SlippedRotor]) {}
+    fn set_rotor_states(&mut self, _now: Instant, _rotors: &[RotorObservation]) {}
 
     /// Adds the actuator's output from `now` on to `onto`.
-    fn exert(&self, now: Instant, onto: &mut Wrench);
+    fn apply(&self, now: Instant, onto: &mut Wrench);
 
     /// Returns the torque demanded about an axis (N m).
-    fn asked(&self, axis: usize) -> f64;
+    fn demanded_torque(&self, axis: usize) -> f64;
 
     /// Returns the torque held about an axis (N m), without a waveform and without back-EMF.
-    fn torque(&self, axis: usize) -> f64;
+    fn held_torque(&self, axis: usize) -> f64;
 
     /// Returns the torque of the pulse of thrusters that is on about an axis (N m); 0 of other actuators.
     fn firing(&self, _axis: usize) -> f64 {
@@ -158,12 +159,12 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     }
 
     /// Returns the torque applied about an axis (N m), of a body with this rate and this rigid rate (rad/s).
-    fn applied(&self, _now: Instant, axis: usize, _rates: [f64; 2]) -> f64 {
-        self.torque(axis)
+    fn applied_torque(&self, _now: Instant, axis: usize, _rates: [f64; 2]) -> f64 {
+        self.held_torque(axis)
     }
 
     /// Returns the reduced moment held about an axis (rad/s²), without back-EMF and disregarding failures.
-    fn moment(&self, axis: usize) -> f64;
+    fn reduced_moment(&self, axis: usize) -> f64;
 
     /// Returns the change of the rate about the first axis (rad/s) by the waveform between two times (s).
     fn waveform_impulse(&self, _from: f64, _to: f64) -> f64 {
@@ -187,65 +188,65 @@ pub trait Actuate: fmt::Debug + Send + Sync {
     }
 
     /// Returns the log row of control moment gyros, if the actuator has any.
-    fn gimbals(&self, _now: Instant) -> Option<record::ControlMomentGyros> {
+    fn gimbal_row(&self, _now: Instant) -> Option<record::ControlMomentGyros> {
         None
     }
 
     /// Returns the extreme values of the control moment gyros since the start.
-    fn steered(&self) -> Option<Steered> {
+    fn steering_record(&self) -> Option<SteeringRecord> {
         None
     }
 
     /// Returns the log row of the magnetic moments held by magnetorquers.
-    fn magnetic(&self) -> Option<record::Magnetorquers> {
+    fn magnetorquer_row(&self) -> Option<record::Magnetorquers> {
         None
     }
 
     /// Returns the speeds of wheels in bearings that are available to the drives (rad/s).
-    fn known_speeds(&self) -> Vec<f64> {
+    fn measured_wheel_speeds(&self) -> Vec<f64> {
         Vec::new()
     }
 
     /// Returns the angular momentum stored in the rotors (N m s, body axes), as available to the drives.
-    fn stored(&self, _now: Instant) -> [f64; 3] {
+    fn stored_momentum(&self, _now: Instant) -> [f64; 3] {
         [0.0; 3]
     }
 
     /// Returns the current cycle of pulses of jets.
-    fn cycle(&self) -> Option<JetCycle> {
+    fn jet_cycle(&self) -> Option<JetCycle> {
         None
     }
 
     /// Returns the pulses of the current cycle of jets.
-    fn executed(&self) -> Option<Vec<Pulse>> {
+    fn executed_pulses(&self) -> Option<Vec<Pulse>> {
         None
     }
 
     /// Returns the angular impulse of all pulses of the current cycle of jets (N m s, body axes).
-    fn impulse(&self) -> Vector {
+    fn cycle_impulse(&self) -> Vector {
         Vector::zeros()
     }
 
     /// Returns the changes of the rigid rates (rad/s) by commands that are not yet executed.
-    fn queued(&self) -> [f64; 3] {
+    fn queued_rate_change(&self) -> [f64; 3] {
         [0.0; 3]
     }
 
     /// Returns the pulses that will be executed in the cycle that begins now.
-    fn waiting(&self) -> Vec<Pulse> {
+    fn pending_pulses(&self) -> Vec<Pulse> {
         Vec::new()
     }
 
     /// Returns the error that an actuator of another crate failed with; the run ends there.
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         None
     }
 
     /// Returns a copy in the same state.
-    fn copy(&self) -> Box<dyn Actuate>;
+    fn copy(&self) -> Box<dyn Actuator>;
 }
 
-impl Clone for Box<dyn Actuate> {
+impl Clone for Box<dyn Actuator> {
     fn clone(&self) -> Self {
         self.copy()
     }
@@ -275,13 +276,13 @@ fn first(phase: Option<Time>) -> Instant {
     Instant::START + Span::from_seconds(phase.map_or(0.0, Time::get))
 }
 
-impl Default for Actuator {
+impl Default for ActuatorKind {
     fn default() -> Self {
         Self::Ideal(Ideal::default())
     }
 }
 
-impl Actuator {
+impl ActuatorKind {
     /// Returns the name of the kind, as in a scenario.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -338,14 +339,14 @@ impl Actuator {
 
     /// Returns the run-time state of a single-axis actuator. Kinds that act about all axes are not asked for it: jets,
     /// magnetorquers, wheels of three axes, control moment gyros and those of another crate.
-    pub fn about_an_axis(&self, setting: &TorquerSetting) -> Box<dyn AxisActuate> {
+    pub fn axis_actuator(&self, setting: &AxisActuatorContext) -> Box<dyn AxisActuator> {
         match self {
             Self::Ideal(_)
             | Self::Jets(_)
             | Self::Wheels(_)
             | Self::ControlMomentGyros(_)
             | Self::Magnetorquers(_)
-            | Self::Own(_) => Box::new(ideal::Executing::new(setting)),
+            | Self::Own(_) => Box::new(ideal::IdealState::new(setting)),
             Self::Hold(hold) => Box::new(hold.start(setting)),
             Self::Thrusters(thrusters) => Box::new(thrusters.start(setting)),
             Self::Wheel(wheel) => Box::new(wheel.start(setting)),

@@ -7,7 +7,7 @@ use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use crate::count::counted;
-use crate::document::{Fault, read_value};
+use crate::document::{ConfigError, read_value};
 
 /// One value for all wheels, or one for each.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub enum PerWheel<T> {
 
 impl<T: Copy + Default> PerWheel<T> {
     /// Returns the value of a wheel.
-    pub fn of(&self, wheel: usize) -> T {
+    pub fn for_wheel(&self, wheel: usize) -> T {
         match self {
             Self::All(value) => *value,
             Self::Each(values) => values.get(wheel).copied().unwrap_or_default(),
@@ -30,8 +30,8 @@ impl<T: Copy + Default> PerWheel<T> {
     /// Checks the number of values against the number of wheels.
     ///
     /// # Errors
-    /// A `Fault` with the key and the reason.
-    pub fn check(&self, key: &str, wheels: usize) -> Result<(), Fault> {
+    /// A `ConfigError` with the key and the reason.
+    pub fn validate_count(&self, key: &str, wheels: usize) -> Result<(), ConfigError> {
         match self {
             Self::Each(values) if values.len() != wheels => {
                 let why = format!(
@@ -39,7 +39,7 @@ impl<T: Copy + Default> PerWheel<T> {
                     counted(wheels, "wheel"),
                     values.len()
                 );
-                Err(Fault::new(key, why))
+                Err(ConfigError::new(key, why))
             }
             _ => Ok(()),
         }

@@ -1,9 +1,9 @@
 //! Saturation: how often a run has wheels and magnetorquers at their limits, and whether it ends there.
 
-use super::Assigned;
-use crate::parts::Parts;
+use super::AssignedActuator;
+use crate::one_or_many::OneOrMany;
 use crate::quantity::Positive;
-use crate::record::SpatialCycle;
+use crate::record::ThreeAxisCycle;
 
 /// A value is at its limit if it misses it by this part of it.
 const AT_LIMIT: f64 = 1e-9;
@@ -92,7 +92,7 @@ struct LateWheel {
 
 impl Saturation {
     /// An empty gathering for runs of a duration (s) with these actuators.
-    pub fn new(actuators: &Parts<Assigned>, duration: f64) -> Self {
+    pub fn new(actuators: &OneOrMany<AssignedActuator>, duration: f64) -> Self {
         let limit = |of: Option<Positive>| of.map_or(f64::INFINITY, Positive::get);
         let wheels = actuators.wheels().map(|(wheels, _)| wheels);
         let torquers = actuators.magnetorquers().map(|(torquers, _)| torquers);
@@ -115,7 +115,7 @@ impl Saturation {
     }
 
     /// Takes a cycle that begins at a time (s).
-    pub fn see(&mut self, t: f64, cycle: &SpatialCycle) {
+    pub fn see(&mut self, t: f64, cycle: &ThreeAxisCycle) {
         let reaches = |value: f64, limit: f64| value.abs() >= limit * (1.0 - AT_LIMIT);
         let is_late = t >= self.late;
         let (mut torque, mut momentum) = (false, false);

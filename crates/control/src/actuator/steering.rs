@@ -101,7 +101,7 @@ impl GyroAxes {
 }
 
 /// Returns the columns of A with gimbals at these angles (rad).
-pub fn columns(axes: &[GyroAxes], angles: &[f64]) -> Vec<Vector> {
+pub fn torque_directions(axes: &[GyroAxes], angles: &[f64]) -> Vec<Vector> {
     axes.iter().zip(angles).map(|(axes, angle)| axes.column(*angle)).collect()
 }
 
@@ -111,7 +111,7 @@ fn gram(columns: &[Vector]) -> Matrix3<f64> {
 }
 
 /// Returns the singularity measure, sqrt(det(A A')): 0 where the gimbals give no torque in some direction.
-pub fn measure(columns: &[Vector]) -> f64 {
+pub fn singularity_measure(columns: &[Vector]) -> f64 {
     f64::sqrt(gram(columns).determinant().max(0.0))
 }
 
@@ -129,7 +129,7 @@ fn through(columns: &[Vector], matrix: &Matrix3<f64>, wanted: &Vector) -> Vec<f6
 }
 
 /// Returns gimbal rates (rad/s) with A d' = `wanted` by the steering rule, at `t` (s) after the start.
-pub fn rates(columns: &[Vector], robust: Option<&Robustness>, wanted: &Vector, t: f64) -> Vec<f64> {
+pub fn gimbal_rates(columns: &[Vector], robust: Option<&Robustness>, wanted: &Vector, t: f64) -> Vec<f64> {
     let gram = gram(columns);
     let Some(robust) = robust else { return least(columns, &gram, wanted) };
     let weight = robust.weight.get() * libm::exp(-robust.decay.get() * gram.determinant().max(0.0));
@@ -140,7 +140,7 @@ pub fn rates(columns: &[Vector], robust: Option<&Robustness>, wanted: &Vector, t
 }
 
 /// Returns the null component of these rates, which gives no torque: d' - A' (A A')^-1 A d'; zeros at singular angles.
-pub fn cancelling(columns: &[Vector], rates: &[f64]) -> Vec<f64> {
+pub fn null_component(columns: &[Vector], rates: &[f64]) -> Vec<f64> {
     let gram = gram(columns);
     if gram.determinant() < SINGULAR {
         return vec![0.0; rates.len()];

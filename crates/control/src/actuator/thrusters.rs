@@ -3,8 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuate, Failure, PulseWidth, TorquerSetting};
-use crate::axes::Each;
+use super::{AxisActuator, AxisActuatorContext, Failure, PulseWidth};
+use crate::axes::PerAxis;
 use crate::quantity::{NonNegative, Positive, Time};
 use crate::time::{Instant, Span};
 
@@ -13,7 +13,7 @@ use crate::time::{Instant, Span};
 #[serde(deny_unknown_fields)]
 pub struct Thrusters {
     /// Torque of a pulse (N m): one number for all axes, or a list of three.
-    pub torque: Each<Positive>,
+    pub torque: PerAxis<Positive>,
     /// Period of the pulses (s).
     pub period: Span,
     /// Time of the first period (s); default: 0.
@@ -32,7 +32,7 @@ pub struct Thrusters {
 
 /// Pulse of constant torque (N m) between two times.
 #[derive(Copy, Clone, Debug, PartialEq)]
-struct Pulse {
+struct ThrusterPulse {
     torque: f64,
     from: Instant,
     to: Instant,
@@ -45,8 +45,8 @@ impl Thrusters {
     }
 
     /// Creates the thrusters before their first period.
-    pub fn start(&self, setting: &TorquerSetting) -> Pulsed {
-        Pulsed {
+    pub fn start(&self, setting: &AxisActuatorContext) -> ThrustersState {
+        ThrustersState {
             most: self.torque.about(setting.axis).get(),
             period: self.period,
             width: self.width(),
@@ -62,24 +62,24 @@ impl Thrusters {
 
 /// Run-time state of the thrusters.
 #[derive(Clone, Debug)]
-pub struct Pulsed {
+pub struct ThrustersState {
     most: f64,
     period: Span,
     width: PulseWidth,
-    setting: TorquerSetting,
+    setting: AxisActuatorContext,
     next: Instant,
     feedback: f64,
     held: f64,
-    pulse: Option<Pulse>,
+    pulse: Option<ThrusterPulse>,
     /// Impulse left over for the next period (N m s).
     owed: f64,
 }
 
-impl Pulsed {
+impl ThrustersState {
     fn begin_period(&mut self, now: Instant) {
         self.next = now + self.period;
         let h = self.period.seconds();
-        let planned = self.setting.planned(now, h);
+        let planned = self.setting.planned_impulse(now, h);
         self.held = 0.0;
         let (pulse, owed) = self.pulse(now, self.owed + planned + self.feedback * h);
         self.owed = owed;
@@ -88,18 +88,18 @@ impl Pulsed {
 
     /// Returns the pulse of the period that begins at `now` for this impulse (N m s), and the remaining impulse (N m
     /// s), at most that of one period, which is added to the next one.
-    fn pulse(&self, now: Instant, impulse: f64) -> (Pulse, f64) {
+    fn pulse(&self, now: Instant, impulse: f64) -> (ThrusterPulse, f64) {
         let period = self.period.seconds();
         let on = self.width.on_time(impulse.abs() / self.most, period);
         let torque = self.most.copysign(impulse);
         let most = self.most * period;
         let from = now + Span::from_seconds(0.5 * (period - on));
-        let pulse = Pulse { torque, from, to: from + Span::from_seconds(on) };
+        let pulse = ThrusterPulse { torque, from, to: from + Span::from_seconds(on) };
         (pulse, (impulse - torque * on).clamp(-most, most))
     }
 }
 
-impl AxisActuate for Pulsed {
+impl AxisActuator for ThrustersState {
     fn command(&mut self, _: Instant, command: f64, _: f64) {
         self.feedback = command;
     }
@@ -132,7 +132,7 @@ impl AxisActuate for Pulsed {
         self.feedback
     }
 
-    fn copy(&self) -> Box<dyn AxisActuate> {
+    fn copy(&self) -> Box<dyn AxisActuator> {
         Box::new(self.clone())
     }
 }

@@ -8,16 +8,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuate, Actuator, Demand, Jets, Magnetorquers};
+use super::{Actuator, ActuatorKind, Demand, Jets, Magnetorquers};
 use crate::attitude::Vector;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{NonNegative, Positive, Time};
 use crate::time::{Instant, Span};
 
 /// How an actuator of a list unloads the wheels of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Unloads {
+#[schemars(rename = "Unloads")]
+pub struct UnloadingTask {
     /// Total momentum of the wheels above which unloading begins (N m s).
     pub above: Positive,
     /// Total momentum below which it ends (N m s).
@@ -39,7 +40,8 @@ pub struct Unloads {
 /// Unloading of the wheels by jets or by magnetorquers, within the wheels.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Unloading {
+#[schemars(rename = "Unloading")]
+pub struct WheelUnloading {
     /// Total momentum of the wheels above which unloading begins (N m s).
     pub above: Positive,
     /// Total momentum below which it ends (N m s).
@@ -61,22 +63,22 @@ pub struct Unloading {
     pub period: Option<Span>,
 }
 
-impl Unloading {
+impl WheelUnloading {
     /// Returns the settings of the unloading.
-    pub(super) fn how(&self) -> Unloads {
+    pub(super) fn method(&self) -> UnloadingTask {
         let Self { above, below, torque, gain, period, .. } = *self;
-        Unloads { above, below, torque, gain, period, phase: None }
+        UnloadingTask { above, below, torque, gain, period, phase: None }
     }
 
     /// Returns the actuator that unloads the wheels.
-    pub(super) fn by(&self) -> Actuator {
-        let jets = self.jets.clone().map(Actuator::Jets);
-        jets.or_else(|| self.magnetorquers.clone().map(Actuator::Magnetorquers)).unwrap_or_default()
+    pub(super) fn device(&self) -> ActuatorKind {
+        let jets = self.jets.clone().map(ActuatorKind::Jets);
+        jets.or_else(|| self.magnetorquers.clone().map(ActuatorKind::Magnetorquers)).unwrap_or_default()
     }
 
     /// Checks the choice of the unloading actuator; returns a key within the unloading and the reason.
-    pub fn inconsistency(&self) -> Option<Fault> {
-        let at = |key: &str, why: &str| Some(Fault::new(key, why));
+    pub fn inconsistency(&self) -> Option<ConfigError> {
+        let at = |key: &str, why: &str| Some(ConfigError::new(key, why));
         match (&self.jets, &self.magnetorquers) {
             (None, None) => at("jets", "must be given, or `magnetorquers`"),
             (Some(_), Some(_)) => {
@@ -87,12 +89,12 @@ impl Unloading {
     }
 }
 
-impl Unloads {
+impl UnloadingTask {
     /// Checks the settings against the actuator; returns a key and the reason, and true if the key is within the
     /// actuator.
-    pub fn fault(&self, kind: &Actuator) -> Option<(Fault, bool)> {
+    pub fn fault(&self, kind: &ActuatorKind) -> Option<(ConfigError, bool)> {
         let (above, below) = (self.above.get(), self.below.get());
-        let at = |key: &str, why: String| Some((Fault::new(key, why), false));
+        let at = |key: &str, why: String| Some((ConfigError::new(key, why), false));
         if below >= above {
             return at("below", format!("must be less than `above`, {above} N m s, got {below}"));
         }
@@ -102,16 +104,16 @@ impl Unloads {
             ("phase", self.phase.is_some(), false),
         ];
         match kind {
-            Actuator::Jets(jets) => {
+            ActuatorKind::Jets(jets) => {
                 if let Some((key, ..)) = of_torquers.into_iter().find(|(_, given, _)| *given) {
                     return at(key, "applies only to `magnetorquers`: leave it out".to_owned());
                 }
                 if self.torque.is_none() {
                     return at("torque", "must be given with `jets`".to_owned());
                 }
-                jets_fault(jets).map(|fault| (fault, true))
+                validate_jets(jets).map(|fault| (fault, true))
             }
-            Actuator::Magnetorquers(_) => {
+            ActuatorKind::Magnetorquers(_) => {
                 if self.torque.is_some() {
                     return at("torque", "applies only to `jets`: leave it out".to_owned());
                 }
@@ -121,15 +123,15 @@ impl Unloads {
             other => {
                 let why =
                     "is for `jets` or `magnetorquers`, which can unload `wheels` or `control_moment_gyros`";
-                Some((Fault::new("", format!("{why}, got `{}`", other.kind())), false))
+                Some((ConfigError::new("", format!("{why}, got `{}`", other.kind())), false))
             }
         }
     }
 }
 
 /// Checks jets that unload wheels; returns a key of the jets and the reason.
-fn jets_fault(jets: &Jets) -> Option<Fault> {
-    let at = |key: &str, why: String| Some(Fault::new(key, why));
+fn validate_jets(jets: &Jets) -> Option<ConfigError> {
+    let at = |key: &str, why: String| Some(ConfigError::new(key, why));
     let Some(period) = jets.period.map(Span::seconds) else {
         return at("period", "must be given: the law's cycles are those of the wheels".to_owned());
     };
@@ -146,8 +148,8 @@ fn jets_fault(jets: &Jets) -> Option<Fault> {
 
 /// Run-time state of an actuator that unloads wheels.
 #[derive(Clone, Debug)]
-pub(super) struct Unloader {
-    pub actuator: Box<dyn Actuate>,
+pub(super) struct UnloaderState {
+    pub actuator: Box<dyn Actuator>,
     /// Momenta (N m s) at which unloading begins and ends.
     limits: [f64; 2],
     /// Gain of magnetorquers (1/s).
@@ -162,11 +164,11 @@ pub(super) struct Unloader {
     mean: Vector,
 }
 
-impl Unloader {
+impl UnloaderState {
     /// Creates the unloader before its first cycle.
-    pub fn new(unloads: &Unloads, kind: &Actuator, actuator: Box<dyn Actuate>) -> Self {
+    pub fn new(unloads: &UnloadingTask, kind: &ActuatorKind, actuator: Box<dyn Actuator>) -> Self {
         let (period, phase) = match kind {
-            Actuator::Jets(jets) => (jets.period, jets.phase),
+            ActuatorKind::Jets(jets) => (jets.period, jets.phase),
             _ => (unloads.period, unloads.phase),
         };
         Self {
@@ -187,12 +189,12 @@ impl Unloader {
     }
 
     /// Returns true if laws command magnetic moments, so that the magnetorquers do not unload.
-    pub fn is_taken(&self, demands: &[Demand]) -> bool {
+    pub fn is_commanded(&self, demands: &[Demand]) -> bool {
         self.gain.is_some() && demands.iter().any(|demand| matches!(demand, Demand::Moment(_)))
     }
 
     /// Executes the demands of laws that command the magnetorquers.
-    pub fn take(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
+    pub fn execute(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
         self.actuator.command(now, demands, rigid);
         (self.active, self.mean) = (false, Vector::zeros());
     }
@@ -207,7 +209,7 @@ impl Unloader {
         demands: &[Demand],
     ) -> Option<Vector> {
         let begins = self.next == now;
-        let taken = self.is_taken(demands);
+        let taken = self.is_commanded(demands);
         if begins {
             self.next = now + self.period;
             if !taken {
@@ -217,14 +219,14 @@ impl Unloader {
                 self.actuator.command(now, &wanted.data.0[0].map(Demand::Torque), [0.0; 3]);
             }
         }
-        self.actuator.serve(now, rigid);
+        self.actuator.update(now, rigid);
         if !begins || taken {
             return None;
         }
         let mean = if self.gain.is_some() {
-            Vector::from_fn(|axis, _| self.actuator.torque(axis))
+            Vector::from_fn(|axis, _| self.actuator.held_torque(axis))
         } else {
-            self.actuator.impulse() / self.period.seconds()
+            self.actuator.cycle_impulse() / self.period.seconds()
         };
         // The mean torque of jets is 0 most of the time; that of magnetorquers changes with the field each time.
         (std::mem::replace(&mut self.mean, mean) != mean || self.gain.is_some()).then_some(mean)

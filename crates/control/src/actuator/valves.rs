@@ -1,16 +1,16 @@
 //! Valves of jets: which thrusters are open, their failures, and the propellant flow.
 
-use super::failure::{Added, Failing, Failure, Lasting};
-use super::{Jets, OpenThruster, Thruster};
+use super::failure::{ActiveFailures, Added, Failure, FailureScope};
+use super::{Jets, Thruster, ThrusterEffect};
 use crate::quantity::Finite;
 use crate::time::Instant;
-use crate::wrench::{Push, Wrench};
+use crate::wrench::{ForceEffect, Wrench};
 
 /// Thrusters of a body, each with its failures.
 #[derive(Clone, Debug)]
 pub(super) struct Valves {
-    nozzles: Vec<OpenThruster>,
-    failing: Vec<Option<Failing>>,
+    nozzles: Vec<ThrusterEffect>,
+    failing: Vec<Option<ActiveFailures>>,
     /// Commanded opening of each thruster: 1, or the number of groups that open it.
     open: Vec<f64>,
     /// Propellant used (kg) until the time `since`, and the flow from then on (kg/s).
@@ -24,9 +24,9 @@ pub(super) struct Valves {
 
 impl Valves {
     /// Creates the closed valves of jets with these nozzles.
-    pub fn new(jets: &Jets, nozzles: &[OpenThruster]) -> Self {
-        let failing = |(nozzle, thruster): (&OpenThruster, &Thruster)| {
-            let own = |of: &Lasting<'_>| of.thruster.is_none_or(|name| name == thruster.name);
+    pub fn new(jets: &Jets, nozzles: &[ThrusterEffect]) -> Self {
+        let failing = |(nozzle, thruster): (&ThrusterEffect, &Thruster)| {
+            let own = |of: &FailureScope<'_>| of.thruster.is_none_or(|name| name == thruster.name);
             // An added thrust is converted to a fraction of the thrust.
             let part = |failure: &Failure| match failure {
                 Failure::Added(added) => {
@@ -35,7 +35,7 @@ impl Valves {
                 }
                 other => other.clone(),
             };
-            Failing::new(&jets.faults.iter().map(part).collect::<Vec<_>>(), own)
+            ActiveFailures::new(&jets.faults.iter().map(part).collect::<Vec<_>>(), own)
         };
         Self {
             failing: nozzles.iter().zip(&jets.thrusters).map(failing).collect(),
@@ -50,30 +50,30 @@ impl Valves {
     }
 
     /// Returns true if any thruster has failures.
-    pub fn fail(&self) -> bool {
+    pub fn have_failures(&self) -> bool {
         self.failing.iter().any(Option::is_some)
     }
 
     /// Returns the next time at which a failure begins or ends.
     pub fn due(&self) -> Option<Instant> {
-        self.failing.iter().flatten().filter_map(Failing::due).min()
+        self.failing.iter().flatten().filter_map(ActiveFailures::due).min()
     }
 
     /// Returns the time of the last change.
-    pub fn since(&self) -> Instant {
+    pub fn last_change(&self) -> Instant {
         self.since
     }
 
     /// Returns each thruster with the fraction of its thrust.
-    fn parts(&self) -> impl Iterator<Item = (&OpenThruster, f64)> {
-        let of = |((nozzle, failing), open): ((_, &Option<Failing>), &f64)| {
-            (nozzle, failing.as_ref().map_or(*open, |failing| failing.of(*open)))
+    fn parts(&self) -> impl Iterator<Item = (&ThrusterEffect, f64)> {
+        let of = |((nozzle, failing), open): ((_, &Option<ActiveFailures>), &f64)| {
+            (nozzle, failing.as_ref().map_or(*open, |failing| failing.output(*open)))
         };
         self.nozzles.iter().zip(&self.failing).zip(&self.open).map(of)
     }
 
     /// Sets the opening of each valve from `now` on, and starts and ends failures.
-    pub fn set(&mut self, now: Instant, open: impl Fn(usize) -> f64) {
+    pub fn set_open(&mut self, now: Instant, open: impl Fn(usize) -> f64) {
         let seconds = now.since(self.since).seconds();
         self.fuel += self.flow * seconds;
         self.fuels.iter_mut().zip(&self.flows).for_each(|(fuel, flow)| *fuel += flow * seconds);
@@ -81,7 +81,7 @@ impl Valves {
         for (index, (own, failing)) in self.open.iter_mut().zip(&mut self.failing).enumerate() {
             *own = open(index);
             if let Some(failing) = failing {
-                failing.serve(now, *own);
+                failing.update(now, *own);
             }
         }
         self.flows = self.parts().map(|(nozzle, part)| nozzle.flow * part).collect();
@@ -90,7 +90,7 @@ impl Valves {
 
     /// Returns the propellant used (kg) until `remaining` (s) after the last change, by thruster, without further
     /// changes.
-    pub fn fuel(&self, remaining: impl Fn(usize) -> f64) -> f64 {
+    pub fn propellant(&self, remaining: impl Fn(usize) -> f64) -> f64 {
         let until =
             self.parts().enumerate().map(|(index, (nozzle, part))| nozzle.flow * part * remaining(index));
         self.fuel + until.sum::<f64>()
@@ -103,7 +103,7 @@ impl Valves {
     }
 
     /// Returns the current fraction of the thrust of each thruster.
-    pub fn open(&self) -> Vec<f64> {
+    pub fn open_fractions(&self) -> Vec<f64> {
         self.parts().map(|(_, part)| part).collect()
     }
 
@@ -115,14 +115,14 @@ impl Valves {
     /// Adds the effect of the open thrusters to `onto`.
     pub fn exert(&self, onto: &mut Wrench) {
         for (nozzle, part) in self.parts().filter(|(_, part)| *part != 0.0) {
-            onto.push(&scaled(&nozzle.push, part));
+            onto.add_force_effect(&scaled(&nozzle.push, part));
         }
     }
 }
 
 /// Returns a push multiplied by a factor.
-pub(super) fn scaled(push: &Push, part: f64) -> Push {
-    Push {
+pub(super) fn scaled(push: &ForceEffect, part: f64) -> ForceEffect {
+    ForceEffect {
         torque: push.torque * part,
         forces: push.forces.iter().map(|force| force * part).collect(),
         force: push.force * part,

@@ -3,17 +3,17 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::allocation::{Allocation, Choice};
-use super::failure::{Failing, Lasting};
+use super::failure::{ActiveFailures, FailureScope};
 use super::per_wheel::PerWheel;
-use super::unloading::Unloading;
+use super::unloading::WheelUnloading;
+use super::wheel_allocation::{Allocation, AllocationCriterion};
 use super::{Failure, Friction, Imbalance};
 use crate::attitude::Vector;
 use crate::body::Spatial;
 use crate::body::craft::HubRotor;
 use crate::count::counted;
-use crate::document::Fault;
-use crate::motion::turning::{Bearing, Flexible};
+use crate::document::ConfigError;
+use crate::motion::three_axis::{Bearing, FlexibleBody};
 use crate::quantity::{Finite, NonNegative, Positive};
 
 /// Reaction wheels, identical except for their axes and initial speeds.
@@ -50,19 +50,19 @@ pub struct Wheels {
     pub friction: Option<Box<Friction>>,
     /// Friction compensation by the drives, from the wheel speeds available to them; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub compensation: Option<Box<Compensation>>,
+    pub compensation: Option<Box<FrictionCompensation>>,
     /// Imbalance of the wheels; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub imbalance: Option<Box<Imbalance>>,
     /// How the demanded torque is distributed over the wheels.
     #[serde(default)]
-    pub allocation: Choice,
+    pub allocation: AllocationCriterion,
     /// For four wheels: a bias speed, maintained by torques that cancel each other; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub speed_bias: Option<SpeedBias>,
     /// Unloading by jets or magnetorquers; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub unloading: Option<Box<Unloading>>,
+    pub unloading: Option<Box<WheelUnloading>>,
     /// Intervals in which their motors fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
@@ -71,7 +71,8 @@ pub struct Wheels {
 /// Friction of the wheels as the drives model it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Compensation {
+#[schemars(rename = "Compensation")]
+pub struct FrictionCompensation {
     /// Coulomb friction (N m): one number for all wheels, or one for each.
     #[serde(default)]
     pub coulomb: PerWheel<NonNegative>,
@@ -114,9 +115,9 @@ impl Wheels {
     }
 
     /// Returns the failures of a wheel, if it has any.
-    pub(super) fn failing(&self, wheel: usize) -> Option<Failing> {
-        let own = |of: &Lasting<'_>| of.wheel.is_none_or(|number| number.get() as usize == wheel + 1);
-        Failing::new(&self.faults, own)
+    pub(super) fn wheel_failures(&self, wheel: usize) -> Option<ActiveFailures> {
+        let own = |of: &FailureScope<'_>| of.wheel.is_none_or(|number| number.get() as usize == wheel + 1);
+        ActiveFailures::new(&self.faults, own)
     }
 
     pub(super) fn speeds(&self, count: usize) -> Vec<f64> {
@@ -126,40 +127,42 @@ impl Wheels {
     /// Checks all keys and returns the allocation of a torque to the wheels.
     ///
     /// # Errors
-    /// A `Fault` with a key that does not fit the others and the reason.
-    pub fn allocation(&self) -> Result<Allocation, Fault> {
+    /// A `ConfigError` with a key that does not fit the others and the reason.
+    pub fn allocation(&self) -> Result<Allocation, ConfigError> {
         let axes = self.directions()?;
         let count = axes.len();
-        if self.allocation == Choice::LeastLargest && count > 4 {
+        if self.allocation == AllocationCriterion::LeastLargest && count > 4 {
             let why = format!("must be `pseudo_inverse` for more than four wheels, got {count}");
-            return Err(Fault::new("allocation", why));
+            return Err(ConfigError::new("allocation", why));
         }
         let why = "must span all three axes: the given ones lie in a plane, or nearly so";
         let allocation = Allocation::new(&axes, self.allocation)
-            .ok_or_else(|| Fault::new(if self.axes.is_empty() { "cant" } else { "axes" }, why))?;
+            .ok_or_else(|| ConfigError::new(if self.axes.is_empty() { "cant" } else { "axes" }, why))?;
         if !self.speeds.is_empty() && self.speeds.len() != count {
             let why =
                 format!("must be one for each of {}, got {}", counted(count, "wheel"), self.speeds.len());
-            return Err(Fault::new("speeds", why));
+            return Err(ConfigError::new("speeds", why));
         }
         if let Some((wheel, speed)) = self.beyond_limits(&self.speeds(count)) {
             let why = format!("must be within `speed_limit` and `momentum`, got {speed}");
-            return Err(Fault::new(format!("speeds[{wheel}]"), why));
+            return Err(ConfigError::new(format!("speeds[{wheel}]"), why));
         }
-        if self.speed_bias.is_some() && allocation.null().is_none() {
+        if self.speed_bias.is_some() && allocation.null_vector().is_none() {
             let why =
                 format!("needs four wheels, whose torques can cancel each other in one way, got {count}");
-            return Err(Fault::new("speed_bias", why));
+            return Err(ConfigError::new("speed_bias", why));
         }
         if let Some(friction) = &self.friction {
-            friction.check(count).map_err(|fault| fault.within("friction"))?;
+            friction.validate(count).map_err(|fault| fault.within("friction"))?;
             friction
                 .check_of((self.inertia.get(), self.torque.map(Positive::get)), count)
                 .map_err(|fault| fault.within("friction"))?;
         }
         if let Some(compensation) = &self.compensation {
-            let Compensation { coulomb, viscous } = &**compensation;
-            let checked = coulomb.check("coulomb", count).and_then(|()| viscous.check("viscous", count));
+            let FrictionCompensation { coulomb, viscous } = &**compensation;
+            let checked = coulomb
+                .validate_count("coulomb", count)
+                .and_then(|()| viscous.validate_count("viscous", count));
             checked.map_err(|fault| fault.within("compensation"))?;
         }
         if let Some(imbalance) = &self.imbalance {
@@ -169,7 +172,7 @@ impl Wheels {
     }
 
     /// Returns the key by which a wheel's motion depends on that of the body: friction, imbalance, or `None`.
-    pub fn bears(&self) -> Option<&'static str> {
+    pub fn bearing_key(&self) -> Option<&'static str> {
         match (&self.friction, &self.imbalance) {
             (Some(_), _) => Some("friction"),
             (None, Some(_)) => Some("imbalance"),
@@ -178,14 +181,17 @@ impl Wheels {
     }
 
     /// Returns the key by which wheels can stick or vibrate the body: friction, imbalance, or `None`.
-    pub fn rubs_or_shakes(&self) -> Option<&'static str> {
+    pub fn friction_or_imbalance_key(&self) -> Option<&'static str> {
         let wheels = self.rotors().map_or(0, |rotors| rotors.len());
-        let grips = self.friction.as_ref().is_some_and(|of| (0..wheels).any(|wheel| of.holds(wheel) > 0.0));
+        let grips = self
+            .friction
+            .as_ref()
+            .is_some_and(|of| (0..wheels).any(|wheel| of.breakaway_torque(wheel) > 0.0));
         if grips { Some("friction") } else { self.imbalance.as_ref().map(|_| "imbalance") }
     }
 
     /// Returns the largest initial speed or bias speed (rad/s).
-    pub fn fastest(&self) -> f64 {
+    pub fn largest_initial_speed(&self) -> f64 {
         let bias = self.speed_bias.map_or(0.0, |bias| bias.speed.get().abs());
         self.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::max)
     }
@@ -193,19 +199,21 @@ impl Wheels {
     /// Returns the bearings of the wheels on a body.
     ///
     /// # Errors
-    /// A `Fault` with a key within the wheels and the reason.
-    pub fn bearings(&self, body: (&Spatial, &Flexible)) -> Result<Vec<Bearing>, Fault> {
+    /// A `ConfigError` with a key within the wheels and the reason.
+    pub fn bearings(&self, body: (&Spatial, &FlexibleBody)) -> Result<Vec<Bearing>, ConfigError> {
         let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
             let lines = match &self.imbalance {
-                Some(of) => of.lines(wheel, &rotor, body).map_err(|fault| fault.within("imbalance"))?,
+                Some(of) => {
+                    of.harmonic_lines(wheel, &rotor, body).map_err(|fault| fault.within("imbalance"))?
+                }
                 None => Vec::new(),
             };
             Ok(Bearing {
                 inertia: rotor.spin_inertia,
-                viscous: friction.map_or(0.0, |of| of.viscous.of(wheel).get()),
-                coulomb: friction.map_or(0.0, |of| of.coulomb.of(wheel).get()),
-                breakaway: friction.map_or(0.0, |of| of.holds(wheel)),
+                viscous: friction.map_or(0.0, |of| of.viscous.for_wheel(wheel).get()),
+                coulomb: friction.map_or(0.0, |of| of.coulomb.for_wheel(wheel).get()),
+                breakaway: friction.map_or(0.0, |of| of.breakaway_torque(wheel)),
                 lines,
             })
         };
@@ -215,24 +223,24 @@ impl Wheels {
     /// Returns the rotors of the wheels.
     ///
     /// # Errors
-    /// A `Fault` with a key that does not fit the others and the reason.
-    pub fn rotors(&self) -> Result<Vec<HubRotor>, Fault> {
+    /// A `ConfigError` with a key that does not fit the others and the reason.
+    pub fn rotors(&self) -> Result<Vec<HubRotor>, ConfigError> {
         let spin_inertia = self.inertia.get();
         Ok(self.directions()?.into_iter().map(|axis| HubRotor { axis, spin_inertia }).collect())
     }
 
     /// Returns the unit axes of the wheels.
-    fn directions(&self) -> Result<Vec<Vector>, Fault> {
+    fn directions(&self) -> Result<Vec<Vector>, ConfigError> {
         let Some(arrangement) = self.arrangement else {
             return self.given();
         };
         if !self.axes.is_empty() {
-            return Err(Fault::new("axes", "must be left out with an `arrangement`"));
+            return Err(ConfigError::new("axes", "must be left out with an `arrangement`"));
         }
         if arrangement == Arrangement::Orthogonal {
             let why = "applies only to a pyramid: leave it out";
             let straight = vec![Vector::x(), Vector::y(), Vector::z()];
-            return if self.cant.is_some() { Err(Fault::new("cant", why)) } else { Ok(straight) };
+            return if self.cant.is_some() { Err(ConfigError::new("cant", why)) } else { Ok(straight) };
         }
         let (up, across) = libm::sincos(self.cant.map_or(EQUAL_CANT, Finite::get));
         let part = across * std::f64::consts::FRAC_1_SQRT_2;
@@ -240,17 +248,17 @@ impl Wheels {
         Ok(signs.map(|[x, y]| Vector::new(x * part, y * part, up)).to_vec())
     }
 
-    fn given(&self) -> Result<Vec<Vector>, Fault> {
+    fn given(&self) -> Result<Vec<Vector>, ConfigError> {
         if self.axes.is_empty() {
-            return Err(Fault::new("axes", "must be given without an `arrangement`"));
+            return Err(ConfigError::new("axes", "must be given without an `arrangement`"));
         }
         if self.cant.is_some() {
-            return Err(Fault::new("cant", "applies only to an `arrangement`, and none is given"));
+            return Err(ConfigError::new("cant", "applies only to an `arrangement`, and none is given"));
         }
         let unit = |(index, axis): (usize, &[Finite; 3])| {
             let axis = Vector::from(axis.map(Finite::get));
             let length = axis.norm();
-            let why = || Fault::new(format!("axes[{index}]"), "must not be zero, got [0, 0, 0]");
+            let why = || ConfigError::new(format!("axes[{index}]"), "must not be zero, got [0, 0, 0]");
             if length > 0.0 { Ok(axis / length) } else { Err(why()) }
         };
         self.axes.iter().enumerate().map(unit).collect()

@@ -9,26 +9,27 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::own::{Halt, Own};
+use crate::custom::{Custom, PartError};
 use crate::random::Seed;
 use crate::time::{Instant, Span};
 
 pub use crate::record::Decision;
 pub use objective::Objective;
-pub use random_search::{RandomSearch, SearchState, SearchStep};
+pub use random_search::{RandomSearch, RandomSearchState, SearchStep};
 
 /// The kinds of adaptation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Adaptation {
+#[schemars(rename = "Adaptation")]
+pub enum AdaptationKind {
     /// Random search with learning, based on an objective over consecutive windows.
     RandomSearch(RandomSearch),
     /// An adaptation from another crate; a scenario file cannot name it.
-    Own(Own<dyn Adapt>),
+    Own(Custom<dyn AdaptationSpec>),
 }
 
 /// Settings of an adaptation that another crate provides.
-pub trait Adapt: Send + Sync {
+pub trait AdaptationSpec: Send + Sync {
     /// Returns the key of the law's parameter that is tuned.
     fn tunes(&self) -> &str;
 
@@ -43,7 +44,7 @@ pub trait Adapt: Send + Sync {
     }
 
     /// Returns the run-time state of the adaptation, for a parameter that starts at `value`.
-    fn start(&self, value: f64, seed: Seed) -> Box<dyn Learn>;
+    fn start(&self, value: f64, seed: Seed) -> Box<dyn Adaptation>;
 
     /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
@@ -52,27 +53,27 @@ pub trait Adapt: Send + Sync {
 }
 
 /// Run-time state of an adaptation.
-pub trait Learn: fmt::Debug + Send + Sync {
+pub trait Adaptation: fmt::Debug + Send + Sync {
     /// Updates the adaptation with the objective over the window that ends at `now`. Returns its step; `None` once it
     /// has ended.
     fn learn(&mut self, now: Instant, measured: f64) -> Option<SearchStep>;
 
     /// Returns the error that an adaptation of another crate failed with; the run ends there.
-    fn halted(&self) -> Option<Halt> {
+    fn halted(&self) -> Option<PartError> {
         None
     }
 
     /// Returns a copy in the same state.
-    fn copy(&self) -> Box<dyn Learn>;
+    fn copy(&self) -> Box<dyn Adaptation>;
 }
 
-impl Clone for Box<dyn Learn> {
+impl Clone for Box<dyn Adaptation> {
     fn clone(&self) -> Self {
         self.copy()
     }
 }
 
-impl Adaptation {
+impl AdaptationKind {
     /// Returns the key of the law's parameter that is tuned.
     pub fn tunes(&self) -> &str {
         match self {
@@ -106,11 +107,12 @@ impl Adaptation {
     }
 
     /// Returns the run-time state of the adaptation, for a parameter that starts at `value`.
-    pub fn start(&self, value: f64, seed: Seed) -> Box<dyn Learn> {
+    pub fn start(&self, value: f64, seed: Seed) -> Box<dyn Adaptation> {
         match self {
-            Self::RandomSearch(constants) => {
-                Box::new(random_search::Drawing::new(SearchState::new(constants.clone(), value), seed))
-            }
+            Self::RandomSearch(constants) => Box::new(random_search::RandomSearchRun::new(
+                RandomSearchState::new(constants.clone(), value),
+                seed,
+            )),
             Self::Own(own) => own.start(value, seed),
         }
     }

@@ -46,8 +46,8 @@ impl Objective {
     ];
 
     /// Returns the objective with this name in a scenario.
-    pub fn named(word: &str) -> Option<Self> {
-        Self::ALL.into_iter().find(|objective| objective.word() == word)
+    pub fn from_key(word: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|objective| objective.key() == word)
     }
 
     /// Returns true for the default.
@@ -56,7 +56,7 @@ impl Objective {
     }
 
     /// Returns the name of the objective in a scenario.
-    pub fn word(self) -> &'static str {
+    pub fn key(self) -> &'static str {
         match self {
             Self::EnvelopeMean => "envelope_mean",
             Self::PointingErrorMean => "pointing_error_mean",
@@ -98,9 +98,9 @@ mod tests {
             objective: Objective,
         }
         for objective in Objective::ALL {
-            let text = format!("objective = \"{}\"", objective.word());
+            let text = format!("objective = \"{}\"", objective.key());
             assert_eq!(crate::document::from_text::<Of>(&text).unwrap().objective, objective);
-            assert_eq!(Objective::named(objective.word()), Some(objective));
+            assert_eq!(Objective::from_key(objective.key()), Some(objective));
         }
     }
 }

@@ -8,7 +8,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Learn, Objective};
+use super::{Adaptation, Objective};
 use crate::quantity::{Finite, Positive};
 use crate::random::{Seed, Stream};
 use crate::record::Decision;
@@ -88,7 +88,7 @@ pub struct SearchStep {
 
 /// Run-time state of the search, without its random numbers.
 #[derive(Clone, Debug)]
-pub struct SearchState {
+pub struct RandomSearchState {
     constants: RandomSearch,
     gain: f64,
     draw: f64,
@@ -98,7 +98,7 @@ pub struct SearchState {
     frozen: bool,
 }
 
-impl SearchState {
+impl RandomSearchState {
     /// Creates a search that starts from the law's own gain.
     pub fn new(constants: RandomSearch, gain: f64) -> Self {
         Self { constants, gain, draw: 0.0, previous: None, falls: 0, settled: 0, frozen: false }
@@ -150,24 +150,24 @@ impl SearchState {
 
 /// Run-time state of the search with its random stream, of which each window draws one number.
 #[derive(Clone, Debug)]
-pub(super) struct Drawing {
-    search: SearchState,
+pub(super) struct RandomSearchRun {
+    search: RandomSearchState,
     draws: Stream,
 }
 
-impl Drawing {
+impl RandomSearchRun {
     /// Creates a search for a run.
-    pub fn new(search: SearchState, seed: Seed) -> Self {
+    pub fn new(search: RandomSearchState, seed: Seed) -> Self {
         Self { search, draws: seed.stream("adaptation") }
     }
 }
 
-impl Learn for Drawing {
+impl Adaptation for RandomSearchRun {
     fn learn(&mut self, now: Instant, mean: f64) -> Option<SearchStep> {
         self.search.learn(now, mean, self.draws.uniform())
     }
 
-    fn copy(&self) -> Box<dyn Learn> {
+    fn copy(&self) -> Box<dyn Adaptation> {
         Box::new(self.clone())
     }
 }

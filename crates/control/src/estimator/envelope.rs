@@ -11,9 +11,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Mode;
-use crate::body::spatial::SpatialMode;
-use crate::motion::State;
-use crate::numerics::decay::exp;
+use crate::body::spatial::ThreeAxisMode;
+use crate::motion::AxisState;
+use crate::numerics::exp_branch_free::exp;
 use crate::numerics::phasor::{Complex, Phasor, abs, polar};
 use crate::numerics::trig::sincos_any;
 use crate::numerics::{swing_damped, swing_integral};
@@ -26,7 +26,7 @@ use crate::time::{Instant, Span};
 pub struct Envelope {
     /// How the phasors are computed.
     #[serde(default)]
-    pub form: Form,
+    pub form: EnvelopeMethod,
     /// Length of the windows over which the envelope is averaged (s).
     pub window: Span,
     /// Modes of the monitor's model; default: the body's own.
@@ -37,7 +37,8 @@ pub struct Envelope {
 /// How the phasors are computed. All forms agree to rounding if the model is right.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Form {
+#[schemars(rename = "Form")]
+pub enum EnvelopeMethod {
     /// Dynamic estimation: the paper's A and B, equation (3), integrated exactly.
     #[default]
     Dynamic,
@@ -50,9 +51,9 @@ pub enum Form {
 /// Run-time state of the envelope observer.
 #[derive(Clone, Debug)]
 pub struct EnvelopeMonitor {
-    form: Form,
+    form: EnvelopeMethod,
     mobility: f64,
-    tracks: Vec<Track>,
+    tracks: Vec<ModePhasor>,
     now: Instant,
     /// Integral of the total envelope since the window began (rad s).
     integral: f64,
@@ -60,7 +61,7 @@ pub struct EnvelopeMonitor {
 
 /// Phasor of one mode.
 #[derive(Clone, Debug)]
-struct Track {
+struct ModePhasor {
     frequency: f64,
     damped: f64,
     decay: f64,
@@ -85,17 +86,17 @@ impl EnvelopeMonitor {
         Self {
             form: spec.form,
             mobility: 1.0 / inertia,
-            tracks: modes.iter().map(Track::new).collect(),
+            tracks: modes.iter().map(ModePhasor::new).collect(),
             now: Instant::START,
             integral: 0.0,
         }
     }
 
     /// Creates the observer of a three-axis body: each free mode with its rotation at the sensor.
-    pub fn of_three_axes(spec: &Envelope, modes: &[(SpatialMode, f64)]) -> Self {
-        let track = |(mode, rotation): &(SpatialMode, f64)| {
+    pub fn of_three_axes(spec: &Envelope, modes: &[(ThreeAxisMode, f64)]) -> Self {
+        let track = |(mode, rotation): &(ThreeAxisMode, f64)| {
             let start = Mode::at_rest(mode.frequency, Finite::default(), mode.damping);
-            let mut track = Track::new(&start);
+            let mut track = ModePhasor::new(&start);
             track.frame = track.phasor(rotation * mode.displacement.get(), rotation * mode.rate.get());
             track.deviation = track.frame;
             track.rotation = *rotation;
@@ -111,13 +112,13 @@ impl EnvelopeMonitor {
     }
 
     /// Returns true for the reference form, which reads the true state at every event.
-    pub fn is_true(&self) -> bool {
-        self.form == Form::Truth
+    pub fn uses_true_state(&self) -> bool {
+        self.form == EnvelopeMethod::Truth
     }
 
     /// Advances the phasors to `now` under the torque that held since the last call. `truth` is the body's state at
     /// `now`, which only the form `truth` uses.
-    pub fn advance(&mut self, now: Instant, truth: &State) {
+    pub fn advance(&mut self, now: Instant, truth: &AxisState) {
         let h = now.since(self.now).seconds();
         let t = now.seconds();
         self.now = now;
@@ -127,15 +128,15 @@ impl EnvelopeMonitor {
             track.axis = Complex { re: cos, im: sin };
             let shrink = if track.decay > 0.0 { exp(-(track.decay * h)) } else { 1.0 };
             match self.form {
-                Form::Dynamic => {
+                EnvelopeMethod::Dynamic => {
                     track.frame = track.frame * shrink + track.equilibrium * (track.axis - from * shrink);
                     track.deviation = track.frame * track.axis.conj() - track.equilibrium;
                 }
-                Form::Trigonometric => {
+                EnvelopeMethod::Trigonometric => {
                     track.frame *= shrink;
                     track.deviation = track.frame * track.axis.conj();
                 }
-                Form::Truth => {
+                EnvelopeMethod::Truth => {
                     let phase = truth.modes[index];
                     let rate = track.frequency * phase.quadrature;
                     let z = track.phasor(phase.displacement, rate);
@@ -153,19 +154,19 @@ impl EnvelopeMonitor {
     }
 
     /// Sets the modal forces (N/sqrt(kg)) of a three-axis body that act from now on.
-    pub fn push(&mut self, forces: &[f64]) {
+    pub fn set_modal_forces(&mut self, forces: &[f64]) {
         let force = |index: usize| forces.get(index).copied().unwrap_or(0.0);
         self.hold(|index, track| track.rotation * force(index) / (track.frequency * track.frequency));
     }
 
     /// Sets the equilibrium displacements (rad) of the modes from now on.
-    fn hold(&mut self, at: impl Fn(usize, &Track) -> f64) {
+    fn hold(&mut self, at: impl Fn(usize, &ModePhasor) -> f64) {
         for (index, track) in self.tracks.iter_mut().enumerate() {
             let equilibrium = track.phasor(at(index, track), 0.0);
             let shift = track.equilibrium - equilibrium;
             track.equilibrium = equilibrium;
             track.deviation += shift;
-            if self.form == Form::Trigonometric {
+            if self.form == EnvelopeMethod::Trigonometric {
                 track.frame += shift * track.axis;
             }
         }
@@ -174,7 +175,7 @@ impl EnvelopeMonitor {
     /// Loads the state that a batch has computed up to `now`: the integral since the window began (rad s), and of each
     /// mode the phasor in the rotating frame, that frame's axis, the real part of the equilibrium, and the deviation
     /// from it.
-    pub fn take_over(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
+    pub fn load(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
         (self.now, self.integral) = (now, integral);
         for (track, [re, im, cos, sin, equilibrium, x, y]) in
             self.tracks.iter_mut().zip(tracks.iter().copied())
@@ -202,7 +203,7 @@ impl EnvelopeMonitor {
     }
 }
 
-impl Track {
+impl ModePhasor {
     fn new(mode: &Mode) -> Self {
         let (frequency, zeta) = (mode.frequency.get(), mode.damping.get());
         let mut track = Self {

@@ -1,17 +1,17 @@
 //! Estimators: they compute the laws' state estimate from commands and measurements.
 
+mod adaptation_run;
 pub mod adaptive;
+mod applied_pulses;
 pub mod attitude;
 mod consistency;
-mod direct;
 mod envelope;
-mod given;
+mod envelope_monitor;
 pub mod kalman;
-mod meter;
-mod monitor;
+mod objective_meter;
+mod pass_through;
 mod rigid_rate;
 mod sampled;
-mod searching;
 
 use std::any::Any;
 use std::borrow::Cow;
@@ -20,36 +20,37 @@ use std::fmt;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::actuator::Actuate;
-use crate::belief::{Belief, Damped, Reads};
+use crate::actuator::Actuator;
 use crate::body::{Drift, Mode, Planar};
-use crate::motion::State;
-use crate::own::{Halt, Own};
+use crate::custom::{Custom, PartError};
+use crate::motion::AxisState;
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Seed;
 use crate::record;
 use crate::sensor::{Orientation, Reading};
+use crate::state_estimate::{DampingStatus, EstimateNeeds, StateEstimate};
 use crate::time::{Instant, Span};
 
+pub use adaptation_run::AdaptationRun;
 pub use adaptive::Adaptive;
+pub use applied_pulses::AppliedPulses;
 pub use attitude::AttitudeFilter;
 pub use consistency::chi_square;
-pub use envelope::{Envelope, EnvelopeMonitor, Form};
-pub use given::GivenRecord;
+pub use envelope::{Envelope, EnvelopeMethod, EnvelopeMonitor};
+pub use envelope_monitor::{EnvelopeWindow, WindowedEnvelope};
 pub use kalman::{FrequencyTracking, Kalman};
-pub use meter::{Beside, Meter, WindowMeans};
-pub use monitor::{Monitor, WindowEnd};
+pub use objective_meter::{MotionSample, ObjectiveMeter, ObjectiveWindow};
 pub use rigid_rate::RigidRate;
-pub use searching::Searching;
 
 /// The kinds of estimator.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Estimator {
+#[schemars(rename = "Estimator")]
+pub enum EstimatorKind {
     /// The envelope of the elastic modes and its window means.
     Envelope(Envelope),
     /// The true dominant mode, as an ideal observer gives it.
-    Truth(Truth),
+    Truth(IdealObserver),
     /// A Kalman filter of the motion, with constant natural frequencies.
     Kalman(Kalman),
     /// An extended Kalman filter of the motion and the natural frequencies.
@@ -63,13 +64,13 @@ pub enum Estimator {
     /// Adaptive observers of the rigid rates and elastic modes of a spatial body.
     Adaptive(Box<Adaptive>),
     /// An estimator from another crate; a scenario file cannot name it.
-    Own(Own<dyn Observe>),
+    Own(Custom<dyn EstimatorSpec>),
 }
 
 /// Settings of an estimator that another crate provides. Such an estimator acts at samples.
-pub trait Observe: Send + Sync {
+pub trait EstimatorSpec: Send + Sync {
     /// Returns the run-time state of the estimator in a scenario.
-    fn start(&self, known: &Known<'_>, seed: Seed) -> Box<dyn Estimate>;
+    fn start(&self, known: &EstimatorContext<'_>, seed: Seed) -> Box<dyn Estimator>;
 
     /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
@@ -80,18 +81,19 @@ pub trait Observe: Send + Sync {
 /// An ideal observer.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Truth {
+#[schemars(rename = "Truth")]
+pub struct IdealObserver {
     /// Angle and rate that the law reads in addition to the dominant mode: `modes` for the measured ones, `hub`, or `rigid`;
     /// default: `modes` for a law that reads the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub feeds: Option<Feeds>,
+    pub feeds: Option<EstimateOutputs>,
 }
 
 /// Scenario data that an estimator is built from.
 #[derive(Clone, Debug)]
-pub struct Known<'a> {
+pub struct EstimatorContext<'a> {
     /// Estimator that the scenario asks for, if any.
-    pub estimator: Option<&'a Estimator>,
+    pub estimator: Option<&'a EstimatorKind>,
     /// Single-axis models of the body, one for each of its axes.
     pub axes: &'a [Planar],
     /// Back-EMF torque of a wheel per unit of rate (N m s); true if the rate is that of the elastic body, not the rigid
@@ -106,15 +108,15 @@ pub struct Known<'a> {
     /// Standard deviation of the measured rate (rad/s) about each axis; `None` where no rate is measured.
     pub rate_noise: Vec<Option<f64>>,
     /// Estimates that the law about each axis reads.
-    pub reads: Vec<Reads>,
+    pub reads: Vec<EstimateNeeds>,
     /// Design of adaptive observers, if they are used.
     pub adaptive: Option<&'a adaptive::ObserverDesign>,
     /// Noise, latency and role of each sensor for an attitude filter.
-    pub attitude: Option<&'a attitude::AttitudeSetting>,
+    pub attitude: Option<&'a attitude::FilterSetup>,
 }
 
 /// Sensor sample with its time, the target, the actuator and the true state.
-pub struct Taken<'a> {
+pub struct SampleContext<'a> {
     /// Time of the sample.
     pub now: Instant,
     /// Angle (rad) and rate (rad/s) about each axis; `None` if the sensor is silent.
@@ -124,43 +126,43 @@ pub struct Taken<'a> {
     /// Orientation from which angles are measured.
     pub origin: &'a Orientation,
     /// True motion about an axis, for ideal observers.
-    pub truth: &'a dyn Fn(usize) -> Cow<'a, State>,
+    pub truth: &'a dyn Fn(usize) -> Cow<'a, AxisState>,
     /// Actuator with its executed and waiting pulses.
-    pub actuator: &'a dyn Actuate,
+    pub actuator: &'a dyn Actuator,
     /// Longest lead time (s) for which laws read predicted elastic rates.
     pub ahead: f64,
 }
 
 /// Run-time state of an estimator, which writes the whole state estimate of each axis.
-pub trait Estimate: fmt::Debug + Send + Sync {
+pub trait Estimator: fmt::Debug + Send + Sync {
     /// Sets the reduced moments about the axes (rad/s²) that the actuator applies from now on.
-    fn given(&mut self, _now: Instant, _moments: [f64; 3]) {}
+    fn input_changed(&mut self, _now: Instant, _moments: [f64; 3]) {}
 
     /// Adds the rate change about the first axis (rad/s) that a command waveform has caused.
-    fn pushed(&mut self, _impulse: f64) {}
+    fn add_waveform_impulse(&mut self, _impulse: f64) {}
 
     /// Updates the state estimate with a sample.
-    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]);
+    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]);
 
     /// Predicts the state estimate from the last sample to now, with angles from `origin`.
-    fn carry(&self, _now: Instant, _origin: &Orientation, _beliefs: &mut [Belief]) {}
+    fn predict(&self, _now: Instant, _origin: &Orientation, _state_estimates: &mut [StateEstimate]) {}
 
     /// Shifts the angle estimates by `by` (rad, about each axis) after a change of the target.
-    fn shift(&mut self, _by: [f64; 3]) {}
+    fn shift_origin(&mut self, _by: [f64; 3]) {}
 
     /// Returns true about each axis whose filter has lost lock.
-    fn lost(&self) -> [bool; 3] {
+    fn lock_lost(&self) -> [bool; 3] {
         [false; 3]
     }
 
     /// Returns the filter's log row about `axis` after the last sample, with its error against the true motion.
-    fn estimate(&self, _axis: usize, _now: Instant, _truth: &State) -> Option<record::Estimate> {
+    fn estimate_row(&self, _axis: usize, _now: Instant, _truth: &AxisState) -> Option<record::Estimate> {
         None
     }
 
     /// Returns the attitude filter's log row, with its errors against the true orientation and the true gyro bias
     /// (rad/s).
-    fn attitude(
+    fn attitude_row(
         &self,
         _now: Instant,
         _truth: &Orientation,
@@ -170,66 +172,67 @@ pub trait Estimate: fmt::Debug + Send + Sync {
     }
 
     /// Returns the attitude filter's log row of the elastic modes; `None` if it does not estimate any.
-    fn elastic(&self) -> Option<record::ElasticEstimates> {
+    fn elastic_row(&self) -> Option<record::ElasticEstimates> {
         None
     }
 
     /// Returns the log row of adaptive observers, with the true modal rates and the status of active damping.
-    fn tracking(
+    fn observer_row(
         &self,
         _modal_rates: &dyn Fn() -> Vec<f64>,
-        _damped: &dyn Fn() -> Vec<Damped>,
+        _damped: &dyn Fn() -> Vec<DampingStatus>,
     ) -> Option<record::Tracking> {
         None
     }
 
     /// Returns the filter of a one-axis body, and the mean reduced moment (rad/s²) from its last sample to `now`; the
     /// moment is `None` before the first sample.
-    fn filter(&mut self, _now: Instant) -> Option<(&mut kalman::KalmanFilter, Option<f64>)> {
+    fn batch_filter(&mut self, _now: Instant) -> Option<(&mut kalman::KalmanFilter, Option<f64>)> {
         None
     }
 
-    /// Returns the true values of the state components of the filter from [`Estimate::filter`].
-    fn true_state(&self, _now: Instant, _truth: &State) -> Vec<f64> {
+    /// Returns the true values of the state components of the filter from [`Estimator::filter`].
+    fn true_filter_state(&self, _now: Instant, _truth: &AxisState) -> Vec<f64> {
         Vec::new()
     }
 
     /// Returns the error that an estimator of another crate failed with; the run ends there.
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         None
     }
 
     /// Returns a copy in the same state.
-    fn copy(&self) -> Box<dyn Estimate>;
+    fn copy(&self) -> Box<dyn Estimator>;
 }
 
-impl Clone for Box<dyn Estimate> {
+impl Clone for Box<dyn Estimator> {
     fn clone(&self) -> Self {
         self.copy()
     }
 }
 
 /// Returns the run-time state of the scenario's estimator.
-pub fn start(known: &Known<'_>, seed: Seed) -> Box<dyn Estimate> {
-    if let Some(sampled) = sampled::SampledEstimators::new(known, seed) {
+pub fn start(known: &EstimatorContext<'_>, seed: Seed) -> Box<dyn Estimator> {
+    if let Some(sampled) = sampled::AxisEstimators::new(known, seed) {
         return Box::new(sampled);
     }
     match (known.estimator, known.adaptive) {
-        (Some(Estimator::Own(own)), _) => own.start(known, seed),
-        (Some(Estimator::Attitude(spec)), _) if known.attitude.is_some() => {
+        (Some(EstimatorKind::Own(own)), _) => own.start(known, seed),
+        (Some(EstimatorKind::Attitude(spec)), _) if known.attitude.is_some() => {
             let setting = known.attitude.cloned().unwrap_or_default();
-            Box::new(attitude::Tracking::new(spec, setting, seed.stream("prior")))
+            Box::new(attitude::AttitudeFilterRun::new(spec, setting, seed.stream("prior")))
         }
-        (Some(Estimator::RigidRate(spec)), _) => Box::new(spec.start(known.axes.len())),
-        (Some(Estimator::Adaptive(_)), Some(plan)) => Box::new(adaptive::Observers::new(plan)),
-        _ => Box::new(direct::Direct),
+        (Some(EstimatorKind::RigidRate(spec)), _) => Box::new(spec.start(known.axes.len())),
+        (Some(EstimatorKind::Adaptive(_)), Some(plan)) => Box::new(adaptive::ObserverSet::new(plan)),
+        _ => Box::new(pass_through::PassThrough),
     }
 }
 
 /// Estimates that the law reads in addition to the dominant mode.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Feeds {
+#[schemars(rename = "Feeds")]
+pub enum EstimateOutputs {
     /// None: angle and rate are as measured.
     Modes,
     /// Angle and rate of the hub, elastic part included.
@@ -238,7 +241,7 @@ pub enum Feeds {
     Rigid,
 }
 
-impl Estimator {
+impl EstimatorKind {
     /// Error text for an estimator that needs samples where there are none.
     pub const AT_SAMPLES: &str = "acts at each sample of a `[sensor.sampled]` or a `[sensor.gyro]`, or of a law with a period, and \
                                   there is none";
@@ -269,22 +272,22 @@ impl Estimator {
     }
 
     /// Returns true if the estimator fuses several sensors into one state estimate.
-    pub fn combines(&self) -> bool {
+    pub fn fuses_sensors(&self) -> bool {
         matches!(self, Self::Attitude(_) | Self::Own(_))
     }
 
     /// Returns true if the estimator estimates rates only and leaves angles as measured.
-    pub fn reads_rates_alone(&self) -> bool {
+    pub fn estimates_rates_only(&self) -> bool {
         matches!(self, Self::RigidRate(_) | Self::Adaptive(_))
     }
 
     /// Returns true if the estimator is a Kalman filter of angle and rate measurements.
-    pub fn filters(&self) -> bool {
+    pub fn filters_measurements(&self) -> bool {
         matches!(self, Self::Kalman(_) | Self::ExtendedKalman(_) | Self::UnscentedKalman(_))
     }
 
     /// Returns true if the estimator runs for assessment only, so that the law does not read it.
-    pub fn watches_only(&self) -> bool {
+    pub fn is_assessed_only(&self) -> bool {
         match self {
             Self::Kalman(filter) => filter.watch_only,
             Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => filter.watch_only,
@@ -297,19 +300,19 @@ impl Estimator {
 
     /// Returns the estimates that the law reads in addition to the dominant mode; `dominant`: the law reads the
     /// dominant mode.
-    pub fn feeds(&self, dominant: bool) -> Feeds {
+    pub fn feeds(&self, dominant: bool) -> EstimateOutputs {
         let given = match self {
             Self::Kalman(filter) => filter.feeds,
             Self::ExtendedKalman(filter) | Self::UnscentedKalman(filter) => filter.feeds,
             Self::Truth(truth) => truth.feeds,
             Self::Envelope(_) | Self::Attitude(_) | Self::RigidRate(_) | Self::Adaptive(_) | Self::Own(_) => {
-                Some(Feeds::Modes)
+                Some(EstimateOutputs::Modes)
             }
         };
-        if self.watches_only() {
-            Feeds::Modes
+        if self.is_assessed_only() {
+            EstimateOutputs::Modes
         } else {
-            given.unwrap_or(if dominant { Feeds::Modes } else { Feeds::Hub })
+            given.unwrap_or(if dominant { EstimateOutputs::Modes } else { EstimateOutputs::Hub })
         }
     }
 

@@ -4,10 +4,10 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Estimate, GivenRecord, Taken};
-use crate::axes::Each;
-use crate::belief::Belief;
+use super::{AppliedPulses, Estimator, SampleContext};
+use crate::axes::PerAxis;
 use crate::quantity::{Finite, Fraction};
+use crate::state_estimate::StateEstimate;
 use crate::time::Instant;
 
 /// w^(n) = w^- + l (y - w^-), w^- = w^(n-1) + du + c^(n-1), c^(n) = c^(n-1) + l²/4 (y - w^-): for what is no pulse a low pass of
@@ -21,32 +21,32 @@ pub struct RigidRate {
     pub correction: Fraction,
     /// Estimated rates before the first sample (rad/s).
     #[serde(default)]
-    pub rate: Each<Finite>,
+    pub rate: PerAxis<Finite>,
 }
 
 /// Run-time state of the rigid rate estimator.
 #[derive(Clone, Debug)]
-pub struct RateFilter {
+pub struct RigidRateState {
     correction: f64,
     rates: Vec<f64>,
     /// Rate change per sample due to a steady torque (rad/s).
     drifts: Vec<f64>,
-    given: GivenRecord,
+    given: AppliedPulses,
 }
 
 impl RigidRate {
     /// Returns the estimator's state at the start of a run of a body with `axes` axes.
-    pub fn start(&self, axes: usize) -> RateFilter {
-        RateFilter {
+    pub fn start(&self, axes: usize) -> RigidRateState {
+        RigidRateState {
             correction: self.correction.get(),
             rates: (0..axes).map(|axis| self.rate.about(axis).get()).collect(),
             drifts: vec![0.0; axes],
-            given: GivenRecord::default(),
+            given: AppliedPulses::default(),
         }
     }
 }
 
-impl RateFilter {
+impl RigidRateState {
     /// Updates the estimate about an axis with the measured rate (rad/s), if any, and the rate change `pushed` (rad/s)
     /// by the pulses since the last sample. Returns the estimated rigid rate (rad/s).
     fn step(&mut self, axis: usize, measured: Option<f64>, pushed: f64) -> f64 {
@@ -58,24 +58,24 @@ impl RateFilter {
     }
 }
 
-impl Estimate for RateFilter {
-    fn given(&mut self, now: Instant, moments: [f64; 3]) {
-        self.given.change(now, moments);
+impl Estimator for RigidRateState {
+    fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
+        self.given.input_changed(now, moments);
     }
 
-    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
+    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
         let pulses = self.given.take(taken.now, taken.actuator);
-        for (axis, belief) in beliefs.iter_mut().enumerate() {
+        for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             let own = pulses.iter().filter(|pulse| pulse.input == axis);
             let pushed = own.map(|pulse| pulse.acceleration * pulse.duration).sum();
-            belief.rate = self.step(axis, taken.measured.map(|measured| measured[axis][1]), pushed);
+            state_estimate.rate = self.step(axis, taken.measured.map(|measured| measured[axis][1]), pushed);
             if let Some(measured) = taken.measured {
-                belief.angle = measured[axis][0];
+                state_estimate.angle = measured[axis][0];
             }
         }
     }
 
-    fn copy(&self) -> Box<dyn Estimate> {
+    fn copy(&self) -> Box<dyn Estimator> {
         Box::new(self.clone())
     }
 }
@@ -89,7 +89,7 @@ mod tests {
     fn rates_do_not_stay_behind_a_steady_torque() {
         let correction = Fraction::new(0.01).expect("a fraction");
         for change in [1e-6, 0.0, -2e-6] {
-            let mut filter = RigidRate { correction, rate: Each::default() }.start(1);
+            let mut filter = RigidRate { correction, rate: PerAxis::default() }.start(1);
             let (mut rate, mut behind) = (0.0, 0.0_f64);
             for _ in 0..3000 {
                 rate += change;

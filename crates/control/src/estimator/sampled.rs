@@ -1,23 +1,23 @@
 //! Estimators of single axes that act at each sample: ideal observers and Kalman filters.
 
-use super::kalman::{Innovation, KalmanFilter, KalmanSetting, Prediction};
-use super::{Estimate, Estimator, Feeds, Known, Taken};
-use crate::belief::{Belief, Dominant, Reads};
+use super::kalman::{FilterContext, Innovation, KalmanFilter, Prediction};
+use super::{EstimateOutputs, Estimator, EstimatorContext, EstimatorKind, SampleContext};
 use crate::body::Drift;
-use crate::motion::State;
+use crate::motion::AxisState;
 use crate::random::Seed;
 use crate::record::{self, ModeEstimate};
+use crate::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
 use crate::time::Instant;
 
 /// The estimators of all axes.
 #[derive(Clone, Debug)]
-pub struct SampledEstimators(Vec<Track>);
+pub struct AxisEstimators(Vec<AxisEstimator>);
 
 /// Run-time state of the estimator of one axis.
 #[derive(Clone, Debug)]
-struct Track {
-    eye: Eye,
-    feeds: Feeds,
+struct AxisEstimator {
+    eye: AxisMethod,
+    feeds: EstimateOutputs,
     /// Natural frequencies at the start (rad/s); the following fields are the excitabilities and the drift of the
     /// modes.
     frequencies: Vec<f64>,
@@ -34,84 +34,84 @@ struct Track {
 
 /// Estimation method of an axis.
 #[derive(Clone, Debug)]
-enum Eye {
+enum AxisMethod {
     /// Ideal observer, which uses the true state.
     Ideal,
     /// Kalman filter.
     Filter(Box<KalmanFilter>),
 }
 
-impl SampledEstimators {
+impl AxisEstimators {
     /// Creates the estimators of all axes; `None` if the scenario's estimator does not act at samples of single axes.
-    pub fn new(known: &Known<'_>, seed: Seed) -> Option<Self> {
+    pub fn new(known: &EstimatorContext<'_>, seed: Seed) -> Option<Self> {
         let axes = 0..known.axes.len();
-        axes.map(|axis| Track::new(known, axis, seed)).collect::<Option<_>>().map(Self)
+        axes.map(|axis| AxisEstimator::new(known, axis, seed)).collect::<Option<_>>().map(Self)
     }
 }
 
-impl Estimate for SampledEstimators {
-    fn given(&mut self, now: Instant, moments: [f64; 3]) {
+impl Estimator for AxisEstimators {
+    fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
         for (track, moment) in self.0.iter_mut().zip(moments) {
             track.given(now, moment);
         }
     }
 
-    fn pushed(&mut self, impulse: f64) {
+    fn add_waveform_impulse(&mut self, impulse: f64) {
         self.0[0].impulse += impulse;
     }
 
-    fn take(&mut self, taken: &Taken<'_>, beliefs: &mut [Belief]) {
-        for (axis, (track, belief)) in self.0.iter_mut().zip(beliefs).enumerate() {
-            track.take(axis, taken, belief);
+    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        for (axis, (track, state_estimate)) in self.0.iter_mut().zip(state_estimates).enumerate() {
+            track.take(axis, taken, state_estimate);
         }
     }
 
-    fn shift(&mut self, by: [f64; 3]) {
+    fn shift_origin(&mut self, by: [f64; 3]) {
         for (track, by) in self.0.iter_mut().zip(by) {
-            if let Eye::Filter(filter) = &mut track.eye {
+            if let AxisMethod::Filter(filter) = &mut track.eye {
                 filter.shift(by);
             }
         }
     }
 
-    fn lost(&self) -> [bool; 3] {
+    fn lock_lost(&self) -> [bool; 3] {
         let mut lost = [false; 3];
         for (track, lost) in self.0.iter().zip(&mut lost) {
-            *lost = matches!(&track.eye, Eye::Filter(filter) if filter.is_lost());
+            *lost = matches!(&track.eye, AxisMethod::Filter(filter) if filter.lock_lost());
         }
         lost
     }
 
-    fn estimate(&self, axis: usize, now: Instant, truth: &State) -> Option<record::Estimate> {
+    fn estimate_row(&self, axis: usize, now: Instant, truth: &AxisState) -> Option<record::Estimate> {
         self.0[axis].row(now.seconds(), truth)
     }
 
-    fn filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
+    fn batch_filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
         let [track] = &mut self.0[..] else { return None };
         let impulse = track.impulse + track.moment * now.since(track.since).seconds();
-        let Eye::Filter(filter) = &mut track.eye else { return None };
+        let AxisMethod::Filter(filter) = &mut track.eye else { return None };
         Some((filter, track.sampled.map(|sampled| impulse / now.since(sampled).seconds())))
     }
 
-    fn true_state(&self, now: Instant, truth: &State) -> Vec<f64> {
+    fn true_filter_state(&self, now: Instant, truth: &AxisState) -> Vec<f64> {
         let track = &self.0[0];
-        if let Eye::Filter(filter) = &track.eye {
+        if let AxisMethod::Filter(filter) = &track.eye {
             track.truth(now.seconds(), truth, filter)
         } else {
             Vec::new()
         }
     }
 
-    fn copy(&self) -> Box<dyn Estimate> {
+    fn copy(&self) -> Box<dyn Estimator> {
         Box::new(self.clone())
     }
 }
 
-impl Track {
-    fn new(known: &Known<'_>, axis: usize, seed: Seed) -> Option<Self> {
+impl AxisEstimator {
+    fn new(known: &EstimatorContext<'_>, axis: usize, seed: Seed) -> Option<Self> {
         let model = &known.axes[axis];
         let back_emf = known.back_emf;
-        let setting = KalmanSetting {
+        let setting = FilterContext {
             body: model,
             back_emf: (back_emf.0 / model.inertia.get(), back_emf.1),
             period: known.sampling?.seconds(),
@@ -123,22 +123,24 @@ impl Track {
             axis => format!("prior {axis}"),
         };
         let draws = &mut seed.stream(&stream);
-        let filter = |filter| Eye::Filter(Box::new(filter));
+        let filter = |filter| AxisMethod::Filter(Box::new(filter));
         let estimator = known.estimator?;
         let eye = match estimator {
-            Estimator::Envelope(_)
-            | Estimator::Attitude(_)
-            | Estimator::RigidRate(_)
-            | Estimator::Adaptive(_)
-            | Estimator::Own(_) => return None,
-            Estimator::Truth(_) => Eye::Ideal,
-            Estimator::Kalman(spec) => filter(spec.filter(&setting, draws)),
-            Estimator::ExtendedKalman(spec) => filter(spec.filter(&setting, Prediction::Extended, draws)),
-            Estimator::UnscentedKalman(spec) => filter(spec.filter(&setting, Prediction::Unscented, draws)),
+            EstimatorKind::Envelope(_)
+            | EstimatorKind::Attitude(_)
+            | EstimatorKind::RigidRate(_)
+            | EstimatorKind::Adaptive(_)
+            | EstimatorKind::Own(_) => return None,
+            EstimatorKind::Truth(_) => AxisMethod::Ideal,
+            EstimatorKind::Kalman(spec) => filter(spec.filter(&setting, draws)),
+            EstimatorKind::ExtendedKalman(spec) => filter(spec.filter(&setting, Prediction::Extended, draws)),
+            EstimatorKind::UnscentedKalman(spec) => {
+                filter(spec.filter(&setting, Prediction::Unscented, draws))
+            }
         };
         Some(Self {
             eye,
-            feeds: estimator.feeds(known.reads[axis] == Reads::DominantMode),
+            feeds: estimator.feeds(known.reads[axis] == EstimateNeeds::DominantMode),
             frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
             excitability: model.modes.iter().map(|mode| mode.excitability().abs()).collect(),
             drift: known.drift.cloned(),
@@ -157,53 +159,58 @@ impl Track {
     }
 
     /// Updates the state estimate at a sample, with or without a measurement.
-    fn take(&mut self, axis: usize, taken: &Taken<'_>, belief: &mut Belief) {
+    fn take(&mut self, axis: usize, taken: &SampleContext<'_>, state_estimate: &mut StateEstimate) {
         let now = taken.now;
         self.given(now, self.moment);
         let period = self.sampled.replace(now).map(|sampled| now.since(sampled).seconds());
         let impulse = std::mem::take(&mut self.impulse);
         if let Some(measured) = taken.measured {
-            [belief.angle, belief.rate] = measured[axis];
+            [state_estimate.angle, state_estimate.rate] = measured[axis];
         }
         match &mut self.eye {
-            Eye::Ideal => {
+            AxisMethod::Ideal => {
                 let truth = (taken.truth)(axis);
-                belief.dominant = self.ideal(now.seconds(), &truth);
+                state_estimate.dominant = self.ideal(now.seconds(), &truth);
                 match self.feeds {
-                    Feeds::Modes => {}
-                    Feeds::Hub => {
+                    EstimateOutputs::Modes => {}
+                    EstimateOutputs::Hub => {
                         let modes = truth.modes.iter().zip(&self.frequencies);
                         let rate = modes.map(|(mode, frequency)| frequency * mode.quadrature).sum::<f64>();
-                        (belief.angle, belief.rate) = (truth.angle(), truth.rigid_rate + rate);
+                        (state_estimate.angle, state_estimate.rate) =
+                            (truth.angle(), truth.rigid_rate + rate);
                     }
-                    Feeds::Rigid => (belief.angle, belief.rate) = (truth.rigid_angle, truth.rigid_rate),
+                    EstimateOutputs::Rigid => {
+                        (state_estimate.angle, state_estimate.rate) = (truth.rigid_angle, truth.rigid_rate);
+                    }
                 }
             }
-            Eye::Filter(filter) => {
-                self.told = filter.told_beside().unwrap_or_else(|| {
+            AxisMethod::Filter(filter) => {
+                self.told = filter.lane_innovation().unwrap_or_else(|| {
                     if let Some(period) = period {
                         filter.predict(impulse / period);
                     }
                     filter.update(taken.measured.map(|measured| measured[axis].into()))
                 });
-                belief.dominant = filter.dominant();
+                state_estimate.dominant = filter.dominant();
                 let mean = filter.mean();
                 match self.feeds {
-                    Feeds::Modes => {}
-                    Feeds::Hub => {
+                    EstimateOutputs::Modes => {}
+                    EstimateOutputs::Hub => {
                         let sum = |from: usize| {
                             mean.iter().skip(from).step_by(2).take(1 + self.frequencies.len()).sum()
                         };
-                        (belief.angle, belief.rate) = (sum(0), sum(1));
+                        (state_estimate.angle, state_estimate.rate) = (sum(0), sum(1));
                     }
-                    Feeds::Rigid => (belief.angle, belief.rate) = (mean[0], mean[1]),
+                    EstimateOutputs::Rigid => {
+                        (state_estimate.angle, state_estimate.rate) = (mean[0], mean[1]);
+                    }
                 }
             }
         }
     }
 
     /// Returns the true dominant mode at time `t` (s).
-    fn ideal(&self, t: f64, state: &State) -> Dominant {
+    fn ideal(&self, t: f64, state: &AxisState) -> DominantMode {
         let all = match &self.drift {
             None => Some(1.0),
             Some(Drift::Common(profile)) => Some(profile.ratio(t)),
@@ -214,7 +221,7 @@ impl Track {
         let value = |mode: usize| self.excitability[mode] / (ratio(mode) * ratio(mode));
         let modes = 1..self.frequencies.len();
         let mode = modes.fold(0, |best, mode| if value(mode) > value(best) { mode } else { best });
-        Dominant {
+        DominantMode {
             displacement: state.modes[mode].displacement,
             rate: self.frequencies[mode] * state.modes[mode].quadrature,
             frequency: self.frequencies[mode] * ratio(mode),
@@ -222,12 +229,12 @@ impl Track {
     }
 
     /// Returns the true values of a filter's state components at time `t` (s).
-    fn truth(&self, t: f64, state: &State, filter: &KalmanFilter) -> Vec<f64> {
+    fn truth(&self, t: f64, state: &AxisState, filter: &KalmanFilter) -> Vec<f64> {
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
         let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         let slope = |mode: usize| self.drift.as_ref().map_or(0.0, |drift| drift.slope(mode, t));
         let mut truth = state.to_vector(&self.frequencies).as_slice().to_vec();
-        for at in (model.motion()..model.order()).step_by(2) {
+        for at in (model.motion_states()..model.order()).step_by(2) {
             // The true value of a ratio common to all modes is that of the dominant one.
             let mut owners = (0..model.modes()).filter(|owner| model.ratio_of(*owner) == Some(at));
             let of = if model.ratio_of(mode) == Some(at) { mode } else { owners.next().unwrap_or(mode) };
@@ -239,13 +246,13 @@ impl Track {
     }
 
     /// Returns the filter's log row at time `t` (s).
-    fn row(&self, t: f64, state: &State) -> Option<record::Estimate> {
-        let Eye::Filter(filter) = &self.eye else { return None };
-        let told = self.told;
+    fn row(&self, t: f64, state: &AxisState) -> Option<record::Estimate> {
+        let AxisMethod::Filter(filter) = &self.eye else { return None };
+        let reported = self.told;
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
         let true_ratio = self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         // In a batch, the covariance is kept there, and only the metrics use this row.
-        let lent = filter.is_lent();
+        let borrowed = filter.is_in_lanes();
         let known = model.ratio_of(mode);
         let value = |offset: usize| known.map_or(1.0 - offset as f64, |at| mean[at + offset]);
         let sd = |offset: usize| {
@@ -262,7 +269,7 @@ impl Track {
             }
         });
         let [states, measurements] = filter.dimensions();
-        let nees = if lent { filter.nees_beside() } else { filter.nees(&self.truth(t, state, filter)) };
+        let nees = if borrowed { filter.lane_nees() } else { filter.nees(&self.truth(t, state, filter)) };
         Some(record::Estimate {
             dominant: mode as u64,
             frequency_rad_s: filter.dominant().frequency,
@@ -273,13 +280,13 @@ impl Track {
             ratio_sd: sd(0),
             ratio_rate_1_s: value(1),
             ratio_rate_sd_1_s: sd(1),
-            modes: if lent { Vec::new() } else { modes.collect() },
-            innovation_rad: told.innovation,
-            nis: told.nis.unwrap_or(0.0) / measurements,
-            measured: told.nis.is_some().into(),
+            modes: if borrowed { Vec::new() } else { modes.collect() },
+            innovation_rad: reported.innovation,
+            nis: reported.nis.unwrap_or(0.0) / measurements,
+            measured: reported.nis.is_some().into(),
             nees: nees / states,
             gated: filter.is_gated().into(),
-            lock: (!filter.is_lost()).into(),
+            lock: (!filter.lock_lost()).into(),
         })
     }
 }

@@ -9,13 +9,14 @@ use serde::{Deserialize, Serialize};
 
 use super::filter::Filter;
 use super::{
-    Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable,
+    AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
+    Law, LawSpec, Phase, Setpoint, Tunable,
 };
 use crate::attitude::{asymmetry, tensor};
-use crate::belief::Belief;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::numerics::biquad::Biquad;
 use crate::quantity::{Finite, Positive};
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 
 /// The attitude law.
@@ -33,8 +34,8 @@ pub struct AttitudeLaw {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub inertia: Option<[[Finite; 3]; 3]>,
     /// How a rotation is converted into an error, on a body with three axes.
-    #[serde(default, skip_serializing_if = "Measure::is_default")]
-    pub error: Measure,
+    #[serde(default, skip_serializing_if = "AttitudeErrorMeasure::is_default")]
+    pub error: AttitudeErrorMeasure,
     /// Integral of the error; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub integral: Option<Integral>,
@@ -69,14 +70,14 @@ impl AttitudeLaw {
     }
 
     /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<Fault> {
+    pub fn inconsistency(&self) -> Option<ConfigError> {
         if let Some(inertia) = &self.inertia {
             let inertia = tensor(inertia);
             if let Some(why) = asymmetry(&inertia) {
-                return Some(Fault::new("inertia", why));
+                return Some(ConfigError::new("inertia", why));
             }
             if inertia.cholesky().is_none() {
-                return Some(Fault::new("inertia", "must be positive definite"));
+                return Some(ConfigError::new("inertia", "must be positive definite"));
             }
         }
         let wrong = |(index, filter): (usize, &Filter)| {
@@ -87,10 +88,10 @@ impl AttitudeLaw {
     }
 }
 
-impl Rule for AttitudeLaw {
-    fn start(&self, authority: &Authority) -> Box<dyn Control> {
+impl LawSpec for AttitudeLaw {
+    fn start(&self, authority: &Authority) -> Box<dyn Law> {
         let period = self.period.seconds();
-        Box::new(AtSamples {
+        Box::new(AttitudeLawState {
             filters: self.filters.iter().filter_map(|filter| filter.sampled(period).ok()).collect(),
             bandwidth: self.bandwidth.get(),
             damping: self.damping.get(),
@@ -108,12 +109,12 @@ impl Rule for AttitudeLaw {
     }
 
     /// Returns the usual 5 % of a step.
-    fn promise(&self) -> Promise {
-        Promise::Part(0.05)
+    fn expected_band(&self) -> ErrorBand {
+        ErrorBand::Fraction(0.05)
     }
 
-    fn reads(&self) -> Reads {
-        Reads::Motion
+    fn needs(&self) -> EstimateNeeds {
+        EstimateNeeds::Motion
     }
 
     fn tunable(&self) -> Vec<Tunable> {
@@ -125,7 +126,7 @@ impl Rule for AttitudeLaw {
         let filters = self.filters.iter().enumerate();
         numbers.extend(filters.filter_map(|(index, filter)| {
             let number = filter.tunable(period)?;
-            Some(number.within(&format!("filters[{index}].")))
+            Some(number.nested(&format!("filters[{index}].")))
         }));
         numbers
     }
@@ -133,7 +134,7 @@ impl Rule for AttitudeLaw {
 
 /// Run-time state of the law about an axis.
 #[derive(Clone, Debug)]
-struct AtSamples {
+struct AttitudeLawState {
     spec: AttitudeLaw,
     bandwidth: f64,
     damping: f64,
@@ -149,7 +150,7 @@ struct AtSamples {
     integral: f64,
 }
 
-impl AtSamples {
+impl AttitudeLawState {
     /// Returns the feedback acceleration (rad/s²) for an error of angle (rad) and rate (rad/s), and true if the rate
     /// limit acts.
     fn feedback(&mut self, error: f64, rate: f64) -> (f64, bool) {
@@ -170,7 +171,7 @@ impl AtSamples {
     fn retune(&mut self, key: &str, value: f64) {
         let period = self.spec.period.seconds();
         for (index, (filter, at_work)) in self.spec.filters.iter().zip(&mut self.filters).enumerate() {
-            let of = filter.tunable(period).map(|number| number.within(&format!("filters[{index}].")));
+            let of = filter.tunable(period).map(|number| number.nested(&format!("filters[{index}].")));
             if of.is_some_and(|number| number.key == key)
                 && let Some(Ok(tuned)) = filter.at(value).map(|filter| filter.sampled(period))
             {
@@ -189,15 +190,21 @@ impl AtSamples {
     }
 }
 
-impl Control for AtSamples {
-    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+impl Law for AttitudeLawState {
+    fn decide(
+        &mut self,
+        now: Instant,
+        _: DecisionCause,
+        goal: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput {
         let (angle, rate) = goal.at(now);
-        let error = self.spec.error.error(belief) - angle;
-        let (feedback, limited) = self.feedback(error, belief.rate - rate);
+        let error = self.spec.error.error(state_estimate) - angle;
+        let (feedback, limited) = self.feedback(error, state_estimate.rate - rate);
         let acceleration = feedback + goal.acceleration;
         let [above, below] = self.accelerations;
         self.integrate(error, limited || acceleration > above || -acceleration > below);
-        Hold {
+        ControlOutput {
             command: Command::Acceleration(acceleration),
             until: Some(now + self.spec.period),
             guards: Guards::NONE,
@@ -209,15 +216,15 @@ impl Control for AtSamples {
     }
 
     /// Returns true, because the reference has an acceleration to follow.
-    fn tracks(&self) -> bool {
+    fn tracks_manoeuvre(&self) -> bool {
         true
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 
-    fn tuned(&self) -> f64 {
+    fn tuned_value(&self) -> f64 {
         self.tuned
     }
 
@@ -240,7 +247,7 @@ mod tests {
 
     const PERIOD: f64 = 0.25;
 
-    fn start(keys: &str, most: f64) -> Box<dyn Control> {
+    fn start(keys: &str, most: f64) -> Box<dyn Law> {
         let text = format!("period = {PERIOD}\nbandwidth = 0.1\ndamping = 0.8\n{keys}");
         let law: AttitudeLaw = crate::document::from_text(&text).unwrap();
         assert_eq!(law.inconsistency(), None);
@@ -248,10 +255,10 @@ mod tests {
         law.start(&Authority { axis: 0, accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
     }
 
-    fn command(law: &mut dyn Control, angle: f64, rate: f64, acceleration: f64) -> f64 {
-        let goal = Goal { acceleration, ..Goal::default() };
-        let belief = Belief { angle, rate, ..Belief::default() };
-        match law.decide(Instant::START, Cause::Timeout, &goal, &belief).command {
+    fn command(law: &mut dyn Law, angle: f64, rate: f64, acceleration: f64) -> f64 {
+        let goal = Setpoint { acceleration, ..Setpoint::default() };
+        let estimate = StateEstimate { angle, rate, ..StateEstimate::default() };
+        match law.decide(Instant::START, DecisionCause::Timeout, &goal, &estimate).command {
             Command::Acceleration(acceleration) => acceleration,
             other => panic!("{other:?}"),
         }

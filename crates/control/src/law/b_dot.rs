@@ -7,9 +7,12 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Reads, Rule, Tunable};
-use crate::belief::Belief;
+use super::{
+    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, Phase, Setpoint,
+    Tunable,
+};
 use crate::quantity::Positive;
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 
 /// The B-dot law.
@@ -22,17 +25,17 @@ pub struct BDot {
     pub gain: Positive,
 }
 
-impl Rule for BDot {
-    fn start(&self, _: &Authority) -> Box<dyn Control> {
-        Box::new(Detumbling { law: *self, gain: self.gain.get(), tuned: f64::NAN })
+impl LawSpec for BDot {
+    fn start(&self, _: &Authority) -> Box<dyn Law> {
+        Box::new(BDotState { law: *self, gain: self.gain.get(), tuned: f64::NAN })
     }
 
     fn period(&self) -> Option<Span> {
         Some(self.period)
     }
 
-    fn reads(&self) -> Reads {
-        Reads::Field
+    fn needs(&self) -> EstimateNeeds {
+        EstimateNeeds::Field
     }
 
     fn tunable(&self) -> Vec<Tunable> {
@@ -42,17 +45,23 @@ impl Rule for BDot {
 
 /// Run-time state of the law along an axis.
 #[derive(Copy, Clone, Debug)]
-struct Detumbling {
+struct BDotState {
     law: BDot,
     gain: f64,
     /// Value of the parameter tuned last.
     tuned: f64,
 }
 
-impl Control for Detumbling {
-    fn decide(&mut self, now: Instant, _: Cause, _: &Goal, belief: &Belief) -> Hold {
-        Hold {
-            command: Command::Moment(-self.gain * belief.field_rate),
+impl Law for BDotState {
+    fn decide(
+        &mut self,
+        now: Instant,
+        _: DecisionCause,
+        _: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput {
+        ControlOutput {
+            command: Command::Moment(-self.gain * state_estimate.field_rate),
             until: Some(now + self.law.period),
             guards: Guards::NONE,
         }
@@ -62,11 +71,11 @@ impl Control for Detumbling {
         Phase::Detumbling
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(*self)
     }
 
-    fn tuned(&self) -> f64 {
+    fn tuned_value(&self) -> f64 {
         self.tuned
     }
 

@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 use super::Command;
 use crate::actuator::Demand;
 use crate::attitude::Vector;
-use crate::belief::Belief;
+use crate::state_estimate::StateEstimate;
 
 /// Distribution of commands to demands, with the inertia in the model.
 #[derive(Clone, Debug, PartialEq)]
@@ -17,12 +17,12 @@ pub struct TorqueDistribution {
 
 impl TorqueDistribution {
     /// Creates the distribution of a one-axis body with this inertia (kg m²).
-    pub fn of_one_angle(inertia: f64) -> Self {
+    pub fn for_one_axis(inertia: f64) -> Self {
         Self { inertia: Matrix3::from_diagonal_element(inertia) }
     }
 
     /// Creates the distribution of a three-axis body with this inertia tensor (kg m²).
-    pub fn of_three_axes(inertia: Matrix3<f64>) -> Self {
+    pub fn for_three_axes(inertia: Matrix3<f64>) -> Self {
         Self { inertia }
     }
 
@@ -31,11 +31,11 @@ impl TorqueDistribution {
     pub fn demands(
         &self,
         commands: [Command; 3],
-        beliefs: &[Belief],
+        state_estimates: &[StateEstimate],
         stored: impl FnOnce() -> [f64; 3],
     ) -> [Demand; 3] {
         let torques = if commands.iter().any(|command| matches!(command, Command::Acceleration(_))) {
-            self.torques(commands, beliefs, stored())
+            self.torques(commands, state_estimates, stored())
         } else {
             [0.0; 3]
         };
@@ -51,9 +51,14 @@ impl TorqueDistribution {
         demands
     }
 
-    fn torques(&self, commands: [Command; 3], beliefs: &[Belief], stored: [f64; 3]) -> [f64; 3] {
+    fn torques(
+        &self,
+        commands: [Command; 3],
+        state_estimates: &[StateEstimate],
+        stored: [f64; 3],
+    ) -> [f64; 3] {
         let mut rate = Vector::zeros();
-        rate.iter_mut().zip(beliefs).for_each(|(rate, belief)| *rate = belief.rate);
+        rate.iter_mut().zip(state_estimates).for_each(|(rate, state_estimate)| *rate = state_estimate.rate);
         let wanted =
             commands.map(|command| if let Command::Acceleration(wanted) = command { wanted } else { 0.0 });
         let momentum = self.inertia * rate + Vector::from(stored);

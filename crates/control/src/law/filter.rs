@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Tunable;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::numerics::biquad::Biquad;
 use crate::quantity::{Finite, NonNegative, Positive};
 
@@ -80,8 +80,12 @@ impl Filter {
     pub fn tunable(&self, period: f64) -> Option<Tunable> {
         let most = std::f64::consts::PI / period;
         match self {
-            Self::Notch(notch) => Some(Tunable::positive("notch.frequency", notch.frequency).below(most)),
-            Self::LowPass(pass) => Some(Tunable::positive("low_pass.frequency", pass.frequency).below(most)),
+            Self::Notch(notch) => {
+                Some(Tunable::positive("notch.frequency", notch.frequency).with_upper(most))
+            }
+            Self::LowPass(pass) => {
+                Some(Tunable::positive("low_pass.frequency", pass.frequency).with_upper(most))
+            }
             Self::Lead(_) | Self::Biquad(_) => None,
         }
     }
@@ -99,21 +103,24 @@ impl Filter {
     /// Returns the digital filter for samples `period` (s) apart.
     ///
     /// # Errors
-    /// A `Fault` with a key that does not fit the period and the reason.
-    pub fn sampled(&self, period: f64) -> Result<Biquad, Fault> {
+    /// A `ConfigError` with a key that does not fit the period and the reason.
+    pub fn sampled(&self, period: f64) -> Result<Biquad, ConfigError> {
         match self {
             Self::Notch(notch) => {
                 let (w, depth) = (notch.frequency.get(), notch.depth.get());
                 if depth >= 1.0 {
-                    return Err(Fault::new("notch.depth", format!("must be a gain below 1, got {depth}")));
+                    return Err(ConfigError::new(
+                        "notch.depth",
+                        format!("must be a gain below 1, got {depth}"),
+                    ));
                 }
-                below_nyquist(w, period).map_err(|why| Fault::new("notch.frequency", why))?;
+                below_nyquist(w, period).map_err(|why| ConfigError::new("notch.frequency", why))?;
                 let damping = 2.0 * notch.damping.get() * w;
                 Ok(Biquad::tustin([w * w, depth * damping, 1.0], [w * w, damping, 1.0], w, period))
             }
             Self::LowPass(pass) => {
                 let w = pass.frequency.get();
-                below_nyquist(w, period).map_err(|why| Fault::new("low_pass.frequency", why))?;
+                below_nyquist(w, period).map_err(|why| ConfigError::new("low_pass.frequency", why))?;
                 let damping = 2.0 * pass.damping.get() * w;
                 Ok(Biquad::tustin([w * w, 0.0, 0.0], [w * w, damping, 1.0], w, period))
             }
@@ -122,14 +129,14 @@ impl Filter {
                 // The frequency with the largest phase.
                 let middle = f64::sqrt(zero) * f64::sqrt(pole);
                 below_nyquist(middle, period).map_err(|why| {
-                    Fault::new("lead.pole", format!("makes the middle of zero and pole one that {why}"))
+                    ConfigError::new("lead.pole", format!("makes the middle of zero and pole one that {why}"))
                 })?;
                 Ok(Biquad::tustin([1.0, 1.0 / zero, 0.0], [1.0, 1.0 / pole, 0.0], middle, period))
             }
             Self::Biquad(coefficients) => {
                 let biquad = Biquad::new(coefficients.b.map(Finite::get), coefficients.a.map(Finite::get));
                 let why = "must make a filter that is stable: |a2| < 1 and |a1| < 1 + a2";
-                if biquad.is_stable() { Ok(biquad) } else { Err(Fault::new("biquad.a", why)) }
+                if biquad.is_stable() { Ok(biquad) } else { Err(ConfigError::new("biquad.a", why)) }
             }
         }
     }

@@ -5,10 +5,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
-use crate::attitude::of_axes;
-use crate::document::Fault;
-use crate::environment::Sky;
-use crate::manoeuvre::Pose;
+use crate::attitude::from_axes;
+use crate::document::ConfigError;
+use crate::environment::OrbitEnvironment;
+use crate::manoeuvre::AttitudeMotion;
 
 /// Frame relative to which a target's attitude is given.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
@@ -25,12 +25,12 @@ pub enum Frame {
 
 impl Frame {
     /// Returns attitude, rate and acceleration of the frame `t` (s) after the start, under a sky that defines it.
-    pub fn at(self, sky: &Sky, t: f64) -> Pose {
-        let inertial = || Pose::at_rest(Quaternion::new(1.0, 0.0, 0.0, 0.0));
+    pub fn state_at(self, sky: &OrbitEnvironment, t: f64) -> AttitudeMotion {
+        let inertial = || AttitudeMotion::at_rest(Quaternion::new(1.0, 0.0, 0.0, 0.0));
         match self {
             Self::Inertial => inertial(),
-            Self::Nadir => sky.place(t).map_or_else(inertial, |place| Pose {
-                attitude: of_axes(&place.local),
+            Self::Nadir => sky.position(t).map_or_else(inertial, |place| AttitudeMotion {
+                attitude: from_axes(&place.local),
                 rate: Vector::new(0.0, -place.turning[0], 0.0),
                 acceleration: Vector::new(0.0, -place.turning[1], 0.0),
             }),
@@ -39,18 +39,18 @@ impl Frame {
                 // If the Sun is along the planet's axis, any direction will do.
                 let y = if across.norm() > 1e-9 { across.normalize() } else { Vector::y() };
                 let y = (y - sun * sun.dot(&y)).normalize();
-                Pose::at_rest(of_axes(&[y.cross(sun), y, *sun]))
+                AttitudeMotion::at_rest(from_axes(&[y.cross(sun), y, *sun]))
             }),
         }
     }
 
     /// Returns true if the frame rotates.
-    pub fn turns(self) -> bool {
+    pub fn rotates(self) -> bool {
         self == Self::Nadir
     }
 
     /// Returns the name of the reference frame for messages.
-    pub fn words(self) -> &'static str {
+    pub fn name(self) -> &'static str {
         match self {
             Self::Inertial => "",
             Self::Nadir => " from the local axes of the orbit",
@@ -59,7 +59,7 @@ impl Frame {
     }
 
     /// Checks that the frame is defined under a sky; returns the key and the reason if not.
-    pub fn fault(self, sky: &Sky) -> Option<Fault> {
+    pub fn validate(self, sky: &OrbitEnvironment) -> Option<ConfigError> {
         let why = match self {
             Self::Nadir if sky.orbit().is_none() => {
                 "points to the planet of `[environment.orbit]`, and there is none"
@@ -67,6 +67,6 @@ impl Frame {
             Self::Sun if sky.sun().is_none() => "points to `environment.sun`, and there is none",
             _ => return None,
         };
-        Some(Fault::new("frame", why))
+        Some(ConfigError::new("frame", why))
     }
 }

@@ -1,20 +1,20 @@
 //! Control laws: state machines that respond to every event about an axis with a command.
 
+mod active_damping;
 mod attitude;
+mod attitude_profile;
 mod b_dot;
-mod controls;
-mod damping;
+mod controllers;
 mod distribution;
+mod error_measure;
 mod filter;
 mod frame;
-mod itinerary;
-mod measure;
-mod open;
+mod open_loop;
 mod pd;
-mod per_axis;
+mod per_axis_laws;
 mod phase_plane;
 mod relay;
-mod shaped;
+mod shaped_slew;
 #[cfg(test)]
 mod slew_tests;
 mod stages;
@@ -30,38 +30,39 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::PulseWidth;
-pub use crate::belief::Reads;
-use crate::belief::{Belief, Damped};
-use crate::document::Fault;
+use crate::custom::{Custom, PartError};
+use crate::document::ConfigError;
 use crate::guard::Guard;
-use crate::own::{Halt, Own};
 use crate::quantity::Finite;
+pub use crate::state_estimate::EstimateNeeds;
+use crate::state_estimate::{DampingStatus, StateEstimate};
 use crate::time::{Instant, Span};
 
 pub use crate::record::Phase;
+pub use active_damping::{ActiveDamping, ActiveDampingState, DampingGuards};
 pub use attitude::{AttitudeLaw, Integral};
+pub use attitude_profile::AttitudeProfile;
 pub use b_dot::BDot;
-pub use controls::{Controls, Event};
-pub use damping::{ActiveDamping, DampingGuards, DampingRelay};
+pub use controllers::{Controllers, Event};
 pub use distribution::TorqueDistribution;
+pub use error_measure::AttitudeErrorMeasure;
 pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
 pub use frame::Frame;
-pub use itinerary::Itinerary;
-pub use measure::Measure;
-pub use open::Open;
+pub use open_loop::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
-pub use per_axis::PerAxis;
-pub use phase_plane::{PhasePlane, Target};
-pub use relay::{Relay, Sides};
+pub use per_axis_laws::PerAxisLaws;
+pub use phase_plane::{AttitudeTarget, PhasePlane};
+pub use relay::{Relay, RelaySides};
 pub use stages::{Stage, Stages};
-pub use state_space::{Commands, Of, StateSpace};
-pub use switching_lines::{SwitchingLines, band};
+pub use state_space::{OutputQuantity, StateSpace, TimeDomain};
+pub use switching_lines::{SwitchingLines, error_band};
 pub use tunable::{Tunable, TunedNumbers};
 
 /// The kinds of law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Law {
+#[schemars(rename = "Law")]
+pub enum LawKind {
     /// Relay with dead zone, hysteresis and a timed brake.
     Relay(Relay),
     /// Sampled proportional-derivative feedback of the angle.
@@ -75,19 +76,19 @@ pub enum Law {
     /// A relay in the phase plane, with pulses of computed length.
     PhasePlane(PhasePlane),
     /// A separate law about each of three axes.
-    PerAxis(Box<PerAxis>),
+    PerAxis(Box<PerAxisLaws>),
     /// Magnetic moments against the measured change of the field, to detumble a body.
     BDot(BDot),
     /// Laws that act one after another.
     Stages(Stages),
     /// A law from another crate; a scenario file cannot name it.
-    Own(Own<dyn Rule + Send + Sync>),
+    Own(Custom<dyn LawSpec + Send + Sync>),
 }
 
 /// Settings of a law. A law acts about one axis; on a three-axis body there is one about each axis.
-pub trait Rule {
+pub trait LawSpec {
     /// Returns the run-time state of the law about an axis with this actuator authority.
-    fn start(&self, authority: &Authority) -> Box<dyn Control>;
+    fn start(&self, authority: &Authority) -> Box<dyn Law>;
 
     /// Returns the law's own period, at which it samples and commands; `None` if it decides at events.
     fn period(&self) -> Option<Span> {
@@ -95,18 +96,18 @@ pub trait Rule {
     }
 
     /// Returns true if the law is a relay, whose torque changes only with its state.
-    fn switches(&self) -> bool {
+    fn is_switching(&self) -> bool {
         false
     }
 
     /// Returns the error band about the setpoint within which the law is expected to stay.
-    fn promise(&self) -> Promise {
-        Promise::Nothing
+    fn expected_band(&self) -> ErrorBand {
+        ErrorBand::None
     }
 
     /// Returns the estimates that the law reads.
-    fn reads(&self) -> Reads {
-        Reads::Motion
+    fn needs(&self) -> EstimateNeeds {
+        EstimateNeeds::Motion
     }
 
     /// Returns the parameters that an adaptation may tune.
@@ -121,51 +122,57 @@ pub trait Rule {
 }
 
 /// Run-time state of a law about one axis.
-pub trait Control: fmt::Debug + Send + Sync {
+pub trait Law: fmt::Debug + Send + Sync {
     /// Responds to an event with a command, and the conditions of the next decision.
-    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold;
+    fn decide(
+        &mut self,
+        now: Instant,
+        cause: DecisionCause,
+        goal: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput;
 
     /// Returns the state of the law.
     fn state(&self) -> Phase;
 
     /// Returns the error that a law of another crate failed with; the run ends there.
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         None
     }
 
     /// Returns a copy in the same state.
-    fn copy(&self) -> Box<dyn Control>;
+    fn copy(&self) -> Box<dyn Law>;
 
     /// Returns the value of the parameter tuned last, or of the law's tunable parameter; NaN if there is none.
-    fn tuned(&self) -> f64 {
+    fn tuned_value(&self) -> f64 {
         f64::NAN
     }
 
-    /// Sets a parameter of [`Rule::tunable`].
+    /// Sets a parameter of [`LawSpec::tunable`].
     fn tune(&mut self, _key: &str, _value: f64) {}
 
     /// Returns the relay law, if the law is one.
-    fn relay(&mut self) -> Option<&mut Relay> {
+    fn as_relay(&mut self) -> Option<&mut Relay> {
         None
     }
 
     /// Returns true if the law tracks a manoeuvre while it lasts, and not only from its end on.
-    fn tracks(&self) -> bool {
+    fn tracks_manoeuvre(&self) -> bool {
         false
     }
 
     /// Returns the lead time after a sample for which the law reads predicted elastic rates (s).
-    fn ahead(&self) -> f64 {
+    fn lead_time(&self) -> f64 {
         0.0
     }
 
     /// Returns the status of active damping in the last cycle, if the law has it.
-    fn damped(&self) -> Option<&Damped> {
+    fn damping_status(&self) -> Option<&DampingStatus> {
         None
     }
 }
 
-impl Clone for Box<dyn Control> {
+impl Clone for Box<dyn Law> {
     fn clone(&self) -> Self {
         self.copy()
     }
@@ -186,8 +193,8 @@ pub struct Authority {
     pub threshold: f64,
 }
 
-impl Deref for Law {
-    type Target = dyn Rule;
+impl Deref for LawKind {
+    type Target = dyn LawSpec;
     fn deref(&self) -> &Self::Target {
         match self {
             Self::Relay(law) => law,
@@ -204,14 +211,14 @@ impl Deref for Law {
     }
 }
 
-impl Law {
+impl LawKind {
     /// Returns the law about an axis: 0, or 0 to 2 for roll, pitch and yaw.
     pub fn about(&self, axis: usize) -> &Self {
         if let Self::PerAxis(laws) = self { laws.about(axis) } else { self }
     }
 
     /// Checks the law's own settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<Fault> {
+    pub fn inconsistency(&self) -> Option<ConfigError> {
         match self {
             Self::Attitude(law) => law.inconsistency(),
             Self::StateSpace(law) => law.inconsistency(),
@@ -253,7 +260,7 @@ impl Law {
     }
 }
 
-impl Default for Law {
+impl Default for LawKind {
     fn default() -> Self {
         Self::Open(Open::default())
     }
@@ -261,7 +268,7 @@ impl Default for Law {
 
 /// Setpoint of the body: from a time on, this angle, which changes at this rate.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub struct Goal {
+pub struct Setpoint {
     /// Start of the setpoint: the start of the run, or the end of the manoeuvre.
     pub from: Instant,
     /// Angle at the start of the setpoint (rad).
@@ -272,7 +279,7 @@ pub struct Goal {
     pub acceleration: f64,
 }
 
-impl Goal {
+impl Setpoint {
     /// Returns angle (rad) and rate (rad/s) at an instant.
     pub fn at(&self, now: Instant) -> (f64, f64) {
         // Without a rate, the elapsed time has no effect.
@@ -283,29 +290,29 @@ impl Goal {
 
 /// Expected error band of a law about the setpoint.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Promise {
+pub enum ErrorBand {
     /// No error band.
-    Nothing,
+    None,
     /// Half width of the band (rad).
-    Within(f64),
+    Absolute(f64),
     /// Half width of the band as a fraction of the initial distance from the setpoint.
-    Part(f64),
+    Fraction(f64),
 }
 
-impl Promise {
+impl ErrorBand {
     /// Returns the half width of the band (rad) for an initial distance (rad); NaN without a band.
     pub fn band(self, distance: f64) -> f64 {
         match self {
-            Self::Nothing => f64::NAN,
-            Self::Within(band) => band,
-            Self::Part(part) => part * distance,
+            Self::None => f64::NAN,
+            Self::Absolute(band) => band,
+            Self::Fraction(part) => part * distance,
         }
     }
 }
 
 /// Cause of a decision.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Cause {
+pub enum DecisionCause {
     /// Start of the run.
     Start,
     /// Trip of the guard with this index.
@@ -316,7 +323,7 @@ pub enum Cause {
 
 /// Output of a law: the command from now on, and the conditions of the next decision.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Hold {
+pub struct ControlOutput {
     /// Command to the actuator.
     pub command: Command,
     /// Time of the next decision.
@@ -338,7 +345,7 @@ pub enum Command {
     Moment(f64),
 }
 
-impl Hold {
+impl ControlOutput {
     /// No torque, without a further decision.
     pub const NONE: Self = Self { command: Command::Torque(0.0), until: None, guards: Guards::NONE };
 }

@@ -7,11 +7,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, Cause, Command, Control, Goal, Guards, Hold, Measure, Phase, Promise, Reads, Rule, Tunable,
-    TunedNumbers,
+    AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
+    Law, LawSpec, Phase, Setpoint, Tunable, TunedNumbers,
 };
-use crate::belief::Belief;
 use crate::quantity::{Finite, NonNegative, Positive};
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 
 /// The PD law.
@@ -28,8 +28,8 @@ pub struct Pd {
     #[serde(default)]
     pub differentiation: Differentiation,
     /// How a rotation is converted into an error, on a body with three axes.
-    #[serde(default, skip_serializing_if = "Measure::is_default")]
-    pub error: Measure,
+    #[serde(default, skip_serializing_if = "AttitudeErrorMeasure::is_default")]
+    pub error: AttitudeErrorMeasure,
     /// Extra loop on the dominant mode.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub extra: Option<Extra>,
@@ -112,8 +112,8 @@ impl Extra {
     }
 }
 
-impl Rule for Pd {
-    fn start(&self, _: &Authority) -> Box<dyn Control> {
+impl LawSpec for Pd {
+    fn start(&self, _: &Authority) -> Box<dyn Law> {
         self.copy()
     }
 
@@ -122,69 +122,75 @@ impl Rule for Pd {
     }
 
     /// Returns the usual 5 % of a step.
-    fn promise(&self) -> Promise {
-        Promise::Part(0.05)
+    fn expected_band(&self) -> ErrorBand {
+        ErrorBand::Fraction(0.05)
     }
 
-    fn reads(&self) -> Reads {
-        if self.extra.is_some() { Reads::DominantMode } else { Reads::Motion }
+    fn needs(&self) -> EstimateNeeds {
+        if self.extra.is_some() { EstimateNeeds::DominantMode } else { EstimateNeeds::Motion }
     }
 
     fn tunable(&self) -> Vec<Tunable> {
         let mut numbers =
             vec![Tunable::not_negative("k_p", self.k_p), Tunable::not_negative("k_d", self.k_d)];
         if let Some(Extra::Gain(gain)) = self.extra {
-            numbers.push(Tunable::free("extra.gain", gain.get()));
+            numbers.push(Tunable::unbounded("extra.gain", gain.get()));
         }
         numbers.extend(self.limit.map(|limit| Tunable::positive("limit", limit)));
         numbers
     }
 }
 
-impl Control for Pd {
-    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+impl Law for Pd {
+    fn decide(
+        &mut self,
+        now: Instant,
+        _: DecisionCause,
+        goal: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput {
         self.active = now >= goal.from;
         if !self.active {
-            return Hold { until: Some(goal.from), ..Hold::NONE };
+            return ControlOutput { until: Some(goal.from), ..ControlOutput::NONE };
         }
         let (angle, rate) = goal.at(now);
-        let gain = self
-            .extra
-            .as_ref()
-            .map_or(0.0, |extra| self.tuned.of("extra.gain", extra.gain(belief.dominant.frequency)));
-        let error = self.error.error(belief) - angle + gain * belief.dominant.displacement;
+        let gain = self.extra.as_ref().map_or(0.0, |extra| {
+            self.tuned.value_or("extra.gain", extra.gain(state_estimate.dominant.frequency))
+        });
+        let error = self.error.error(state_estimate) - angle + gain * state_estimate.dominant.displacement;
         let difference = error - self.last.unwrap_or(error);
         let derivative = match self.differentiation {
-            Differentiation::Exact => belief.rate - rate + gain * belief.dominant.rate,
+            Differentiation::Exact => state_estimate.rate - rate + gain * state_estimate.dominant.rate,
             Differentiation::Difference => difference / self.period.seconds(),
             Differentiation::Raw => difference,
         };
         self.last = Some(error);
-        let limit = self.tuned.of("limit", self.limit.map_or(f64::INFINITY, Positive::get));
-        let (k_p, k_d) = (self.tuned.of("k_p", self.k_p.get()), self.tuned.of("k_d", self.k_d.get()));
+        let limit = self.tuned.value_or("limit", self.limit.map_or(f64::INFINITY, Positive::get));
+        let (k_p, k_d) =
+            (self.tuned.value_or("k_p", self.k_p.get()), self.tuned.value_or("k_d", self.k_d.get()));
         let torque = -k_p * error - k_d * derivative;
         let command = Command::Torque(torque.clamp(-limit, limit));
-        Hold { command, until: Some(now + self.period), guards: Guards::NONE }
+        ControlOutput { command, until: Some(now + self.period), guards: Guards::NONE }
     }
 
     fn state(&self) -> Phase {
         if self.active { Phase::Feedback } else { Phase::Open }
     }
 
-    fn tracks(&self) -> bool {
+    fn tracks_manoeuvre(&self) -> bool {
         self.track
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 
-    fn tuned(&self) -> f64 {
-        self.tuned.last().unwrap_or(f64::NAN)
+    fn tuned_value(&self) -> f64 {
+        self.tuned.last_set().unwrap_or(f64::NAN)
     }
 
     fn tune(&mut self, key: &str, value: f64) {
-        self.tuned.take(key, value, &["k_p", "k_d", "extra.gain", "limit"]);
+        self.tuned.set(key, value, &["k_p", "k_d", "extra.gain", "limit"]);
     }
 }
 

@@ -11,16 +11,16 @@ use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
 
-use super::damping::{ActiveDamping, DampingRelay, is_beyond};
+use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
 use super::{
-    Authority, Cause, Command, Control, Frame, Goal, Guards, Hold, Phase, Reads, Rule, SwitchingLines,
-    Tunable,
+    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, Phase,
+    Setpoint, SwitchingLines, Tunable,
 };
-use crate::attitude::turned;
-use crate::belief::{Belief, Damped};
-use crate::document::Fault;
-use crate::manoeuvre::{AttitudeAt, Command as Planned, Profile, Shaper};
+use crate::attitude::from_yaw_pitch_roll;
+use crate::document::ConfigError;
+use crate::manoeuvre::{AttitudeRow, ManoeuvreCommand as Planned, Shaper, SlewProfile};
 use crate::quantity::{Finite, Fraction, Positive, Time};
+use crate::state_estimate::{DampingStatus, StateEstimate};
 use crate::time::{Instant, Span};
 
 /// The phase-plane law.
@@ -46,7 +46,7 @@ pub struct PhasePlane {
     pub switch_off: Positive,
     /// Target attitudes, in the order of their times; before the first one, the target is the inertial axes.
     #[serde(default)]
-    pub targets: Vec<Target>,
+    pub targets: Vec<AttitudeTarget>,
     /// Active damping of elastic motion while the rigid motion needs no jets; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub damping: Option<ActiveDamping>,
@@ -63,7 +63,8 @@ fn half() -> Fraction {
 /// A target attitude: yaw, then pitch about the rotated y axis, then roll about the twice rotated x axis.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Target {
+#[schemars(rename = "Target")]
+pub struct AttitudeTarget {
     /// Start time (s).
     pub from: Time,
     /// Frame relative to which the attitude is given.
@@ -86,7 +87,7 @@ pub struct Target {
     pub rate_limit: Option<Positive>,
     /// How the rate of the slew rises and falls.
     #[serde(default, skip_serializing_if = "is_trapezoid")]
-    pub profile: Profile,
+    pub profile: SlewProfile,
     /// Command planned for the slew, in place of `acceleration`; it may leave modes at rest.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub command: Option<Planned>,
@@ -98,7 +99,7 @@ pub struct Target {
     pub shaper: Option<Shaper>,
     /// Table of attitudes over time in place of a single one: splines of roll, pitch and yaw, at rest at both ends.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub table: Vec<AttitudeAt>,
+    pub table: Vec<AttitudeRow>,
 }
 
 /// Reads an angle of at most a whole turn: what is more is in degrees.
@@ -119,11 +120,11 @@ fn is_inertial(frame: &Frame) -> bool {
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
-fn is_trapezoid(profile: &Profile) -> bool {
-    *profile == Profile::Trapezoid
+fn is_trapezoid(profile: &SlewProfile) -> bool {
+    *profile == SlewProfile::Trapezoid
 }
 
-impl Target {
+impl AttitudeTarget {
     /// Inertial attitude, from the start on.
     pub const INERTIAL: Self = Self {
         from: Time::ZERO,
@@ -133,7 +134,7 @@ impl Target {
         yaw: Finite::ZERO,
         acceleration: None,
         rate_limit: None,
-        profile: Profile::Trapezoid,
+        profile: SlewProfile::Trapezoid,
         command: None,
         duration: None,
         shaper: None,
@@ -142,16 +143,16 @@ impl Target {
 
     /// Returns the attitude of the target.
     pub fn attitude(&self) -> nalgebra::Quaternion<f64> {
-        turned(self.roll.get(), self.pitch.get(), self.yaw.get())
+        from_yaw_pitch_roll(self.roll.get(), self.pitch.get(), self.yaw.get())
     }
 
     /// Returns the start time of the target.
-    pub fn begins(&self) -> Instant {
+    pub fn starts(&self) -> Instant {
         Instant::START + Span::from_seconds(self.from.get())
     }
 
     /// Checks the order of targets; returns the index of the first one not later than the one before, and the reason.
-    pub fn disorder(targets: &[Self]) -> Option<(usize, String)> {
+    pub fn validate_order(targets: &[Self]) -> Option<(usize, String)> {
         let late = targets.windows(2).position(|pair| pair[0].from >= pair[1].from)? + 1;
         Some((late, format!("must be later than the one before, got {}", targets[late].from.get())))
     }
@@ -159,28 +160,31 @@ impl Target {
 
 impl PhasePlane {
     /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<Fault> {
+    pub fn inconsistency(&self) -> Option<ConfigError> {
         let (on, off) = (self.switch_on.get(), self.switch_off.get());
         if off >= on {
-            return Some(Fault::new("switch_off", format!("must be below `switch_on`, {on}, got {off}")));
+            return Some(ConfigError::new(
+                "switch_off",
+                format!("must be below `switch_on`, {on}, got {off}"),
+            ));
         }
-        let (late, why) = Target::disorder(&self.targets)?;
-        Some(Fault::new(format!("targets[{late}].from"), why))
+        let (late, why) = AttitudeTarget::validate_order(&self.targets)?;
+        Some(ConfigError::new(format!("targets[{late}].from"), why))
     }
 }
 
-impl Rule for PhasePlane {
-    fn start(&self, authority: &Authority) -> Box<dyn Control> {
-        Box::new(InPhasePlane {
+impl LawSpec for PhasePlane {
+    fn start(&self, authority: &Authority) -> Box<dyn Law> {
+        Box::new(PhasePlaneState {
             damping: self
                 .damping
                 .as_ref()
-                .map(|damping| DampingRelay::new(damping, self.period.seconds(), authority)),
+                .map(|damping| ActiveDampingState::new(damping, self.period.seconds(), authority)),
             lines: SwitchingLines::new(self, authority),
             spec: self.clone(),
             authority: *authority,
             firing: false,
-            damped: Damped::default(),
+            damped: DampingStatus::default(),
             tuned: f64::NAN,
         })
     }
@@ -189,8 +193,8 @@ impl Rule for PhasePlane {
         Some(self.period)
     }
 
-    fn reads(&self) -> Reads {
-        if self.damping.is_some() { Reads::ElasticRates } else { Reads::Motion }
+    fn needs(&self) -> EstimateNeeds {
+        if self.damping.is_some() { EstimateNeeds::ElasticRates } else { EstimateNeeds::Motion }
     }
 
     fn tunable(&self) -> Vec<Tunable> {
@@ -199,63 +203,73 @@ impl Rule for PhasePlane {
             Tunable::positive("rate_limit", self.rate_limit),
             Tunable::positive("slope", self.slope),
             Tunable::fraction("braking", self.braking),
-            Tunable::positive("switch_on", self.switch_on).above(self.switch_off.get()),
-            Tunable::positive("switch_off", self.switch_off).below(self.switch_on.get()),
+            Tunable::positive("switch_on", self.switch_on).with_lower(self.switch_off.get()),
+            Tunable::positive("switch_off", self.switch_off).with_upper(self.switch_on.get()),
         ]
     }
 }
 
 /// Run-time state of the law about an axis.
 #[derive(Clone, Debug)]
-struct InPhasePlane {
+struct PhasePlaneState {
     spec: PhasePlane,
     authority: Authority,
     lines: SwitchingLines,
     firing: bool,
-    damping: Option<DampingRelay>,
-    damped: Damped,
+    damping: Option<ActiveDampingState>,
+    damped: DampingStatus,
     /// Value of the parameter tuned last.
     tuned: f64,
 }
 
-impl Control for InPhasePlane {
+impl Law for PhasePlaneState {
     /// Commands the change of the rate by the pulses of the cycle.
-    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+    fn decide(
+        &mut self,
+        now: Instant,
+        _: DecisionCause,
+        goal: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput {
         if now < goal.from {
-            return Hold { until: Some(goal.from), ..Hold::NONE };
+            return ControlOutput { until: Some(goal.from), ..ControlOutput::NONE };
         }
         let (angle, rate) = goal.at(now);
-        let angle = belief.angle - angle;
-        let excess = belief.rate - rate + belief.queued - self.lines.wanted(angle);
+        let angle = state_estimate.angle - angle;
+        let excess = state_estimate.rate - rate + state_estimate.queued_rate - self.lines.target_rate(angle);
         // Tolerance on the side of the excess.
-        let allowed = self.lines.allowed_above(if excess < 0.0 { -angle } else { angle });
+        let allowed = self.lines.upper_tolerance(if excess < 0.0 { -angle } else { angle });
         let mut change = self.relay(excess, allowed);
         if let Some(damping) = &mut self.damping {
-            let allowed = self.lines.allowed(angle);
-            let free = !self.firing && !is_beyond(excess, allowed);
-            self.damped = damping.decide(belief, free, (excess, allowed));
+            let allowed = self.lines.rate_tolerance(angle);
+            let free = !self.firing && !exceeds(excess, allowed);
+            self.damped = damping.decide(state_estimate, free, (excess, allowed));
             change += self.damped.change;
         }
-        Hold { command: Command::Change(change), until: Some(now + self.spec.period), guards: Guards::NONE }
+        ControlOutput {
+            command: Command::Change(change),
+            until: Some(now + self.spec.period),
+            guards: Guards::NONE,
+        }
     }
 
     fn state(&self) -> Phase {
         if self.firing { Phase::Firing } else { Phase::Coasting }
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 
-    fn ahead(&self) -> f64 {
-        self.damping.as_ref().map_or(0.0, DampingRelay::ahead)
+    fn lead_time(&self) -> f64 {
+        self.damping.as_ref().map_or(0.0, ActiveDampingState::lead_time)
     }
 
-    fn damped(&self) -> Option<&Damped> {
+    fn damping_status(&self) -> Option<&DampingStatus> {
         self.damping.as_ref().map(|_| &self.damped)
     }
 
-    fn tuned(&self) -> f64 {
+    fn tuned_value(&self) -> f64 {
         self.tuned
     }
 
@@ -278,7 +292,7 @@ impl Control for InPhasePlane {
     }
 }
 
-impl InPhasePlane {
+impl PhasePlaneState {
     /// Recomputes the switching lines after a parameter was tuned.
     fn draw(&mut self, tuned: f64) {
         self.tuned = tuned;
@@ -288,7 +302,7 @@ impl InPhasePlane {
     fn relay(&mut self, excess: f64, allowed: f64) -> f64 {
         if excess.abs() > allowed {
             self.firing = true;
-        } else if excess.abs() < self.lines.release(allowed) {
+        } else if excess.abs() < self.lines.release_level(allowed) {
             self.firing = false;
         }
         if !self.firing {

@@ -9,11 +9,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule, Tunable, TunedNumbers,
+    Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, Phase, Setpoint,
+    Tunable, TunedNumbers,
 };
-use crate::belief::Belief;
 use crate::guard::Guard;
 use crate::quantity::{Fraction, NonNegative, Positive};
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 
 /// The relay law.
@@ -32,7 +33,7 @@ pub struct Relay {
     pub k_t: Fraction,
     /// Which boundaries of the dead zone push back.
     #[serde(default)]
-    pub sides: Sides,
+    pub sides: RelaySides,
     #[serde(skip)]
     phase: Option<Phase>,
     #[serde(skip)]
@@ -45,7 +46,8 @@ pub struct Relay {
 /// Which boundaries of the dead zone push back.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Sides {
+#[schemars(rename = "Sides")]
+pub enum RelaySides {
     /// Both (equation (2)).
     #[default]
     Two,
@@ -64,37 +66,43 @@ impl Relay {
     }
 }
 
-impl Rule for Relay {
-    fn start(&self, _: &Authority) -> Box<dyn Control> {
+impl LawSpec for Relay {
+    fn start(&self, _: &Authority) -> Box<dyn Law> {
         self.copy()
     }
 
-    fn switches(&self) -> bool {
+    fn is_switching(&self) -> bool {
         true
     }
 
     /// Returns the dead zone plus the hysteresis, as a margin for the overshoot. In the cycle of a rigid body under a
     /// small weak torque the overshoot is (1 - k_t)²/(4 k_t) times the hysteresis: less than once for k_t from 0.172
     /// on.
-    fn promise(&self) -> Promise {
-        Promise::Within(self.dead_zone.get() + self.hysteresis.get())
+    fn expected_band(&self) -> ErrorBand {
+        ErrorBand::Absolute(self.dead_zone.get() + self.hysteresis.get())
     }
 
     fn tunable(&self) -> Vec<Tunable> {
         let (zone, hysteresis) = (self.dead_zone.get(), self.hysteresis.get());
         vec![
             Tunable::fraction("k_t", self.k_t),
-            Tunable::positive("dead_zone", self.dead_zone).above(0.5 * hysteresis),
-            Tunable::positive("hysteresis", self.hysteresis).below(2.0 * zone),
+            Tunable::positive("dead_zone", self.dead_zone).with_lower(0.5 * hysteresis),
+            Tunable::positive("hysteresis", self.hysteresis).with_upper(2.0 * zone),
             Tunable::positive("strong", self.strong),
             Tunable::not_negative("weak", self.weak),
         ]
     }
 }
 
-impl Control for Relay {
-    fn decide(&mut self, now: Instant, cause: Cause, _: &Goal, belief: &Belief) -> Hold {
-        let phase = self.next(cause, belief);
+impl Law for Relay {
+    fn decide(
+        &mut self,
+        now: Instant,
+        cause: DecisionCause,
+        _: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput {
+        let phase = self.next(cause, state_estimate);
         if matches!(phase, Phase::RightPush | Phase::LeftPush) {
             self.pushed_at = now;
         }
@@ -106,64 +114,67 @@ impl Control for Relay {
         self.phase.unwrap_or(Phase::Start)
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 
-    fn relay(&mut self) -> Option<&mut Relay> {
+    fn as_relay(&mut self) -> Option<&mut Relay> {
         Some(self)
     }
 
     /// Returns always k_t, by which limit cycles are judged.
-    fn tuned(&self) -> f64 {
-        self.tuned.of("k_t", self.k_t.get())
+    fn tuned_value(&self) -> f64 {
+        self.tuned.value_or("k_t", self.k_t.get())
     }
 
     fn tune(&mut self, key: &str, value: f64) {
-        self.tuned.take(key, value, &["k_t", "dead_zone", "hysteresis", "strong", "weak"]);
+        self.tuned.set(key, value, &["k_t", "dead_zone", "hysteresis", "strong", "weak"]);
     }
 }
 
 impl Relay {
     /// Starts a state at `now`, after a push that started at `pushed`, and returns its output.
-    pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) -> Hold {
+    pub fn set_state(&mut self, phase: Phase, now: Instant, pushed: Instant) -> ControlOutput {
         (self.phase, self.pushed_at) = (Some(phase), pushed);
         self.hold(phase, now)
     }
 
     /// Returns the state after an event.
-    fn next(&self, cause: Cause, belief: &Belief) -> Phase {
+    fn next(&self, cause: DecisionCause, state_estimate: &StateEstimate) -> Phase {
         match (self.state(), cause) {
-            (_, Cause::Start) if self.right().holds(belief.angle) => Phase::RightPush,
-            (_, Cause::Start) if self.sides == Sides::Two && self.left().holds(belief.angle) => {
+            (_, DecisionCause::Start) if self.right().holds(state_estimate.angle) => Phase::RightPush,
+            (_, DecisionCause::Start)
+                if self.sides == RelaySides::Two && self.left().holds(state_estimate.angle) =>
+            {
                 Phase::LeftPush
             }
-            (_, Cause::Start) => Phase::Start,
+            (_, DecisionCause::Start) => Phase::Start,
             (Phase::RightPush, _) => Phase::RightBrake,
             (Phase::RightBrake, _) => Phase::WeakRight,
             (Phase::LeftPush, _) => Phase::LeftBrake,
             (Phase::LeftBrake, _) => Phase::WeakLeft,
             // The body leaves the dead zone through the right boundary, guard 0, or the left one.
-            (_, Cause::Guard(0) | Cause::Timeout) => Phase::RightPush,
-            (_, Cause::Guard(_)) => Phase::LeftPush,
+            (_, DecisionCause::Guard(0) | DecisionCause::Timeout) => Phase::RightPush,
+            (_, DecisionCause::Guard(_)) => Phase::LeftPush,
         }
     }
 
     /// Returns the output of a state that starts at `now`.
-    fn hold(&self, phase: Phase, now: Instant) -> Hold {
-        let back = self.zone() - self.tuned.of("hysteresis", self.hysteresis.get());
-        let strong = self.tuned.of("strong", self.strong.get());
-        let weak = self.tuned.of("weak", self.weak.get());
-        let k_t = self.tuned.of("k_t", self.k_t.get());
-        let until_guards = |torque, guards| Hold { command: Command::Torque(torque), until: None, guards };
+    fn hold(&self, phase: Phase, now: Instant) -> ControlOutput {
+        let back = self.zone() - self.tuned.value_or("hysteresis", self.hysteresis.get());
+        let strong = self.tuned.value_or("strong", self.strong.get());
+        let weak = self.tuned.value_or("weak", self.weak.get());
+        let k_t = self.tuned.value_or("k_t", self.k_t.get());
+        let until_guards =
+            |torque, guards| ControlOutput { command: Command::Torque(torque), until: None, guards };
         let until_braked = |torque| {
             let push = now.since(self.pushed_at).seconds();
             let until = Some(now + Span::from_seconds(k_t * push));
-            Hold { command: Command::Torque(torque), until, guards: Guards::NONE }
+            ControlOutput { command: Command::Torque(torque), until, guards: Guards::NONE }
         };
         let boundaries = match self.sides {
-            Sides::Two => Guards::two(self.right(), self.left()),
-            Sides::One => Guards::one(self.right()),
+            RelaySides::Two => Guards::two(self.right(), self.left()),
+            RelaySides::One => Guards::one(self.right()),
         };
         match phase {
             Phase::WeakLeft => until_guards(-weak, boundaries),
@@ -185,6 +196,6 @@ impl Relay {
     }
 
     fn zone(&self) -> f64 {
-        self.tuned.of("dead_zone", self.dead_zone.get())
+        self.tuned.value_or("dead_zone", self.dead_zone.get())
     }
 }

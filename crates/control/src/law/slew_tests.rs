@@ -3,12 +3,16 @@
 
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
-use super::{AttitudeLaw, Authority, Cause, Control, Goal, Itinerary, Rule, TorqueDistribution};
-use crate::actuator::{Actuate, PulseWidth, Spinning, TorquerSetting, Wheels};
+use super::{
+    AttitudeLaw, AttitudeProfile, Authority, DecisionCause, Law, LawSpec, Setpoint, TorqueDistribution,
+};
+use crate::actuator::{Actuator, AxisActuatorContext, PulseWidth, Wheels, WheelsState};
 use crate::attitude::{Vector, rotation, rotation_vector};
-use crate::belief::Belief;
-use crate::manoeuvre::{Profile, Slew};
-use crate::motion::turning::{Acting, Bearing, Flexible, FreeMode, Slip, Turning};
+use crate::manoeuvre::{Slew, SlewProfile};
+use crate::motion::three_axis::{
+    Bearing, FlexibleBody, FreeMode, SegmentLoads, SlipDirection, ThreeAxisMotion,
+};
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
@@ -24,7 +28,7 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 }
 
 /// Returns the spacecraft without first moments, with its full damping matrix.
-fn craft() -> Flexible {
+fn craft() -> FlexibleBody {
     let rows = rows(MODES);
     let mode = |row: &Vec<f64>| FreeMode {
         frequency: row[0],
@@ -32,20 +36,20 @@ fn craft() -> Flexible {
         rotation: Vector::from_row_slice(&row[1..4]),
         moments: Matrix3::zeros(),
     };
-    Flexible {
+    FlexibleBody {
         inertia: Matrix3::from_row_slice(&rows[0]),
         modes: rows[1..].iter().map(mode).collect(),
         damping: Some(DMatrix::from_fn(8, 8, |row, column| rows[row + 1][17 + column])),
     }
 }
 
-fn wheels(speed: f64) -> Spinning {
+fn wheels(speed: f64) -> WheelsState {
     let wheels: Wheels = crate::document::from_text(&format!(
         "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = 0.04\ntorque = 0.4\nspeed_limit = 600.0\n\
          speeds = [{speed}, -{speed}, {speed}, -{speed}]"
     ))
     .unwrap();
-    let setting = |axis| TorquerSetting {
+    let setting = |axis| AxisActuatorContext {
         axis,
         inertia: 1.0,
         planned_inertia: 1.0,
@@ -58,7 +62,7 @@ fn wheels(speed: f64) -> Spinning {
 }
 
 /// Time at which a wheel stopped (s), index of the wheel, and its slip afterwards.
-type Met = (f64, usize, Slip);
+type Met = (f64, usize, SlipDirection);
 
 #[test]
 fn sixty_degrees_by_four_wheels() {
@@ -83,13 +87,13 @@ fn the_same_with_friction() {
 }
 
 /// Runs the slew against a table of the second code; returns the times at which wheels stopped.
-fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
+fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let craft = craft();
-    let mut turning = Turning::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
-    turning.bear(bearings);
+    let mut turning = ThreeAxisMotion::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
+    turning.set_bearings(bearings);
     let mut events = Vec::new();
     let to = rotation(&(Vector::new(1.0, 2.0, 2.0) * (std::f64::consts::FRAC_PI_3 / 3.0)));
-    let slew = Slew::new([Quaternion::identity(), to], 2e-4, 8e-3, Profile::Trapezoid);
+    let slew = Slew::new([Quaternion::identity(), to], 2e-4, 8e-3, SlewProfile::Trapezoid);
     let law: AttitudeLaw =
         crate::document::from_text("period = 0.25\nbandwidth = 0.1\ndamping = 0.8").unwrap();
     let authority = Authority {
@@ -99,8 +103,8 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
         delay: 0.0,
         threshold: 0.0,
     };
-    let mut laws: [Box<dyn Control>; 3] = [0, 1, 2].map(|_| law.start(&authority));
-    let distribution = TorqueDistribution::of_three_axes(craft.inertia);
+    let mut laws: [Box<dyn Law>; 3] = [0, 1, 2].map(|_| law.start(&authority));
+    let distribution = TorqueDistribution::for_three_axes(craft.inertia);
     let table = rows(table);
     let mut met = 0;
     for k in 0..=920 {
@@ -123,53 +127,59 @@ fn turn(mut wheels: Spinning, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
             assert!((twice - three(12)).norm() < 5e-13, "{t} {:e}", (twice - three(12)).norm());
         }
         let whole = angles.norm();
-        let belief =
-            |axis: usize| Belief { angle: angles[axis], whole, rate: rate[axis], ..Belief::default() };
-        let beliefs = [0, 1, 2].map(belief);
-        let [wanted, acceleration] = pose.seen_from(&angles);
+        let estimate = |axis: usize| StateEstimate {
+            angle: angles[axis],
+            total_angle: whole,
+            rate: rate[axis],
+            ..StateEstimate::default()
+        };
+        let estimates = [0, 1, 2].map(estimate);
+        let [wanted, acceleration] = pose.in_body_axes(&angles);
         let mut axis = 0;
         let commands = laws.each_mut().map(|law| {
-            let goal = Goal { from: now, angle: 0.0, rate: wanted[axis], acceleration: acceleration[axis] };
+            let goal =
+                Setpoint { from: now, angle: 0.0, rate: wanted[axis], acceleration: acceleration[axis] };
             axis += 1;
-            law.decide(now, Cause::Timeout, &goal, &beliefs[axis - 1]).command
+            law.decide(now, DecisionCause::Timeout, &goal, &estimates[axis - 1]).command
         });
-        let demands = distribution.demands(commands, &beliefs, || wheels.stored(now));
+        let demands = distribution.demands(commands, &estimates, || wheels.stored_momentum(now));
         wheels.command(now, &demands, rate.into());
         let mut wrench = Wrench::default();
-        wheels.exert(now, &mut wrench);
-        let acting = Acting { rotors: wrench.rotors, ..Acting::default() };
+        wheels.apply(now, &mut wrench);
+        let acting = SegmentLoads { rotors: wrench.rotors, ..SegmentLoads::default() };
         turning.depart(&acting);
-        turning.settle(None);
+        turning.resolve_stick_slip(None);
         let mut began = 0.0;
         while let Some(at) = go(&mut turning, PERIOD - began) {
-            let before: Vec<Slip> = turning.turned(None).iter().map(|wheel| wheel.slip).collect();
+            let before: Vec<SlipDirection> =
+                turning.rotor_observations(None).iter().map(|wheel| wheel.slip).collect();
             turning.reach(at, None);
             began += at;
             turning.depart(&acting);
-            turning.settle(None);
-            for (wheel, (turned, before)) in turning.turned(None).iter().zip(before).enumerate() {
+            turning.resolve_stick_slip(None);
+            for (wheel, (turned, before)) in turning.rotor_observations(None).iter().zip(before).enumerate() {
                 if turned.slip != before {
                     events.push((t + began, wheel, turned.slip));
                 }
             }
         }
-        wheels.turned(now + Span::from_seconds(PERIOD), &turning.turned(None));
+        wheels.set_rotor_states(now + Span::from_seconds(PERIOD), &turning.rotor_observations(None));
     }
     assert_eq!(met, table.len());
     events
 }
 
-fn go(turning: &mut Turning, t: f64) -> Option<f64> {
+fn go(turning: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
     turning.advance(t, None, || Ok::<(), std::convert::Infallible>(())).unwrap()
 }
 
 #[test]
 fn a_reference_is_seen_in_the_axes_of_the_body() {
     // The rate about x appears about -y on a body a quarter turn about z from it.
-    let pose = Slew::at_once(Quaternion::identity()).at(0.0);
-    let pose = crate::manoeuvre::Pose { rate: Vector::x(), acceleration: Vector::z(), ..pose };
+    let pose = Slew::instantaneous(Quaternion::identity()).at(0.0);
+    let pose = crate::manoeuvre::AttitudeMotion { rate: Vector::x(), acceleration: Vector::z(), ..pose };
     let by = Vector::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
-    let [rate, acceleration] = pose.seen_from(&by);
+    let [rate, acceleration] = pose.in_body_axes(&by);
     assert!((rate + Vector::y()).norm() < 1e-15 && (acceleration - Vector::z()).norm() < 1e-15);
-    assert!(!Itinerary::default().moves(Instant::START));
+    assert!(!AttitudeProfile::default().is_moving(Instant::START));
 }

@@ -3,10 +3,13 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Control, Goal, Hold, Law, Phase, Promise, Reads, Rule, Tunable};
-use crate::belief::Belief;
-use crate::document::Fault;
+use super::{
+    Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, Phase,
+    Setpoint, Tunable,
+};
+use crate::document::ConfigError;
 use crate::quantity::Time;
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 
 /// Laws that act one after another.
@@ -22,7 +25,7 @@ pub struct Stage {
     #[serde(default)]
     pub from: Time,
     /// The law.
-    pub law: Law,
+    pub law: LawKind,
 }
 
 impl Stage {
@@ -33,7 +36,7 @@ impl Stage {
 
 impl Stages {
     /// Iterates over the laws.
-    pub fn laws(&self) -> impl Iterator<Item = &Law> {
+    pub fn laws(&self) -> impl Iterator<Item = &LawKind> {
         self.0.iter().map(|stage| &stage.law)
     }
 
@@ -43,47 +46,47 @@ impl Stages {
     }
 
     /// Returns the start time of the last stage.
-    pub fn settles(&self) -> Instant {
+    pub fn last_start(&self) -> Instant {
         self.0.last().map_or(Instant::START, Stage::begins)
     }
 
     /// Checks the stages; returns a key within them and the reason.
-    pub fn inconsistency(&self) -> Option<Fault> {
+    pub fn inconsistency(&self) -> Option<ConfigError> {
         let Some(first) = self.0.first() else {
-            return Some(Fault::new("", "must have one law or more, got none"));
+            return Some(ConfigError::new("", "must have one law or more, got none"));
         };
         if first.from != Time::ZERO {
             let why = format!("must be 0, or left out, for the first, got {}", first.from.get());
-            return Some(Fault::new("[0].from", why));
+            return Some(ConfigError::new("[0].from", why));
         }
         if let Some(late) = self.0.windows(2).position(|pair| pair[0].from >= pair[1].from) {
             let why = format!("must be later than the one before, got {}", self.0[late + 1].from.get());
-            return Some(Fault::new(format!("[{}].from", late + 1), why));
+            return Some(ConfigError::new(format!("[{}].from", late + 1), why));
         }
         self.0.iter().enumerate().find_map(|(index, stage)| {
             let key = format!("[{index}].law.{}", stage.law.kind());
             match &stage.law {
-                law @ (Law::BDot(_)
-                | Law::Pd(_)
-                | Law::Attitude(_)
-                | Law::StateSpace(_)
-                | Law::Open(_)
-                | Law::Own(_)) => law.inconsistency().map(|fault| fault.within(&key)),
-                Law::Relay(_) | Law::PhasePlane(_) | Law::PerAxis(_) | Law::Stages(_) => {
+                law @ (LawKind::BDot(_)
+                | LawKind::Pd(_)
+                | LawKind::Attitude(_)
+                | LawKind::StateSpace(_)
+                | LawKind::Open(_)
+                | LawKind::Own(_)) => law.inconsistency().map(|fault| fault.within(&key)),
+                LawKind::Relay(_) | LawKind::PhasePlane(_) | LawKind::PerAxis(_) | LawKind::Stages(_) => {
                     let why =
                         "must be one of `attitude`, `b_dot`, `pd`, `state_space` and `open`: other laws control a whole run";
-                    Some(Fault::new(key, why))
+                    Some(ConfigError::new(key, why))
                 }
             }
         })
     }
 }
 
-impl Rule for Stages {
-    fn start(&self, authority: &Authority) -> Box<dyn Control> {
+impl LawSpec for Stages {
+    fn start(&self, authority: &Authority) -> Box<dyn Law> {
         let stages = self.0.iter().map(|stage| (stage.begins(), stage.law.start(authority)));
         let places = (0..self.0.len()).map(|index| self.place(index)).collect();
-        Box::new(InTurn { stages: stages.collect(), active: 0, places, tuned: None })
+        Box::new(StagesState { stages: stages.collect(), active: 0, places, tuned: None })
     }
 
     /// Returns the shortest period of the laws.
@@ -92,20 +95,25 @@ impl Rule for Stages {
     }
 
     /// Returns the error band of the last law.
-    fn promise(&self) -> Promise {
-        self.0.last().map_or(Promise::Nothing, |stage| stage.law.promise())
+    fn expected_band(&self) -> ErrorBand {
+        self.0.last().map_or(ErrorBand::None, |stage| stage.law.expected_band())
     }
 
-    fn reads(&self) -> Reads {
-        let of = |wanted: Reads| self.laws().any(|law| law.reads() == wanted);
-        let order = [Reads::ElasticRates, Reads::DominantMode, Reads::Motion, Reads::Field];
-        order.into_iter().find(|wanted| of(*wanted)).unwrap_or(Reads::Nothing)
+    fn needs(&self) -> EstimateNeeds {
+        let of = |wanted: EstimateNeeds| self.laws().any(|law| law.needs() == wanted);
+        let order = [
+            EstimateNeeds::ElasticRates,
+            EstimateNeeds::DominantMode,
+            EstimateNeeds::Motion,
+            EstimateNeeds::Field,
+        ];
+        order.into_iter().find(|wanted| of(*wanted)).unwrap_or(EstimateNeeds::Nothing)
     }
 
     fn tunable(&self) -> Vec<Tunable> {
-        let of = |(index, law): (usize, &Law)| {
+        let of = |(index, law): (usize, &LawKind)| {
             let place = self.place(index);
-            law.tunable().into_iter().map(move |number| number.within(&place))
+            law.tunable().into_iter().map(move |number| number.nested(&place))
         };
         self.laws().enumerate().flat_map(of).collect()
     }
@@ -113,8 +121,8 @@ impl Rule for Stages {
 
 /// Run-time state of the laws about an axis.
 #[derive(Clone, Debug)]
-struct InTurn {
-    stages: Vec<(Instant, Box<dyn Control>)>,
+struct StagesState {
+    stages: Vec<(Instant, Box<dyn Law>)>,
     /// Index of the active stage.
     active: usize,
     /// Key prefix of each law among the stages, and index of the one tuned last.
@@ -122,30 +130,36 @@ struct InTurn {
     tuned: Option<usize>,
 }
 
-impl Control for InTurn {
-    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold {
+impl Law for StagesState {
+    fn decide(
+        &mut self,
+        now: Instant,
+        cause: DecisionCause,
+        goal: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput {
         let due = self.stages.iter().rposition(|(begins, _)| *begins <= now).unwrap_or(0);
-        let cause = if due == self.active { cause } else { Cause::Start };
+        let cause = if due == self.active { cause } else { DecisionCause::Start };
         self.active = due;
-        let hold = self.stages[due].1.decide(now, cause, goal, belief);
+        let hold = self.stages[due].1.decide(now, cause, goal, state_estimate);
         let next = self.stages.get(due + 1).map(|(begins, _)| *begins);
-        Hold { until: [hold.until, next].into_iter().flatten().min(), ..hold }
+        ControlOutput { until: [hold.until, next].into_iter().flatten().min(), ..hold }
     }
 
     fn state(&self) -> Phase {
         self.stages[self.active].1.state()
     }
 
-    fn tracks(&self) -> bool {
-        self.stages[self.active].1.tracks()
+    fn tracks_manoeuvre(&self) -> bool {
+        self.stages[self.active].1.tracks_manoeuvre()
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 
-    fn tuned(&self) -> f64 {
-        self.tuned.map_or(f64::NAN, |stage| self.stages[stage].1.tuned())
+    fn tuned_value(&self) -> f64 {
+        self.tuned.map_or(f64::NAN, |stage| self.stages[stage].1.tuned_value())
     }
 
     fn tune(&mut self, key: &str, value: f64) {
@@ -187,10 +201,10 @@ mod tests {
             threshold: 0.0,
         };
         let mut law = laws.start(&authority);
-        let belief = Belief { angle: 0.2, field_rate: -3e-7, ..Belief::default() };
+        let estimate = StateEstimate { angle: 0.2, field_rate: -3e-7, ..StateEstimate::default() };
         let (mut now, mut decisions) = (Instant::START, Vec::new());
         while now.seconds() < 7.0 {
-            let hold = law.decide(now, Cause::Timeout, &Goal::default(), &belief);
+            let hold = law.decide(now, DecisionCause::Timeout, &Setpoint::default(), &estimate);
             decisions.push((now.seconds(), hold.command));
             now = hold.until.unwrap();
         }

@@ -8,12 +8,15 @@ use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Reads, Rule, Tunable};
-use crate::belief::Belief;
+use super::{
+    Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec, Phase,
+    Setpoint, Tunable,
+};
 use crate::count::counted;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::numerics::exponential::exponential;
 use crate::quantity::{Finite, Positive};
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 
 /// Largest number of states.
@@ -39,10 +42,10 @@ pub struct StateSpace {
     pub d: Vec<Vec<Finite>>,
     /// Whether the matrices are in discrete or continuous time.
     #[serde(default)]
-    pub of: Of,
+    pub of: TimeDomain,
     /// Quantity that it commands.
     #[serde(default)]
-    pub command: Commands,
+    pub command: OutputQuantity,
     /// Factor on the output.
     #[serde(default = "one", skip_serializing_if = "is_one")]
     pub gain: Positive,
@@ -66,7 +69,8 @@ fn is_one(gain: &Positive) -> bool {
 /// Whether the matrices are in discrete or continuous time.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Of {
+#[schemars(rename = "Of")]
+pub enum TimeDomain {
     /// Discrete time, with samples `period` apart.
     #[default]
     Samples,
@@ -79,7 +83,8 @@ pub enum Of {
 /// Quantity that the output commands.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Commands {
+#[schemars(rename = "Commands")]
+pub enum OutputQuantity {
     /// A torque (N m; for a wheel, units of its command).
     #[default]
     Torque,
@@ -89,7 +94,7 @@ pub enum Commands {
 
 /// Matrices in discrete time.
 #[derive(Clone, Debug, PartialEq)]
-struct Matrices {
+struct DiscreteMatrices {
     a: DMatrix<f64>,
     b: DMatrix<f64>,
     c: DMatrix<f64>,
@@ -97,9 +102,9 @@ struct Matrices {
 }
 
 /// Returns a matrix with `columns` columns, or the key of the first row with another length.
-fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64>, Fault> {
+fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64>, ConfigError> {
     match rows.iter().position(|row| row.len() != columns) {
-        Some(row) => Err(Fault::new(
+        Some(row) => Err(ConfigError::new(
             format!("{key}[{row}]"),
             format!(
                 "must have {columns} column{}, got {}",
@@ -113,8 +118,8 @@ fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64
 
 impl StateSpace {
     /// Returns the matrices in discrete time.
-    fn sampled(&self) -> Result<Matrices, Fault> {
-        let wrong = |key: &str, why: String| Err(Fault::new(key, why));
+    fn sampled(&self) -> Result<DiscreteMatrices, ConfigError> {
+        let wrong = |key: &str, why: String| Err(ConfigError::new(key, why));
         let order = self.a.len();
         if order > MOST {
             return wrong("a", format!("must have at most {MOST} states, got {order}"));
@@ -139,18 +144,18 @@ impl StateSpace {
         let row = |key: &str, rows: &[Vec<Finite>], columns: usize| match rows.len() {
             0 => Ok(DMatrix::zeros(1, columns)),
             1 => matrix(key, rows, columns),
-            many => Err(Fault::new(key, format!("must be one row, got {many}"))),
+            many => Err(ConfigError::new(key, format!("must be one row, got {many}"))),
         };
         if order > 0 && self.c.is_empty() {
             return wrong("c", format!("must be a row of {order}: without it the states have no effect"));
         }
         let (c, d) = (row("c", &self.c, order)?, row("d", &self.d, inputs)?);
-        let continuous = Matrices { a, b, c, d };
+        let continuous = DiscreteMatrices { a, b, c, d };
         let h = self.period.seconds();
         match self.of {
-            Of::Samples => Ok(continuous),
-            Of::Held => Ok(continuous.held(h)),
-            Of::Tustin => match continuous.tustin(h) {
+            TimeDomain::Samples => Ok(continuous),
+            TimeDomain::Held => Ok(continuous.held(h)),
+            TimeDomain::Tustin => match continuous.tustin(h) {
                 Some(sampled) => Ok(sampled),
                 None => wrong(
                     "a",
@@ -161,13 +166,13 @@ impl StateSpace {
     }
 
     /// Checks the settings against each other; returns a key within the law and the reason.
-    pub fn inconsistency(&self) -> Option<Fault> {
+    pub fn inconsistency(&self) -> Option<ConfigError> {
         match self.sampled() {
             Err(fault) => Some(fault),
             Ok(sampled) => {
                 let all = [&sampled.a, &sampled.b, &sampled.c, &sampled.d];
                 let finite = all.iter().all(|matrix| matrix.iter().all(|entry| entry.is_finite()));
-                (!finite).then(|| Fault::new("a", "overflows within a period"))
+                (!finite).then(|| ConfigError::new("a", "overflows within a period"))
             }
         }
     }
@@ -180,7 +185,7 @@ impl StateSpace {
     }
 }
 
-impl Matrices {
+impl DiscreteMatrices {
     /// Discretises the matrices for samples `h` (s) apart, with the input held between them.
     fn held(self, h: f64) -> Self {
         let (order, inputs) = (self.a.nrows(), self.b.ncols());
@@ -205,17 +210,17 @@ impl Matrices {
     }
 }
 
-impl Rule for StateSpace {
-    fn start(&self, _: &Authority) -> Box<dyn Control> {
+impl LawSpec for StateSpace {
+    fn start(&self, _: &Authority) -> Box<dyn Law> {
         // Invalid matrices were rejected before.
-        let none = || Matrices {
+        let none = || DiscreteMatrices {
             a: DMatrix::zeros(0, 0),
             b: DMatrix::zeros(0, 1),
             c: DMatrix::zeros(1, 0),
             d: DMatrix::zeros(1, 1),
         };
         let matrices = self.sampled().unwrap_or_else(|_| none());
-        Box::new(AtSamples {
+        Box::new(StateSpaceState {
             state: DMatrix::zeros(matrices.a.nrows(), 1),
             period: self.period,
             command: self.command,
@@ -233,12 +238,12 @@ impl Rule for StateSpace {
     }
 
     /// Returns the usual 5 % of a step.
-    fn promise(&self) -> Promise {
-        Promise::Part(0.05)
+    fn expected_band(&self) -> ErrorBand {
+        ErrorBand::Fraction(0.05)
     }
 
-    fn reads(&self) -> Reads {
-        Reads::Motion
+    fn needs(&self) -> EstimateNeeds {
+        EstimateNeeds::Motion
     }
 
     fn tunable(&self) -> Vec<Tunable> {
@@ -248,12 +253,12 @@ impl Rule for StateSpace {
 
 /// Run-time state of the compensator about an axis.
 #[derive(Clone, Debug)]
-struct AtSamples {
-    matrices: Matrices,
+struct StateSpaceState {
+    matrices: DiscreteMatrices,
     /// State x, a column.
     state: DMatrix<f64>,
     period: Span,
-    command: Commands,
+    command: OutputQuantity,
     /// Factor on the output, and its last tuned value.
     gain: f64,
     tuned: f64,
@@ -262,15 +267,21 @@ struct AtSamples {
     active: bool,
 }
 
-impl Control for AtSamples {
-    fn decide(&mut self, now: Instant, _: Cause, goal: &Goal, belief: &Belief) -> Hold {
+impl Law for StateSpaceState {
+    fn decide(
+        &mut self,
+        now: Instant,
+        _: DecisionCause,
+        goal: &Setpoint,
+        state_estimate: &StateEstimate,
+    ) -> ControlOutput {
         self.active = now >= goal.from;
         if !self.active {
-            return Hold { until: Some(goal.from), ..Hold::NONE };
+            return ControlOutput { until: Some(goal.from), ..ControlOutput::NONE };
         }
         let (angle, rate) = goal.at(now);
-        let Matrices { a, b, c, d } = &self.matrices;
-        let errors = [angle - belief.angle, rate - belief.rate];
+        let DiscreteMatrices { a, b, c, d } = &self.matrices;
+        let errors = [angle - state_estimate.angle, rate - state_estimate.rate];
         let error = DMatrix::from_column_slice(b.ncols(), 1, &errors[..b.ncols()]);
         let mut output = (d * &error)[(0, 0)];
         if !self.state.is_empty() {
@@ -279,12 +290,12 @@ impl Control for AtSamples {
         }
         output *= self.gain;
         let command = match self.command {
-            Commands::Torque => Command::Torque(output.clamp(-self.limit, self.limit)),
-            Commands::Acceleration => {
+            OutputQuantity::Torque => Command::Torque(output.clamp(-self.limit, self.limit)),
+            OutputQuantity::Acceleration => {
                 Command::Acceleration(output.clamp(-self.limit, self.limit) + goal.acceleration)
             }
         };
-        Hold { command, until: Some(now + self.period), guards: Guards::NONE }
+        ControlOutput { command, until: Some(now + self.period), guards: Guards::NONE }
     }
 
     fn state(&self) -> Phase {
@@ -292,15 +303,15 @@ impl Control for AtSamples {
     }
 
     /// Returns true also for accelerations, because their reference has one to follow.
-    fn tracks(&self) -> bool {
-        self.track || self.command == Commands::Acceleration
+    fn tracks_manoeuvre(&self) -> bool {
+        self.track || self.command == OutputQuantity::Acceleration
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 
-    fn tuned(&self) -> f64 {
+    fn tuned_value(&self) -> f64 {
         self.tuned
     }
 

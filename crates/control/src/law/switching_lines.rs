@@ -63,7 +63,7 @@ impl SwitchingLines {
     }
 
     /// Returns the target rate at an angle (rad/s).
-    pub fn wanted(&self, angle: f64) -> f64 {
+    pub fn target_rate(&self, angle: f64) -> f64 {
         -self.returning(angle.abs() - self.edge).copysign(angle)
     }
 
@@ -77,13 +77,13 @@ impl SwitchingLines {
     }
 
     /// Returns the tolerances of the rate above and below the target rate at an angle (rad/s).
-    pub fn allowed(&self, angle: f64) -> [f64; 2] {
-        [angle, -angle].map(|ahead| self.allowed_above(ahead))
+    pub fn rate_tolerance(&self, angle: f64) -> [f64; 2] {
+        [angle, -angle].map(|ahead| self.upper_tolerance(ahead))
     }
 
     /// Returns the tolerance of the rate above the target rate at an angle (rad/s).
     #[inline]
-    pub fn allowed_above(&self, angle: f64) -> f64 {
+    pub fn upper_tolerance(&self, angle: f64) -> f64 {
         let beyond = angle - self.edge;
         let allowed =
             if beyond > 0.0 { 0.5 * self.returning(beyond) } else { f64::sqrt(-self.parabola * beyond) };
@@ -91,7 +91,7 @@ impl SwitchingLines {
     }
 
     /// Returns the rate error below which the jets stop firing, for a tolerance (rad/s).
-    pub fn release(&self, allowed: f64) -> f64 {
+    pub fn release_level(&self, allowed: f64) -> f64 {
         self.off.min(0.5 * allowed)
     }
 }
@@ -107,7 +107,7 @@ fn smallest_change(authority: &Authority) -> f64 {
 
 /// Returns the expected error band about an axis (rad): the dead zone, plus the rotation by the smallest pulse until
 /// the next one can act.
-pub fn band(spec: &PhasePlane, authority: &Authority) -> f64 {
+pub fn error_band(spec: &PhasePlane, authority: &Authority) -> f64 {
     let period = spec.period.seconds();
     let cycles = libm::round(authority.delay / period) + 2.0;
     spec.dead_zone.get() + smallest_change(authority) * cycles * period

@@ -6,9 +6,9 @@ use std::collections::VecDeque;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Fault, stream};
+use super::{SensorFailure, stream};
 use crate::attitude::Vector;
-use crate::axes::Each;
+use crate::axes::PerAxis;
 use crate::document;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::{Seed, Stream};
@@ -35,40 +35,40 @@ pub struct Accelerometer {
     pub along: Vec<[Finite; 3]>,
     /// Standard deviation of the white noise along each (m/s²).
     #[serde(default)]
-    pub noise: Each<NonNegative>,
+    pub noise: PerAxis<NonNegative>,
     /// Constant error along each (m/s²).
     #[serde(default)]
-    pub bias: Each<Finite>,
+    pub bias: PerAxis<Finite>,
     /// Random walk of the bias along each (m/s² per square root of a second).
     #[serde(default)]
-    pub bias_random_walk: Each<NonNegative>,
+    pub bias_random_walk: PerAxis<NonNegative>,
     /// Quantum of the output along each (m/s²); 0 for none.
     #[serde(default)]
-    pub resolution: Each<NonNegative>,
+    pub resolution: PerAxis<NonNegative>,
     /// Relative error of the scale along each.
     #[serde(default)]
-    pub scale: Each<Finite>,
+    pub scale: PerAxis<Finite>,
     /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
     /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<Fault>,
+    pub faults: Vec<SensorFailure>,
 }
 
 impl Accelerometer {
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::Fault> {
+    pub fn inconsistency(&self) -> Option<document::ConfigError> {
         if !self.watch_only {
             let why = "must be true: an accelerometer is only logged, and the law does not use it";
-            return Some(document::Fault::new("watch_only", why));
+            return Some(document::ConfigError::new("watch_only", why));
         }
         if self.along.len() > 3 {
             let why = format!("must be one to three directions, got {}", self.along.len());
-            return Some(document::Fault::new("along", why));
+            return Some(document::ConfigError::new("along", why));
         }
         let none = self.along.iter().position(|along| along.iter().all(|part| part.get() == 0.0))?;
-        Some(document::Fault::new(format!("along[{none}]"), "must not be zero, got [0, 0, 0]"))
+        Some(document::ConfigError::new(format!("along[{none}]"), "must not be zero, got [0, 0, 0]"))
     }
 
     /// Returns the number of measurement axes.
@@ -85,12 +85,12 @@ impl Accelerometer {
     }
 
     /// Creates the accelerometer's run-time state; `ordinal` counts earlier accelerometers.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> Accelerating {
+    pub fn start(&self, seed: Seed, ordinal: usize) -> AccelerometerState {
         let axes = self.axes();
         let draws = |name: &str| -> Vec<Stream> {
             (0..axes.len()).map(|axis| stream(name, (axis, 3), ordinal, seed)).collect()
         };
-        Accelerating {
+        AccelerometerState {
             noise: draws("accelerometer"),
             walk: draws("accelerometer bias"),
             bias: (0..axes.len()).map(|axis| self.bias.about(axis).get()).collect(),
@@ -116,7 +116,7 @@ pub struct MeasuredAcceleration {
 
 /// Run-time state of an accelerometer.
 #[derive(Clone, Debug)]
-pub struct Accelerating {
+pub struct AccelerometerState {
     spec: Accelerometer,
     axes: Vec<Vector>,
     noise: Vec<Stream>,
@@ -130,14 +130,14 @@ pub struct Accelerating {
     last: Option<Vec<f64>>,
 }
 
-impl Accelerating {
+impl AccelerometerState {
     /// Returns the next time of a sample or an output.
     pub fn due(&self) -> Instant {
         self.waiting.front().map_or(self.exposes, |(told, _)| self.exposes.min(*told))
     }
 
     /// Returns true if the accelerometer samples at `now`.
-    pub fn exposes(&self, now: Instant) -> bool {
+    pub fn samples_now(&self, now: Instant) -> bool {
         self.exposes <= now
     }
 
@@ -146,7 +146,7 @@ impl Accelerating {
         let Self { spec, axes, noise, walk, bias, .. } = self;
         self.exposes = now + spec.period;
         let step = if now == Instant::START { 0.0 } else { f64::sqrt(spec.period.seconds()) };
-        let mut felt = Vec::with_capacity(axes.len());
+        let mut sensed = Vec::with_capacity(axes.len());
         for (index, axis) in axes.iter().enumerate() {
             // Random numbers are drawn during a failure too, so that later ones do not depend on it.
             let draws = [walk[index].normal(), noise[index].normal()];
@@ -156,23 +156,23 @@ impl Accelerating {
             let found = scaled + bias[index] + spec.noise.about(index).get() * draws[1];
             let quantum = spec.resolution.about(index).get();
             let measured = if quantum > 0.0 { libm::round(found / quantum) * quantum } else { found };
-            felt.push(MeasuredAcceleration { measured, exact, bias: bias[index] });
+            sensed.push(MeasuredAcceleration { measured, exact, bias: bias[index] });
         }
-        match spec.faults.iter().find(|fault| fault.outage().lasts(now)) {
-            Some(Fault::Silent(_)) => return,
-            Some(Fault::Stuck(_)) => {
+        match spec.faults.iter().find(|fault| fault.interval().contains(now)) {
+            Some(SensorFailure::Silent(_)) => return,
+            Some(SensorFailure::Stuck(_)) => {
                 let held = self.last.iter().flatten();
-                felt.iter_mut().zip(held).for_each(|(felt, held)| felt.measured = *held);
+                sensed.iter_mut().zip(held).for_each(|(felt, held)| felt.measured = *held);
             }
             None => {}
         }
-        self.last = Some(felt.iter().map(|felt| felt.measured).collect());
-        let told = now + Span::from_seconds(spec.latency.get());
-        self.waiting.push_back((told, felt));
+        self.last = Some(sensed.iter().map(|felt| felt.measured).collect());
+        let reported = now + Span::from_seconds(spec.latency.get());
+        self.waiting.push_back((reported, sensed));
     }
 
     /// Returns the sample whose latency has elapsed, if any.
-    pub fn told(&mut self, now: Instant) -> Option<Vec<MeasuredAcceleration>> {
+    pub fn take_due(&mut self, now: Instant) -> Option<Vec<MeasuredAcceleration>> {
         self.waiting.front().filter(|(told, _)| *told <= now)?;
         self.waiting.pop_front().map(|(_, felt)| felt)
     }
@@ -182,7 +182,7 @@ impl Accelerating {
 mod tests {
     use super::*;
 
-    fn start(keys: &str) -> Accelerating {
+    fn start(keys: &str) -> AccelerometerState {
         let spec: Accelerometer =
             toml::from_str(&format!("watch_only = true\nperiod = 0.5\n{keys}")).unwrap();
         assert_eq!(spec.inconsistency(), None);
@@ -190,48 +190,50 @@ mod tests {
     }
 
     fn run(
-        at_work: &mut Accelerating,
+        at_work: &mut AccelerometerState,
         samples: usize,
         force: Vector,
     ) -> Vec<(f64, Vec<MeasuredAcceleration>)> {
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         for _ in 0..samples {
             let now = at_work.due();
-            if at_work.exposes(now) {
+            if at_work.samples_now(now) {
                 at_work.sample(now, &force);
             }
-            told.extend(at_work.told(now).map(|felt| (now.seconds(), felt)));
+            reported.extend(at_work.take_due(now).map(|felt| (now.seconds(), felt)));
         }
-        told
+        reported
     }
 
     #[test]
     fn errors_are_those_that_are_asked_for() {
         let keys = "along = [[0, 0, 2], [3, 0, 4]]\nscale = 0.1\nbias = [0.5, -0.5, 0]\nresolution = 0.25";
-        let told = run(&mut start(keys), 1, Vector::new(1.0, 2.0, 3.0));
-        let measured: Vec<f64> = told[0].1.iter().map(|felt| felt.measured).collect();
+        let reported = run(&mut start(keys), 1, Vector::new(1.0, 2.0, 3.0));
+        let measured: Vec<f64> = reported[0].1.iter().map(|felt| felt.measured).collect();
         // 3.3 + 0.5 and 3 * 1.1 - 0.5, in quarters.
         assert_eq!(measured, [3.75, 2.75]);
-        assert!((told[0].1[1].exact - 3.0).abs() < 1e-15);
+        assert!((reported[0].1[1].exact - 3.0).abs() < 1e-15);
     }
 
     #[test]
     fn the_bias_walks_and_noise_is_white() {
-        let told = run(&mut start("noise = 0.3\nbias_random_walk = 0.2"), 40_000, Vector::zeros());
-        let mean = |of: &dyn Fn(usize) -> f64| (1..told.len()).map(of).sum::<f64>() / (told.len() - 1) as f64;
-        let step = mean(&|k| libm::pow(told[k].1[0].bias - told[k - 1].1[0].bias, 2.0));
+        let reported = run(&mut start("noise = 0.3\nbias_random_walk = 0.2"), 40_000, Vector::zeros());
+        let mean = |of: &dyn Fn(usize) -> f64| {
+            (1..reported.len()).map(of).sum::<f64>() / (reported.len() - 1) as f64
+        };
+        let step = mean(&|k| libm::pow(reported[k].1[0].bias - reported[k - 1].1[0].bias, 2.0));
         assert!((step / (0.04 * 0.5) - 1.0).abs() < 0.022, "{step}");
-        let noise = mean(&|k| libm::pow(told[k].1[0].measured - told[k].1[0].bias, 2.0));
+        let noise = mean(&|k| libm::pow(reported[k].1[0].measured - reported[k].1[0].bias, 2.0));
         assert!((noise / 0.09 - 1.0).abs() < 0.022, "{noise}");
     }
 
     #[test]
     fn it_tells_late_sticks_and_falls_silent() {
         let keys = "latency = 0.2\nbias_random_walk = 1.0\nfaults = [{ stuck = { from = 1.0, to = 2.0 } }, { silent = { from = 3.0, to = 4.0 } }]";
-        let told = run(&mut start(keys), 20, Vector::zeros());
-        let times: Vec<f64> = told.iter().map(|(t, _)| *t).collect();
+        let reported = run(&mut start(keys), 20, Vector::zeros());
+        let times: Vec<f64> = reported.iter().map(|(t, _)| *t).collect();
         assert_eq!(times[..7], [0.2, 0.7, 1.2, 1.7, 2.2, 2.7, 4.2]);
-        let of = |k: usize| told[k].1[0].measured;
+        let of = |k: usize| reported[k].1[0].measured;
         assert!(of(2) == of(1) && of(3) == of(1) && of(4) != of(1));
         let loud: Accelerometer = toml::from_str("period = 0.5").unwrap();
         assert!(loud.inconsistency().unwrap().to_string().contains("`watch_only` must be true"));

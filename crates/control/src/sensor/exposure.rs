@@ -2,18 +2,18 @@
 
 use nalgebra::Quaternion;
 
-use super::Sensor;
+use super::SensorKind;
 use crate::attitude::{Vector, rotation, rotation_vector};
-use crate::parts::Parts;
+use crate::one_or_many::OneOrMany;
 use crate::time::Span;
 
 /// Attitudes at instants of an exposure, each with its weight.
 #[derive(Clone, Debug, Default)]
-pub struct Exposure(Vec<(f64, Quaternion<f64>)>);
+pub struct ExposureMean(Vec<(f64, Quaternion<f64>)>);
 
-impl Exposure {
+impl ExposureMean {
     /// Adds an attitude with the time `lasts` (s) that it represents.
-    pub fn see(&mut self, attitude: Quaternion<f64>, lasts: f64) {
+    pub fn add(&mut self, attitude: Quaternion<f64>, lasts: f64) {
         self.0.push((lasts, attitude));
     }
 
@@ -35,20 +35,20 @@ impl Exposure {
     }
 }
 
-impl Sensor {
+impl SensorKind {
     /// Returns the exposure time.
     pub fn exposure(&self) -> Span {
         if let Self::StarTracker(tracker) = self { tracker.exposure() } else { Span::ZERO }
     }
 }
 
-impl Parts<Sensor> {
+impl OneOrMany<SensorKind> {
     /// Iterates over the star trackers with an exposure time: index among the sensors, period, and half the exposure
     /// time.
-    pub fn exposed(&self) -> impl Iterator<Item = (usize, [Span; 2])> {
+    pub fn exposures(&self) -> impl Iterator<Item = (usize, [Span; 2])> {
         self.iter().enumerate().filter_map(|(index, sensor)| match sensor {
-            Sensor::StarTracker(tracker) if tracker.exposes() => {
-                Some((index, [tracker.period, tracker.half()]))
+            SensorKind::StarTracker(tracker) if tracker.has_exposure() => {
+                Some((index, [tracker.period, tracker.half_exposure()]))
             }
             _ => None,
         })
@@ -64,10 +64,10 @@ mod tests {
     /// rad/s.
     fn mean(breaks: &[f64], turned: impl Fn(f64) -> Vector) -> Quaternion<f64> {
         let at = |t: f64| rotation(&Vector::new(0.4, -1.1, 0.3)) * rotation(&turned(t));
-        let mut exposure = Exposure::default();
+        let mut exposure = ExposureMean::default();
         for ends in breaks.windows(2) {
             for (t, lasts) in nodes(ends[1] - ends[0], 40.0) {
-                exposure.see(at(ends[0] + t), lasts);
+                exposure.add(at(ends[0] + t), lasts);
             }
         }
         at(0.0).conjugate() * exposure.mean(&at(0.0))
@@ -127,6 +127,6 @@ mod tests {
     #[test]
     fn nothing_seen_is_the_middle() {
         let middle = rotation(&Vector::new(0.1, 0.2, 0.3));
-        assert_eq!(Exposure::default().mean(&middle), middle);
+        assert_eq!(ExposureMean::default().mean(&middle), middle);
     }
 }

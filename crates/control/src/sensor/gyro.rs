@@ -5,12 +5,12 @@ use std::collections::VecDeque;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::counter::{self, Counter};
-use super::late::failing;
-use super::wander::Wander;
-use super::{Reading, Sense, Truth, stream};
-use crate::axes::Each;
-use crate::document::Fault;
+use super::gauss_markov_bias::GaussMarkovBias;
+use super::latency_queue::with_failures;
+use super::rate_integrator::{self, RateIntegrator};
+use super::{Reading, Sensor, Truth, stream};
+use crate::axes::PerAxis;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::random::{Seed, Stream};
 use crate::sensor;
@@ -31,27 +31,27 @@ pub struct Gyro {
     pub period: Option<Span>,
     /// Standard deviation of the white noise about each axis (rad/s).
     #[serde(default)]
-    pub noise: Each<NonNegative>,
+    pub noise: PerAxis<NonNegative>,
     /// Constant error about each axis (rad/s).
     #[serde(default)]
-    pub bias: Each<Finite>,
+    pub bias: PerAxis<Finite>,
     /// Quantum of the output about each axis (rad/s); 0 for none.
     #[serde(default)]
-    pub resolution: Each<NonNegative>,
+    pub resolution: PerAxis<NonNegative>,
     /// Angle random walk of an integrating gyro about each axis (rad/sqrt(s)).
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub angle_random_walk: Each<NonNegative>,
+    pub angle_random_walk: PerAxis<NonNegative>,
     /// Rate random walk of the bias of an integrating gyro about each axis (rad/s^1.5).
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub rate_random_walk: Each<NonNegative>,
+    pub rate_random_walk: PerAxis<NonNegative>,
     /// Quantum of the angle of an integrating gyro about each axis (rad); the remainder carries over to the next sample; 0 for
     /// none.
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub quantum: Each<NonNegative>,
+    pub quantum: PerAxis<NonNegative>,
     /// Standard deviation of the part of the bias about each axis that wanders, exponentially correlated (rad/s); 0 for none. It
     /// is 0 at the start.
     #[serde(default, skip_serializing_if = "is_zero")]
-    pub bias_instability: Each<NonNegative>,
+    pub bias_instability: PerAxis<NonNegative>,
     /// Correlation time of that part (s).
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub correlation_time: Option<Positive>,
@@ -60,18 +60,18 @@ pub struct Gyro {
     pub latency: Time,
     /// Relative error of the scale about each axis.
     #[serde(default, skip_serializing_if = "is_none")]
-    pub scale: Each<Finite>,
+    pub scale: PerAxis<Finite>,
     /// Misalignment (rad), on a body with three axes: row i gives what axis i measures of the rates about the other axes; the
     /// diagonal is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misalignment: Option<Box<[[Finite; 3]; 3]>>,
     /// Intervals in which it fails; the attitude is still known.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<sensor::Fault>,
+    pub faults: Vec<sensor::SensorFailure>,
 }
 
-fn is_zero(each: &Each<NonNegative>) -> bool {
-    *each == Each::default()
+fn is_zero(each: &PerAxis<NonNegative>) -> bool {
+    *each == PerAxis::default()
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -79,17 +79,17 @@ fn is_prompt(latency: &Time) -> bool {
     *latency == Time::default()
 }
 
-fn is_none(each: &Each<Finite>) -> bool {
-    *each == Each::default()
+fn is_none(each: &PerAxis<Finite>) -> bool {
+    *each == PerAxis::default()
 }
 
 /// Run-time state of a gyro, with a stream of noise for each axis.
 #[derive(Clone, Debug)]
-pub struct AtCycles {
+pub struct GyroState {
     gyro: Gyro,
     noise: Vec<Stream>,
-    counter: Option<Counter>,
-    wander: Wander,
+    counter: Option<RateIntegrator>,
+    wander: GaussMarkovBias,
     /// Rates of the last reading, and later ones in the latency queue (rad/s).
     told: Option<[f64; 3]>,
     waiting: VecDeque<[f64; 3]>,
@@ -100,21 +100,21 @@ const LATEST: u64 = 10_000;
 
 impl Gyro {
     /// Creates the gyro's run-time state on a body with `axes` axes; `ordinal` counts earlier gyros.
-    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> AtCycles {
+    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> GyroState {
         let draws = |axis: usize| stream("gyro", (axis, axes), ordinal, seed);
-        let counter = self.integrates().then(|| Counter::new(self));
-        AtCycles {
+        let counter = self.integrates().then(|| RateIntegrator::new(self));
+        GyroState {
             gyro: self.clone(),
             noise: (0..axes).map(draws).collect(),
             counter,
-            wander: Wander::default(),
+            wander: GaussMarkovBias::default(),
             told: None,
             waiting: VecDeque::new(),
         }
     }
 
     /// Returns the first key that is given for each of three axes, if there is one.
-    pub fn three(&self) -> Option<&'static str> {
+    pub fn three_axis_key(&self) -> Option<&'static str> {
         let keys = [
             ("noise", self.noise.is_three()),
             ("bias", self.bias.is_three()),
@@ -147,20 +147,20 @@ impl Gyro {
 
     /// Returns standard deviation (rad/s) and correlation time (s) of the correlated part of the bias about an axis, if
     /// any.
-    pub fn wandering(&self, axis: usize) -> Option<(f64, f64)> {
+    pub fn bias_instability(&self, axis: usize) -> Option<(f64, f64)> {
         let deviation = self.bias_instability.about(axis).get();
         self.correlation_time.filter(|_| deviation > 0.0).map(|time| (deviation, time.get()))
     }
 
     /// Returns the random walk of the bias about an axis (rad/s^1.5), including the correlated part's at short times.
-    pub fn walk(&self, axis: usize) -> f64 {
+    pub fn bias_random_walk(&self, axis: usize) -> f64 {
         let own = self.rate_random_walk.about(axis).get();
-        self.wandering(axis)
+        self.bias_instability(axis)
             .map_or(own, |(deviation, time)| f64::sqrt(own * own + 2.0 * deviation * deviation / time))
     }
 
     /// Returns the rate measured about an axis for these rates, with scale error and misalignment (rad/s).
-    pub(super) fn scaled(&self, axis: usize, rates: &[f64; 3]) -> f64 {
+    pub(super) fn apply_scale_factor(&self, axis: usize, rates: &[f64; 3]) -> f64 {
         let own = rates[axis] + self.scale.about(axis).get() * rates[axis];
         self.misalignment.as_ref().map_or(own, |rows| {
             rows[axis].iter().zip(rates).fold(own, |sum, (part, rate)| sum + part.get() * rate)
@@ -168,22 +168,25 @@ impl Gyro {
     }
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<Fault> {
+    pub fn inconsistency(&self) -> Option<ConfigError> {
         let samples = [("noise", is_zero(&self.noise)), ("resolution", is_zero(&self.resolution))];
         if self.integrates() {
             if let Some((key, _)) = samples.into_iter().find(|(_, zero)| !zero) {
                 let why = "applies only to a gyro that samples the rate: one with a random walk or a `quantum` integrates it";
-                return Some(Fault::new(key, why));
+                return Some(ConfigError::new(key, why));
             }
             if self.period.is_none() {
-                return Some(Fault::new("period", "must be given for a gyro that integrates"));
+                return Some(ConfigError::new("period", "must be given for a gyro that integrates"));
             }
         }
         if !is_zero(&self.bias_instability) && self.correlation_time.is_none() {
-            return Some(Fault::new("correlation_time", "must be given with `bias_instability`"));
+            return Some(ConfigError::new("correlation_time", "must be given with `bias_instability`"));
         }
         if self.correlation_time.is_some() && is_zero(&self.bias_instability) {
-            return Some(Fault::new("correlation_time", "is that of `bias_instability`, which is not given"));
+            return Some(ConfigError::new(
+                "correlation_time",
+                "is that of `bias_instability`, which is not given",
+            ));
         }
         if let Some(fault) = self.lateness() {
             return Some(fault);
@@ -191,64 +194,67 @@ impl Gyro {
         let rows = self.misalignment.as_ref()?;
         let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
         let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
-        Some(Fault::new(format!("misalignment[{axis}][{axis}]"), why))
+        Some(ConfigError::new(format!("misalignment[{axis}][{axis}]"), why))
     }
 
     /// Checks the latency; returns the key and the reason.
-    fn lateness(&self) -> Option<Fault> {
+    fn lateness(&self) -> Option<ConfigError> {
         let latency = self.latency();
         if latency == Span::ZERO {
             return None;
         }
         let Some(period) = self.period else {
-            return Some(Fault::new("period", "must be given for a gyro with a `latency`"));
+            return Some(ConfigError::new("period", "must be given for a gyro with a `latency`"));
         };
         let (late, seconds) = (self.late(), latency.seconds());
         if late > LATEST {
-            return Some(Fault::new("latency", format!("must be at most {LATEST} periods, got {seconds} s")));
+            return Some(ConfigError::new(
+                "latency",
+                format!("must be at most {LATEST} periods, got {seconds} s"),
+            ));
         }
         let mut whole = Span::ZERO;
         for _ in 0..late {
             whole = whole + period;
         }
         let why = || format!("must be a whole number of periods of {} s, got {seconds} s", period.seconds());
-        (whole != latency).then(|| Fault::new("latency", why()))
+        (whole != latency).then(|| ConfigError::new("latency", why()))
     }
 
     /// Returns the standard deviation of the rate about an axis (rad/s), including quantisation.
     pub fn rate_noise(&self, axis: usize) -> f64 {
         if self.integrates() {
             let period = self.period.map_or(1.0, Span::seconds);
-            return counter::deviation(self, axis, period);
+            return rate_integrator::deviation(self, axis, period);
         }
         let (noise, resolution) = (self.noise.about(axis).get(), self.resolution.about(axis).get());
         f64::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 }
 
-impl Sense for AtCycles {
+impl Sensor for GyroState {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         // Random numbers are drawn and rates are integrated during a failure too, so that later readings do not depend
         // on it.
         let rate = self.rates(now, truth);
         let rate = self.queued(rate);
         let seen = Reading { at: truth.orientation, rate: Some(rate), sight: None };
-        let told = failing(&self.gyro.faults, now, Some(seen), last)?;
-        Some(Reading { at: truth.orientation, ..told })
+        let reported = with_failures(&self.gyro.faults, now, Some(seen), last)?;
+        Some(Reading { at: truth.orientation, ..reported })
     }
 
-    fn bias(&self) -> Option<[f64; 3]> {
+    fn true_bias(&self) -> Option<[f64; 3]> {
         let constant = [0, 1, 2].map(|axis| self.gyro.bias.about(axis).get());
         let bias = self.counter.as_ref().map_or(constant, |counter| counter.bias);
         Some([0, 1, 2].map(|axis| bias[axis] + self.wander.bias[axis]))
     }
 
-    fn copy(&self) -> Box<dyn Sense> {
+    fn copy(&self) -> Box<dyn Sensor> {
         Box::new(self.clone())
     }
 }
 
-impl AtCycles {
+impl GyroState {
     /// Queues the measured rates; returns those measured one latency earlier, or the first ones until then.
     fn queued(&mut self, rate: [f64; 3]) -> [f64; 3] {
         let late = self.gyro.late();
@@ -264,18 +270,18 @@ impl AtCycles {
     fn rates(&mut self, now: Instant, truth: &Truth) -> [f64; 3] {
         let Self { gyro, noise, counter, wander, .. } = self;
         if let Some(counter) = counter {
-            let mean = counter.mean(gyro, now, truth);
-            return counter.count(gyro, mean, (noise, wander));
+            let mean = counter.mean_rate(gyro, now, truth);
+            return counter.quantize(gyro, mean, (noise, wander));
         }
-        let seconds = wander.go(now);
+        let seconds = wander.advance(now);
         let mut rate = truth.rate;
         for (axis, (rate, noise)) in rate.iter_mut().zip(noise).enumerate() {
-            *rate = gyro.scaled(axis, &truth.rate) + gyro.bias.about(axis).get();
+            *rate = gyro.apply_scale_factor(axis, &truth.rate) + gyro.bias.about(axis).get();
             let (sd, quantum) = (gyro.noise.about(axis).get(), gyro.resolution.about(axis).get());
             if sd > 0.0 {
                 *rate += sd * noise.normal();
             }
-            *rate += wander.now(gyro, axis, seconds, noise);
+            *rate += wander.value(gyro, axis, seconds, noise);
             if quantum > 0.0 {
                 *rate = libm::round(*rate / quantum) * quantum;
             }

@@ -4,12 +4,12 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::vector::{Errors, Looking, Measures};
-use super::{Fault, Sense};
+use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
+use super::{Sensor, SensorFailure};
 use crate::attitude::Vector;
-use crate::axes::Each;
+use crate::axes::PerAxis;
 use crate::document;
-use crate::environment::SkySight;
+use crate::environment::EnvironmentObservation;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Seed;
 use crate::time::Span;
@@ -27,16 +27,16 @@ pub struct Magnetometer {
     pub period: Span,
     /// Standard deviation of the white noise along each axis (T).
     #[serde(default)]
-    pub noise: Each<NonNegative>,
+    pub noise: PerAxis<NonNegative>,
     /// Constant error along each axis (T).
     #[serde(default)]
-    pub bias: Each<Finite>,
+    pub bias: PerAxis<Finite>,
     /// Quantum of the output along each axis (T); 0 for none.
     #[serde(default)]
-    pub resolution: Each<NonNegative>,
+    pub resolution: PerAxis<NonNegative>,
     /// Relative error of the scale along each axis.
     #[serde(default)]
-    pub scale: Each<Finite>,
+    pub scale: PerAxis<Finite>,
     /// Misalignment (rad): row i gives what axis i measures of the field along the other axes; the diagonal is 0.
     #[serde(default)]
     pub misalignment: [[Finite; 3]; 3],
@@ -45,13 +45,13 @@ pub struct Magnetometer {
     pub latency: Time,
     /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<Fault>,
+    pub faults: Vec<SensorFailure>,
 }
 
 impl Magnetometer {
     /// Creates the sensor's run-time state; `ordinal` counts earlier sensors of the same kind.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
-        Box::new(Looking::new(self, seed, ordinal))
+    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
+        Box::new(VectorSensorState::new(self, seed, ordinal))
     }
 
     /// Returns the latency of a reading.
@@ -65,19 +65,19 @@ impl Magnetometer {
     }
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::Fault> {
+    pub fn inconsistency(&self) -> Option<document::ConfigError> {
         self.errors().fault()
     }
 }
 
-impl Measures for Magnetometer {
+impl VectorSensor for Magnetometer {
     const STREAM: &'static str = "magnetometer";
 
-    fn of(&self, sky: &SkySight) -> Option<Vector> {
+    fn reference(&self, sky: &EnvironmentObservation) -> Option<Vector> {
         sky.field
     }
 
-    fn told(&self, _: &Vector, measured: Vector) -> Option<Vector> {
+    fn reading(&self, _: &Vector, measured: Vector) -> Option<Vector> {
         Some(measured)
     }
 
@@ -85,16 +85,16 @@ impl Measures for Magnetometer {
         false
     }
 
-    fn errors(&self) -> Errors {
+    fn errors(&self) -> VectorErrors {
         let Self { noise, bias, resolution, scale, misalignment, .. } = *self;
-        Errors { noise, bias, resolution, scale, misalignment }
+        VectorErrors { noise, bias, resolution, scale, misalignment }
     }
 
     fn timing(&self) -> [Span; 2] {
         [self.period, self.latency()]
     }
 
-    fn faults(&self) -> &[Fault] {
+    fn faults(&self) -> &[SensorFailure] {
         &self.faults
     }
 }

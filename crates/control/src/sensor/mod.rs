@@ -1,19 +1,19 @@
 //! Sensors of angle, attitude, rates, vectors and accelerations, with their timing.
 
 mod accelerometer;
-mod counter;
-mod exact;
+mod custom_sensor;
 mod exposure;
+mod gauss_markov_bias;
 mod gyro;
-mod instrument;
-mod late;
+mod ideal;
+mod latency_queue;
 mod magnetometer;
+mod rate_integrator;
 mod sampled;
 mod star_tracker;
 mod sun_sensor;
 mod tachometer;
 mod vector;
-mod wander;
 
 use std::fmt;
 
@@ -22,28 +22,29 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::{AXES, Vector, rotation, rotation_vector};
+use crate::custom::{Custom, PartError};
 use crate::document;
-use crate::environment::SkySight;
-use crate::own::{Halt, Own};
-use crate::parts::Parts;
+use crate::environment::EnvironmentObservation;
+use crate::one_or_many::OneOrMany;
 use crate::quantity::Positive;
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
-pub use accelerometer::{Accelerating, Accelerometer, MeasuredAcceleration};
-pub use exposure::Exposure;
-pub use gyro::{AtCycles, Gyro};
-pub use instrument::Instrument;
+pub use accelerometer::{Accelerometer, AccelerometerState, MeasuredAcceleration};
+pub use custom_sensor::SensorSpec;
+pub use exposure::ExposureMean;
+pub use gyro::{Gyro, GyroState};
 pub use magnetometer::Magnetometer;
-pub use sampled::{Fault, Sampled, SampledSensor};
+pub use sampled::{Sampled, SampledState, SensorFailure};
 pub use star_tracker::StarTracker;
 pub use sun_sensor::SunSensor;
-pub use tachometer::{Counting, Tachometer};
+pub use tachometer::{Tachometer, TachometerState};
 
 /// The kinds of sensor.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Sensor {
+#[schemars(rename = "Sensor")]
+pub enum SensorKind {
     /// The true angle at every instant: guards trip at the exact crossing.
     #[default]
     Continuous,
@@ -62,37 +63,37 @@ pub enum Sensor {
     /// The specific force at a point of a spacecraft, for the log only.
     Accelerometer(Accelerometer),
     /// A sensor from another crate; a scenario file cannot name it.
-    Own(Own<dyn Instrument>),
+    Own(Custom<dyn SensorSpec>),
 }
 
 /// Run-time state of a sensor.
-pub trait Sense: fmt::Debug + Send + Sync {
+pub trait Sensor: fmt::Debug + Send + Sync {
     /// Returns the reading at `now`, given the last one; `None` if the sensor is silent or has no new reading.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading>;
 
     /// Returns the next time after `now` at which the sensor acts, for a sensor with this period.
-    fn after(&mut self, now: Instant, period: Span) -> Instant {
+    fn next_due(&mut self, now: Instant, period: Span) -> Instant {
         now + period
     }
 
     /// Replaces the last attitude of a sensor with an exposure time by the mean over the exposure that ends now.
-    fn gather(&mut self, _: &Exposure) {}
+    fn close_exposure(&mut self, _: &ExposureMean) {}
 
     /// Returns the true bias of the rates (rad/s), of a gyro.
-    fn bias(&self) -> Option<[f64; 3]> {
+    fn true_bias(&self) -> Option<[f64; 3]> {
         None
     }
 
     /// Returns the error that a sensor of another crate failed with; the run ends there.
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         None
     }
 
     /// Returns a copy in the same state.
-    fn copy(&self) -> Box<dyn Sense>;
+    fn copy(&self) -> Box<dyn Sensor>;
 }
 
-impl Clone for Box<dyn Sense> {
+impl Clone for Box<dyn Sensor> {
     fn clone(&self) -> Self {
         self.copy()
     }
@@ -110,7 +111,7 @@ pub enum Orientation {
 impl Orientation {
     /// Returns the rotation vector from another orientation to this one (rad); for one angle, the difference about the first axis.
     #[inline]
-    pub fn beyond(&self, other: &Self) -> [f64; 3] {
+    pub fn error_from(&self, other: &Self) -> [f64; 3] {
         match (self, other) {
             (Self::Attitude(q), Self::Attitude(goal)) => rotation_vector(goal, q).into(),
             (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
@@ -123,7 +124,7 @@ impl Orientation {
     /// small rotations.
     #[must_use]
     #[inline]
-    pub fn at(&self, angles: [f64; 3]) -> Self {
+    pub fn rotated_by(&self, angles: [f64; 3]) -> Self {
         match self {
             Self::Angle(_) => Self::Angle(angles[0]),
             Self::Attitude(q) => Self::Attitude(q * rotation(&Vector::from(angles))),
@@ -145,13 +146,13 @@ pub struct Truth {
     /// Integral of `rate` (rad), up to a constant, which integrating gyros read.
     pub turned: [f64; 3],
     /// Vectors of the environment: magnetic field and direction to the Sun.
-    pub sky: SkySight,
+    pub sky: EnvironmentObservation,
 }
 
 impl Truth {
     /// Returns the angles of an angle sensor: the angle itself, or the elastic rotations of its mount (rad).
     #[inline]
-    pub fn seen(&self) -> [f64; 3] {
+    pub fn sensor_angles(&self) -> [f64; 3] {
         match self.orientation {
             Orientation::Angle(angle) => [angle, 0.0, 0.0],
             Orientation::Attitude(_) => self.elastic,
@@ -167,12 +168,12 @@ pub struct Reading {
     /// Measured rates (rad/s), if the sensor measures them.
     pub rate: Option<[f64; 3]>,
     /// Measured vector, if the sensor measures one.
-    pub sight: Option<VectorSight>,
+    pub sight: Option<VectorMeasurement>,
 }
 
 /// Measured vector, with its reference in inertial axes.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct VectorSight {
+pub struct VectorMeasurement {
     /// Vector in the body's axes, as measured.
     pub vector: Vector,
     /// Vector in inertial axes.
@@ -181,9 +182,9 @@ pub struct VectorSight {
     pub is_direction: bool,
 }
 
-impl Sensor {
+impl SensorKind {
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::Fault> {
+    pub fn inconsistency(&self) -> Option<document::ConfigError> {
         match self {
             Self::Gyro(gyro) => gyro.inconsistency(),
             Self::StarTracker(tracker) => tracker.inconsistency(),
@@ -196,21 +197,21 @@ impl Sensor {
 
     /// Creates the sensor's run-time state on a body with `axes` axes; `ordinal` counts earlier sensors of the same
     /// kind.
-    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
+    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
         match self {
-            Self::Continuous => Box::new(exact::Exact),
+            Self::Continuous => Box::new(ideal::IdealSensor),
             Self::Sampled(sampled) => Box::new(sampled.start(axes, seed, ordinal)),
             Self::Gyro(gyro) => Box::new(gyro.start(axes, seed, ordinal)),
             Self::StarTracker(tracker) => Box::new(tracker.start(seed, ordinal)),
             Self::Magnetometer(magnetometer) => magnetometer.start(seed, ordinal),
             Self::SunSensor(sensor) => sensor.start(seed, ordinal),
-            Self::Tachometer(_) | Self::Accelerometer(_) => Box::new(tachometer::Blind),
+            Self::Tachometer(_) | Self::Accelerometer(_) => Box::new(tachometer::NoMeasurement),
             Self::Own(own) => own.start(axes, seed),
         }
     }
 
     /// Returns true if the sensor measures orientation or rates of the body.
-    pub fn sees_body(&self) -> bool {
+    pub fn measures_motion(&self) -> bool {
         !matches!(self, Self::Tachometer(_) | Self::Accelerometer(_))
     }
 
@@ -302,7 +303,7 @@ impl Sensor {
     }
 
     /// Returns true if the sensor measures a vector, which alone does not determine the attitude.
-    pub fn is_of_a_vector(&self) -> bool {
+    pub fn measures_vector(&self) -> bool {
         matches!(self, Self::Magnetometer(_) | Self::SunSensor(_))
     }
 
@@ -312,7 +313,7 @@ impl Sensor {
     }
 
     /// Returns the sensor's failures.
-    pub fn faults(&self) -> &[Fault] {
+    pub fn faults(&self) -> &[SensorFailure] {
         match self {
             Self::Sampled(sampled) => &sampled.faults,
             Self::StarTracker(tracker) => &tracker.faults,
@@ -335,21 +336,21 @@ fn stream(name: &str, (axis, axes): (usize, usize), ordinal: usize, seed: Seed) 
     }
 }
 
-impl Parts<Sensor> {
+impl OneOrMany<SensorKind> {
     /// Returns the first sensor, the only one in most scenarios.
-    pub fn first(&self) -> &Sensor {
+    pub fn first(&self) -> &SensorKind {
         &self[0]
     }
 
     /// Returns the number of sensors that measure the body's motion.
-    pub fn of_body(&self) -> usize {
-        self.iter().filter(|sensor| sensor.sees_body()).count()
+    pub fn motion_sensors(&self) -> usize {
+        self.iter().filter(|sensor| sensor.measures_motion()).count()
     }
 
     /// Returns the tachometer and its index among the sensors, if there is one.
     pub fn tachometer(&self) -> Option<(usize, &Tachometer)> {
         self.iter().enumerate().find_map(|(index, sensor)| match sensor {
-            Sensor::Tachometer(tachometer) => Some((index, tachometer)),
+            SensorKind::Tachometer(tachometer) => Some((index, tachometer)),
             _ => None,
         })
     }
@@ -357,21 +358,21 @@ impl Parts<Sensor> {
     /// Iterates over the accelerometers, each with its index among the sensors.
     pub fn accelerometers(&self) -> impl Iterator<Item = (usize, &Accelerometer)> {
         self.iter().enumerate().filter_map(|(index, sensor)| match sensor {
-            Sensor::Accelerometer(accelerometer) => Some((index, accelerometer)),
+            SensorKind::Accelerometer(accelerometer) => Some((index, accelerometer)),
             _ => None,
         })
     }
 
     /// Returns the number of sensors of the same kind before a sensor.
-    pub fn ordinal(&self, index: usize) -> usize {
+    pub fn index_in_kind(&self, index: usize) -> usize {
         let kind = self[index].kind();
         self[..index].iter().filter(|sensor| sensor.kind() == kind).count()
     }
 
     /// Returns true if a sensor provides the attitude: a gyro only without another such sensor, and then exactly.
-    pub fn orients(&self, index: usize) -> bool {
-        let rates = |sensor: &Sensor| matches!(sensor, Sensor::Gyro(_));
-        let of_body = |sensor: &Sensor| sensor.sees_body() && !sensor.is_of_a_vector();
+    pub fn provides_attitude(&self, index: usize) -> bool {
+        let rates = |sensor: &SensorKind| matches!(sensor, SensorKind::Gyro(_));
+        let of_body = |sensor: &SensorKind| sensor.measures_motion() && !sensor.measures_vector();
         let alone = self.iter().filter(|sensor| of_body(sensor)).all(rates);
         let is_first = !self[..index].iter().any(of_body);
         of_body(&self[index]) && (!rates(&self[index]) || alone && is_first)
@@ -389,6 +390,8 @@ impl Parts<Sensor> {
 
     /// Returns the standard deviation of the measured angle (rad), including quantisation.
     pub fn angle_noise(&self) -> f64 {
-        (0..self.len()).find(|index| self.orients(*index)).map_or(0.0, |index| self[index].angle_noise())
+        (0..self.len())
+            .find(|index| self.provides_attitude(*index))
+            .map_or(0.0, |index| self[index].angle_noise())
     }
 }

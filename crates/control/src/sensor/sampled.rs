@@ -4,9 +4,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::late::failing;
-use super::{Reading, Sense, Truth, stream};
-use crate::outage::Outage;
+use super::latency_queue::with_failures;
+use super::{Reading, Sensor, Truth, stream};
+use crate::interval::Interval;
 use crate::quantity::{Finite, NonNegative, Positive};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
@@ -35,24 +35,25 @@ pub struct Sampled {
     pub point: Option<String>,
     /// Intervals in which the sensor fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<Fault>,
+    pub faults: Vec<SensorFailure>,
 }
 
 /// A failure of the sensor, gyro included.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Fault {
+#[schemars(rename = "Fault")]
+pub enum SensorFailure {
     /// It repeats the last measurement before the failure.
-    Stuck(Outage),
+    Stuck(Interval),
     /// It gives no measurement.
-    Silent(Outage),
+    Silent(Interval),
 }
 
-impl Fault {
+impl SensorFailure {
     /// Returns the interval of the failure.
-    pub fn outage(&self) -> Outage {
-        let (Self::Stuck(outage) | Self::Silent(outage)) = self;
-        *outage
+    pub fn interval(&self) -> Interval {
+        let (Self::Stuck(interval) | Self::Silent(interval)) = self;
+        *interval
     }
 
     /// Returns the name of the kind, as in a scenario.
@@ -67,9 +68,9 @@ impl Fault {
 impl Sampled {
     /// Creates the sensor's run-time state on a body with `axes` axes; `ordinal` counts earlier sensors of the same
     /// kind.
-    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> SampledSensor {
+    pub fn start(&self, axes: usize, seed: Seed, ordinal: usize) -> SampledState {
         let draws = |axis: usize| stream("sensor", (axis, axes), ordinal, seed);
-        SampledSensor { sampled: self.clone(), noise: (0..axes).map(draws).collect() }
+        SampledState { sampled: self.clone(), noise: (0..axes).map(draws).collect() }
     }
 
     /// Returns the standard deviation of the measured angle (rad), including quantisation.
@@ -90,16 +91,16 @@ impl Sampled {
 
 /// Run-time state of the sensor, with a stream of noise for each axis.
 #[derive(Clone, Debug)]
-pub struct SampledSensor {
+pub struct SampledState {
     sampled: Sampled,
     noise: Vec<Stream>,
 }
 
-impl Sense for SampledSensor {
+impl Sensor for SampledState {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         let Self { sampled, noise } = self;
         // Random numbers are drawn during a failure too, so that later ones do not depend on it.
-        let mut angles = truth.seen();
+        let mut angles = truth.sensor_angles();
         let mut rate = truth.rate;
         let gyro = sampled.rate_noise.map(Positive::get);
         for ((angle, rate), noise) in angles.iter_mut().zip(&mut rate).zip(noise) {
@@ -108,11 +109,12 @@ impl Sense for SampledSensor {
                 *rate += sd * noise.normal();
             }
         }
-        let reading = Reading { at: truth.orientation.at(angles), rate: gyro.map(|_| rate), sight: None };
-        failing(&sampled.faults, now, Some(reading), last)
+        let reading =
+            Reading { at: truth.orientation.rotated_by(angles), rate: gyro.map(|_| rate), sight: None };
+        with_failures(&sampled.faults, now, Some(reading), last)
     }
 
-    fn copy(&self) -> Box<dyn Sense> {
+    fn copy(&self) -> Box<dyn Sensor> {
         Box::new(self.clone())
     }
 }

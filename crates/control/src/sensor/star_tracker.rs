@@ -4,8 +4,8 @@ use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::late::{Late, failing};
-use super::{Exposure, Fault, Orientation, Reading, Sense, Truth, stream};
+use super::latency_queue::{LatencyQueue, with_failures};
+use super::{ExposureMean, Orientation, Reading, Sensor, SensorFailure, Truth, stream};
 use crate::attitude::{Attitude, Vector, rotation};
 use crate::document;
 use crate::quantity::{NonNegative, Positive, Time};
@@ -39,7 +39,7 @@ pub struct StarTracker {
     pub blackout_rate: Option<Positive>,
     /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<Fault>,
+    pub faults: Vec<SensorFailure>,
 }
 
 #[expect(clippy::trivially_copy_pass_by_ref, reason = "serde asks for a reference")]
@@ -49,30 +49,30 @@ fn is_instant(exposure: &Time) -> bool {
 
 impl StarTracker {
     /// Creates the tracker's run-time state; `ordinal` counts earlier star trackers.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> Exposing {
+    pub fn start(&self, seed: Seed, ordinal: usize) -> StarTrackerState {
         let draws = |axis: usize| stream("star tracker", (axis, 3), ordinal, seed);
-        Exposing {
+        StarTrackerState {
             tracker: self.clone(),
             noise: [0, 1, 2].map(draws),
-            late: Late::new(self.period, self.latency()),
+            late: LatencyQueue::new(self.period, self.latency()),
             gathers: None,
         }
     }
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::Fault> {
+    pub fn inconsistency(&self) -> Option<document::ConfigError> {
         let (exposure, latency) = (self.exposure.get(), self.latency.get());
         if self.exposure() > self.period {
             let why =
                 format!("must be at most the `period` of {} s, got {exposure} s", self.period.seconds());
-            return Some(document::Fault::new("exposure", why));
+            return Some(document::ConfigError::new("exposure", why));
         }
         let why = || {
             format!(
                 "must be at most twice the `latency` of {latency} s, which counts from its middle, got {exposure} s"
             )
         };
-        (self.half() > self.latency()).then(|| document::Fault::new("exposure", why()))
+        (self.half_exposure() > self.latency()).then(|| document::ConfigError::new("exposure", why()))
     }
 
     /// Returns the latency of a reading.
@@ -86,13 +86,13 @@ impl StarTracker {
     }
 
     /// Returns half the exposure time.
-    pub fn half(&self) -> Span {
+    pub fn half_exposure(&self) -> Span {
         Span::from_seconds(0.5 * self.exposure.get())
     }
 
     /// Returns true if the exposure time is not 0.
-    pub fn exposes(&self) -> bool {
-        self.half() > Span::ZERO
+    pub fn has_exposure(&self) -> bool {
+        self.half_exposure() > Span::ZERO
     }
 
     /// Returns the largest standard deviation about an axis (rad).
@@ -102,14 +102,14 @@ impl StarTracker {
 
     /// Returns the error covariance in the body's axes, for these standard deviations in the tracker's axes (rad).
     pub fn covariance(&self, deviations: [f64; 3]) -> Matrix3<f64> {
-        let axes = [Vector::x(), Vector::y(), Vector::z()].map(|axis| self.turned_to_body(&axis));
+        let axes = [Vector::x(), Vector::y(), Vector::z()].map(|axis| self.to_body_axes(&axis));
         axes.iter().zip(deviations).fold(Matrix3::zeros(), |sum, (axis, deviation)| {
             sum + axis * axis.transpose() * (deviation * deviation)
         })
     }
 
     /// Rotates a vector from the tracker's axes to the body's.
-    fn turned_to_body(&self, vector: &Vector) -> Vector {
+    fn to_body_axes(&self, vector: &Vector) -> Vector {
         let turn = self.axes.get();
         (turn * Quaternion::from_imag(*vector) * turn.conjugate()).vector().into_owned()
     }
@@ -117,24 +117,26 @@ impl StarTracker {
 
 /// Run-time state of a star tracker.
 #[derive(Clone, Debug)]
-pub struct Exposing {
+pub struct StarTrackerState {
     tracker: StarTracker,
     /// Random stream about each of the tracker's axes.
     noise: [Stream; 3],
-    late: Late,
+    late: LatencyQueue,
     /// Attitude in the middle of the current exposure, and the error of its reading (rad).
     gathers: Option<(Quaternion<f64>, Vector)>,
 }
 
-impl Exposing {
+impl StarTrackerState {
     /// Returns the reading of an exposure at `now`.
     fn expose(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         // Random numbers are drawn during a failure too, so that later ones do not depend on it.
         let deviations = self.tracker.noise.map(NonNegative::get);
         let draws: [f64; 3] = std::array::from_fn(|axis| deviations[axis] * self.noise[axis].normal());
         self.gathers = None;
-        let Orientation::Attitude(attitude) = truth.orientation.at(truth.seen()) else { return None };
-        let error = self.tracker.turned_to_body(&draws.into());
+        let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) else {
+            return None;
+        };
+        let error = self.tracker.to_body_axes(&draws.into());
         let seen =
             Reading { at: Orientation::Attitude(attitude * rotation(&error)), rate: None, sight: None };
         let rate = Vector::from(truth.rate).norm();
@@ -142,36 +144,37 @@ impl Exposing {
             return None;
         }
         let faults = &self.tracker.faults;
-        let told = failing(faults, now, Some(seen), last);
+        let reported = with_failures(faults, now, Some(seen), last);
         // A repeated reading, and the reading at the start, already have their exposure.
-        let again = failing(faults, now, None, last).is_some() || now == Instant::START;
-        self.gathers = (told.is_some() && !again && self.tracker.exposes()).then_some((attitude, error));
-        told
+        let again = with_failures(faults, now, None, last).is_some() || now == Instant::START;
+        self.gathers =
+            (reported.is_some() && !again && self.tracker.has_exposure()).then_some((attitude, error));
+        reported
     }
 }
 
-impl Sense for Exposing {
+impl Sensor for StarTrackerState {
     /// Returns the reading whose latency has elapsed; the reading at the start is available at once, as if exposed
     /// before.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
-        if self.late.exposes(now) {
+        if self.late.samples_now(now) {
             let seen = self.expose(now, truth, last);
-            self.late.take(now, seen);
+            self.late.push(now, seen);
         }
-        self.late.told(now)
+        self.late.take_due(now)
     }
 
-    fn after(&mut self, _: Instant, _: Span) -> Instant {
-        self.late.next()
+    fn next_due(&mut self, _: Instant, _: Span) -> Instant {
+        self.late.next_due()
     }
 
-    fn gather(&mut self, exposure: &Exposure) {
+    fn close_exposure(&mut self, exposure: &ExposureMean) {
         if let Some((middle, error)) = self.gathers.take() {
-            self.late.amend(Orientation::Attitude(exposure.mean(&middle) * rotation(&error)));
+            self.late.replace_last(Orientation::Attitude(exposure.mean(&middle) * rotation(&error)));
         }
     }
 
-    fn copy(&self) -> Box<dyn Sense> {
+    fn copy(&self) -> Box<dyn Sensor> {
         Box::new(self.clone())
     }
 }
@@ -182,11 +185,11 @@ mod tests {
 
     fn truth(attitude: Quaternion<f64>, elastic: [f64; 3], rate: [f64; 3]) -> Truth {
         let orientation = Orientation::Attitude(attitude);
-        let sky = crate::environment::SkySight::default();
+        let sky = crate::environment::EnvironmentObservation::default();
         Truth { orientation, elastic, rate, rigid: rate, turned: [0.0; 3], sky }
     }
 
-    fn start(keys: &str) -> Exposing {
+    fn start(keys: &str) -> StarTrackerState {
         let tracker: StarTracker = crate::document::from_text(&format!("period = 1.0\n{keys}")).unwrap();
         tracker.start(Seed { scenario: 3, run: 0 }, 0)
     }
@@ -197,21 +200,21 @@ mod tests {
     }
 
     #[test]
-    fn an_exposure_is_told_after_its_latency() {
+    fn an_exposure_is_available_after_its_latency() {
         let mut tracker = start("latency = 2.5");
         let turned = |t: f64| rotation(&Vector::new(0.0, 0.01 * t, 0.0));
         let mut now = Instant::START;
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         while now.seconds() < 6.0 {
             let t = now.seconds();
             if let Some(reading) = tracker.read(now, &truth(turned(t), [0.0; 3], [0.0; 3]), None) {
-                told.push((t, attitude(reading)));
+                reported.push((t, attitude(reading)));
             }
-            now = tracker.after(now, Span::from_seconds(1.0));
+            now = tracker.next_due(now, Span::from_seconds(1.0));
         }
         let exposed = [(0.0, 0.0), (3.5, 1.0), (4.5, 2.0), (5.5, 3.0)];
-        assert_eq!(told.len(), exposed.len(), "{told:?}");
-        for ((at, seen), (exact, exposed)) in told.into_iter().zip(exposed) {
+        assert_eq!(reported.len(), exposed.len(), "{reported:?}");
+        for ((at, seen), (exact, exposed)) in reported.into_iter().zip(exposed) {
             assert!(at == exact && (seen - turned(exposed)).norm() < 1e-15, "{at}");
         }
     }
@@ -228,22 +231,22 @@ mod tests {
             let (mut now, mut gathered, mut told) = (Instant::START, Instant::START, 0);
             while now.seconds() < 6.0 {
                 if gathered > Instant::START && gathered <= now {
-                    let mut seen = Exposure::default();
-                    let middle = gathered.before(tracker.tracker.half()).seconds();
+                    let mut seen = ExposureMean::default();
+                    let middle = gathered.before(tracker.tracker.half_exposure()).seconds();
                     for lasts in [0.2, 0.3] {
-                        seen.see(turned(middle) * rotation(&smear), lasts);
+                        seen.add(turned(middle) * rotation(&smear), lasts);
                     }
-                    tracker.gather(&seen);
+                    tracker.close_exposure(&seen);
                     // The mean is already set: further attitudes have no effect.
-                    seen.see(turned(9.0), 100.0);
-                    tracker.gather(&seen);
+                    seen.add(turned(9.0), 100.0);
+                    tracker.close_exposure(&seen);
                     gathered = Instant::START;
                 }
                 let seen = truth(turned(now.seconds()), [0.0; 3], [0.0; 3]);
-                let exposes = tracker.late.exposes(now) && now > Instant::START;
+                let exposes = tracker.late.samples_now(now) && now > Instant::START;
                 let (one, other) = (tracker.read(now, &seen, None), plain.read(now, &seen, None));
                 if exposes {
-                    gathered = now + tracker.tracker.half();
+                    gathered = now + tracker.tracker.half_exposure();
                 }
                 assert_eq!(one.is_some(), other.is_some());
                 if let (Some(one), Some(other)) = (one, other) {
@@ -253,8 +256,8 @@ mod tests {
                     assert!((by - exact).norm() < 1e-8, "{by}");
                     told += 1;
                 }
-                let next = tracker.after(now, Span::from_seconds(1.0));
-                assert_eq!(next, plain.after(now, Span::from_seconds(1.0)));
+                let next = tracker.next_due(now, Span::from_seconds(1.0));
+                assert_eq!(next, plain.next_due(now, Span::from_seconds(1.0)));
                 now = if gathered > now { next.min(gathered) } else { next };
             }
             assert_eq!(told, if latency > 1.0 { 5 } else { 6 });
@@ -262,7 +265,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_told_again_was_gathered_before() {
+    fn a_repeated_reading_was_exposed_before() {
         let still = Quaternion::new(1.0, 0.0, 0.0, 0.0);
         let faults = "faults = [{ stuck = { from = 2.0, to = 3.0 } }, { silent = { from = 3.0, to = 4.0 } }]";
         let mut tracker = start(&format!("latency = 1.5\nexposure = 1.0\nblackout_rate = 0.1\n{faults}"));

@@ -4,12 +4,12 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::vector::{Errors, Looking, Measures};
-use super::{Fault, Sense};
+use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
+use super::{Sensor, SensorFailure};
 use crate::attitude::{Vector, vector};
-use crate::axes::Each;
+use crate::axes::PerAxis;
 use crate::document;
-use crate::environment::SkySight;
+use crate::environment::EnvironmentObservation;
 use crate::quantity::{Finite, NonNegative, Time};
 use crate::random::Seed;
 use crate::time::Span;
@@ -24,7 +24,7 @@ pub struct SunSensor {
     #[serde(default = "ahead")]
     pub boresight: [Finite; 3],
     /// Half angle of the field of view (rad); default: all directions are visible.
-    #[serde(default = "all_around")]
+    #[serde(default = "full_field_of_view")]
     pub field_of_view: NonNegative,
     /// Point of the structure at which it is mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -33,16 +33,16 @@ pub struct SunSensor {
     pub period: Span,
     /// Standard deviation of the white noise along each axis (rad).
     #[serde(default)]
-    pub noise: Each<NonNegative>,
+    pub noise: PerAxis<NonNegative>,
     /// Constant error along each axis (rad).
     #[serde(default)]
-    pub bias: Each<Finite>,
+    pub bias: PerAxis<Finite>,
     /// Quantum of the output along each axis (rad); 0 for none.
     #[serde(default)]
-    pub resolution: Each<NonNegative>,
+    pub resolution: PerAxis<NonNegative>,
     /// Relative error of the scale along each axis.
     #[serde(default)]
-    pub scale: Each<Finite>,
+    pub scale: PerAxis<Finite>,
     /// Misalignment (rad): row i gives what axis i measures of the direction along the other axes; the diagonal is 0.
     #[serde(default)]
     pub misalignment: [[Finite; 3]; 3],
@@ -51,21 +51,21 @@ pub struct SunSensor {
     pub latency: Time,
     /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<Fault>,
+    pub faults: Vec<SensorFailure>,
 }
 
 fn ahead() -> [Finite; 3] {
     [0.0, 0.0, 1.0].map(|part| Finite::new(part).unwrap_or_default())
 }
 
-fn all_around() -> NonNegative {
+fn full_field_of_view() -> NonNegative {
     NonNegative::new(std::f64::consts::PI).unwrap_or_default()
 }
 
 impl SunSensor {
     /// Creates the sensor's run-time state; `ordinal` counts earlier sensors of the same kind.
-    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sense> {
-        Box::new(Looking::new(self, seed, ordinal))
+    pub fn start(&self, seed: Seed, ordinal: usize) -> Box<dyn Sensor> {
+        Box::new(VectorSensorState::new(self, seed, ordinal))
     }
 
     /// Returns the latency of a reading.
@@ -79,22 +79,22 @@ impl SunSensor {
     }
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
-    pub fn inconsistency(&self) -> Option<document::Fault> {
+    pub fn inconsistency(&self) -> Option<document::ConfigError> {
         if self.boresight.iter().all(|part| part.get() == 0.0) {
-            return Some(document::Fault::new("boresight", "must not be zero, got [0, 0, 0]"));
+            return Some(document::ConfigError::new("boresight", "must not be zero, got [0, 0, 0]"));
         }
         self.errors().fault()
     }
 }
 
-impl Measures for SunSensor {
+impl VectorSensor for SunSensor {
     const STREAM: &'static str = "sun sensor";
 
-    fn of(&self, sky: &SkySight) -> Option<Vector> {
+    fn reference(&self, sky: &EnvironmentObservation) -> Option<Vector> {
         sky.sun
     }
 
-    fn told(&self, exact: &Vector, measured: Vector) -> Option<Vector> {
+    fn reading(&self, exact: &Vector, measured: Vector) -> Option<Vector> {
         let boresight = vector(&self.boresight);
         // The angle itself is compared, because its cosine is insensitive for a narrow field.
         let off = libm::atan2(boresight.cross(exact).norm(), boresight.dot(exact));
@@ -105,16 +105,16 @@ impl Measures for SunSensor {
         true
     }
 
-    fn errors(&self) -> Errors {
+    fn errors(&self) -> VectorErrors {
         let Self { noise, bias, resolution, scale, misalignment, .. } = *self;
-        Errors { noise, bias, resolution, scale, misalignment }
+        VectorErrors { noise, bias, resolution, scale, misalignment }
     }
 
     fn timing(&self) -> [Span; 2] {
         [self.period, self.latency()]
     }
 
-    fn faults(&self) -> &[Fault] {
+    fn faults(&self) -> &[SensorFailure] {
         &self.faults
     }
 }
@@ -129,7 +129,7 @@ mod tests {
     use crate::time::Instant;
 
     fn truth(attitude: Quaternion<f64>, sun: Option<Vector>) -> Truth {
-        let sky = SkySight { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun };
+        let sky = EnvironmentObservation { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun };
         let [elastic, rate] = [[0.0; 3]; 2];
         Truth { orientation: Orientation::Attitude(attitude), elastic, rate, rigid: rate, turned: rate, sky }
     }
@@ -145,9 +145,9 @@ mod tests {
             at_work.read(now, &truth(attitude, sun), None).and_then(|reading| reading.sight)
         };
         let sun = Some(Vector::x());
-        let sight = seen(0.0, 0.499, sun).unwrap();
-        assert!((sight.vector - Vector::new(libm::cos(0.499), -libm::sin(0.499), 0.0)).norm() < 1e-15);
-        assert!(sight.is_direction && sight.inertial == Vector::x());
+        let measurement = seen(0.0, 0.499, sun).unwrap();
+        assert!((measurement.vector - Vector::new(libm::cos(0.499), -libm::sin(0.499), 0.0)).norm() < 1e-15);
+        assert!(measurement.is_direction && measurement.inertial == Vector::x());
         assert!(
             seen(1.0, 0.501, sun).is_none()
                 && seen(2.0, 3.0, sun).is_none()
@@ -185,7 +185,7 @@ mod tests {
                 told.push((now.seconds(), reading.sight.unwrap().vector));
                 last = Some(reading);
             }
-            now = at_work.after(now, Span::TICK);
+            now = at_work.next_due(now, Span::TICK);
         }
         let times: Vec<f64> = told.iter().map(|(t, _)| *t).collect();
         assert_eq!(times, [0.0, 1.5, 2.5]);

@@ -6,7 +6,7 @@ use std::num::NonZeroU32;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Fault, Reading, Sense, Truth};
+use super::{Reading, Sensor, SensorFailure, Truth};
 use crate::quantity::NonNegative;
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
@@ -29,12 +29,12 @@ pub struct Tachometer {
     pub noise: NonNegative,
     /// Intervals in which they fail; the drives then keep the last reading.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub faults: Vec<Fault>,
+    pub faults: Vec<SensorFailure>,
 }
 
 /// Run-time state of the tachometers.
 #[derive(Clone, Debug)]
-pub struct Counting {
+pub struct TachometerState {
     spec: Tachometer,
     noise: Vec<Stream>,
     /// Pulses counted at the last reading.
@@ -46,8 +46,8 @@ pub struct Counting {
 
 impl Tachometer {
     /// Creates the tachometers of wheels with these initial speeds (rad/s), which are the readings at the start.
-    pub fn start(&self, speeds: Vec<f64>, seed: Seed) -> Counting {
-        Counting {
+    pub fn start(&self, speeds: Vec<f64>, seed: Seed) -> TachometerState {
+        TachometerState {
             noise: (1..=speeds.len()).map(|wheel| seed.stream(&format!("tachometer {wheel}"))).collect(),
             counted: vec![0.0; speeds.len()],
             speeds,
@@ -57,7 +57,7 @@ impl Tachometer {
     }
 }
 
-impl Counting {
+impl TachometerState {
     /// Returns the time of the next reading.
     pub fn due(&self) -> Instant {
         self.next
@@ -67,7 +67,7 @@ impl Counting {
     pub fn read(&mut self, now: Instant, wheels: impl Iterator<Item = [f64; 2]>) {
         let Self { spec, noise, counted, speeds, next } = self;
         *next = now + spec.period;
-        let fails = spec.faults.iter().any(|fault| fault.outage().lasts(now));
+        let fails = spec.faults.iter().any(|fault| fault.interval().contains(now));
         let each = wheels.zip(noise).zip(counted).zip(speeds);
         for ((([angle, speed], noise), counted), known) in each {
             let mut read = speed;
@@ -95,14 +95,14 @@ impl Counting {
 
 /// Placeholder for sensors that do not measure the body's motion.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct Blind;
+pub(super) struct NoMeasurement;
 
-impl Sense for Blind {
+impl Sensor for NoMeasurement {
     fn read(&mut self, _: Instant, _: &Truth, _: Option<&Reading>) -> Option<Reading> {
         None
     }
 
-    fn copy(&self) -> Box<dyn Sense> {
+    fn copy(&self) -> Box<dyn Sensor> {
         Box::new(*self)
     }
 }
@@ -111,12 +111,12 @@ impl Sense for Blind {
 mod tests {
     use super::*;
 
-    fn start(keys: &str) -> Counting {
+    fn start(keys: &str) -> TachometerState {
         let spec: Tachometer = crate::document::from_text(&format!("period = 0.1\n{keys}")).unwrap();
         spec.start(vec![10.0], Seed { scenario: 1, run: 0 })
     }
 
-    fn read(tachometer: &mut Counting, k: i32, angle: f64, speed: f64) -> f64 {
+    fn read(tachometer: &mut TachometerState, k: i32, angle: f64, speed: f64) -> f64 {
         tachometer
             .read(Instant::START + Span::from_seconds(0.1 * f64::from(k)), [[angle, speed]].into_iter());
         tachometer.speeds()[0]

@@ -4,27 +4,27 @@ use std::fmt;
 
 use nalgebra::Matrix3;
 
-use super::late::{Late, failing};
-use super::{Fault, Orientation, Reading, Sense, Truth, VectorSight, stream};
+use super::latency_queue::{LatencyQueue, with_failures};
+use super::{Orientation, Reading, Sensor, SensorFailure, Truth, VectorMeasurement, stream};
 use crate::attitude::Vector;
-use crate::axes::Each;
+use crate::axes::PerAxis;
 use crate::document;
-use crate::environment::{SkySight, into};
+use crate::environment::{EnvironmentObservation, to_body};
 use crate::quantity::{Finite, NonNegative};
 use crate::random::{Seed, Stream};
 use crate::time::{Instant, Span};
 
 /// Errors of a vector measurement in the sensor's axes: y = M v + bias + noise, then rounded.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct Errors {
-    pub noise: Each<NonNegative>,
-    pub bias: Each<Finite>,
-    pub resolution: Each<NonNegative>,
-    pub scale: Each<Finite>,
+pub(super) struct VectorErrors {
+    pub noise: PerAxis<NonNegative>,
+    pub bias: PerAxis<Finite>,
+    pub resolution: PerAxis<NonNegative>,
+    pub scale: PerAxis<Finite>,
     pub misalignment: [[Finite; 3]; 3],
 }
 
-impl Errors {
+impl VectorErrors {
     /// Returns the measurement of a vector, with these normal random numbers.
     fn measured(&self, v: &Vector, draws: &[f64; 3]) -> Vector {
         Vector::from_fn(|axis, _| {
@@ -49,88 +49,91 @@ impl Errors {
     }
 
     /// Checks that the misalignment has a zero diagonal; returns the key and the reason if not.
-    pub fn fault(&self) -> Option<document::Fault> {
+    pub fn fault(&self) -> Option<document::ConfigError> {
         let rows = &self.misalignment;
         let axis = (0..3).find(|axis| rows[*axis][*axis].get() != 0.0)?;
         let why = format!("must be 0, because `scale` gives that error, got {}", rows[axis][axis].get());
-        Some(document::Fault::new(format!("misalignment[{axis}][{axis}]"), why))
+        Some(document::ConfigError::new(format!("misalignment[{axis}][{axis}]"), why))
     }
 }
 
 /// Interface of a specific vector sensor.
-pub(super) trait Measures: Clone + fmt::Debug + Send + Sync + 'static {
+pub(super) trait VectorSensor: Clone + fmt::Debug + Send + Sync + 'static {
     /// Name of the random streams of the noise.
     const STREAM: &'static str;
 
     /// Returns the reference vector in inertial axes, if there is one.
-    fn of(&self, sky: &SkySight) -> Option<Vector>;
+    fn reference(&self, sky: &EnvironmentObservation) -> Option<Vector>;
 
     /// Returns the output for the true vector `exact` and the measured one, in the body's axes; `None` outside the
     /// field of view.
-    fn told(&self, exact: &Vector, measured: Vector) -> Option<Vector>;
+    fn reading(&self, exact: &Vector, measured: Vector) -> Option<Vector>;
 
     /// Returns true if the sensor measures a direction only.
     fn is_direction(&self) -> bool;
 
     /// Returns the errors of the measurement.
-    fn errors(&self) -> Errors;
+    fn errors(&self) -> VectorErrors;
 
     /// Returns period and latency.
     fn timing(&self) -> [Span; 2];
 
     /// Returns the sensor's failures.
-    fn faults(&self) -> &[Fault];
+    fn faults(&self) -> &[SensorFailure];
 }
 
 /// Run-time state of a vector sensor.
 #[derive(Clone, Debug)]
-pub(super) struct Looking<S> {
+pub(super) struct VectorSensorState<S> {
     sensor: S,
-    errors: Errors,
+    errors: VectorErrors,
     noise: [Stream; 3],
-    late: Late,
+    late: LatencyQueue,
 }
 
-impl<S: Measures> Looking<S> {
+impl<S: VectorSensor> VectorSensorState<S> {
     /// Creates the run-time state; `ordinal` counts earlier sensors of the same kind.
     pub fn new(sensor: &S, seed: Seed, ordinal: usize) -> Self {
         let [period, latency] = sensor.timing();
         Self {
             errors: sensor.errors(),
             noise: [0, 1, 2].map(|axis| stream(S::STREAM, (axis, 3), ordinal, seed)),
-            late: Late::new(period, latency),
+            late: LatencyQueue::new(period, latency),
             sensor: sensor.clone(),
         }
     }
 
-    fn look(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
+    fn measure(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         // Random numbers are drawn during a failure too, so that later ones do not depend on it.
         let draws: [f64; 3] = std::array::from_fn(|axis| self.noise[axis].normal());
-        let Orientation::Attitude(attitude) = truth.orientation.at(truth.seen()) else { return None };
-        let seen = self.sensor.of(&truth.sky).and_then(|inertial| {
-            let exact = into(&attitude, &inertial);
-            let vector = self.sensor.told(&exact, self.errors.measured(&exact, &draws))?;
-            let sight = VectorSight { vector, inertial, is_direction: self.sensor.is_direction() };
-            Some(Reading { at: truth.orientation, rate: None, sight: Some(sight) })
+        let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) else {
+            return None;
+        };
+        let seen = self.sensor.reference(&truth.sky).and_then(|inertial| {
+            let exact = to_body(&attitude, &inertial);
+            let vector = self.sensor.reading(&exact, self.errors.measured(&exact, &draws))?;
+            let vector_measurement =
+                VectorMeasurement { vector, inertial, is_direction: self.sensor.is_direction() };
+            Some(Reading { at: truth.orientation, rate: None, sight: Some(vector_measurement) })
         });
-        failing(self.sensor.faults(), now, seen, last)
+        with_failures(self.sensor.faults(), now, seen, last)
     }
 }
 
-impl<S: Measures> Sense for Looking<S> {
+impl<S: VectorSensor> Sensor for VectorSensorState<S> {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
-        if self.late.exposes(now) {
-            let seen = self.look(now, truth, last);
-            self.late.take(now, seen);
+        if self.late.samples_now(now) {
+            let seen = self.measure(now, truth, last);
+            self.late.push(now, seen);
         }
-        self.late.told(now)
+        self.late.take_due(now)
     }
 
-    fn after(&mut self, _: Instant, _: Span) -> Instant {
-        self.late.next()
+    fn next_due(&mut self, _: Instant, _: Span) -> Instant {
+        self.late.next_due()
     }
 
-    fn copy(&self) -> Box<dyn Sense> {
+    fn copy(&self) -> Box<dyn Sensor> {
         Box::new(self.clone())
     }
 }

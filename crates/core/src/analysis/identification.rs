@@ -9,7 +9,9 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use super::damping::Excitation;
-use crate::estimator::adaptive::{Gradient, ModelOscillator, ModelPhase, Observer, Pulse, Tracker, bounds};
+use crate::estimator::adaptive::{
+    AdaptiveObserver, Gradient, ModeVector, OscillatorModel, Pulse, Tracker, bounds,
+};
 use crate::quantity::{Finite, Frequency};
 use crate::random::{Seed, Stream};
 use crate::scenario::Cost;
@@ -24,7 +26,7 @@ const PAUSE: usize = 20;
 
 /// Identification experiment: a channel, its thrusters, its gyro and its observer.
 #[derive(Clone, Debug)]
-pub struct Trial {
+pub struct IdentificationTrial {
     /// Natural frequency (rad/s) and influence of each mode.
     pub modes: Vec<(f64, f64)>,
     /// Observer, with the damping ratio of the modes.
@@ -77,10 +79,10 @@ pub struct IdentificationRow {
     pub times_s: Vec<f64>,
 }
 
-impl Trial {
+impl IdentificationTrial {
     /// Returns the experiment with the channel of the study behind \[Timakov14\]'s scenarios: yaw of the station, 300
     /// s.
-    pub fn of(modes: Vec<(f64, f64)>, off: f64) -> Self {
+    pub fn published(modes: Vec<(f64, f64)>, off: f64) -> Self {
         Self {
             modes,
             observer: Gradient::default(),
@@ -96,7 +98,7 @@ impl Trial {
     /// Returns the cost of a number of runs of `cycles` cycles; `squared` is the sum of the squares of the numbers of
     /// modes.
     pub fn cost(runs: f64, cycles: u32, squared: f64) -> Cost {
-        Cost::of_work("the identification", runs * f64::from(cycles), 1e-7 * (3.0 + squared))
+        Cost::from_work("the identification", runs * f64::from(cycles), 1e-7 * (3.0 + squared))
     }
 
     /// Returns the name of the first number that is out of range, and the reason.
@@ -126,8 +128,8 @@ impl Trial {
         let seed = Seed { scenario: self.seed, run: number };
         let mut observer =
             self.observer.observer(&self.start(&mut seed.stream("errors")), &[1.0], self.cycle);
-        let mut channel = Channel::new(self);
-        let (mut bursts, mut noise) = (Bursts::new(seed), seed.stream("noise"));
+        let mut channel = SimulatedChannel::new(self);
+        let (mut bursts, mut noise) = (ThrusterBursts::new(seed), seed.stream("noise"));
         let mut excitation = Excitation::new(observer.sensitivities().len());
         let mut last = 0;
         for cycle in 0..self.cycles {
@@ -195,16 +197,16 @@ impl Trial {
 }
 
 /// State of the simulated channel.
-struct Channel {
-    modes: Vec<(ModelOscillator, f64)>,
+struct SimulatedChannel {
+    modes: Vec<(OscillatorModel, f64)>,
     rate: f64,
-    phases: Vec<ModelPhase>,
+    phases: Vec<ModeVector>,
 }
 
-impl Channel {
-    fn new(trial: &Trial) -> Self {
+impl SimulatedChannel {
+    fn new(trial: &IdentificationTrial) -> Self {
         let damping = trial.observer.damping.get();
-        let modes = trial.modes.iter().map(|(w, mu)| (ModelOscillator { frequency: *w, damping }, *mu));
+        let modes = trial.modes.iter().map(|(w, mu)| (OscillatorModel { frequency: *w, damping }, *mu));
         Self { modes: modes.collect(), rate: 0.0, phases: vec![[0.0; 2]; trial.modes.len()] }
     }
 
@@ -215,9 +217,9 @@ impl Channel {
 
     fn advance(&mut self, pulse: Option<Pulse>, cycle: f64) {
         for (phase, (of, influence)) in self.phases.iter_mut().zip(&self.modes) {
-            *phase = of.turned(&of.transition(cycle), cycle, *phase).0;
+            *phase = of.propagate(&of.transition(cycle), cycle, *phase).0;
             if let Some(Pulse { acceleration, start, duration, .. }) = pulse {
-                let push = of.pulse(cycle - start, cycle - start - duration).0;
+                let push = of.pulse_response(cycle - start, cycle - start - duration).0;
                 *phase = [0, 1].map(|part| phase[part] + influence * acceleration * push[part]);
             }
         }
@@ -226,14 +228,14 @@ impl Channel {
 }
 
 /// Random thruster bursts of one to ten cycles, with a random sign and random pauses.
-struct Bursts {
+struct ThrusterBursts {
     draws: Stream,
     left: usize,
     wait: usize,
     sign: f64,
 }
 
-impl Bursts {
+impl ThrusterBursts {
     fn new(seed: Seed) -> Self {
         Self { draws: seed.stream("bursts"), left: 0, wait: 0, sign: 1.0 }
     }

@@ -1,6 +1,6 @@
 //! Scenario's body at rest as one linear system, x' = A x + B u, y = C x + D u, for control design programs.
 //!
-//! A one-axis body has the system of `Coupled`. With three axes G' = M + H x w, q'' + D q' + W² q = phi' (M + H x w): G
+//! A one-axis body has the system of `CoupledMatrices`. With three axes G' = M + H x w, q'' + D q' + W² q = phi' (M + H x w): G
 //! = J w_r, with the rate of the hub w = w_r + phi q' where modes act back on it, and the rotor momentum H
 //! (\[Likins70\]). Environment torques are left out.
 
@@ -8,9 +8,9 @@ use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 
 use crate::attitude::{AXES, Vector};
-use crate::body::{Axes, Drift, Drive, Planar, Spatial};
-use crate::document::Fault;
-use crate::flow::Coupled;
+use crate::body::{BodyAxes, CommandedQuantity, Drift, Planar, Spatial};
+use crate::document::ConfigError;
+use crate::flow::CoupledMatrices;
 use crate::random::Seed;
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -54,14 +54,14 @@ impl LinearModel {
     ///
     /// # Errors
     /// A body that is no linear system: its key, and the reason.
-    pub fn of(scenario: &Scenario, at: f64) -> Result<Self, Fault> {
-        if scenario.study.driven().is_some() {
+    pub fn from_scenario(scenario: &Scenario, at: f64) -> Result<Self, ConfigError> {
+        if scenario.study.articulation().is_some() {
             let why = "turn appendages, so the body changes with time and is not a linear system";
-            return Err(Fault::new("appendage", format!("has drives that {why}")));
+            return Err(ConfigError::new("appendage", format!("has drives that {why}")));
         }
         Ok(match scenario.model.axes() {
-            Axes::One(body) => Self::of_one_angle(scenario, body, at),
-            Axes::Three(body) => Self::of_three_axes(scenario, body),
+            BodyAxes::One(body) => Self::of_one_angle(scenario, body, at),
+            BodyAxes::Three(body) => Self::of_three_axes(scenario, body),
         })
     }
 
@@ -69,11 +69,11 @@ impl LinearModel {
         let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, at));
         let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
         let (back_emf, total) = scenario.back_emf(body);
-        let coupled = Coupled::new(body, back_emf, total, &ratios);
+        let coupled = CoupledMatrices::new(body, back_emf, total, &ratios);
         let order = coupled.system.nrows();
         let shown = |first: usize, j: usize| {
             // The clamped modes of a hub with a commanded motion are not observable in it.
-            let is_seen = j == first || j % 2 == first && body.drive == Drive::Torque;
+            let is_seen = j == first || j % 2 == first && body.drive == CommandedQuantity::Torque;
             if is_seen { 1.0 } else { 0.0 }
         };
         let mut seen: Vec<(Signal, Vec<f64>)> = vec![
@@ -99,12 +99,12 @@ impl LinearModel {
     fn of_three_axes(scenario: &Scenario, body: &Spatial) -> Self {
         let (study, modes) = (&scenario.study, body.modes.len());
         let flexible = scenario.model.flexible();
-        let inertia = flexible.map_or_else(|| body.tensor(), |flexible| flexible.inertia);
+        let inertia = flexible.map_or_else(|| body.inertia_tensor(), |flexible| flexible.inertia);
         // The tensor was checked, so it has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         let seed = Seed { scenario: scenario.seed, run: 0 };
-        let stored = Vector::from(study.actuator(scenario, seed).stored(Instant::START));
-        let measured = study.measured(body);
+        let stored = Vector::from(study.actuator(scenario, seed).stored_momentum(Instant::START));
+        let measured = study.measured_rates(body);
         let hub = |mode: usize| flexible.map_or_else(Vector::zeros, |body| body.modes[mode].rotation);
         let order = 6 + 2 * modes;
         let (mut a, mut b) = (DMatrix::zeros(order, order), DMatrix::zeros(order, 3));
@@ -117,8 +117,8 @@ impl LinearModel {
         for axis in 0..3 {
             let input = &measured.inputs[axis];
             let rigid = Vector::from_fn(|row, _| input.turning[row] * input.acceleration);
-            let unit = 1.0 / (body.tensor() * rigid)[axis];
-            let torque = body.tensor() * rigid * unit;
+            let unit = 1.0 / (body.inertia_tensor() * rigid)[axis];
+            let torque = body.inertia_tensor() * rigid * unit;
             b.view_mut((3, axis), (3, 1)).copy_from(&(inverse * torque));
             for mode in 0..modes {
                 b[(7 + 2 * mode, axis)] = input.forces[mode] * unit;

@@ -1,13 +1,13 @@
 //! Analyses of a scenario or a run: linear models, mode tables, limit cycles, stability.
 
-pub mod attitude_parts;
-pub mod cycle;
 pub mod damping;
 pub mod identification;
-pub mod influence;
+pub mod limit_cycle;
+pub mod linear_attitude_filter;
+pub mod linear_loop;
 pub mod linear_model;
-pub mod loop_parts;
-pub mod modal;
-pub mod parts;
+pub mod mode_influence;
+pub mod one_axis_modes;
 pub mod rigid_cycle;
 pub mod sampled_loop;
+pub mod spacecraft_modes;

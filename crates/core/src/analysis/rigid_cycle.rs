@@ -8,13 +8,13 @@ use schemars::JsonSchema;
 use serde::Serialize;
 
 use crate::body::{Mode, Planar};
-use crate::law::{Relay, Sides};
+use crate::law::{Relay, RelaySides};
 
 /// A limit cycle of the relay law on a rigid body.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct RigidCycle {
     /// How many boundaries push back in a cycle.
-    pub sides: Sides,
+    pub sides: RelaySides,
     /// Speed at which a boundary is reached (rad/s).
     pub entry_rate_rad_s: f64,
     /// Duration of a strong push, tau_1 (s).
@@ -53,7 +53,7 @@ pub struct Resonance {
 }
 
 /// Parameters of the relay law on a rigid body, as accelerations.
-struct Rigid {
+struct RigidRelay {
     strong: f64,
     weak: f64,
     eps: f64,
@@ -63,7 +63,7 @@ struct Rigid {
     left: f64,
 }
 
-impl Rigid {
+impl RigidRelay {
     fn new(law: &Relay, inertia: f64) -> Self {
         Self {
             strong: law.strong.get() / inertia,
@@ -72,13 +72,13 @@ impl Rigid {
             gamma: law.hysteresis.get(),
             inertia,
             left: match law.sides {
-                Sides::Two => -law.dead_zone.get(),
-                Sides::One => f64::NEG_INFINITY,
+                RelaySides::Two => -law.dead_zone.get(),
+                RelaySides::One => f64::NEG_INFINITY,
             },
         }
     }
 
-    fn cycle(&self, sides: Sides, k_t: f64) -> Option<RigidCycle> {
+    fn cycle(&self, sides: RelaySides, k_t: f64) -> Option<RigidCycle> {
         let Self { strong, weak, eps, gamma, inertia, left } = *self;
         if weak <= 0.0 {
             return None;
@@ -88,8 +88,8 @@ impl Rigid {
         let width = 2.0 * weak * (2.0 * eps - gamma) / (q * q);
         let beta = k_t * (1.0 - k_t) * (1.0 - r);
         let numerator = match sides {
-            Sides::Two => 1.0 - k_t - width + r * k_t,
-            Sides::One => 1.0 - k_t + r + r * k_t,
+            RelaySides::Two => 1.0 - k_t - width + r * k_t,
+            RelaySides::One => 1.0 - k_t + r + r * k_t,
         };
         let z2 = numerator / beta;
         if z2 <= 1.0 || !z2.is_finite() {
@@ -101,11 +101,11 @@ impl Rigid {
         let brake = k_t * push;
         let exit = -0.5 * q * ((1.0 - 2.0 * k_t) * z + 1.0 / z);
         let (coast, halves, angle_min) = match sides {
-            Sides::Two => ((-exit - entry) / weak, 2.0, -angle_max),
-            Sides::One => ((entry - exit) / weak, 1.0, eps - entry * entry / (2.0 * weak)),
+            RelaySides::Two => ((-exit - entry) / weak, 2.0, -angle_max),
+            RelaySides::One => ((entry - exit) / weak, 1.0, eps - entry * entry / (2.0 * weak)),
         };
         // A two-sided coast that would reverse, or a one-sided one that reaches the left boundary, is no cycle.
-        if coast <= 0.0 || (sides == Sides::One && angle_min <= left) {
+        if coast <= 0.0 || (sides == RelaySides::One && angle_min <= left) {
             return None;
         }
         let multiplier = 1.0 - 4.0 * beta * z2 * z2 / (z2 * z2 - 1.0);
@@ -131,10 +131,10 @@ impl Rigid {
 /// Returns the limit cycles of a relay law on a body without its modes at the gain `k_t`, two-sided first. A law with
 /// one side has only the one-sided cycle, which then has no left boundary to avoid.
 pub fn cycles(law: &Relay, body: &Planar, k_t: f64) -> Vec<RigidCycle> {
-    let rigid = Rigid::new(law, body.inertia.get());
-    let candidates: &[Sides] = match law.sides {
-        Sides::Two => &[Sides::Two, Sides::One],
-        Sides::One => &[Sides::One],
+    let rigid = RigidRelay::new(law, body.inertia.get());
+    let candidates: &[RelaySides] = match law.sides {
+        RelaySides::Two => &[RelaySides::Two, RelaySides::One],
+        RelaySides::One => &[RelaySides::One],
     };
     candidates.iter().filter_map(|&sides| rigid.cycle(sides, k_t)).collect()
 }
@@ -147,8 +147,8 @@ const HIGHEST: u32 = 9_999;
 pub fn resonances(law: &Relay, body: &Planar) -> Vec<Resonance> {
     /// Number of cells of the grid of gains: the period is monotonic between neighbours.
     const GRID: u32 = 4096;
-    let rigid = Rigid::new(law, body.inertia.get());
-    let period = |k_t: f64| rigid.cycle(Sides::Two, k_t).map(|cycle| cycle.period_s);
+    let rigid = RigidRelay::new(law, body.inertia.get());
+    let period = |k_t: f64| rigid.cycle(RelaySides::Two, k_t).map(|cycle| cycle.period_s);
     let mut found = Vec::new();
     for (mode, w) in body.modes.iter().map(|mode: &Mode| mode.frequency.get()).enumerate() {
         let turns = |period: f64| w * period / (2.0 * std::f64::consts::PI);

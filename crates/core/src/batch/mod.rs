@@ -12,7 +12,7 @@ use crate::scenario::Scenario;
 
 /// Run to simulate, without a log.
 #[derive(Copy, Clone, Debug)]
-pub struct Job<'a> {
+pub struct BatchJob<'a> {
     /// Number of the run.
     pub number: u64,
     /// Scenario that is simulated.
@@ -22,41 +22,41 @@ pub struct Job<'a> {
 }
 
 /// Method to simulate runs of one structure together.
-pub trait Batch: Sync {
+pub trait BatchKernel: Sync {
     /// Returns the number of runs that the batch accepts at a time.
     fn lanes(&self, processor: Processor) -> usize;
 
     /// Returns true if the batch may accept runs of a scenario.
-    fn takes(&self, scenario: &Scenario) -> bool;
+    fn accepts(&self, scenario: &Scenario) -> bool;
 
-    /// Simulates at most [`Batch::lanes`] runs: returns the metrics of each, or `None` for a run that has to be
+    /// Simulates at most [`BatchKernel::lanes`] runs: returns the metrics of each, or `None` for a run that has to be
     /// simulated alone.
-    fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>>;
+    fn simulate(&self, processor: Processor, jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>>;
 }
 
 /// All batches, in the order of preference.
-const ALL: &[&dyn Batch] = &[&relay::Side, &sampled::Side];
+const ALL: &[&dyn BatchKernel] = &[&relay::RelayBatch, &sampled::SampledBatch];
 
 /// Returns true if runs of a scenario may be simulated in a batch on this machine.
-pub fn takes(scenario: &Scenario) -> bool {
-    Processor::best().is_some() && ALL.iter().any(|batch| batch.takes(scenario))
+pub fn accepts(scenario: &Scenario) -> bool {
+    Processor::best().is_some() && ALL.iter().any(|batch| batch.accepts(scenario))
 }
 
 /// Simulates runs in batches: returns the metrics of each, or `None` for a run that has to be simulated alone.
-pub fn simulate(jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
+pub fn simulate(jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>> {
     Processor::best().map_or_else(|| vec![None; jobs.len()], |processor| simulate_on(processor, jobs))
 }
 
 /// Simulates runs in batches with the instructions of the given processor; see [`simulate`].
-pub fn simulate_on(processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
+pub fn simulate_on(processor: Processor, jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>> {
     let mut all = vec![None; jobs.len()];
     for batch in ALL {
         let open: Vec<usize> =
-            (0..jobs.len()).filter(|at| all[*at].is_none() && batch.takes(jobs[*at].scenario)).collect();
+            (0..jobs.len()).filter(|at| all[*at].is_none() && batch.accepts(jobs[*at].scenario)).collect();
         for some in open.chunks(batch.lanes(processor)) {
             // A single run gains nothing from a batch.
             if some.len() > 1 {
-                let taken: Vec<Job<'_>> = some.iter().map(|at| jobs[*at]).collect();
+                let taken: Vec<BatchJob<'_>> = some.iter().map(|at| jobs[*at]).collect();
                 for (at, metrics) in some.iter().zip(batch.simulate(processor, &taken)) {
                     all[*at] = metrics;
                 }

@@ -3,21 +3,21 @@
 #[cfg(test)]
 mod tests;
 
-use super::{Batch, Job};
-use crate::estimator::Monitor;
-use crate::flight::{
-    Crew, CyclePlace, LaneSight, MOST, Searched, Setup, Structure, flies, fly_beside, guards, instant, phase,
-    searched, see, setup, structure,
-};
-use crate::flow::{ForcedInput, Segment};
+use super::{BatchJob, BatchKernel};
+use crate::estimator::WindowedEnvelope;
+use crate::flow::{SegmentInput, UncoupledSegment};
 use crate::guard::Guard;
 use crate::lanes::Processor;
 use crate::law::Phase;
-use crate::metrics::{Gather, Metrics};
-use crate::motion::State;
-use crate::motion::crossing::locate;
+use crate::metrics::{Metrics, MetricsCollector};
+use crate::motion::AxisState;
+use crate::motion::crossing::first_crossing;
 use crate::random::Seed;
-use crate::record::{self, Command, Course, Record, Sample, Trigger};
+use crate::record::{self, Command, PieceDemand, Record, Sample, Trigger};
+use crate::relay_setup::{
+    CyclePhase, FoundCrossing, LaneHost, LaneShape, LaneState, MOST, RunSetup, apply_crossing, apply_state,
+    fly_beside, guards, instant, is_supported, lane_setup, lane_shape, law_state,
+};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
@@ -27,105 +27,105 @@ const RUNS: usize = 128;
 const LONGEST: f64 = 2e5;
 
 /// Batch of relay runs.
-pub struct Side;
+pub struct RelayBatch;
 
-impl Batch for Side {
+impl BatchKernel for RelayBatch {
     fn lanes(&self, _: Processor) -> usize {
         RUNS
     }
 
-    fn takes(&self, scenario: &Scenario) -> bool {
-        scenario.duration.seconds() <= LONGEST && flies(scenario).is_some()
+    fn accepts(&self, scenario: &Scenario) -> bool {
+        scenario.duration.seconds() <= LONGEST && is_supported(scenario).is_some()
     }
 
-    fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
+    fn simulate(&self, processor: Processor, jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>> {
         let Some(first) = jobs.first() else { return Vec::new() };
-        let mut runs = Runs::new(structure(first.scenario), jobs);
+        let mut runs = LaneRuns::new(lane_shape(first.scenario), jobs);
         fly_beside(processor, runs.structure, &mut runs);
         runs.found
     }
 }
 
 /// Runs of a batch, and the state of those in the lanes.
-struct Runs<'a> {
-    structure: Structure,
-    jobs: &'a [Job<'a>],
+struct LaneRuns<'a> {
+    structure: LaneShape,
+    jobs: &'a [BatchJob<'a>],
     next: usize,
-    lanes: Vec<Option<Lane<'a>>>,
+    lanes: Vec<Option<LaneRun<'a>>>,
     found: Vec<Option<Metrics>>,
-    /// True if any of the runs needs its switchings (`listens`), or the instants at which the angle leaves the band
+    /// True if any of the runs needs its switchings (`wants_switchings`), or the instants at which the angle leaves the band
     /// (`looks`).
     listens: bool,
     looks: bool,
 }
 
 /// Run in a lane.
-struct Lane<'a> {
+struct LaneRun<'a> {
     /// Index of the run's job.
     index: usize,
     scenario: &'a Scenario,
-    setup: Setup,
-    gather: Gather,
-    monitor: Option<Monitor>,
-    segment: Segment,
-    state: State,
+    setup: RunSetup,
+    gather: MetricsCollector,
+    monitor: Option<WindowedEnvelope>,
+    segment: UncoupledSegment,
+    state: AxisState,
     /// True if the run has to be simulated alone.
     is_alone: bool,
 }
 
-impl<'a> Runs<'a> {
-    fn new(structure: Structure, jobs: &'a [Job<'a>]) -> Self {
+impl<'a> LaneRuns<'a> {
+    fn new(structure: LaneShape, jobs: &'a [BatchJob<'a>]) -> Self {
         let lanes = (0..MOST).map(|_| None).collect();
         let found = vec![None; jobs.len()];
         Self { structure, jobs, next: 0, lanes, found, listens: false, looks: false }
     }
 }
 
-impl Lane<'_> {
+impl LaneRun<'_> {
     /// Begins a segment at the state of the lane, with the torque of `place`.
-    fn depart(&mut self, place: CyclePlace, from: &LaneSight) {
-        see(&mut self.state, from);
+    fn depart(&mut self, place: CyclePhase, from: &LaneState) {
+        apply_state(&mut self.state, from);
         let constant = self.setup.torque(place, from.side);
-        self.segment.depart(&self.state, &ForcedInput { constant, waveform: None });
+        self.segment.depart(&self.state, &SegmentInput { constant, waveform: None });
     }
 }
 
-impl Crew for Runs<'_> {
-    fn listens(&self) -> bool {
+impl LaneHost for LaneRuns<'_> {
+    fn wants_switchings(&self) -> bool {
         self.listens
     }
 
-    fn looks(&self) -> bool {
+    fn wants_band_exits(&self) -> bool {
         self.looks
     }
 
-    fn next(&mut self, lane: usize) -> Option<&Setup> {
+    fn next_run(&mut self, lane: usize) -> Option<&RunSetup> {
         if let Some(ended) = self.lanes[lane].take() {
             let is_whole = !ended.is_alone && ended.state.is_finite();
             self.found[ended.index] = is_whole.then(|| ended.gather.finish(ended.scenario));
         }
         while let Some(job) = self.jobs.get(self.next) {
             self.next += 1;
-            let Some((model, law)) = flies(job.scenario) else { continue };
-            if structure(job.scenario) != self.structure {
+            let Some((model, law)) = is_supported(job.scenario) else { continue };
+            if lane_shape(job.scenario) != self.structure {
                 continue;
             }
-            let mut gather = Gather::of(job.scenario, job.selection);
+            let mut gather = MetricsCollector::for_selection(job.scenario, job.selection);
             let row = record::Law { state: Phase::Start, torque_nm: law.weak.get(), gain: law.k_t.get() };
-            self.listens |= gather.switchings();
-            self.looks |= gather.course() != Course::None;
+            self.listens |= gather.wants_switchings();
+            self.looks |= gather.piece_demand() != PieceDemand::None;
             if gather.record(Instant::START, Sample::Begin(&row)).is_err() {
                 continue;
             }
-            let setup = setup(job.scenario, model, law);
-            let begun = self.lanes[lane].insert(Lane {
+            let setup = lane_setup(job.scenario, model, law);
+            let begun = self.lanes[lane].insert(LaneRun {
                 index: self.next - 1,
                 scenario: job.scenario,
                 setup,
                 gather,
                 monitor: job.scenario.monitor(Seed { scenario: job.scenario.seed, run: job.number }),
-                segment: Segment::new(model),
-                state: model.start(),
+                segment: UncoupledSegment::new(model),
+                state: model.initial_state(),
                 is_alone: false,
             });
             return Some(&begun.setup);
@@ -133,19 +133,25 @@ impl Crew for Runs<'_> {
         None
     }
 
-    fn search(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, found: &mut Searched) -> bool {
+    fn find_crossing(
+        &mut self,
+        lane: usize,
+        place: CyclePhase,
+        from: &LaneState,
+        found: &mut FoundCrossing,
+    ) -> bool {
         let Some(lane) = self.lanes[lane].as_mut() else { return false };
         lane.depart(place, from);
         let guards = guards(&lane.setup, place, from.side);
         let horizon = (Instant::START + lane.scenario.duration).since(instant(from.at));
-        let trip = locate(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
+        let trip = first_crossing(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
         lane.is_alone |= !lane.state.is_finite();
         let Ok(Some(trip)) = trip else { return false };
-        searched(found, trip.after, trip.guard == 0, &lane.state);
+        apply_crossing(found, trip.after, trip.guard == 0, &lane.state);
         true
     }
 
-    fn give_up(&mut self, lane: usize) {
+    fn reject(&mut self, lane: usize) {
         if let Some(lane) = &mut self.lanes[lane] {
             lane.is_alone = true;
         }
@@ -153,13 +159,13 @@ impl Crew for Runs<'_> {
 
     fn chatters(&mut self, lane: usize, _: (u64, u64)) {
         // Alone it ends as it does here, with an error.
-        self.give_up(lane);
+        self.reject(lane);
     }
 
-    fn switched(&mut self, lane: usize, to: CyclePlace, now: &LaneSight) {
+    fn on_switching(&mut self, lane: usize, to: CyclePhase, now: &LaneState) {
         let Some(lane) = &mut self.lanes[lane] else { return };
-        let state = phase(to, now.side);
-        see(&mut lane.state, now);
+        let state = law_state(to, now.side);
+        apply_state(&mut lane.state, now);
         let at = instant(now.at);
         let (time_s, time_whole_s, time_fs) = Command::times(at);
         let command = Command {
@@ -167,7 +173,7 @@ impl Crew for Runs<'_> {
             time_whole_s,
             time_fs,
             state,
-            cause: if to == CyclePlace::Coast { Trigger::Timeout } else { Trigger::Guard },
+            cause: if to == CyclePhase::Coast { Trigger::Timeout } else { Trigger::Guard },
             torque_nm: lane.setup.torque(to, now.side),
             angle_rad: lane.state.angle(),
             rate_rad_s: now.rate,
@@ -176,19 +182,21 @@ impl Crew for Runs<'_> {
         lane.is_alone |= lane.gather.record(at, Sample::Switching(&command, &lane.state)).is_err();
     }
 
-    fn closed(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64 {
+    fn on_window(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64 {
         let Some(lane) = &mut self.lanes[lane] else { return gain };
         let Some(monitor) = &mut lane.monitor else { return gain };
         let now = instant(at);
-        let closed = monitor.conclude(now, integral, gain);
+        let closed = monitor.close_with(now, integral, gain);
         lane.is_alone |= lane.gather.record(now, Sample::Window(&closed.mean)).is_err();
         let Some((row, _)) = &closed.step else { return gain };
         lane.is_alone |= lane.gather.record(now, Sample::Adaptation(row)).is_err();
         row.gain
     }
 
-    fn strays(&mut self, lane: usize, place: CyclePlace, from: &LaneSight, until: (u64, u64)) {
-        let Some(lane) = self.lanes[lane].as_mut().filter(|lane| lane.gather.course() != Course::None) else {
+    fn on_possible_band_exit(&mut self, lane: usize, place: CyclePhase, from: &LaneState, until: (u64, u64)) {
+        let Some(lane) =
+            self.lanes[lane].as_mut().filter(|lane| lane.gather.piece_demand() != PieceDemand::None)
+        else {
             return;
         };
         lane.depart(place, from);
@@ -197,7 +205,7 @@ impl Crew for Runs<'_> {
         let guards = [Guard::at_least(band), Guard::at_most(-band)];
         let stays = lane.segment.stays_within(band, span.seconds())
             || matches!(
-                locate(&lane.segment, &guards, span, &mut lane.state.clone(), || Ok::<(), ()>(())),
+                first_crossing(&lane.segment, &guards, span, &mut lane.state.clone(), || Ok::<(), ()>(())),
                 Ok(None)
             );
         lane.is_alone |= !stays;

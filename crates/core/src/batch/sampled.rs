@@ -6,51 +6,52 @@
 mod filters;
 mod motions;
 
-use super::{Batch, Job};
-use crate::flow::Lent;
-use crate::lanes::{LaneWork, Mask, Processor, Real};
-use crate::law::Law;
-use crate::metrics::{Gather, Metrics, MotionMetrics, Passed};
-use crate::record::{Course, Record};
+use super::{BatchJob, BatchKernel};
+use crate::flow::ExternalMotion;
+use crate::lanes::{LaneFloat, Mask, Processor, SimdTask};
+use crate::law::LawKind;
+use crate::metrics::{LaneManoeuvreMetrics, LanePiece, Metrics, MetricsCollector};
+use crate::record::{PieceDemand, Record};
 use crate::scenario::Scenario;
-use crate::sim::{Exerted, Simulation};
+use crate::sim::{AppliedTorque, Simulation};
 use crate::time::Instant;
 
-use motions::Motions;
+use motions::LaneMotions;
 
 /// Batch of sampled loops.
-pub struct Side;
+pub struct SampledBatch;
 
-impl Batch for Side {
+impl BatchKernel for SampledBatch {
     fn lanes(&self, processor: Processor) -> usize {
         processor.lanes(1)
     }
 
-    fn takes(&self, scenario: &Scenario) -> bool {
-        (scenario.drift.is_some() || scenario.actuator.wheel().is_some())
-            && scenario.actuator.alone().is_some()
-            && matches!(scenario.law, Law::Pd(_))
+    fn accepts(&self, scenario: &Scenario) -> bool {
+        (scenario.drift.is_some() || scenario.actuator.flywheel().is_some())
+            && scenario.actuator.only_actuator().is_some()
+            && matches!(scenario.law, LawKind::Pd(_))
             && scenario.plan.is_none()
             && scenario.model.outputs().is_empty()
     }
 
-    fn simulate(&self, processor: Processor, jobs: &[Job<'_>]) -> Vec<Option<Metrics>> {
+    fn simulate(&self, processor: Processor, jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>> {
         let mut runs = Vec::with_capacity(jobs.len());
         for job in jobs {
-            let Some(run) = Run::new(job) else { return vec![None; jobs.len()] };
+            let Some(run) = BatchedRun::new(job) else { return vec![None; jobs.len()] };
             runs.push(run);
         }
-        let mut gathers: Vec<Gather> = Vec::with_capacity(jobs.len());
+        let mut gathers: Vec<MetricsCollector> = Vec::with_capacity(jobs.len());
         for job in jobs {
             // Runs that differ only in their noise begin with equal metrics.
             let alike = jobs.iter().zip(&gathers).find(|(other, _)| other.scenario == job.scenario);
             let gather = alike.map(|(_, gather)| gather.clone());
-            gathers.push(gather.unwrap_or_else(|| Gather::of(job.scenario, job.selection)));
+            gathers
+                .push(gather.unwrap_or_else(|| MetricsCollector::for_selection(job.scenario, job.selection)));
         }
         if gathers.iter_mut().any(|gather| gather.rotation().is_none()) {
             return vec![None; jobs.len()];
         }
-        processor.run::<1, _>(Rounds { runs: &mut runs, gathers: &mut gathers });
+        processor.run::<1, _>(BatchLoop { runs: &mut runs, gathers: &mut gathers });
         let whole = runs.iter().map(|run| run.is_whole);
         let finished = gathers.into_iter().zip(jobs).map(|(gather, job)| gather.finish(job.scenario));
         finished.zip(whole).map(|(metrics, whole)| whole.then_some(metrics)).collect()
@@ -58,70 +59,70 @@ impl Batch for Side {
 }
 
 /// Run of a batch.
-struct Run {
+struct BatchedRun {
     simulation: Simulation,
-    motion: Lent,
+    motion: ExternalMotion,
     /// Start of the current segment, its reduced moment (rad/s²), and its torques.
     departed: Instant,
     moment: f64,
-    exerted: Exerted,
+    exerted: AppliedTorque,
     /// True while the simulation continues (`goes_on`), and true if it has ended within the batch (`is_whole`).
     goes_on: bool,
     is_whole: bool,
 }
 
-impl Run {
-    fn new(job: &Job<'_>) -> Option<Self> {
+impl BatchedRun {
+    fn new(job: &BatchJob<'_>) -> Option<Self> {
         let mut simulation = Simulation::new(job.scenario, job.number);
-        let motion = simulation.lend()?;
+        let motion = simulation.take_motion()?;
         Some(Self {
             simulation,
             motion,
             departed: Instant::START,
             moment: 0.0,
-            exerted: Exerted::default(),
+            exerted: AppliedTorque::default(),
             goes_on: true,
             is_whole: false,
         })
     }
 
     /// Begins the run and its first segment.
-    fn begin(&mut self, gather: &mut Gather) {
-        self.goes_on = self.simulation.begin_lent(gather).is_ok();
-        self.depart();
+    fn begin(&mut self, gather: &mut MetricsCollector) {
+        self.goes_on = self.simulation.begin_external(gather).is_ok();
+        self.begin_segments();
     }
 
     /// Adopts a new segment of the simulation; returns true if there is one.
-    fn depart(&mut self) -> bool {
-        let Some((at, moment, exerted)) = self.simulation.departed() else { return false };
+    fn begin_segments(&mut self) -> bool {
+        let Some((at, moment, exerted)) = self.simulation.take_segment_start() else { return false };
         (self.departed, self.moment, self.exerted) = (at, moment, exerted);
         true
     }
 }
 
 /// Loop over the events of all runs.
-struct Rounds<'a> {
-    runs: &'a mut [Run],
-    gathers: &'a mut [Gather],
+struct BatchLoop<'a> {
+    runs: &'a mut [BatchedRun],
+    gathers: &'a mut [MetricsCollector],
 }
 
-impl LaneWork for Rounds<'_> {
+impl SimdTask for BatchLoop<'_> {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Real>(self, kind: R) {
+    fn run<R: LaneFloat>(self, kind: R) {
         let Self { runs, gathers } = self;
-        let Some(mut motions) = Motions::new(kind, runs) else { return };
-        let (count, zero) = (motions.count, kind.of(0.0));
+        let Some(mut motions) = LaneMotions::new(kind, runs) else { return };
+        let (count, zero) = (motions.count, kind.splat(0.0));
         for (run, gather) in runs.iter_mut().zip(gathers.iter_mut()) {
             run.begin(gather);
         }
-        if !filters::agree(runs) {
+        if !filters::same_kind(runs) {
             return;
         }
-        let mut filters = filters::of(kind, runs);
-        let mut courses = MotionMetrics::new(kind);
-        let wants_course = gathers.iter().any(|gather| gather.course() != Course::None);
+        let mut filters = filters::from_runs(kind, runs);
+        let mut courses = LaneManoeuvreMetrics::new(kind);
+        let wants_course = gathers.iter().any(|gather| gather.piece_demand() != PieceDemand::None);
         // State of the bodies: angles and rates of all coordinates.
         let mut here = vec![zero; 2 * count];
         let mut rows = vec![[0.0; 16]; 2 * count];
@@ -129,42 +130,39 @@ impl LaneWork for Rounds<'_> {
         let (mut spans, mut froms, mut counts) = ([0.0; 16], [0.0; 16], [false; 16]);
         while runs.iter().any(|run| run.goes_on) {
             if fresh {
-                motions.fill(runs, kind);
+                motions.expand(runs, kind);
             }
             let mut next = [Instant::START; 16];
             let mut due = [false; 16];
             for (lane, run) in runs.iter().enumerate() {
-                (next[lane], due[lane]) = run.simulation.following();
+                (next[lane], due[lane]) = run.simulation.next_event();
                 if run.goes_on {
                     spans[lane] = next[lane].since(run.departed).seconds();
                 }
             }
             let h = kind.load(&spans);
-            let sure = motions.reach(h);
-            let reached = R::select(sure, zero.of(1.0), zero);
-            motions.go(&spans, h, &mut here);
+            let sure = motions.radius(h);
+            let reached = R::select(sure, zero.splat(1.0), zero);
+            motions.evaluate(&spans, h, &mut here);
             for index in 0..2 * count {
                 here[index].store(&mut rows[index]);
             }
             let mut departs = [false; 16];
-            let before: [(Instant, Exerted); 16] = {
-                let mut before = [(Instant::START, Exerted::default()); 16];
-                for (lane, run) in runs.iter().enumerate() {
-                    before[lane] = (run.departed, run.exerted);
-                }
-                before
-            };
+            let mut before = [(Instant::START, AppliedTorque::default()); 16];
+            for (before, run) in before.iter_mut().zip(runs.iter()) {
+                *before = (run.departed, run.exerted);
+            }
             for (lane, run) in runs.iter_mut().enumerate() {
                 if !sure.all() && reached.lane(lane) == 0.0 {
                     run.goes_on = false;
                 }
                 if run.goes_on {
                     let motion = (0..count).map(|index| [rows[index][lane], rows[count + index][lane]]);
-                    run.simulation.bring(next[lane], motion);
+                    run.simulation.set_motion(next[lane], motion);
                 }
             }
             if let Some(filters) = &mut filters {
-                filters::sample(filters, runs, gathers, &due, kind);
+                filters::process_samples(filters, runs, gathers, &due, kind);
             }
             for (lane, run) in runs.iter_mut().enumerate() {
                 counts[lane] = false;
@@ -172,10 +170,14 @@ impl LaneWork for Rounds<'_> {
                     continue;
                 }
                 let gather = &mut gathers[lane];
-                let done = if due[lane] { run.simulation.act(gather) } else { run.simulation.end(gather) };
+                let done = if due[lane] {
+                    run.simulation.process_instant(gather)
+                } else {
+                    run.simulation.finish_external(gather)
+                };
                 run.is_whole = done.is_ok() && !due[lane];
                 run.goes_on = done.is_ok() && due[lane];
-                departs[lane] = run.depart();
+                departs[lane] = run.begin_segments();
                 counts[lane] = (departs[lane] || run.is_whole) && spans[lane] > 0.0;
                 froms[lane] = before[lane].0.seconds();
             }
@@ -187,9 +189,9 @@ impl LaneWork for Rounds<'_> {
                     }
                     kind.load(&each)
                 };
-                courses.see(
+                courses.observe(
                     gathers,
-                    &Passed {
+                    &LanePiece {
                         from: kind.load(&froms),
                         length: h,
                         series: &motions.series,
@@ -210,6 +212,6 @@ impl LaneWork for Rounds<'_> {
                 }
             }
         }
-        courses.finish(gathers);
+        courses.hand_over(gathers);
     }
 }

@@ -19,21 +19,21 @@ fn digits(bytes: &[u8]) -> Option<Range<usize>> {
     (digits.end <= bytes.len()).then_some(digits)
 }
 
-fn of(bytes: &[u8], digits: &Range<usize>) -> String {
+fn compute(bytes: &[u8], digits: &Range<usize>) -> String {
     format!("{:016x}", fnv1a_of(&[&bytes[..digits.start], &bytes[digits.end..]]))
 }
 
 /// Writes the checksum of a file over the blank one. Returns whether there is one.
 pub fn fill(bytes: &mut [u8]) -> bool {
     let Some(digits) = digits(bytes) else { return false };
-    let sum = of(bytes, &digits);
+    let sum = compute(bytes, &digits);
     bytes[digits].copy_from_slice(sum.as_bytes());
     true
 }
 
 /// Whether a file is what was written: it has a checksum, and that is its own.
 pub fn is_right(bytes: &[u8]) -> bool {
-    digits(bytes).is_some_and(|digits| bytes[digits.clone()] == *of(bytes, &digits).as_bytes())
+    digits(bytes).is_some_and(|digits| bytes[digits.clone()] == *compute(bytes, &digits).as_bytes())
 }
 
 #[cfg(test)]

@@ -17,7 +17,7 @@ pub const MOST_NUMBERS: usize = 10_000_000;
 /// of the last block from point to point. Without, a point is the scenario itself, as often as it is wanted.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub struct PointDesign {
+pub struct Design {
     /// How the `[uncertain]` keys are drawn.
     #[serde(default)]
     pub draws: Sampling,
@@ -31,7 +31,7 @@ pub struct PointDesign {
     pub blocks: Vec<DesignBlock>,
 }
 
-impl Default for PointDesign {
+impl Default for Design {
     fn default() -> Self {
         Self { draws: Sampling::Random, hypercube: 0, replicas: 1, blocks: Vec::new() }
     }
@@ -96,7 +96,7 @@ impl From<Grid> for DesignBlock {
 }
 
 /// Returns value `index` of `count` equidistant values from the first to the last.
-pub(super) fn even(first: f64, last: f64, count: u32, index: u32) -> f64 {
+pub(super) fn linspace(first: f64, last: f64, count: u32, index: u32) -> f64 {
     let part = if count > 1 { f64::from(index) / f64::from(count - 1) } else { 0.0 };
     first * (1.0 - part) + last * part
 }
@@ -128,7 +128,7 @@ impl DesignBlock {
         }
         let index = point as usize;
         match self {
-            Self::Even { first, last, count, .. } => vec![even(*first, *last, *count, point as u32)],
+            Self::Even { first, last, count, .. } => vec![linspace(*first, *last, *count, point as u32)],
             Self::List { values, .. } => vec![values[index]],
             Self::Table { points, .. } => points[index].clone(),
             Self::Sample { sampling, count, ranges } => {
@@ -143,7 +143,7 @@ impl DesignBlock {
     }
 
     /// Returns the first and the last value of each key.
-    fn ends(&self) -> Vec<(&str, f64)> {
+    fn bounds(&self) -> Vec<(&str, f64)> {
         match self {
             Self::Even { key, first, last, .. } => vec![(key, *first), (key, *last)],
             Self::List { key, values } => {
@@ -159,7 +159,7 @@ impl DesignBlock {
         }
     }
 
-    fn problem(&self) -> Option<String> {
+    fn validate(&self) -> Option<String> {
         let (count, keys) = (self.count(), self.keys());
         if count == 0 || keys.is_empty() {
             return Some("a design needs a point".to_owned());
@@ -228,9 +228,9 @@ impl Sampling {
     }
 }
 
-impl PointDesign {
+impl Design {
     /// Returns the design of some blocks.
-    pub fn of(blocks: impl IntoIterator<Item = DesignBlock>) -> Self {
+    pub fn from_blocks(blocks: impl IntoIterator<Item = DesignBlock>) -> Self {
         Self { blocks: blocks.into_iter().collect(), ..Self::default() }
     }
 
@@ -269,13 +269,13 @@ impl PointDesign {
     }
 
     /// Returns the first and the last value of each key.
-    pub(super) fn ends(&self) -> impl Iterator<Item = (&str, f64)> {
-        self.blocks.iter().flat_map(DesignBlock::ends)
+    pub(super) fn bounds(&self) -> impl Iterator<Item = (&str, f64)> {
+        self.blocks.iter().flat_map(DesignBlock::bounds)
     }
 
     /// Returns the first inconsistency of the design; `uncertain` is the number of keys that are drawn.
-    pub fn problem(&self, uncertain: usize) -> Option<String> {
-        if let Some(problem) = self.blocks.iter().find_map(DesignBlock::problem) {
+    pub fn validate(&self, uncertain: usize) -> Option<String> {
+        if let Some(problem) = self.blocks.iter().find_map(DesignBlock::validate) {
             return Some(problem);
         }
         let keys = self.keys();

@@ -31,14 +31,14 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, SystemTime};
 
-use super::error::{DirectoryError, io_of, unread, wrong};
+use super::error::{DirectoryError, invalid_file, io_error, unreadable};
 use super::manifest::{LARGEST, Manifest};
-use super::parquet::{Reading, parquet_is_built_in};
+use super::parquet::{ParquetFile, parquet_is_built_in};
 use super::part;
-use super::rows::{ColumnCells, Rows};
-use super::work::{NOTE, Work};
+use super::row_maker::{NOTE, RowMaker};
+use super::rows::{ColumnCells, RunRows};
+use crate::atomic_file::{self, AtomicFile};
 use crate::record::Record;
-use crate::whole::{self, Partial};
 
 /// Name of the manifest's file.
 pub const MANIFEST: &str = "manifest.toml";
@@ -63,7 +63,7 @@ type Whole = BTreeMap<(u64, u64), (u64, Option<SystemTime>)>;
 #[derive(Debug)]
 pub struct Directory {
     path: PathBuf,
-    work: Work,
+    work: RowMaker,
     /// Lock file, held by the writing command for the lifetime of this value.
     _lock: Option<File>,
     /// Parts whose checksums were compared.
@@ -73,17 +73,17 @@ pub struct Directory {
 impl Directory {
     /// Opens a directory, to read it or to write parts.
     pub fn open(path: &Path) -> Result<Self, DirectoryError> {
-        parquet_is_built_in().map_err(unread(path))?;
+        parquet_is_built_in().map_err(unreadable(path))?;
         let place = path.join(MANIFEST);
-        let manifest =
-            read(&place)?.ok_or_else(|| wrong(path, format!("is not a campaign: it has no {MANIFEST}")))?;
-        let work = Work::of(manifest, &place)?;
+        let manifest = read(&place)?
+            .ok_or_else(|| invalid_file(path, format!("is not a campaign: it has no {MANIFEST}")))?;
+        let work = RowMaker::from_manifest(manifest, &place)?;
         within(path)?;
         Ok(Self { path: path.to_owned(), work, _lock: None, whole: Mutex::default() })
     }
 
     /// Returns true if a directory is that of a campaign.
-    pub fn is_one(path: &Path) -> bool {
+    pub fn is_campaign_directory(path: &Path) -> bool {
         fs::symlink_metadata(path.join(MANIFEST)).is_ok_and(|there| there.is_file())
     }
 
@@ -93,17 +93,17 @@ impl Directory {
     /// # Errors
     /// Another campaign, which is not to be replaced; another process that is writing the directory.
     pub fn create(path: &Path, mut manifest: Manifest, force: bool) -> Result<Self, DirectoryError> {
-        parquet_is_built_in().map_err(unread(path))?;
+        parquet_is_built_in().map_err(unreadable(path))?;
         let (runs, place) = (within(path)?, path.join(MANIFEST));
         // Checked before anything is changed, and again under the lock.
         fitting(path, &place, &manifest, force)?;
-        fs::create_dir_all(&runs).map_err(io_of(&runs))?;
+        fs::create_dir_all(&runs).map_err(io_error(&runs))?;
         let lock = lock(path)?;
         let there = fitting(path, &place, &manifest, force)?;
-        let fits = there.as_ref().is_some_and(|there| there.difference(&manifest).is_none());
+        let fits = there.as_ref().is_some_and(|there| there.first_difference(&manifest).is_none());
         if !fits {
-            for file in parts(path)?.iter().map(|runs| path.join(RUNS).join(part::name(runs))) {
-                fs::remove_file(&file).map_err(io_of(&file))?;
+            for file in parts(path)?.iter().map(|runs| path.join(RUNS).join(part::file_name(runs))) {
+                fs::remove_file(&file).map_err(io_error(&file))?;
             }
         }
         if let Some(there) = there.filter(|_| fits) {
@@ -111,12 +111,12 @@ impl Directory {
             manifest.from = manifest.from.min(there.from);
             manifest.to = manifest.to.max(there.to);
         }
-        let work = Work::of(manifest, &place)?;
+        let work = RowMaker::from_manifest(manifest, &place)?;
         let directory = Self { path: path.to_owned(), work, _lock: Some(lock), whole: Mutex::default() };
         directory.write_manifest()?;
-        directory.remove_leftovers()?;
+        directory.remove_stale_files()?;
         for runs in directory.parts()? {
-            directory.reading(&runs)?;
+            directory.open_part(&runs)?;
         }
         Ok(directory)
     }
@@ -125,7 +125,7 @@ impl Directory {
     pub fn shrink(&mut self, runs: Range<u64>) -> Result<(), DirectoryError> {
         for part in self.parts()?.iter().filter(|part| part.start < runs.start || part.end > runs.end) {
             let file = self.file(part);
-            fs::remove_file(&file).map_err(io_of(&file))?;
+            fs::remove_file(&file).map_err(io_error(&file))?;
         }
         (self.work.manifest.from, self.work.manifest.to) = (runs.start, runs.end);
         self.write_manifest()
@@ -136,12 +136,12 @@ impl Directory {
         if fs::read(&place).ok().as_deref() == Some(text.as_bytes()) {
             return Ok(());
         }
-        whole::write_synced(&place, text.as_bytes()).map_err(io_of(&place))
+        atomic_file::write_synced(&place, text.as_bytes()).map_err(io_error(&place))
     }
 
     /// Whether a process of this machine writes it now.
     pub fn is_at_work(&self) -> bool {
-        let file = whole::open(&self.path.join(LOCK));
+        let file = atomic_file::open(&self.path.join(LOCK));
         file.is_ok_and(|file| matches!(file.try_lock_shared(), Err(TryLockError::WouldBlock)))
     }
 
@@ -151,7 +151,7 @@ impl Directory {
     }
 
     /// Returns the row maker of the campaign.
-    pub fn work(&self) -> &Work {
+    pub fn work(&self) -> &RowMaker {
         &self.work
     }
 
@@ -162,13 +162,13 @@ impl Directory {
 
     /// Returns the runs of the missing parts, part by part.
     pub fn missing(&self) -> Result<Vec<Range<u64>>, DirectoryError> {
-        self.missing_of(self.work.manifest.runs())
+        self.missing_among(self.work.manifest.runs())
     }
 
     /// Returns the runs of the missing parts among `runs`, part by part.
-    pub fn missing_of(&self, runs: Range<u64>) -> Result<Vec<Range<u64>>, DirectoryError> {
-        let gaps = part::without(runs, &self.parts()?);
-        Ok(gaps.into_iter().flat_map(|gap| part::cut(gap, self.work.manifest.part)).collect())
+    pub fn missing_among(&self, runs: Range<u64>) -> Result<Vec<Range<u64>>, DirectoryError> {
+        let gaps = part::remove_present(runs, &self.parts()?);
+        Ok(gaps.into_iter().flat_map(|gap| part::split(gap, self.work.manifest.part)).collect())
     }
 
     /// Computes the runs of a part, and writes it.
@@ -178,15 +178,15 @@ impl Directory {
         threads: usize,
         poll: impl Record + Clone + Send + Sync + 'static,
     ) -> Result<PathBuf, DirectoryError> {
-        let rows = self.work.make(runs.clone(), threads, poll)?;
+        let rows = self.work.make_rows(runs.clone(), threads, poll)?;
         self.write(&runs, &rows)
     }
 
     /// Writes the rows of a part atomically: to a temporary file, synced and then renamed.
-    pub fn write(&self, runs: &Range<u64>, rows: &Rows) -> Result<PathBuf, DirectoryError> {
+    pub fn write(&self, runs: &Range<u64>, rows: &RunRows) -> Result<PathBuf, DirectoryError> {
         let path = self.file(runs);
-        let bytes = self.work.encode(rows).map_err(io_of(&path))?;
-        whole::write_synced(&path, &bytes).map_err(io_of(&path))?;
+        let bytes = self.work.encode(rows).map_err(io_error(&path))?;
+        atomic_file::write_synced(&path, &bytes).map_err(io_error(&path))?;
         Ok(path)
     }
 
@@ -200,7 +200,7 @@ impl Directory {
         let kind =
             |name: &str| self.work.fields().iter().find(|field| field.name == name).map(|field| field.kind);
         let mut all: Vec<Option<ColumnCells>> =
-            names.iter().map(|name| kind(name).map(ColumnCells::of)).collect();
+            names.iter().map(|name| kind(name).map(ColumnCells::empty)).collect();
         let known: Vec<&str> = names.iter().copied().filter(|name| kind(name).is_some()).collect();
         for runs in self.parts()? {
             for (all, column) in all.iter_mut().flatten().zip(self.columns_of(&runs, &known)?) {
@@ -212,57 +212,60 @@ impl Directory {
 
     /// Returns columns of a part.
     pub fn columns_of(&self, runs: &Range<u64>, names: &[&str]) -> Result<Vec<ColumnCells>, DirectoryError> {
-        let reading = self.reading(runs)?;
+        let reading = self.open_part(runs)?;
         names.iter().map(|name| self.column_of(&reading, runs, name)).collect()
     }
 
     /// A column of a part that is open.
     pub(super) fn column_of(
         &self,
-        reading: &Reading,
+        reading: &ParquetFile,
         runs: &Range<u64>,
         name: &str,
     ) -> Result<ColumnCells, DirectoryError> {
         let path = self.file(runs);
         let column = reading.column(name).map_err(damaged(&path))?;
-        let column = column.ok_or_else(|| wrong(&path, format!("has no column `{name}`")))?;
+        let column = column.ok_or_else(|| invalid_file(&path, format!("has no column `{name}`")))?;
         if column.len() as u64 == runs.end - runs.start {
             return Ok(column);
         }
-        Err(wrong(&path, format!("is damaged (`{name}` has {} rows); {AGAIN}", column.len())))
+        Err(invalid_file(&path, format!("is damaged (`{name}` has {} rows); {AGAIN}", column.len())))
     }
 
     /// Returns the path of a part's file.
     pub fn file(&self, runs: &Range<u64>) -> PathBuf {
-        self.path.join(RUNS).join(part::name(runs))
+        self.path.join(RUNS).join(part::file_name(runs))
     }
 
     /// Opens a part, which must be one of this campaign, and whole.
-    pub(super) fn reading(&self, runs: &Range<u64>) -> Result<Reading, DirectoryError> {
+    pub(super) fn open_part(&self, runs: &Range<u64>) -> Result<ParquetFile, DirectoryError> {
         let path = self.file(runs);
-        let file = fs::symlink_metadata(&path).map_err(unread(&path))?;
+        let file = fs::symlink_metadata(&path).map_err(unreadable(&path))?;
         let (part, seen) = ((runs.start, runs.end), (file.len(), file.modified().ok()));
         let known = || self.whole.lock().unwrap_or_else(PoisonError::into_inner);
         let is_whole = known().get(&part) == Some(&seen);
-        let reading = Reading::open(&path, is_whole).map_err(damaged(&path))?;
+        let reading = ParquetFile::open(&path, is_whole).map_err(damaged(&path))?;
         known().insert(part, seen);
-        if reading.note(NOTE).as_deref() != Some(self.work.manifest.hash.as_str()) {
-            return Err(wrong(&path, format!("is not a part of the campaign of {MANIFEST}")));
+        if reading.metadata(NOTE).as_deref() != Some(self.work.manifest.hash.as_str()) {
+            return Err(invalid_file(&path, format!("is not a part of the campaign of {MANIFEST}")));
         }
         if reading.rows() != runs.end - runs.start {
-            return Err(wrong(&path, format!("has {} rows, which does not match its name", reading.rows())));
+            return Err(invalid_file(
+                &path,
+                format!("has {} rows, which does not match its name", reading.rows()),
+            ));
         }
         Ok(reading)
     }
 
     /// Removes partial files of killed processes; those that are being written stay.
-    fn remove_leftovers(&self) -> Result<(), DirectoryError> {
+    fn remove_stale_files(&self) -> Result<(), DirectoryError> {
         let within = self.path.join(RUNS);
-        for entry in fs::read_dir(&within).map_err(io_of(&within))?.flatten() {
+        for entry in fs::read_dir(&within).map_err(io_error(&within))?.flatten() {
             let name = entry.file_name().to_string_lossy().into_owned();
-            if let Some(part) = name.strip_suffix(".partial").filter(|name| part::runs(name).is_some()) {
+            if let Some(part) = name.strip_suffix(".partial").filter(|name| part::runs_of(name).is_some()) {
                 // Creating and dropping a partial file removes a leftover, unless another process has locked it.
-                drop(Partial::create(&within.join(part)));
+                drop(AtomicFile::create(&within.join(part)));
             }
         }
         Ok(())
@@ -273,14 +276,14 @@ impl Directory {
 fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
     match fs::symlink_metadata(place) {
         Err(error) if is_none(&error) => return Ok(None),
-        Err(error) => return Err(unread(place)(error)),
+        Err(error) => return Err(unreadable(place)(error)),
         Ok(there) if !there.is_file() || there.len() > LARGEST => {
-            return Err(wrong(place, "is not the manifest of a campaign"));
+            return Err(invalid_file(place, "is not the manifest of a campaign"));
         }
         Ok(_) => {}
     }
-    let text = fs::read_to_string(place).map_err(unread(place))?;
-    Manifest::parse(&text).map(Some).map_err(|why| wrong(place, why))
+    let text = fs::read_to_string(place).map_err(unreadable(place))?;
+    Manifest::parse(&text).map(Some).map_err(|why| invalid_file(place, why))
 }
 
 /// Returns the existing manifest, and checks that the new one may replace it.
@@ -296,16 +299,17 @@ fn fitting(
     }
     let Some(there) = there else {
         return match parts(path)?.first().filter(|_| !force) {
-            Some(runs) => {
-                Err(wrong(&path.join(RUNS).join(part::name(runs)), "exists, but its campaign is unknown"))
-            }
+            Some(runs) => Err(invalid_file(
+                &path.join(RUNS).join(part::file_name(runs)),
+                "exists, but its campaign is unknown",
+            )),
             None => Ok(None),
         };
     };
     if force {
         return Ok(Some(there));
     }
-    match there.difference(here) {
+    match there.first_difference(here) {
         Some(difference) => Err(DirectoryError::Other { path: place.to_owned(), difference }),
         None => Ok(Some(there)),
     }
@@ -315,18 +319,18 @@ fn fitting(
 fn statistics_fit(path: &Path, is_campaign: bool) -> Result<(), DirectoryError> {
     let place = path.join(STATISTICS);
     let mut begin = Vec::new();
-    match whole::open(&place) {
+    match atomic_file::open(&place) {
         Ok(file) => {
-            file.take(STATISTICS_BEGIN.len() as u64).read_to_end(&mut begin).map_err(unread(&place))?
+            file.take(STATISTICS_BEGIN.len() as u64).read_to_end(&mut begin).map_err(unreadable(&place))?
         }
         Err(error) if is_none(&error) => return Ok(()),
-        Err(error) => return Err(unread(&place)(error)),
+        Err(error) => return Err(unreadable(&place)(error)),
     };
     if !is_campaign {
-        return Err(wrong(&place, "exists, but its campaign is unknown"));
+        return Err(invalid_file(&place, "exists, but its campaign is unknown"));
     }
     if begin != STATISTICS_BEGIN {
-        return Err(wrong(&place, "exists, and flexsc did not write it"));
+        return Err(invalid_file(&place, "exists, and flexsc did not write it"));
     }
     Ok(())
 }
@@ -335,7 +339,7 @@ fn statistics_fit(path: &Path, is_campaign: bool) -> Result<(), DirectoryError> 
 fn within(path: &Path) -> Result<PathBuf, DirectoryError> {
     let runs = path.join(RUNS);
     match fs::symlink_metadata(&runs) {
-        Ok(there) if !there.is_dir() => Err(wrong(&runs, "is in the way: it is not a directory")),
+        Ok(there) if !there.is_dir() => Err(invalid_file(&runs, "is in the way: it is not a directory")),
         _ => Ok(runs),
     }
 }
@@ -343,8 +347,8 @@ fn within(path: &Path) -> Result<PathBuf, DirectoryError> {
 /// A part that cannot be read: it is damaged, and can be made again.
 fn damaged(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
     |source| match source.kind() {
-        io::ErrorKind::InvalidData => wrong(path, format!("is damaged ({source}); {AGAIN}")),
-        _ => unread(path)(source),
+        io::ErrorKind::InvalidData => invalid_file(path, format!("is damaged ({source}); {AGAIN}")),
+        _ => unreadable(path)(source),
     }
 }
 
@@ -358,17 +362,17 @@ fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
     let path = &path.join(RUNS);
     let entries = match fs::read_dir(path) {
         Err(error) if is_none(&error) => return Ok(parts),
-        entries => entries.map_err(unread(path))?,
+        entries => entries.map_err(unreadable(path))?,
     };
     for entry in entries {
-        let name = entry.map_err(unread(path))?.file_name();
-        parts.extend(part::runs(&name.to_string_lossy()));
+        let name = entry.map_err(unreadable(path))?.file_name();
+        parts.extend(part::runs_of(&name.to_string_lossy()));
     }
     parts.sort_by_key(|runs| (runs.start, runs.end));
     for (one, next) in parts.iter().zip(parts.iter().skip(1)) {
         if one.end > next.start {
-            let why = format!("has runs that are also in {}", part::name(one));
-            return Err(wrong(&path.join(part::name(next)), why));
+            let why = format!("has runs that are also in {}", part::file_name(one));
+            return Err(invalid_file(&path.join(part::file_name(next)), why));
         }
     }
     Ok(parts)
@@ -376,12 +380,12 @@ fn parts(path: &Path) -> Result<Vec<Range<u64>>, DirectoryError> {
 
 fn lock(path: &Path) -> Result<File, DirectoryError> {
     let place = path.join(LOCK);
-    let file = whole::open_to_lock(&place).map_err(io_of(&place))?;
+    let file = atomic_file::open_to_lock(&place).map_err(io_error(&place))?;
     for _ in 0..ATTEMPTS {
         match file.try_lock() {
             Ok(()) => return Ok(file),
             Err(TryLockError::WouldBlock) => thread::sleep(MOMENT),
-            Err(TryLockError::Error(error)) => return Err(io_of(&place)(error)),
+            Err(TryLockError::Error(error)) => return Err(io_error(&place)(error)),
         }
     }
     Err(DirectoryError::Busy { path: path.to_owned() })

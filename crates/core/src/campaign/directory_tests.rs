@@ -1,7 +1,7 @@
 //! Tests of directories: parts by any workers in any order, manifests that fit or not, locks.
 
 use super::*;
-use crate::campaign::design::{DesignBlock, PointDesign};
+use crate::campaign::design::{Design, DesignBlock};
 use crate::campaign::{Campaign, Merge};
 use crate::metrics::Selection;
 
@@ -42,14 +42,14 @@ impl Drop for Here {
     }
 }
 
-fn campaign(design: PointDesign) -> Campaign {
-    Campaign::of(crate::Scenario::parse("u.toml", SCENARIO).expect("a scenario"), "u.toml", design)
+fn campaign(design: Design) -> Campaign {
+    Campaign::from_design(crate::Scenario::parse("u.toml", SCENARIO).expect("a scenario"), "u.toml", design)
         .expect("one")
 }
 
 fn manifest(runs: Range<u64>) -> Manifest {
     let mut manifest =
-        Manifest::new(&campaign(PointDesign::default()), runs, &Selection::ALL).expect("a manifest");
+        Manifest::new(&campaign(Design::default()), runs, &Selection::ALL).expect("a manifest");
     manifest.part = 8;
     manifest
 }
@@ -93,9 +93,9 @@ fn the_columns_are_known_before_any_run() {
     let directory = Directory::create(&here.0, manifest(0..3), false).expect("made");
     // The first run whose gain is accepted.
     let run = (0..9).find_map(|number| directory.work().campaign.run(number).ok()).expect("a run");
-    let told = Campaign::simulate(&run, ()).expect("metrics");
+    let reported = Campaign::simulate(&run, ()).expect("metrics");
     let fields = directory.work().fields();
-    let metrics: Vec<&str> = told.0.iter().map(|(meaning, _)| meaning.name).collect();
+    let metrics: Vec<&str> = reported.0.iter().map(|(meaning, _)| meaning.name).collect();
     let names: Vec<&str> = fields.iter().map(|field| field.name.as_str()).collect();
     assert_eq!(names[..4], ["run", "seed", "body.planar.rate", "law.relay.k_t"]);
     assert_eq!(names[4..names.len() - 2], metrics);
@@ -127,7 +127,7 @@ fn directories_are_merged_if_they_agree() {
     assert_eq!(rows.columns[0].numbers(), (0..30).map(f64::from).collect::<Vec<_>>());
     // A run that is another one elsewhere.
     let tampered = Directory::open(&here[1].0).expect("there");
-    let mut other = tampered.work().make(0..8, 1, ()).expect("made");
+    let mut other = tampered.work().make_rows(0..8, 1, ()).expect("made");
     if let Some(ColumnCells::Numbers(rates)) = other.columns.get_mut(2) {
         rates[5] *= 2.0;
     }
@@ -172,7 +172,7 @@ fn what_does_not_fit_is_refused() {
     assert_eq!(more.missing().expect("read").len(), 4);
     drop(more);
     let grid = DesignBlock::List { key: "duration".to_owned(), values: vec![100.0, 200.0] };
-    let other = campaign(PointDesign::of([grid]));
+    let other = campaign(Design::from_blocks([grid]));
     let other = Manifest::new(&other, 0..2, &Selection::ALL).expect("a manifest");
     let refused = Directory::create(&here.0, other.clone(), false).expect_err("another").to_string();
     assert!(
@@ -201,7 +201,7 @@ fn a_run_is_the_same_whichever_are_made_beside_it() {
         ];
         let block = DesignBlock::Sample { sampling, count: 20, ranges };
         let list = DesignBlock::List { key: "law.relay.strong".to_owned(), values: vec![3e-5, 4e-5] };
-        let design = PointDesign { draws: sampling, hypercube: 20, replicas: 3, blocks: vec![block, list] };
+        let design = Design { draws: sampling, hypercube: 20, replicas: 3, blocks: vec![block, list] };
         let study = campaign(design);
         assert_eq!(study.design().runs(), Some(120));
         let drawn: Vec<_> = (0..120).map(|number| study.draw(number)).collect();

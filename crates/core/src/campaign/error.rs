@@ -49,19 +49,19 @@ pub enum DirectoryError {
 }
 
 /// Returns the error of a file with invalid content.
-pub(super) fn wrong(path: &Path, why: impl Into<String>) -> DirectoryError {
+pub(super) fn invalid_file(path: &Path, why: impl Into<String>) -> DirectoryError {
     DirectoryError::Wrong { path: path.to_owned(), why: why.into() }
 }
 
 /// Returns the error of a file that cannot be read.
-pub(super) fn unread(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
-    |source| wrong(path, source.to_string())
+pub(super) fn unreadable(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
+    |source| invalid_file(path, source.to_string())
 }
 
 /// Returns the error of a file that cannot be written.
-pub(super) fn io_of(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
+pub(super) fn io_error(path: &Path) -> impl FnOnce(io::Error) -> DirectoryError + '_ {
     |source| match source.kind() {
-        io::ErrorKind::InvalidData | io::ErrorKind::Unsupported => wrong(path, source.to_string()),
+        io::ErrorKind::InvalidData | io::ErrorKind::Unsupported => invalid_file(path, source.to_string()),
         _ => DirectoryError::Io { path: path.to_owned(), source },
     }
 }

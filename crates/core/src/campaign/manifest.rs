@@ -4,7 +4,7 @@ use std::ops::Range;
 
 use serde::{Deserialize, Serialize};
 
-use super::design::PointDesign;
+use super::design::Design;
 use super::{Campaign, part};
 use crate::document::ScenarioError;
 use crate::metrics::Selection;
@@ -41,19 +41,19 @@ pub struct Manifest {
     /// The scenario, which needs no file.
     pub scenario: String,
     /// The points.
-    pub design: PointDesign,
+    pub design: Design,
 }
 
 /// Reason why a manifest is not that of a campaign, or not of this one.
-pub type WrongManifest = String;
+pub type ManifestError = String;
 
 impl Manifest {
     /// Returns the manifest of some runs of a campaign.
     ///
     /// # Errors
     /// A campaign that cannot be written as text.
-    pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, WrongManifest> {
-        if campaign.scenario().has_own_parts() {
+    pub fn new(campaign: &Campaign, runs: Range<u64>, selection: &Selection) -> Result<Self, ManifestError> {
+        if campaign.scenario().has_custom_parts() {
             return Err("has parts defined by a program, which a file cannot contain".to_owned());
         }
         Self::in_memory(campaign, runs, selection)
@@ -64,7 +64,7 @@ impl Manifest {
         campaign: &Campaign,
         runs: Range<u64>,
         selection: &Selection,
-    ) -> Result<Self, WrongManifest> {
+    ) -> Result<Self, ManifestError> {
         let design = campaign.design().clone();
         if design.runs().is_some_and(|all| runs.end > all) {
             let all = design.runs().unwrap_or_default();
@@ -80,7 +80,7 @@ impl Manifest {
             hash: String::new(),
             from: runs.start,
             to: runs.end,
-            part: part::size(runs.end - runs.start, seconds),
+            part: part::part_size(runs.end - runs.start, seconds),
             metrics: selection.names().map(|names| names.iter().map(|&name| name.to_owned()).collect()),
             scenario: campaign.to_toml(),
             design,
@@ -104,9 +104,9 @@ impl Manifest {
     }
 
     /// Parses a manifest.
-    pub fn parse(text: &str) -> Result<Self, WrongManifest> {
+    pub fn parse(text: &str) -> Result<Self, ManifestError> {
         #[derive(Deserialize)]
-        struct Form {
+        struct ManifestFile {
             format: Option<u32>,
         }
         if !text.starts_with(MARK.trim_end()) {
@@ -114,7 +114,7 @@ impl Manifest {
         }
         let wrong =
             |error: toml::de::Error| format!("is not the manifest of a campaign: {}", error.message());
-        let form = toml::from_str::<Form>(text).map_err(wrong)?.format;
+        let form = toml::from_str::<ManifestFile>(text).map_err(wrong)?.format;
         if form != Some(FORMAT) {
             let form = form.map_or("none".to_owned(), |form| form.to_string());
             return Err(format!("has the form {form}, and this version of flexsc reads form {FORMAT}"));
@@ -130,7 +130,7 @@ impl Manifest {
     }
 
     /// Limits the work of a part to about `seconds` (s), for schedulers; existing parts stay.
-    pub fn shorten(&mut self, seconds: f64) {
+    pub fn limit_part_size(&mut self, seconds: f64) {
         let part = (self.part as f64 * seconds / part::WORK_S).clamp(1.0, 65_536.0) as u64;
         self.part = part.next_power_of_two();
     }
@@ -143,14 +143,14 @@ impl Manifest {
     /// Returns the missing runs part by part, given the names of the existing files. Files that are no parts are
     /// ignored.
     pub fn missing<'a>(&self, files: impl IntoIterator<Item = &'a str>) -> Vec<Range<u64>> {
-        let mut there: Vec<_> = files.into_iter().filter_map(part::runs).collect();
+        let mut there: Vec<_> = files.into_iter().filter_map(part::runs_of).collect();
         there.sort_by_key(|runs| (runs.start, runs.end));
-        let gaps = part::without(self.runs(), &there);
-        gaps.into_iter().flat_map(|gap| part::cut(gap, self.part)).collect()
+        let gaps = part::remove_present(self.runs(), &there);
+        gaps.into_iter().flat_map(|gap| part::split(gap, self.part)).collect()
     }
 
     /// Returns the first difference from the manifest of another campaign; `None` if they differ in their runs alone.
-    pub fn difference(&self, here: &Self) -> Option<String> {
+    pub fn first_difference(&self, here: &Self) -> Option<String> {
         if self.hash == here.hash {
             return None;
         }
@@ -165,23 +165,23 @@ impl Manifest {
             let names = |of: &Self| of.metrics.as_ref().map_or("all".to_owned(), |names| names.join(","));
             return Some(format!("metrics {} before, {} now", names(self), names(here)));
         }
-        let told = |of: &Self, other: &Self| {
+        let reported = |of: &Self, other: &Self| {
             let (of, other) = (of.design.describe(), other.design.describe());
             let line = of.lines().find(|line| !other.lines().any(|there| there == *line));
             line.map_or("nothing".to_owned(), |line| line.trim_start_matches("# ").to_owned())
         };
-        Some(format!("{} before, {} now", told(self, here), told(here, self)))
+        Some(format!("{} before, {} now", reported(self, here), reported(here, self)))
     }
 
     /// Returns the metrics of the rows.
-    pub fn selection(&self) -> Result<Selection, WrongManifest> {
-        self.metrics.as_ref().map_or(Ok(Selection::ALL), Selection::of)
+    pub fn selection(&self) -> Result<Selection, ManifestError> {
+        self.metrics.as_ref().map_or(Ok(Selection::ALL), Selection::from_names)
     }
 
     /// Returns the campaign. Its errors name the scenario, and no file: they are equal on every machine.
     pub fn campaign(&self) -> Result<Campaign, ScenarioError> {
         let scenario = Scenario::parse("scenario", &self.scenario)?;
         let name = scenario.name.clone();
-        Campaign::of(scenario, &name, self.design.clone())
+        Campaign::from_design(scenario, &name, self.design.clone())
     }
 }

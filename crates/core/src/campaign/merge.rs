@@ -4,12 +4,12 @@ use std::fs;
 use std::ops::Range;
 
 use super::directory::{Directory, MANIFEST};
-use super::error::{DirectoryError, io_of, unread, wrong};
+use super::error::{DirectoryError, invalid_file, io_error, unreadable};
 use super::manifest::Manifest;
-use super::parquet::Reading;
+use super::parquet::ParquetFile;
 use super::part;
-use super::rows::{ColumnCells, Rows, SECONDS};
-use crate::whole;
+use super::rows::{ColumnCells, RunRows, SECONDS};
+use crate::atomic_file;
 
 /// Runs of a part that are taken from a directory: its place among them, its part, and which runs of it.
 #[derive(Clone, Debug)]
@@ -34,11 +34,11 @@ impl<'a> Merge<'a> {
     /// # Errors
     /// No directory; directories of several campaigns; a part that is damaged; a run that is another one elsewhere.
     pub fn new(all: &'a [Directory]) -> Result<Self, DirectoryError> {
-        let Some(first) = all.first() else { return Err(wrong("".as_ref(), "no directory to merge")) };
+        let Some(first) = all.first() else { return Err(invalid_file("".as_ref(), "no directory to merge")) };
         let mut manifest = first.work().manifest.clone();
         for other in all {
             let there = &other.work().manifest;
-            if let Some(difference) = there.difference(&manifest) {
+            if let Some(difference) = there.first_difference(&manifest) {
                 return Err(DirectoryError::Other { path: other.path().join(MANIFEST), difference });
             }
             manifest.from = manifest.from.min(there.from);
@@ -56,7 +56,7 @@ impl<'a> Merge<'a> {
     fn add(&mut self, from: usize, part: Range<u64>) -> Result<(), DirectoryError> {
         // All of it can be read, whether or not it is needed.
         let directory = &self.all[from];
-        let reading = directory.reading(&part)?;
+        let reading = directory.open_part(&part)?;
         for field in directory.work().fields() {
             drop(directory.column_of(&reading, &part, &field.name)?);
         }
@@ -67,7 +67,7 @@ impl<'a> Merge<'a> {
         for piece in &self.pieces[first..last] {
             self.compare(piece, from, &part)?;
         }
-        let gaps = part::without(part.clone(), &there);
+        let gaps = part::remove_present(part.clone(), &there);
         let new = gaps.into_iter().map(|runs| Piece { from, part: part.clone(), runs });
         self.pieces.extend(new);
         self.pieces.sort_by_key(|piece| piece.runs.start);
@@ -78,19 +78,19 @@ impl<'a> Merge<'a> {
     fn compare(&self, piece: &Piece, from: usize, part: &Range<u64>) -> Result<(), DirectoryError> {
         let (one, other) = (&self.all[piece.from], &self.all[from]);
         let runs = piece.runs.start.max(part.start)..piece.runs.end.min(part.end);
-        let (of_one, of_other) = (one.reading(&piece.part)?, other.reading(part)?);
+        let (of_one, of_other) = (one.open_part(&piece.part)?, other.open_part(part)?);
         for field in self.work().fields().iter().filter(|field| field.name != SECONDS) {
             let left = cells(one, &of_one, &piece.part, (&field.name, &runs))?;
             if left != cells(other, &of_other, part, (&field.name, &runs))? {
                 let why = format!("has other values of `{}` than {}", field.name, one.path().display());
-                return Err(wrong(&other.file(part), why));
+                return Err(invalid_file(&other.file(part), why));
             }
         }
         Ok(())
     }
 
     /// Returns the work that computes the rows of all directories.
-    pub fn work(&self) -> &super::Work {
+    pub fn work(&self) -> &super::RowMaker {
         self.all[0].work()
     }
 
@@ -111,23 +111,23 @@ impl<'a> Merge<'a> {
     /// The runs that no directory has.
     pub fn missing(&self) -> Vec<Range<u64>> {
         let there: Vec<Range<u64>> = self.pieces.iter().map(|piece| piece.runs.clone()).collect();
-        part::without(self.manifest.runs(), &there)
+        part::remove_present(self.manifest.runs(), &there)
     }
 
     /// The rows of all runs, in order.
-    pub fn rows(&self) -> Result<Rows, DirectoryError> {
+    pub fn rows(&self) -> Result<RunRows, DirectoryError> {
         let mut rows = self.work().rows();
         for piece in &self.pieces {
-            for (column, more) in rows.columns.iter_mut().zip(self.of(piece)?.columns) {
+            for (column, more) in rows.columns.iter_mut().zip(self.rows_of_piece(piece)?.columns) {
                 column.append(more);
             }
         }
         Ok(rows)
     }
 
-    fn of(&self, piece: &Piece) -> Result<Rows, DirectoryError> {
+    fn rows_of_piece(&self, piece: &Piece) -> Result<RunRows, DirectoryError> {
         let directory = &self.all[piece.from];
-        let reading = directory.reading(&piece.part)?;
+        let reading = directory.open_part(&piece.part)?;
         let mut rows = self.work().rows();
         rows.columns = rows
             .fields
@@ -141,12 +141,12 @@ impl<'a> Merge<'a> {
     pub fn write(&self, into: &Directory, is_first: bool) -> Result<(), DirectoryError> {
         for piece in self.pieces.iter().filter(|piece| !is_first || piece.from > 0) {
             if piece.part != piece.runs {
-                into.write(&piece.runs, &self.of(piece)?)?;
+                into.write(&piece.runs, &self.rows_of_piece(piece)?)?;
                 continue;
             }
             let (from, to) = (self.all[piece.from].file(&piece.part), into.file(&piece.runs));
-            let bytes = fs::read(&from).map_err(unread(&from))?;
-            whole::write_synced(&to, &bytes).map_err(io_of(&to))?;
+            let bytes = fs::read(&from).map_err(unreadable(&from))?;
+            atomic_file::write_synced(&to, &bytes).map_err(io_error(&to))?;
         }
         Ok(())
     }
@@ -155,7 +155,7 @@ impl<'a> Merge<'a> {
 /// The cells of a column in some runs of a part.
 fn cells(
     directory: &Directory,
-    reading: &Reading,
+    reading: &ParquetFile,
     part: &Range<u64>,
     (name, runs): (&str, &Range<u64>),
 ) -> Result<ColumnCells, DirectoryError> {

@@ -17,8 +17,8 @@ use parquet::schema::types::{ColumnPath, Type, TypePtr};
 
 use super::checksum;
 use super::contained::contained;
-use super::rows::{ColumnCells, ColumnHeading, ColumnKind, Rows};
-use crate::whole;
+use super::rows::{ColumnCells, ColumnHeading, ColumnKind, RunRows};
+use crate::atomic_file;
 
 /// Compression level of zstd: higher ones gain nothing for numbers.
 const LEVEL: i32 = 3;
@@ -78,7 +78,7 @@ pub fn parquet_is_built_in() -> io::Result<()> {
 }
 
 /// Returns the content of a file with these rows and metadata.
-pub fn encode(rows: &Rows, notes: &[(&str, String)]) -> io::Result<Vec<u8>> {
+pub fn encode(rows: &RunRows, notes: &[(&str, String)]) -> io::Result<Vec<u8>> {
     let mut bytes = written(rows, notes).map_err(other)?;
     if !checksum::fill(&mut bytes) {
         return Err(io::Error::new(io::ErrorKind::InvalidData, "has no place for its checksum"));
@@ -86,7 +86,7 @@ pub fn encode(rows: &Rows, notes: &[(&str, String)]) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-fn written(rows: &Rows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
+fn written(rows: &RunRows, notes: &[(&str, String)]) -> Result<Vec<u8>, ParquetError> {
     let fields = rows.fields.iter().map(field_type).collect::<Result<Vec<_>, _>>()?;
     let schema = Type::group_type_builder("campaign").with_fields(fields).build()?;
     let blank = (checksum::NAME, checksum::BLANK.to_owned());
@@ -175,15 +175,15 @@ fn parsed<T>(read: impl FnOnce() -> Result<T, ParquetError>) -> io::Result<T> {
 }
 
 /// Parquet file that is read.
-pub struct Reading(SerializedFileReader<File>);
+pub struct ParquetFile(SerializedFileReader<File>);
 
-impl Reading {
+impl ParquetFile {
     /// Opens a file, and reads what it holds about itself; unless it is known to be whole, its checksum is compared.
     ///
     /// # Errors
     /// [`io::ErrorKind::InvalidData`] of a damaged file; what the file system reports.
     pub fn open(path: &Path, is_whole: bool) -> io::Result<Self> {
-        let mut file = whole::open(path)?;
+        let mut file = atomic_file::open(path)?;
         let length = file.metadata()?.len();
         let damaged = |why: &str| Err(io::Error::new(io::ErrorKind::InvalidData, why));
         if length > MOST_BYTES {
@@ -215,7 +215,7 @@ impl Reading {
     }
 
     /// Returns a value of the metadata.
-    pub fn note(&self, name: &str) -> Option<String> {
+    pub fn metadata(&self, name: &str) -> Option<String> {
         let notes = self.0.metadata().file_metadata().key_value_metadata()?;
         notes.iter().find(|note| note.key == name)?.value.clone()
     }
@@ -255,7 +255,7 @@ impl Reading {
         if rows > MOST_ROWS {
             return Err(ParquetError::General(format!("has more than {MOST_ROWS} rows")));
         }
-        let mut all = ColumnCells::of(fields[place].kind);
+        let mut all = ColumnCells::empty(fields[place].kind);
         for group in 0..self.0.num_row_groups() {
             let group = self.0.get_row_group(group)?;
             let rows = usize::try_from(group.metadata().num_rows()).unwrap_or(0).min(rows);
@@ -287,12 +287,12 @@ impl Reading {
 }
 
 /// Non-null values, and the definition and repetition levels of all cells.
-type Levelled<T> = (Vec<T>, Vec<i16>, Vec<i16>);
+type NullableValues<T> = (Vec<T>, Vec<i16>, Vec<i16>);
 
 fn read_all<D: DataType>(
     mut reader: ColumnReaderImpl<D>,
     rows: usize,
-) -> Result<Levelled<D::T>, ParquetError> {
+) -> Result<NullableValues<D::T>, ParquetError> {
     let (mut values, mut levels, mut again) = (Vec::new(), Vec::new(), Vec::new());
     let mut left = rows;
     while left > 0 {
@@ -347,17 +347,17 @@ mod tests {
             ColumnCells::Lists(vec![None, Some(vec![]), Some(vec![1.0, 2.5])]),
             ColumnCells::Words(vec![None; 3]),
         ];
-        let rows = Rows { fields: Arc::new(fields), columns };
+        let rows = RunRows { fields: Arc::new(fields), columns };
         let file = tempfile(&encode(&rows, &[("a", "b".to_owned())]).expect("encoded"));
-        let reading = Reading::open(&file, false).expect("a file");
-        assert_eq!((reading.rows(), reading.note("a").as_deref()), (3, Some("b")));
+        let reading = ParquetFile::open(&file, false).expect("a file");
+        assert_eq!((reading.rows(), reading.metadata("a").as_deref()), (3, Some("b")));
         assert_eq!(reading.fields(), rows.fields.to_vec());
         for field in rows.fields.iter() {
             assert_eq!(reading.column(&field.name).expect("read").as_ref(), rows.column(&field.name));
         }
         assert_eq!(reading.column("other").expect("read"), None);
         std::fs::write(&file, b"PAR1 and no more").expect("written");
-        assert!(Reading::open(&file, false).is_err());
+        assert!(ParquetFile::open(&file, false).is_err());
         std::fs::remove_file(file).expect("removed");
     }
 
@@ -366,7 +366,7 @@ mod tests {
     fn forged_files_are_errors() {
         let fields = [ColumnHeading { name: "x".to_owned(), unit: "", kind: ColumnKind::Numbers }];
         let columns = vec![ColumnCells::Numbers(vec![0.1, f64::NAN, 7.0])];
-        let rows = Rows { fields: Arc::new(fields), columns };
+        let rows = RunRows { fields: Arc::new(fields), columns };
         let whole = encode(&rows, &[]).expect("encoded");
         let place = std::env::temp_dir().join(format!("flexsc-forged-{}.parquet", std::process::id()));
         for at in 4..whole.len() - 4 {
@@ -376,7 +376,7 @@ mod tests {
                 checksum::fill(&mut bytes);
                 std::fs::write(&place, bytes).expect("written");
                 // What it says, it says without a panic.
-                let _ = Reading::open(&place, false).and_then(|reading| reading.column("x"));
+                let _ = ParquetFile::open(&place, false).and_then(|reading| reading.column("x"));
             }
         }
         std::fs::remove_file(place).expect("removed");

@@ -14,7 +14,7 @@ const FEW_PARTS: u64 = 16;
 /// Returns the number of runs of a part: a power of two, and for short runs a multiple of 256. Parts begin at its
 /// multiples, whichever other runs are wanted.
 /// beside them.
-pub fn size(runs: u64, run_s: f64) -> u64 {
+pub fn part_size(runs: u64, run_s: f64) -> u64 {
     let wanted = (WORK_S / run_s.max(1e-6)).clamp(1.0, 65_536.0) as u64;
     // Rounded down to a power of two; full lanes matter more than equal durations.
     let by_time = 1 << wanted.max(1).ilog2();
@@ -24,12 +24,12 @@ pub fn size(runs: u64, run_s: f64) -> u64 {
 }
 
 /// Returns the name of the file of a part.
-pub fn name(runs: &Range<u64>) -> String {
+pub fn file_name(runs: &Range<u64>) -> String {
     format!("part-{:010}-{:010}.parquet", runs.start, runs.end)
 }
 
 /// Returns the runs of a part, by the name of its file.
-pub fn runs(name: &str) -> Option<Range<u64>> {
+pub fn runs_of(name: &str) -> Option<Range<u64>> {
     let (from, to) = name.strip_prefix("part-")?.strip_suffix(".parquet")?.split_once('-')?;
     let number = |text: &str| text.parse().ok().filter(|_| text.len() >= 10);
     let runs = number(from)?..number(to)?;
@@ -37,7 +37,7 @@ pub fn runs(name: &str) -> Option<Range<u64>> {
 }
 
 /// Splits runs into parts of this size, at its multiples.
-pub fn cut(runs: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
+pub fn split(runs: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
     let size = size.max(1);
     let mut next = runs.start;
     std::iter::from_fn(move || {
@@ -49,7 +49,7 @@ pub fn cut(runs: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
 }
 
 /// Returns the runs without those that are present, which must be sorted.
-pub fn without(runs: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
+pub fn remove_present(runs: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
     let mut left = Vec::new();
     let mut next = runs.start;
     for part in there {
@@ -78,32 +78,32 @@ mod tests {
             (1000, 10.0, 1),
             (100_000_000, 1e-9, 65_536),
         ] {
-            assert_eq!(size(runs, run_s), exact, "{runs} runs of {run_s} s");
+            assert_eq!(part_size(runs, run_s), exact, "{runs} runs of {run_s} s");
         }
-        assert_eq!(size(100_000_000, 10.0), 32_768);
+        assert_eq!(part_size(100_000_000, 10.0), 32_768);
     }
 
     #[test]
     fn names_and_ranges_belong_together() {
-        assert_eq!(name(&(0..256)), "part-0000000000-0000000256.parquet");
-        assert_eq!(runs(&name(&(5..99_999_999_999))), Some(5..99_999_999_999));
+        assert_eq!(file_name(&(0..256)), "part-0000000000-0000000256.parquet");
+        assert_eq!(runs_of(&file_name(&(5..99_999_999_999))), Some(5..99_999_999_999));
         for other in [
             "part-5-7.parquet",
             "part-0000000005-0000000005.parquet",
             "part-0000000000-0000000256.parquet.partial",
         ] {
-            assert_eq!(runs(other), None, "{other}");
+            assert_eq!(runs_of(other), None, "{other}");
         }
     }
 
     #[test]
     #[expect(clippy::single_range_in_vec_init, reason = "one range is what is left")]
     fn what_is_missing_is_cut_at_fixed_places() {
-        assert_eq!(cut(3..20, 8).collect::<Vec<_>>(), [3..8, 8..16, 16..20]);
-        assert_eq!(cut(4..4, 8).count(), 0);
-        assert_eq!(without(0..20, &[]), [0..20]);
-        assert_eq!(without(0..20, &[0..8, 16..24]), [8..16]);
-        assert_eq!(without(2..20, &[0..1, 4..6, 5..7]), [2..4, 7..20]);
-        assert_eq!(without(2..5, &[0..8]), []);
+        assert_eq!(split(3..20, 8).collect::<Vec<_>>(), [3..8, 8..16, 16..20]);
+        assert_eq!(split(4..4, 8).count(), 0);
+        assert_eq!(remove_present(0..20, &[]), [0..20]);
+        assert_eq!(remove_present(0..20, &[0..8, 16..24]), [8..16]);
+        assert_eq!(remove_present(2..20, &[0..1, 4..6, 5..7]), [2..4, 7..20]);
+        assert_eq!(remove_present(2..5, &[0..8]), []);
     }
 }

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use toml::Value as Drawn;
 
 use super::{Campaign, RunOutcome};
-use crate::metrics::{Gather, Metrics, Selection, Value};
+use crate::metrics::{MetricValue, Metrics, MetricsCollector, Selection};
 
 /// Name of the column with the numbers of the runs, the first of every table.
 pub const RUN: &str = "run";
@@ -71,7 +71,7 @@ impl PartialEq for ColumnCells {
 
 /// Rows of consecutive runs.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Rows {
+pub struct RunRows {
     /// Headings of the columns.
     pub fields: Arc<[ColumnHeading]>,
     /// Cells of the columns.
@@ -85,13 +85,13 @@ impl Campaign {
         let key = |name: &str| {
             about(name, if self.is_integer(name) { ColumnKind::Integers } else { ColumnKind::Numbers }, "")
         };
-        let told = selection.of_run(Gather::new(self.scenario()).finish(self.scenario()));
-        let metric = |(meaning, value): &(&'static crate::metrics::Meaning, Value)| {
+        let reported = selection.select(MetricsCollector::new(self.scenario()).finish(self.scenario()));
+        let metric = |(meaning, value): &(&'static crate::metrics::MetricDescription, MetricValue)| {
             let kind = match value {
-                Value::Count(_) => ColumnKind::Integers,
-                Value::Number(_) => ColumnKind::Numbers,
-                Value::Word(_) => ColumnKind::Words,
-                Value::Numbers(_) | Value::Quantities(_) => ColumnKind::Lists,
+                MetricValue::Count(_) => ColumnKind::Integers,
+                MetricValue::Number(_) => ColumnKind::Numbers,
+                MetricValue::Word(_) => ColumnKind::Words,
+                MetricValue::Numbers(_) | MetricValue::Quantities(_) => ColumnKind::Lists,
             };
             about(meaning.name, kind, meaning.unit)
         };
@@ -100,7 +100,7 @@ impl Campaign {
             fields.push(about(SEED, ColumnKind::Integers, ""));
         }
         fields.extend(self.keys().map(key));
-        fields.extend(told.0.iter().map(metric));
+        fields.extend(reported.0.iter().map(metric));
         fields.extend([about(SECONDS, ColumnKind::Numbers, "s"), about(ERROR, ColumnKind::Words, "")]);
         fields.into()
     }
@@ -108,7 +108,7 @@ impl Campaign {
 
 impl ColumnCells {
     /// Creates an empty column.
-    pub fn of(kind: ColumnKind) -> Self {
+    pub fn empty(kind: ColumnKind) -> Self {
         match kind {
             ColumnKind::Integers => Self::Integers(Vec::new()),
             ColumnKind::Numbers => Self::Numbers(Vec::new()),
@@ -147,7 +147,7 @@ impl ColumnCells {
     }
 
     /// Returns the number of cells that are not null.
-    pub fn told(&self) -> usize {
+    pub fn non_null_count(&self) -> usize {
         match self {
             Self::Integers(cells) => cells.iter().flatten().count(),
             Self::Numbers(cells) => cells.iter().filter(|cell| !cell.is_nan()).count(),
@@ -171,7 +171,7 @@ impl ColumnCells {
         }
     }
 
-    fn push_nothing(&mut self) {
+    fn push_null(&mut self) {
         match self {
             Self::Integers(cells) => cells.push(None),
             Self::Numbers(cells) => cells.push(f64::NAN),
@@ -185,19 +185,19 @@ impl ColumnCells {
             (Self::Integers(cells), Drawn::Integer(integer)) => cells.push(Some(*integer)),
             (Self::Numbers(cells), Drawn::Float(number)) => cells.push(*number),
             (Self::Numbers(cells), Drawn::Integer(integer)) => cells.push(*integer as f64),
-            (column, _) => column.push_nothing(),
+            (column, _) => column.push_null(),
         }
     }
 
-    fn push(&mut self, value: &Value) {
+    fn push(&mut self, value: &MetricValue) {
         match (self, value) {
-            (Self::Integers(cells), Value::Count(count)) => cells.push(i64::try_from(*count).ok()),
-            (Self::Numbers(cells), Value::Number(number)) => cells.push(*number),
-            (Self::Words(cells), Value::Word(word)) => cells.push(Some((*word).to_owned())),
-            (Self::Lists(cells), Value::Numbers(_) | Value::Quantities(_)) => {
+            (Self::Integers(cells), MetricValue::Count(count)) => cells.push(i64::try_from(*count).ok()),
+            (Self::Numbers(cells), MetricValue::Number(number)) => cells.push(*number),
+            (Self::Words(cells), MetricValue::Word(word)) => cells.push(Some((*word).to_owned())),
+            (Self::Lists(cells), MetricValue::Numbers(_) | MetricValue::Quantities(_)) => {
                 cells.push(Some(value.numbers()));
             }
-            (column, _) => column.push_nothing(),
+            (column, _) => column.push_null(),
         }
     }
 
@@ -209,15 +209,15 @@ impl ColumnCells {
             (Self::Words(cells), Self::Words(mut more)) => cells.append(&mut more),
             (Self::Lists(cells), Self::Lists(mut more)) => cells.append(&mut more),
             // Cells of another type become null.
-            (column, other) => (0..other.len()).for_each(|_| column.push_nothing()),
+            (column, other) => (0..other.len()).for_each(|_| column.push_null()),
         }
     }
 }
 
-impl Rows {
+impl RunRows {
     /// Creates an empty table.
     pub fn new(fields: Arc<[ColumnHeading]>) -> Self {
-        let columns = fields.iter().map(|field| ColumnCells::of(field.kind)).collect();
+        let columns = fields.iter().map(|field| ColumnCells::empty(field.kind)).collect();
         Self { fields, columns }
     }
 
@@ -257,7 +257,7 @@ impl Rows {
                 }
                 (name, column) => match metrics.as_mut().and_then(|metrics| metrics.get(name)) {
                     Some(value) => column.push(value),
-                    None => column.push_nothing(),
+                    None => column.push_null(),
                 },
             }
         }

@@ -2,8 +2,8 @@
 
 use super::directory::Directory;
 use super::error::DirectoryError;
+use super::row_maker::RowMaker;
 use super::rows::{ColumnCells, ColumnKind, ERROR, RUN};
-use super::work::Work;
 use crate::metrics::{self, goal};
 use crate::statistics::Statistics;
 
@@ -12,7 +12,7 @@ const HELD: usize = 1 << 23;
 
 /// Summary of rows.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Summary {
+pub struct CampaignSummary {
     /// Number of rows.
     pub runs: usize,
     /// Number of runs that failed, the number of the first of them, and its error.
@@ -23,7 +23,7 @@ pub struct Summary {
 
 impl Directory {
     /// Returns the summary of the existing rows.
-    pub fn summary(&self) -> Result<Summary, DirectoryError> {
+    pub fn summary(&self) -> Result<CampaignSummary, DirectoryError> {
         let (mut runs, mut failed) = (0, None);
         let about = (self.column(RUN)?, self.column(ERROR)?);
         if let (Some(ColumnCells::Integers(numbers)), Some(ColumnCells::Words(errors))) = about {
@@ -34,11 +34,15 @@ impl Directory {
                 failed = Some((count + 1, first, why));
             }
         }
-        Ok(Summary { runs, failed, statistics: self.work().statistics(runs, |names| self.columns(names))? })
+        Ok(CampaignSummary {
+            runs,
+            failed,
+            statistics: self.work().statistics(runs, |names| self.columns(names))?,
+        })
     }
 }
 
-impl Work {
+impl RowMaker {
     /// Returns the statistics of the numeric metrics, computed for some of them at a time; `columns` returns columns by
     /// their names, `None` for a missing one.
     pub fn statistics<E>(
@@ -62,7 +66,10 @@ impl Work {
         for some in numeric.chunks((HELD / runs.max(1)).max(1)) {
             let names: Vec<&str> = some.iter().map(|(name, _)| *name).collect();
             for ((_, meaning), column) in some.iter().zip(columns(&names)?) {
-                all.push(Statistics::of(meaning, column.map_or_else(Vec::new, |column| column.numbers())));
+                all.push(Statistics::from_values(
+                    meaning,
+                    column.map_or_else(Vec::new, |column| column.numbers()),
+                ));
             }
         }
         Ok(all)

@@ -4,20 +4,20 @@
 //! log has. The layouts attached to logs, written by `flexsc layout` and shipped with the examples come from this
 //! module; the last two have their axes fitted to the values of a log.
 
-mod limits;
+mod axis_limits;
 mod mosaic;
+mod one_axis;
 mod panel;
-mod planar;
 mod spatial;
 
 use serde_json::{Map, Value, json};
 
-use crate::actuator::Firing;
-use crate::adaptation::{Adaptation, Objective};
-use crate::body::Axes;
-use crate::estimator::Estimator;
-use crate::metrics::Gather;
-use crate::motion::turning::Bearing;
+use crate::actuator::FiringMethod;
+use crate::adaptation::{AdaptationKind, Objective};
+use crate::body::BodyAxes;
+use crate::estimator::EstimatorKind;
+use crate::metrics::MetricsCollector;
+use crate::motion::three_axis::Bearing;
 use crate::record::{Detail, Summary};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -71,10 +71,10 @@ struct Tab {
 
 impl Layout {
     /// Returns the layout of a scenario's logs, with all that they can show.
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn for_scenario(scenario: &Scenario) -> Self {
         let mut tabs = match scenario.model.axes() {
-            Axes::One(body) => planar::tabs(scenario, body),
-            Axes::Three(body) => spatial::tabs(scenario, body),
+            BodyAxes::One(body) => one_axis::tabs(scenario, body),
+            BodyAxes::Three(body) => spatial::tabs(scenario, body),
         };
         tabs.push(Tab { title: "Metrics at the end", panels: metrics(scenario).collect() });
         let rows = scenario.duration.seconds() / scenario.log_period().seconds();
@@ -88,14 +88,14 @@ impl Layout {
 
     /// Returns the layout with the panels that a log of this detail can show.
     #[must_use]
-    pub fn of_detail(&self, detail: Detail) -> Self {
+    pub fn for_detail(&self, detail: Detail) -> Self {
         let has = |topic: &str| self.topics.iter().any(|(own, least)| *own == topic && *least <= detail);
-        self.of_topics(has)
+        self.for_topics(has)
     }
 
     /// Returns the layout with the panels that a log with these topics can show.
     #[must_use]
-    pub fn of_topics(&self, has: impl Fn(&str) -> bool) -> Self {
+    pub fn for_topics(&self, has: impl Fn(&str) -> bool) -> Self {
         let tabs = self.tabs.iter().map(|tab| {
             let panels = tab.panels.iter().filter_map(|panel| panel.with_topics(&has)).collect();
             Tab { title: tab.title, panels }
@@ -109,10 +109,10 @@ impl Layout {
         let panels = || self.tabs.iter().flat_map(|tab| &tab.panels);
         let mut configs: Map<String, Value> = panels().map(|panel| (panel.id(), panel.config())).collect();
         let layout = if panels().count() <= MOST_PANELS {
-            mosaic::of(&panels().collect::<Vec<_>>())
+            mosaic::from_panels(&panels().collect::<Vec<_>>())
         } else {
             let tab = |tab: &Tab| {
-                let layout = mosaic::of(&tab.panels.iter().collect::<Vec<_>>());
+                let layout = mosaic::from_panels(&tab.panels.iter().collect::<Vec<_>>());
                 json!({ "title": tab.title, "layout": layout })
             };
             let tabs: Vec<Value> = self.tabs.iter().map(tab).collect();
@@ -133,7 +133,7 @@ impl Layout {
 
 /// Returns the panels of the metrics, page by page.
 fn metrics(scenario: &Scenario) -> impl Iterator<Item = LayoutPanel> {
-    let pages = Gather::new(scenario).finish(scenario).0.len().div_ceil(Summary::PAGE);
+    let pages = MetricsCollector::new(scenario).finish(scenario).0.len().div_ceil(Summary::PAGE);
     (0..pages).map(move |page| LayoutPanel::metrics(page, pages))
 }
 
@@ -148,37 +148,40 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         }
     };
     let estimator = scenario.estimator.as_ref();
-    let window = scenario.adaptation.as_ref().and_then(Adaptation::window);
+    let window = scenario.adaptation.as_ref().and_then(AdaptationKind::window);
     let measures =
         window.is_some_and(|window| scenario.goal().from + window <= Instant::START + scenario.duration);
     add(measures, "/objective", Events);
     add(measures, "/adaptation", Events);
-    add(!scenario.failing().is_empty(), "/faults", Events);
+    add(!scenario.failures().is_empty(), "/faults", Events);
     if scenario.axis_count() == 3 {
         add(scenario.study.fires(), "/jets", Events);
-        let alone =
-            scenario.actuator.jets().is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant);
+        let alone = scenario
+            .actuator
+            .jets()
+            .is_some_and(|(jets, _)| jets.allocation == FiringMethod::LeastPropellant);
         add(alone, "/thrusters", Events);
         add(!scenario.study.jets_alone || scenario.environment.is_some(), "/torques", Full);
-        add(planar::filters(scenario), "/estimators", Full);
+        add(one_axis::filters(scenario), "/estimators", Full);
         add(estimator.is_some_and(|estimator| estimator.attitude().is_some()), "/attitude_filter", Full);
-        let elastic = estimator.and_then(Estimator::attitude).is_some_and(|filter| filter.elastic.is_some());
+        let elastic =
+            estimator.and_then(EstimatorKind::attitude).is_some_and(|filter| filter.elastic.is_some());
         add(elastic, "/attitude_filter_modes", Full);
         add(scenario.study.wheels.is_some(), "/wheels", Full);
         add(!scenario.study.gimbals.is_empty(), "/control_moment_gyros", Full);
         add(scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some()), "/orbit", Full);
         add(scenario.sensor.accelerometers().next().is_some(), "/accelerations", Full);
         add(scenario.actuator.magnetorquers().is_some(), "/magnetorquers", Full);
-        add(scenario.study.driven().is_some(), "/drives", Full);
+        add(scenario.study.articulation().is_some(), "/drives", Full);
         add(scenario.study.hinges() > 0, "/hinges", Full);
         add(!scenario.study.bearings.is_empty(), "/bearings", Full);
-        add(scenario.study.bearings.iter().any(Bearing::grips), "/wheel_events", Events);
+        add(scenario.study.bearings.iter().any(Bearing::can_stick), "/wheel_events", Events);
         for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {
             add(true, topic, Full);
         }
-        add(matches!(estimator, Some(Estimator::Adaptive(_))), "/tracking", Full);
-        add(scenario.study.moving.is_some(), "/position", Full);
-        let window = estimator.and_then(Estimator::envelope).map(|envelope| envelope.window);
+        add(matches!(estimator, Some(EstimatorKind::Adaptive(_))), "/tracking", Full);
+        add(scenario.study.translation.is_some(), "/position", Full);
+        let window = estimator.and_then(EstimatorKind::envelope).map(|envelope| envelope.window);
         let closes = window.is_some_and(|window| window <= scenario.duration);
         add(closes, "/envelope_mean", Events);
         add(closes && scenario.objective() == Some(Objective::EnvelopeMean), "/adaptation", Events);
@@ -187,10 +190,14 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         return topics;
     }
     let plan = scenario.plan.as_ref();
-    let wheel = scenario.actuator.wheel().map(|(wheel, _)| wheel);
+    let wheel = scenario.actuator.flywheel().map(|(wheel, _)| wheel);
     add(true, "/law", Events);
-    add(scenario.law.switches() || (plan.is_some() && planar::feeds_back(scenario)), "/command", Events);
-    let window = estimator.and_then(Estimator::envelope).map(|envelope| envelope.window);
+    add(
+        scenario.law.is_switching() || (plan.is_some() && one_axis::feeds_back(scenario)),
+        "/command",
+        Events,
+    );
+    let window = estimator.and_then(EstimatorKind::envelope).map(|envelope| envelope.window);
     let closes = window.is_some_and(|window| window <= scenario.duration);
     add(closes, "/envelope_mean", Events);
     let learns = scenario.objective() == Some(Objective::EnvelopeMean);
@@ -200,11 +207,11 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         add(true, topic, Full);
     }
     add(!scenario.model.outputs().is_empty(), "/outputs", Full);
-    add(scenario.tells_torque(), "/goal", Full);
-    add(scenario.tells_torque(), "/torque", Full);
+    add(scenario.has_torque_rows(), "/goal", Full);
+    add(scenario.has_torque_rows(), "/torque", Full);
     add(wheel.is_some_and(|wheel| wheel.rotor.is_some()), "/wheel", Full);
     add(window.is_some(), "/envelope", Full);
-    add(planar::filters(scenario), "/estimator", Full);
+    add(one_axis::filters(scenario), "/estimator", Full);
     add(wheel.is_none(), "/plumes", Scene);
     topics
 }

@@ -5,7 +5,7 @@ use serde_json::{Value, json};
 use super::panel::LayoutPanel;
 
 /// Returns the mosaic of panels, from the upper left down the first column and then down the second.
-pub fn of(panels: &[&LayoutPanel]) -> Value {
+pub fn from_panels(panels: &[&LayoutPanel]) -> Value {
     let total: u32 = panels.iter().map(|panel| panel.weight()).sum();
     if panels.len() <= 2 {
         return column(panels);

@@ -14,14 +14,14 @@ pub const MOST_LINES: usize = 6;
 pub struct LayoutPanel {
     name: String,
     title: String,
-    shows: Shows,
+    shows: PanelContent,
     /// Limits of the vertical axis of a plot; without them, the viewer chooses.
     pub limits: Option<[f64; 2]>,
 }
 
 /// Content of a panel.
 #[derive(Clone, Debug, PartialEq)]
-enum Shows {
+enum PanelContent {
     /// Values over time.
     Plot(Vec<PlotLine>),
     /// Values over another value.
@@ -83,59 +83,59 @@ pub fn topic(path: &str) -> &str {
 }
 
 impl LayoutPanel {
-    fn new(name: impl Into<String>, title: impl Into<String>, shows: Shows) -> Self {
+    fn new(name: impl Into<String>, title: impl Into<String>, shows: PanelContent) -> Self {
         Self { name: name.into(), title: title.into(), shows, limits: None }
     }
 
     /// Creates a plot of values over time.
     pub fn plot(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
-        Self::new(name, title, Shows::Plot(lines))
+        Self::new(name, title, PanelContent::Plot(lines))
     }
 
     /// Creates a plot of values over another value. Its topic must not be that of the values, or viewers show nothing.
     pub fn plane(name: &'static str, title: impl Into<String>, x: &str, lines: Vec<PlotLine>) -> Self {
-        Self::new(name, title, Shows::Plane(lines, x.to_owned()))
+        Self::new(name, title, PanelContent::Plane(lines, x.to_owned()))
     }
 
     /// Creates a panel of states over time.
     pub fn states(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
-        Self::new(name, title, Shows::States(lines))
+        Self::new(name, title, PanelContent::States(lines))
     }
 
     /// Creates a panel with the last message of a topic.
     pub fn message(name: &'static str, title: impl Into<String>, topic: &str) -> Self {
-        Self::new(name, title, Shows::Message(topic.to_owned()))
+        Self::new(name, title, PanelContent::Message(topic.to_owned()))
     }
 
     /// Creates page `page` of the `of` pages of the metrics.
     pub fn metrics(page: usize, of: usize) -> Self {
         let path = format!("/summary.pages[{page}].metrics");
         let title = format!("Metrics at the end, {} of {of}", page + 1);
-        Self::new(format!("metrics_{}", page + 1), title, Shows::Table(path))
+        Self::new(format!("metrics_{}", page + 1), title, PanelContent::Table(path))
     }
 
     /// Creates a panel with the lines of the log.
     pub fn log() -> Self {
-        Self::new("log", "What happened", Shows::Log)
+        Self::new("log", "What happened", PanelContent::Log)
     }
 
     /// Creates a panel with the three-dimensional scene.
     pub fn scene(extent: Extent) -> Self {
-        Self::new("scene", "Scene", Shows::Scene(extent, vec!["/scene", "/plumes"]))
+        Self::new("scene", "Scene", PanelContent::Scene(extent, vec!["/scene", "/plumes"]))
     }
 
     /// Draws the lines over time of these topics as points.
     pub fn mark(&mut self, marked: &impl Fn(&str) -> bool) {
-        let Shows::Plot(lines) = &mut self.shows else { return };
+        let PanelContent::Plot(lines) = &mut self.shows else { return };
         for line in lines {
             line.dots |= line.topic().is_some_and(marked);
         }
     }
 
     /// Returns the paths on the vertical axis.
-    pub fn drawn(&self) -> Vec<&str> {
+    pub fn vertical_paths(&self) -> Vec<&str> {
         match &self.shows {
-            Shows::Plot(lines) | Shows::Plane(lines, _) => {
+            PanelContent::Plot(lines) | PanelContent::Plane(lines, _) => {
                 lines.iter().map(|line| line.path.as_str()).collect()
             }
             _ => Vec::new(),
@@ -145,12 +145,12 @@ impl LayoutPanel {
     /// Returns the name of the panel in a layout.
     pub fn id(&self) -> String {
         let kind = match &self.shows {
-            Shows::Plot(_) | Shows::Plane(..) => "Plot",
-            Shows::States(_) => "StateTransitions",
-            Shows::Message(_) => "RawMessages",
-            Shows::Table(_) => "Table",
-            Shows::Log => "RosOut",
-            Shows::Scene(..) => "3D",
+            PanelContent::Plot(_) | PanelContent::Plane(..) => "Plot",
+            PanelContent::States(_) => "StateTransitions",
+            PanelContent::Message(_) => "RawMessages",
+            PanelContent::Table(_) => "Table",
+            PanelContent::Log => "RosOut",
+            PanelContent::Scene(..) => "3D",
         };
         format!("{kind}!{}", self.name)
     }
@@ -158,12 +158,12 @@ impl LayoutPanel {
     /// Returns the height of the panel, relative to others.
     pub fn weight(&self) -> u32 {
         match &self.shows {
-            Shows::Scene(..) | Shows::Plane(..) => 8,
+            PanelContent::Scene(..) | PanelContent::Plane(..) => 8,
             // The legend needs more height for more lines.
-            Shows::Plot(lines) => 4.max(lines.len() as u32),
-            Shows::Log | Shows::Message(_) | Shows::Table(_) => 4,
+            PanelContent::Plot(lines) => 4.max(lines.len() as u32),
+            PanelContent::Log | PanelContent::Message(_) | PanelContent::Table(_) => 4,
             // A row of states has a fixed height.
-            Shows::States(lines) => (3 * (lines.len() as u32 + 1)).div_ceil(2),
+            PanelContent::States(lines) => (3 * (lines.len() as u32 + 1)).div_ceil(2),
         }
     }
 
@@ -175,14 +175,18 @@ impl LayoutPanel {
             Some(lines.iter().filter(|line| line.topic().is_none_or(has)).cloned().collect())
         };
         let shows = match &self.shows {
-            Shows::Plot(lines) => Shows::Plot(kept(lines)?),
-            Shows::Plane(lines, x) => Shows::Plane(kept(lines).filter(|_| has(topic(x)))?, x.clone()),
-            Shows::States(lines) => Shows::States(kept(lines)?),
-            Shows::Message(path) | Shows::Table(path) => has(topic(path)).then(|| self.shows.clone())?,
-            Shows::Log => has("/log").then_some(Shows::Log)?,
-            Shows::Scene(extent, topics) => {
+            PanelContent::Plot(lines) => PanelContent::Plot(kept(lines)?),
+            PanelContent::Plane(lines, x) => {
+                PanelContent::Plane(kept(lines).filter(|_| has(topic(x)))?, x.clone())
+            }
+            PanelContent::States(lines) => PanelContent::States(kept(lines)?),
+            PanelContent::Message(path) | PanelContent::Table(path) => {
+                has(topic(path)).then(|| self.shows.clone())?
+            }
+            PanelContent::Log => has("/log").then_some(PanelContent::Log)?,
+            PanelContent::Scene(extent, topics) => {
                 let topics: Vec<_> = topics.iter().copied().filter(|topic| has(topic)).collect();
-                (!topics.is_empty()).then(|| Shows::Scene(extent.clone(), topics))?
+                (!topics.is_empty()).then(|| PanelContent::Scene(extent.clone(), topics))?
             }
         };
         Some(Self { shows, ..self.clone() })
@@ -191,22 +195,24 @@ impl LayoutPanel {
     /// Returns the configuration of the panel.
     pub fn config(&self) -> Value {
         let mut config = match &self.shows {
-            Shows::Plot(lines) => plot(lines, json!("timestamp"), true),
-            Shows::Plane(lines, x) => {
+            PanelContent::Plot(lines) => plot(lines, json!("timestamp"), true),
+            PanelContent::Plane(lines, x) => {
                 // A synchronised panel would take the time range of the other panels for its horizontal axis.
                 let mut config = plot(lines, json!("custom"), false);
                 let path = json!({ "value": x, "enabled": true, "timestampMethod": "receiveTime" });
                 config.insert("xAxisPath".to_owned(), path);
                 config
             }
-            Shows::States(lines) => states(lines),
-            Shows::Message(topic) => {
+            PanelContent::States(lines) => states(lines),
+            PanelContent::Message(topic) => {
                 object(json!({ "topicPath": topic, "diffEnabled": false, "expansion": "all" }))
             }
-            Shows::Table(path) => object(json!({ "topicPath": path })),
+            PanelContent::Table(path) => object(json!({ "topicPath": path })),
             // From level 2 on, which leaves out debug messages.
-            Shows::Log => object(json!({ "searchTerms": [], "minLogLevel": 2, "topicToRender": "/log" })),
-            Shows::Scene(extent, topics) => scene(extent, topics),
+            PanelContent::Log => {
+                object(json!({ "searchTerms": [], "minLogLevel": 2, "topicToRender": "/log" }))
+            }
+            PanelContent::Scene(extent, topics) => scene(extent, topics),
         };
         if let Some([least, greatest]) = self.limits {
             config.insert("minYValue".to_owned(), json!(least));

@@ -1,14 +1,14 @@
 //! Panels of a three-axis body.
 
 use super::Tab;
+use super::one_axis::adaptation;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
-use super::planar::adaptation;
 use crate::attitude::AXES;
 use crate::body::Spatial;
-use crate::estimator::Estimator;
+use crate::estimator::EstimatorKind;
 use crate::estimator::attitude::ElasticStates;
-use crate::law::Law;
-use crate::motion::turning::Bearing;
+use crate::law::LawKind;
+use crate::motion::three_axis::Bearing;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
 
@@ -19,7 +19,7 @@ const MOST_MODES: usize = 12;
 pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     let plot = LayoutPanel::plot;
     let mut motion = vec![
-        LayoutPanel::scene(Extent::of(scenario)),
+        LayoutPanel::scene(Extent::from_scenario(scenario)),
         plot("error", "Pointing error (rad)", errors(scenario)),
         plot(
             "rigid",
@@ -46,7 +46,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         motion.push(plot("moments", "Magnetic moments (A m²)", along("/magnetorquers", "moment_am2")));
     }
     for (index, accelerometer) in scenario.sensor.accelerometers().take(1) {
-        let (count, name) = (accelerometer.axis_count(), &scenario.study.sensed_at[index]);
+        let (count, name) = (accelerometer.axis_count(), &scenario.study.sensor_points[index]);
         let axis = |axis: usize| {
             line(format!("/accelerations.axes[{axis}].measured_m_s2"), format!("axis {}", axis + 1))
         };
@@ -57,11 +57,11 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         motion.push(plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
     }
     motion.extend(gimbals(scenario));
-    if scenario.study.moving.is_some() {
+    if scenario.study.translation.is_some() {
         let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
         motion.push(plot("position", "Position (m)", along.into()));
     }
-    if scenario.study.bearings.iter().any(Bearing::grips) {
+    if scenario.study.bearings.iter().any(Bearing::can_stick) {
         let each = |field: &str| -> Vec<PlotLine> {
             let of = |wheel: usize| {
                 line(format!("/bearings.wheels[{wheel}].{field}"), format!("wheel {}", wheel + 1))
@@ -73,7 +73,7 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
     }
     motion.extend(turning(scenario));
     let mut elastic = vec![plot("energy", "Elastic energy (J)", energies(scenario, body))];
-    if scenario.study.driven().is_some() {
+    if scenario.study.articulation().is_some() {
         let of = |mode: usize| line(format!("/drives.modes[{mode}].frequency_rad_s"), format!("mode {mode}"));
         let each = (0..body.modes.len().min(MOST_LINES)).map(of).collect();
         elastic.push(plot("drifting", "Natural frequencies (rad/s)", each));
@@ -118,7 +118,7 @@ fn turning(scenario: &Scenario) -> Vec<LayoutPanel> {
         (0..count.min(MOST_LINES)).map(of).collect()
     };
     let mut panels = Vec::new();
-    if let Some(drives) = scenario.study.driven() {
+    if let Some(drives) = scenario.study.articulation() {
         let angles = lines("drives", "drive", drives.courses.count());
         panels.push(LayoutPanel::plot("drives", "Angles of the drives (rad)", angles));
     }
@@ -152,7 +152,7 @@ fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
 /// Arranges the panels of the motion and of the modes in tabs.
 fn together(scenario: &Scenario, motion: Vec<LayoutPanel>, elastic: Vec<LayoutPanel>) -> Vec<Tab> {
     let mut tabs = vec![Tab { title: "Motion", panels: motion }];
-    if let Some(spec) = scenario.estimator.as_ref().and_then(Estimator::attitude) {
+    if let Some(spec) = scenario.estimator.as_ref().and_then(EstimatorKind::attitude) {
         let mut panels = filter();
         panels.extend(spec.elastic.as_ref().filter(|elastic| elastic.identifies()).map(identified));
         tabs.push(Tab { title: "Attitude filter", panels });
@@ -217,7 +217,7 @@ fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
 fn errors(scenario: &Scenario) -> Vec<PlotLine> {
     let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
     let zone = match scenario.law.about(0) {
-        Law::PhasePlane(law) => Some(law.dead_zone.get()),
+        LawKind::PhasePlane(law) => Some(law.dead_zone.get()),
         _ => None,
     };
     let ends = zone.into_iter().flat_map(|zone| [("+ dead zone", zone), ("- dead zone", -zone)]);

@@ -1,16 +1,16 @@
 //! Metrics of an attitude filter: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{
-    ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, Meaning, MetricValue, NEES_MEAN,
-    NIS_INSIDE, NIS_MEAN, Value,
+    ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, MetricDescription, MetricValue,
+    NEES_MEAN, NIS_INSIDE, NIS_MEAN, NamedMetric,
 };
-use crate::estimator::Estimator;
+use crate::estimator::EstimatorKind;
 use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
 /// Descriptions of the metrics.
-pub(super) const TOLD: &[Meaning] =
+pub(super) const METRICS: &[MetricDescription] =
     &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ESTIMATES, FREQUENCY_ERRORS];
 
 /// 95 % interval of chi-square with three degrees of freedom.
@@ -41,7 +41,7 @@ impl AttitudeMetrics {
     /// estimate an attitude; `None` for others.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let estimator = scenario.estimator.as_ref();
-        let own = |of: &Estimator| matches!(of, Estimator::Own(_)) && scenario.axis_count() == 3;
+        let own = |of: &EstimatorKind| matches!(of, EstimatorKind::Own(_)) && scenario.axis_count() == 3;
         let filter = estimator.filter(|estimator| estimator.attitude().is_some() || own(estimator))?;
         let assess = filter.assess();
         Some(Self {
@@ -60,7 +60,7 @@ impl AttitudeMetrics {
     }
 
     /// Records the filter's estimate at a sample.
-    pub fn see(&mut self, now: Instant, estimate: &AttitudeEstimate) {
+    pub fn observe(&mut self, now: Instant, estimate: &AttitudeEstimate) {
         let ([from, to], t) = (self.assess, now.seconds());
         if t < from || t > to {
             return;
@@ -81,32 +81,34 @@ impl AttitudeMetrics {
     }
 
     /// Records the filter's estimates of the modes after a sample.
-    pub fn learn(&mut self, estimates: &ElasticEstimates) {
+    pub fn observe_modes(&mut self, estimates: &ElasticEstimates) {
         if let Some(identified) = &mut self.identified {
             identified.clone_from(&estimates.modes);
         }
     }
 
     /// Returns the metrics of the run that has ended.
-    pub fn finish(self) -> Vec<MetricValue> {
+    pub fn finish(self) -> Vec<NamedMetric> {
         // Without samples the means are 0/0: NaN.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
-        let [attitude, bias] = self.squares.map(|sum| Value::Number(f64::sqrt(sum / all)));
+        let [attitude, bias] = self.squares.map(|sum| MetricValue::Number(f64::sqrt(sum / all)));
         if self.own && self.count.0 == 0 {
             return Vec::new();
         }
-        let mut told = vec![
-            (&NEES_MEAN, Value::Number(self.nees / all)),
-            (&NIS_MEAN, Value::Number(self.nis / measured)),
-            (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
+        let mut reported = vec![
+            (&NEES_MEAN, MetricValue::Number(self.nees / all)),
+            (&NIS_MEAN, MetricValue::Number(self.nis / measured)),
+            (&NIS_INSIDE, MetricValue::Number(self.inside as f64 / measured)),
             (&ATTITUDE_ERROR, attitude),
             (&BIAS_ERROR, bias),
         ];
         if let Some(last) = self.identified {
-            let list = |of: &dyn Fn(&ElasticEstimate) -> f64| Value::Numbers(last.iter().map(of).collect());
-            told.push((&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)));
-            told.push((&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)));
+            let list =
+                |of: &dyn Fn(&ElasticEstimate) -> f64| MetricValue::Numbers(last.iter().map(of).collect());
+            reported.push((&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)));
+            reported
+                .push((&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)));
         }
-        told
+        reported
     }
 }

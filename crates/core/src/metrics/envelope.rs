@@ -1,24 +1,26 @@
 //! Metrics of the envelope over windows, for runs whose law is not the relay law of a one-axis body.
 
 use super::{
-    ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, Meaning, MetricValue, REDUCTION, Value, WINDOW_MEANS,
+    ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, MetricDescription, MetricValue, NamedMetric, REDUCTION,
+    WINDOW_MEANS,
 };
 use crate::record::WindowMean;
 use crate::scenario::Scenario;
 
 /// Descriptions of the metrics.
-pub const TOLD: &[Meaning] = &[WINDOW_MEANS, ENVELOPE_MEAN, ENVELOPE_LATE, ENVELOPE_FINAL, REDUCTION];
+pub const METRICS: &[MetricDescription] =
+    &[WINDOW_MEANS, ENVELOPE_MEAN, ENVELOPE_LATE, ENVELOPE_FINAL, REDUCTION];
 
 /// Collector of the means of the envelope's windows.
 #[derive(Clone, Debug)]
-pub struct Windows {
+pub struct EnvelopeMetrics {
     duration: f64,
     reference: Option<f64>,
     means: Vec<f64>,
     from: Vec<f64>,
 }
 
-impl Windows {
+impl EnvelopeMetrics {
     /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         Self {
@@ -30,9 +32,9 @@ impl Windows {
     }
 
     /// Creates an empty collector; `None` if a scenario has no monitor, or if another collector records it.
-    pub fn alone(scenario: &Scenario) -> Option<Self> {
+    pub fn if_not_collected_elsewhere(scenario: &Scenario) -> Option<Self> {
         let observed = scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
-        let relay = scenario.axis_count() == 1 && scenario.law.switches();
+        let relay = scenario.axis_count() == 1 && scenario.law.is_switching();
         (observed && !relay).then(|| Self::new(scenario))
     }
 
@@ -43,30 +45,30 @@ impl Windows {
     }
 
     /// Returns the mean over the windows that begin at `from` (s) or later; `None` without any.
-    pub fn since(&self, from: f64) -> Option<f64> {
+    pub fn mean_since(&self, from: f64) -> Option<f64> {
         let first = self.from.iter().position(|begins| *begins >= from)?;
         Some(mean(&self.means[first..]))
     }
 
     /// Returns the mean over the last window; NaN without one.
-    pub fn last(&self) -> f64 {
+    pub fn last_mean(&self) -> f64 {
         self.means.last().copied().unwrap_or(f64::NAN)
     }
 
     /// Returns the value with which the envelope is compared: the reference, or the first window.
-    pub fn reference(&self) -> f64 {
+    pub fn reference_mean(&self) -> f64 {
         self.reference.unwrap_or(self.means.first().copied().unwrap_or(f64::NAN))
     }
 
     /// Returns the metrics of the run that has ended.
-    pub fn finish(&self) -> [MetricValue; 5] {
-        let late = self.since(0.5 * self.duration).unwrap_or(f64::NAN);
+    pub fn finish(&self) -> [NamedMetric; 5] {
+        let late = self.mean_since(0.5 * self.duration).unwrap_or(f64::NAN);
         [
-            (&WINDOW_MEANS, Value::Numbers(self.means.clone())),
-            (&ENVELOPE_MEAN, Value::Number(mean(&self.means))),
-            (&ENVELOPE_LATE, Value::Number(late)),
-            (&ENVELOPE_FINAL, Value::Number(self.last())),
-            (&REDUCTION, Value::Number(self.reference() / self.last())),
+            (&WINDOW_MEANS, MetricValue::Numbers(self.means.clone())),
+            (&ENVELOPE_MEAN, MetricValue::Number(mean(&self.means))),
+            (&ENVELOPE_LATE, MetricValue::Number(late)),
+            (&ENVELOPE_FINAL, MetricValue::Number(self.last_mean())),
+            (&REDUCTION, MetricValue::Number(self.reference_mean() / self.last_mean())),
         ]
     }
 }

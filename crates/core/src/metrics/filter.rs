@@ -1,15 +1,15 @@
 //! Metrics of a Kalman filter: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
 use super::{
-    FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, Meaning, MetricValue, NEES_MEAN,
-    NIS_INSIDE, NIS_MEAN, Value,
+    FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, MetricDescription, MetricValue,
+    NEES_MEAN, NIS_INSIDE, NIS_MEAN, NamedMetric,
 };
 use crate::record::{Estimate, Lock, Use};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
 /// Descriptions of the metrics.
-pub(super) const TOLD: &[Meaning] =
+pub(super) const METRICS: &[MetricDescription] =
     &[NEES_MEAN, NIS_MEAN, NIS_INSIDE, FREQUENCY_ERROR_RMS, FREQUENCY_ERROR_MAX, LOCK_LOST, LOCK_LOST_AT];
 
 /// 95 % intervals of chi-square with one and with two degrees of freedom.
@@ -35,7 +35,7 @@ pub struct FilterMetrics {
 impl FilterMetrics {
     /// Creates an empty collector for runs of a scenario; `None` without a filter.
     pub fn new(scenario: &Scenario) -> Option<Self> {
-        let estimator = scenario.estimator.as_ref().filter(|estimator| estimator.filters())?;
+        let estimator = scenario.estimator.as_ref().filter(|estimator| estimator.filters_measurements())?;
         Some(Self {
             assess: estimator.assess(),
             measurements: 1 + usize::from(scenario.sensor.rate_noise(0).is_some()),
@@ -50,7 +50,7 @@ impl FilterMetrics {
     }
 
     /// Records the estimates of the filters of all axes at a sample.
-    pub fn see(&mut self, now: Instant, estimates: &[Estimate]) {
+    pub fn observe(&mut self, now: Instant, estimates: &[Estimate]) {
         let t = now.seconds();
         if estimates.iter().any(|estimate| estimate.lock == Lock::Lost) {
             self.lost_at.get_or_insert(t);
@@ -63,13 +63,13 @@ impl FilterMetrics {
     }
 
     /// Returns true if estimates at time `t` (s) are assessed.
-    pub fn assesses(&self, t: f64) -> bool {
+    pub fn is_assessed(&self, t: f64) -> bool {
         let [from, to] = self.assess;
         from <= t && t <= to
     }
 
     fn judge(&mut self, t: f64, estimate: &Estimate) {
-        if !self.assesses(t) {
+        if !self.is_assessed(t) {
             return;
         }
         let error = (estimate.frequency_rad_s - estimate.true_frequency_rad_s).abs();
@@ -86,18 +86,18 @@ impl FilterMetrics {
     }
 
     /// Returns the metrics of the run that has ended.
-    pub fn finish(self) -> [MetricValue; 7] {
+    pub fn finish(self) -> [NamedMetric; 7] {
         // Without samples the means are 0/0: NaN.
         let (all, measured) = (self.count.0 as f64, self.count.1 as f64);
         let largest = if self.count.0 > 0 { self.largest } else { f64::NAN };
         [
-            (&NEES_MEAN, Value::Number(self.nees / all)),
-            (&NIS_MEAN, Value::Number(self.nis / measured)),
-            (&NIS_INSIDE, Value::Number(self.inside as f64 / measured)),
-            (&FREQUENCY_ERROR_RMS, Value::Number(f64::sqrt(self.square / all))),
-            (&FREQUENCY_ERROR_MAX, Value::Number(largest)),
-            (&LOCK_LOST, Value::Count(u64::from(self.lost_at.is_some()))),
-            (&LOCK_LOST_AT, Value::Number(self.lost_at.unwrap_or(f64::NAN))),
+            (&NEES_MEAN, MetricValue::Number(self.nees / all)),
+            (&NIS_MEAN, MetricValue::Number(self.nis / measured)),
+            (&NIS_INSIDE, MetricValue::Number(self.inside as f64 / measured)),
+            (&FREQUENCY_ERROR_RMS, MetricValue::Number(f64::sqrt(self.square / all))),
+            (&FREQUENCY_ERROR_MAX, MetricValue::Number(largest)),
+            (&LOCK_LOST, MetricValue::Count(u64::from(self.lost_at.is_some()))),
+            (&LOCK_LOST_AT, MetricValue::Number(self.lost_at.unwrap_or(f64::NAN))),
         ]
     }
 }

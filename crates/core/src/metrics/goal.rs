@@ -1,13 +1,13 @@
 //! Verdict on a run's goal: the run must end inside a band about the goal, without leaving it over the last part of the
 //! time.
 
-use super::{GOAL, GOAL_BAND, Meaning, MetricValue, REQUIREMENT, TIME_OUTSIDE, Value};
+use super::{GOAL, GOAL_BAND, MetricDescription, MetricValue, NamedMetric, REQUIREMENT, TIME_OUTSIDE};
 use crate::numerics::polynomial::Polynomial;
 
 /// Fraction of the time since the goal's start that the run must end with inside the band.
 const LAST: f64 = 0.1;
 /// Descriptions of the metrics of a one-axis body.
-pub(super) const TOLD: &[Meaning] = &[GOAL, GOAL_BAND, TIME_OUTSIDE];
+pub(super) const ONE_AXIS_METRICS: &[MetricDescription] = &[GOAL, GOAL_BAND, TIME_OUTSIDE];
 /// Names of the metrics that are verdicts.
 pub const NAMES: [&str; 2] = [GOAL.name, REQUIREMENT.name];
 /// Words of a verdict.
@@ -16,7 +16,7 @@ const MISSED: &str = "missed";
 const NONE: &str = "none";
 
 /// Returns the verdict on a value that is required to be at most `most`: met or missed, or none if a number is NaN.
-pub fn within(value: f64, most: f64) -> &'static str {
+pub fn meets(value: f64, most: f64) -> &'static str {
     if value.is_nan() {
         NONE
     } else if value <= most {
@@ -28,7 +28,7 @@ pub fn within(value: f64, most: f64) -> &'static str {
 
 /// Collector of the time outside a band about the goal.
 #[derive(Copy, Clone, Debug)]
-pub struct Verdict {
+pub struct GoalMetrics {
     /// Start of the goal (s).
     from: f64,
     band: f64,
@@ -38,7 +38,7 @@ pub struct Verdict {
     last: f64,
 }
 
-impl Verdict {
+impl GoalMetrics {
     /// Creates a collector for a goal that starts at `from` (s), with a band of half width `band` (rad), NaN or 0
     /// without one.
     pub fn new(from: f64, band: f64) -> Self {
@@ -52,7 +52,7 @@ impl Verdict {
 
     /// Adds a time outside the band, from one instant to another (s); times before the goal's start do not count. Calls
     /// must be in the order of time.
-    pub fn outside(&mut self, from: f64, to: f64) {
+    pub fn add_outside(&mut self, from: f64, to: f64) {
         let from = from.max(self.from);
         if to <= from {
             return;
@@ -66,7 +66,7 @@ impl Verdict {
     }
 
     /// Records the distance from the goal (rad) over a stretch of `length` (s) that begins at `from` (s).
-    pub fn see(&mut self, from: f64, length: f64, distance: &Polynomial) {
+    pub fn observe(&mut self, from: f64, length: f64, distance: &Polynomial) {
         let band = self.band;
         let (low, high) = distance.bounds();
         if low >= -band && high <= band {
@@ -82,19 +82,19 @@ impl Verdict {
         edges.push(1.0);
         for ends in edges.windows(2) {
             if distance.at(0.5 * (ends[0] + ends[1])).abs() > band {
-                self.outside(time(ends[0]), time(ends[1]));
+                self.add_outside(time(ends[0]), time(ends[1]));
             }
         }
     }
 
     /// Returns the last time outside the band (s): the goal's start if the run never was outside, NaN if it ends
     /// outside, or if there is no band.
-    pub fn settled(&self, end: f64) -> f64 {
+    pub fn settling_time(&self, end: f64) -> f64 {
         if self.band > 0.0 && self.last < end { self.last } else { f64::NAN }
     }
 
     /// Returns the metrics of a run that ends at `end` (s).
-    pub fn finish(self, end: f64) -> [MetricValue; 3] {
+    pub fn finish(self, end: f64) -> [NamedMetric; 3] {
         // Comparisons with NaN are false.
         let (word, band, outside) = if self.band > 0.0 && self.from < end {
             let met = end - self.last >= LAST * (end - self.from);
@@ -103,9 +103,9 @@ impl Verdict {
             (NONE, f64::NAN, f64::NAN)
         };
         [
-            (&GOAL, Value::Word(word)),
-            (&GOAL_BAND, Value::Number(band)),
-            (&TIME_OUTSIDE, Value::Number(outside)),
+            (&GOAL, MetricValue::Word(word)),
+            (&GOAL_BAND, MetricValue::Number(band)),
+            (&TIME_OUTSIDE, MetricValue::Number(outside)),
         ]
     }
 }
@@ -124,11 +124,13 @@ pub fn score(word: &str) -> Option<f64> {
 mod tests {
     use super::*;
 
-    fn told(verdict: Verdict, end: f64) -> (&'static str, f64, f64) {
+    fn value_before(verdict: GoalMetrics, end: f64) -> (&'static str, f64, f64) {
         match verdict.finish(end) {
-            [(_, Value::Word(word)), (_, Value::Number(band)), (_, Value::Number(outside))] => {
-                (word, band, outside)
-            }
+            [
+                (_, MetricValue::Word(word)),
+                (_, MetricValue::Number(band)),
+                (_, MetricValue::Number(outside)),
+            ] => (word, band, outside),
             other => panic!("{other:?}"),
         }
     }
@@ -136,33 +138,35 @@ mod tests {
     #[test]
     fn a_goal_is_met_by_the_last_tenth_of_its_time() {
         let until = |to: f64| {
-            let mut verdict = Verdict::new(10.0, 0.5);
-            verdict.outside(0.0, 20.0);
-            verdict.outside(30.0, to);
-            told(verdict, 110.0)
+            let mut verdict = GoalMetrics::new(10.0, 0.5);
+            verdict.add_outside(0.0, 20.0);
+            verdict.add_outside(30.0, to);
+            value_before(verdict, 110.0)
         };
         assert_eq!(until(100.0), ("met", 0.5, 80.0));
         assert_eq!(until(100.001).0, "missed");
         assert_eq!(until(110.0), ("missed", 0.5, 90.0));
         // Inside from the start.
-        assert_eq!(told(Verdict::new(10.0, 0.5), 110.0), ("met", 0.5, 0.0));
+        assert_eq!(value_before(GoalMetrics::new(10.0, 0.5), 110.0), ("met", 0.5, 0.0));
     }
 
     #[test]
     fn without_a_band_or_a_time_there_is_no_goal() {
-        for verdict in [Verdict::new(0.0, f64::NAN), Verdict::new(0.0, 0.0), Verdict::new(7.0, 1.0)] {
-            let (word, band, outside) = told(verdict, 7.0);
+        for verdict in
+            [GoalMetrics::new(0.0, f64::NAN), GoalMetrics::new(0.0, 0.0), GoalMetrics::new(7.0, 1.0)]
+        {
+            let (word, band, outside) = value_before(verdict, 7.0);
             assert!(word == "none" && band.is_nan() && outside.is_nan());
         }
     }
 
     #[test]
     fn many_pieces_lose_no_time() {
-        let mut verdict = Verdict::new(0.0, 1.0);
+        let mut verdict = GoalMetrics::new(0.0, 1.0);
         // A plain sum of a million tenths is 1.3e-6 off.
         for _ in 0..1_000_000 {
-            verdict.outside(0.0, 0.1);
+            verdict.add_outside(0.0, 0.1);
         }
-        assert!((told(verdict, 2000.0).2 - 1e5).abs() < 1e-10);
+        assert!((value_before(verdict, 2000.0).2 - 1e5).abs() < 1e-10);
     }
 }

@@ -1,44 +1,44 @@
 //! Metrics: results of a run as named numbers with units.
 
-mod adapted;
+mod adaptation;
 mod attitude;
 mod envelope;
 mod filter;
 pub mod goal;
 mod rotation;
 mod selection;
-mod spatial;
 mod switchings;
+mod three_axis;
 mod tracking;
 
-use crate::body::Axes;
-use crate::motion::Stretch;
+use crate::body::BodyAxes;
+use crate::motion::MotionPiece;
 use crate::record::{self, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-pub use record::measured::{Meaning, MetricValue, Metrics, Quantity, Value};
+pub use record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};
 
-pub use envelope::TOLD as OF_ENVELOPE;
+pub use envelope::METRICS as OF_ENVELOPE;
 pub use selection::Selection;
 
-use adapted::Adapted;
+use adaptation::AdaptationMetrics;
 use attitude::AttitudeMetrics;
-use envelope::Windows;
+use envelope::EnvelopeMetrics;
 use filter::FilterMetrics;
-use rotation::Rotation;
-pub use rotation::{MotionMetrics, Passed};
-use spatial::SpatialMetrics;
-use switchings::Switchings;
-use tracking::Tracked;
+use rotation::ManoeuvreMetrics;
+pub use rotation::{LaneManoeuvreMetrics, LanePiece};
+use switchings::RelayMetrics;
+use three_axis::ThreeAxisMetrics;
+use tracking::ObserverMetrics;
 
 /// Declares the metrics: a constant for each, and the list of all.
 macro_rules! metrics {
     ($($constant:ident = $name:literal, $unit:literal, $doc:literal;)+) => {
-        $(const $constant: Meaning = Meaning { name: $name, unit: $unit, doc: $doc };)+
+        $(const $constant: MetricDescription = MetricDescription { name: $name, unit: $unit, doc: $doc };)+
 
         /// All metrics, in the order in which they are reported.
-        pub const ALL: &[Meaning] = &[$($constant),+];
+        pub const ALL: &[MetricDescription] = &[$($constant),+];
     };
 }
 
@@ -205,142 +205,144 @@ metrics! {
 }
 
 /// Returns the description with the unit of a body without inertia, or of a commanded hub motion.
-const fn reduced(meaning: Meaning, unit: &'static str) -> Meaning {
-    Meaning { unit, ..meaning }
+const fn reduced(meaning: MetricDescription, unit: &'static str) -> MetricDescription {
+    MetricDescription { unit, ..meaning }
 }
-const PEAK_ACCELERATION: Meaning = reduced(PEAK_TORQUE, "rad/s²");
-const PEAK_FEEDBACK_ACCELERATION: Meaning = reduced(PEAK_FEEDBACK, "rad/s²");
-const RESIDUAL_ENERGY_UNIT_INERTIA: Meaning = reduced(RESIDUAL_ENERGY, "J/(kg m²)");
-const REDUCED_IMPULSE: Meaning = reduced(IMPULSE, "rad/s");
-const CYCLE_REDUCED_IMPULSE: Meaning = reduced(CYCLE_IMPULSE, "rad/s");
+const PEAK_ACCELERATION: MetricDescription = reduced(PEAK_TORQUE, "rad/s²");
+const PEAK_FEEDBACK_ACCELERATION: MetricDescription = reduced(PEAK_FEEDBACK, "rad/s²");
+const RESIDUAL_ENERGY_UNIT_INERTIA: MetricDescription = reduced(RESIDUAL_ENERGY, "J/(kg m²)");
+const REDUCED_IMPULSE: MetricDescription = reduced(IMPULSE, "rad/s");
+const CYCLE_REDUCED_IMPULSE: MetricDescription = reduced(CYCLE_IMPULSE, "rad/s");
 
 /// Returns the description of a metric by its name, with the units of a scenario if one is given.
-pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Meaning> {
-    const ACCELERATIONS: &[Meaning] =
+pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static MetricDescription> {
+    const ACCELERATIONS: &[MetricDescription] =
         &[PEAK_ACCELERATION, PEAK_FEEDBACK_ACCELERATION, REDUCED_IMPULSE, CYCLE_REDUCED_IMPULSE];
-    const UNIT_INERTIA: &[Meaning] = &[RESIDUAL_ENERGY_UNIT_INERTIA];
-    let of = |some: &'static [Meaning]| some.iter().find(|meaning| meaning.name == name);
+    const UNIT_INERTIA: &[MetricDescription] = &[RESIDUAL_ENERGY_UNIT_INERTIA];
+    let of = |some: &'static [MetricDescription]| some.iter().find(|meaning| meaning.name == name);
     let model = scenario.map(|scenario| &scenario.model);
     let accelerations = model.filter(|model| model.commands_acceleration()).and_then(|_| of(ACCELERATIONS));
     let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| of(UNIT_INERTIA));
-    let objectives = scenario.and_then(adapted::meanings).and_then(|some| of(some));
+    let objectives = scenario.and_then(adaptation::descriptions).and_then(|some| of(some));
     accelerations.or(unit_inertia).or(objectives).or_else(|| of(ALL))
 }
 
 /// Collector of the metrics of a run.
 #[derive(Clone, Debug)]
-pub struct Gather {
-    kind: Kind,
+pub struct MetricsCollector {
+    kind: RunKind,
     filter: Option<FilterMetrics>,
     known: Option<AttitudeMetrics>,
-    adapted: Option<Adapted>,
-    windows: Option<Windows>,
-    tracked: Tracked,
+    adapted: Option<AdaptationMetrics>,
+    windows: Option<EnvelopeMetrics>,
+    tracked: ObserverMetrics,
 }
 
 /// Collector for the kind of the run.
 #[derive(Clone, Debug)]
-enum Kind {
+enum RunKind {
     /// Collector for a relay law.
-    Switchings(Box<Switchings>),
+    Switchings(Box<RelayMetrics>),
     /// Collector for a rotation of a one-axis body, under a manoeuvre or a law without switchings.
-    Rotation(Box<Rotation>),
+    Rotation(Box<ManoeuvreMetrics>),
     /// Collector for a three-axis body.
-    Spatial(Box<SpatialMetrics>),
+    Spatial(Box<ThreeAxisMetrics>),
 }
 
-impl Gather {
+impl MetricsCollector {
     /// Creates an empty collector of all metrics for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        Self::of(scenario, &Selection::ALL)
+        Self::for_selection(scenario, &Selection::ALL)
     }
 
     /// Creates an empty collector of the selected metrics; values that no selected metric needs are not computed.
-    pub fn of(scenario: &Scenario, selection: &Selection) -> Self {
+    pub fn for_selection(scenario: &Scenario, selection: &Selection) -> Self {
         let kind = match scenario.model.axes() {
-            Axes::Three(_) => Kind::Spatial(Box::new(SpatialMetrics::new(scenario))),
-            Axes::One(body) if scenario.law.switches() => {
-                Kind::Switchings(Box::new(Switchings::new(scenario, body, selection)))
+            BodyAxes::Three(_) => RunKind::Spatial(Box::new(ThreeAxisMetrics::new(scenario))),
+            BodyAxes::One(body) if scenario.law.is_switching() => {
+                RunKind::Switchings(Box::new(RelayMetrics::new(scenario, body, selection)))
             }
-            Axes::One(body) => Kind::Rotation(Box::new(Rotation::new(scenario, body, selection))),
+            BodyAxes::One(body) => {
+                RunKind::Rotation(Box::new(ManoeuvreMetrics::new(scenario, body, selection)))
+            }
         };
         Self {
             kind,
-            filter: FilterMetrics::new(scenario).filter(|_| selection.wants_any(filter::TOLD)),
-            known: AttitudeMetrics::new(scenario).filter(|_| selection.wants_any(attitude::TOLD)),
-            adapted: Adapted::new(scenario),
-            windows: Windows::alone(scenario),
-            tracked: Tracked::new(scenario),
+            filter: FilterMetrics::new(scenario).filter(|_| selection.wants_any(filter::METRICS)),
+            known: AttitudeMetrics::new(scenario).filter(|_| selection.wants_any(attitude::METRICS)),
+            adapted: AdaptationMetrics::new(scenario),
+            windows: EnvelopeMetrics::if_not_collected_elsewhere(scenario),
+            tracked: ObserverMetrics::new(scenario),
         }
     }
 
     /// Returns the collector of a rotation towards angle 0 from the start on, without observed coordinates; `None` for
     /// other runs.
-    pub fn rotation(&mut self) -> Option<&mut Rotation> {
+    pub fn rotation(&mut self) -> Option<&mut ManoeuvreMetrics> {
         match &mut self.kind {
-            Kind::Rotation(rotation) if rotation.is_plain() => Some(rotation),
+            RunKind::Rotation(rotation) if rotation.needs_angle_only() => Some(rotation),
             _ => None,
         }
     }
 
     /// Returns true if a filter's estimates at time `t` (s) are assessed.
-    pub fn assesses(&self, t: f64) -> bool {
-        self.filter.as_ref().is_some_and(|filter| filter.assesses(t))
+    pub fn is_assessed(&self, t: f64) -> bool {
+        self.filter.as_ref().is_some_and(|filter| filter.is_assessed(t))
     }
 
     /// Returns the metrics of the run that has ended.
     pub fn finish(self, scenario: &Scenario) -> Metrics {
         let mut metrics = match self.kind {
-            Kind::Switchings(switchings) => switchings.finish(scenario),
-            Kind::Rotation(rotation) => rotation.finish(),
-            Kind::Spatial(spatial) => spatial.finish(),
+            RunKind::Switchings(switchings) => switchings.finish(scenario),
+            RunKind::Rotation(rotation) => rotation.finish(),
+            RunKind::Spatial(spatial) => spatial.finish(),
         };
         metrics.extend(self.tracked.finish());
         metrics.extend(self.filter.into_iter().flat_map(FilterMetrics::finish));
         metrics.extend(self.known.into_iter().flat_map(AttitudeMetrics::finish));
-        metrics.extend(self.windows.iter().flat_map(Windows::finish));
-        metrics.extend(self.adapted.into_iter().flat_map(Adapted::finish));
+        metrics.extend(self.windows.iter().flat_map(EnvelopeMetrics::finish));
+        metrics.extend(self.adapted.into_iter().flat_map(AdaptationMetrics::finish));
         Metrics(metrics)
     }
 }
 
-impl Record for Gather {
-    fn estimates(&self) -> bool {
+impl Record for MetricsCollector {
+    fn wants_estimates(&self) -> bool {
         self.filter.is_some() || self.known.is_some()
     }
 
-    fn switchings(&self) -> bool {
+    fn wants_switchings(&self) -> bool {
         match &self.kind {
-            Kind::Switchings(switchings) => switchings.switchings(),
-            Kind::Rotation(_) | Kind::Spatial(_) => true,
+            RunKind::Switchings(switchings) => switchings.wants_switchings(),
+            RunKind::Rotation(_) | RunKind::Spatial(_) => true,
         }
     }
 
-    fn course(&self) -> record::Course {
+    fn piece_demand(&self) -> record::PieceDemand {
         match &self.kind {
-            Kind::Switchings(switchings) => switchings.course(),
-            Kind::Rotation(rotation) => rotation.course(),
-            Kind::Spatial(_) => record::Course::None,
+            RunKind::Switchings(switchings) => switchings.piece_demand(),
+            RunKind::Rotation(rotation) => rotation.piece_demand(),
+            RunKind::Spatial(_) => record::PieceDemand::None,
         }
     }
 
-    fn stretch(&mut self, now: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+    fn piece(&mut self, now: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
         match &mut self.kind {
-            Kind::Switchings(switchings) => switchings.stretch(now, stretch),
-            Kind::Rotation(rotation) => rotation.stretch(now, stretch),
-            Kind::Spatial(_) => Ok(()),
+            RunKind::Switchings(switchings) => switchings.piece(now, stretch),
+            RunKind::Rotation(rotation) => rotation.piece(now, stretch),
+            RunKind::Spatial(_) => Ok(()),
         }
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match (&mut self.filter, sample) {
-            (Some(filter), Sample::Estimate(estimate)) => filter.see(now, std::slice::from_ref(estimate)),
-            (Some(filter), Sample::Estimates(estimates)) => filter.see(now, &estimates.axes),
+            (Some(filter), Sample::Estimate(estimate)) => filter.observe(now, std::slice::from_ref(estimate)),
+            (Some(filter), Sample::Estimates(estimates)) => filter.observe(now, &estimates.axes),
             _ => {}
         }
         match (&mut self.known, sample) {
-            (Some(known), Sample::AttitudeEstimate(estimate)) => known.see(now, estimate),
-            (Some(known), Sample::ElasticEstimates(estimates)) => known.learn(estimates),
+            (Some(known), Sample::AttitudeEstimate(estimate)) => known.observe(now, estimate),
+            (Some(known), Sample::ElasticEstimates(estimates)) => known.observe_modes(estimates),
             _ => {}
         }
         if let (Some(windows), Sample::Window(window)) = (&mut self.windows, sample) {
@@ -350,13 +352,13 @@ impl Record for Gather {
             adapted.see(now, sample);
         }
         match &mut self.kind {
-            Kind::Switchings(switchings) => switchings.record(now, sample),
-            Kind::Rotation(rotation) => rotation.record(now, sample),
-            Kind::Spatial(spatial) => {
+            RunKind::Switchings(switchings) => switchings.record(now, sample),
+            RunKind::Rotation(rotation) => rotation.record(now, sample),
+            RunKind::Spatial(spatial) => {
                 match sample {
-                    Sample::Cycle(cycle) => spatial.see(now, cycle),
-                    Sample::WheelEvent(event) => spatial.slip(event),
-                    Sample::Accelerations(row) => spatial.shake(row),
+                    Sample::Cycle(cycle) => spatial.observe_cycle(now, cycle),
+                    Sample::WheelEvent(event) => spatial.observe_bearing_event(event),
+                    Sample::Accelerations(row) => spatial.observe_acceleration(row),
                     Sample::Tracking(tracking) => self.tracked.see(tracking),
                     _ => {}
                 }

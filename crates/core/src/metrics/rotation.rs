@@ -2,25 +2,25 @@
 //!
 //! All of them are computed from the stretches of the motion, whose polynomials are exact to rounding, and from no log.
 
-mod beside;
+mod lanes;
 
-use super::goal::{self, Verdict};
+use super::goal::{self, GoalMetrics};
 use super::{
-    ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, Meaning,
-    MetricValue, OUTPUT_RESIDUALS, OUTPUT_SWINGS, OUTPUT_SWINGS_LATE, PEAK_ACCELERATION, PEAK_FEEDBACK,
-    PEAK_FEEDBACK_ACCELERATION, PEAK_OUTPUTS, PEAK_TORQUE, Quantity, RESIDUAL_ENERGY,
-    RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection, Value,
+    ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, MetricDescription,
+    MetricValue, NamedMetric, NumberWithUnit, OUTPUT_RESIDUALS, OUTPUT_SWINGS, OUTPUT_SWINGS_LATE,
+    PEAK_ACCELERATION, PEAK_FEEDBACK, PEAK_FEEDBACK_ACCELERATION, PEAK_OUTPUTS, PEAK_TORQUE, RESIDUAL_ENERGY,
+    RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection,
 };
-use crate::analysis::sampled_loop::{DiscreteBody, Loop};
+use crate::analysis::sampled_loop::{DiscretePlant, SampledLoop};
 use crate::body::Planar;
-use crate::law::{Goal, Law, Promise};
-use crate::motion::Stretch;
+use crate::law::{ErrorBand, LawKind, Setpoint};
+use crate::motion::MotionPiece;
 use crate::numerics::polynomial::Polynomial;
-use crate::record::{Arrival, Course, Record, RecordError, Sample};
+use crate::record::{Arrival, PieceDemand, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
 
-pub use beside::{MotionMetrics, Passed};
+pub use lanes::{LaneManoeuvreMetrics, LanePiece};
 
 /// Length of the late part of a run, at its end (s).
 const LATE: f64 = 5.0;
@@ -29,9 +29,9 @@ const DRIFTING: u32 = 8;
 
 /// Collector of the motion of a rotation.
 #[derive(Clone, Debug)]
-pub struct Rotation {
-    goal: Goal,
-    promise: Promise,
+pub struct ManoeuvreMetrics {
+    goal: Setpoint,
+    promise: ErrorBand,
     planned: bool,
     /// True if torques are accelerations, and true if energies are per unit of inertia.
     reduced: (bool, bool),
@@ -44,18 +44,18 @@ pub struct Rotation {
     /// Largest distances from the goal: after the manoeuvre, and in the late part (rad).
     error: (f64, f64),
     /// Verdict on the goal; none before the goal starts.
-    verdict: Option<Verdict>,
+    verdict: Option<GoalMetrics>,
     /// Integral of time times distance, and the rounding carry of the sum (rad s²).
     itae: (f64, f64),
     /// Spectral radius of a sampled loop.
     radius: Option<f64>,
-    outputs: Vec<Seen>,
+    outputs: Vec<CoordinateRange>,
     /// True if any metric of the motion is wanted.
     wants_course: bool,
 }
 
 /// Metrics that are computed from the motion.
-const OF_COURSE: &[Meaning] = &[
+const OF_COURSE: &[MetricDescription] = &[
     PEAK_TORQUE,
     PEAK_FEEDBACK,
     PEAK_OUTPUTS,
@@ -69,7 +69,7 @@ const OF_COURSE: &[Meaning] = &[
 
 /// Values of an observed coordinate.
 #[derive(Clone, Debug)]
-struct Seen {
+struct CoordinateRange {
     unit: String,
     /// Largest absolute value.
     peak: f64,
@@ -98,7 +98,7 @@ impl Range {
 /// Returns the largest spectral radius of the loop over the frequencies of the run; NaN for a scenario without a
 /// sampled loop.
 fn spectral_radius(scenario: &Scenario) -> f64 {
-    let Ok((sampled, law)) = Loop::of(scenario) else { return f64::NAN };
+    let Ok((sampled, law)) = SampledLoop::from_scenario(scenario) else { return f64::NAN };
     let end = scenario.duration.seconds();
     let modes = 0..sampled.body.modes.len();
     let ratios = |t: f64| {
@@ -110,22 +110,26 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
         drift.kinks().into_iter().filter(move |kink| *kink < end).chain(even)
     });
     let all: Vec<Vec<f64>> = drifting.chain([end]).map(ratios).collect();
-    let of = |(held, ratios): (DiscreteBody<'_>, &Vec<f64>)| {
+    let of = |(held, ratios): (DiscretePlant<'_>, &Vec<f64>)| {
         let gain = law.extra_gain(sampled.frequency() * ratios[sampled.dominant]);
         held.closed(gain).spectral_radius()
     };
-    DiscreteBody::several(&sampled, &all).into_iter().zip(&all).map(of).fold(f64::NAN, f64::max)
+    DiscretePlant::for_ratios(&sampled, &all).into_iter().zip(&all).map(of).fold(f64::NAN, f64::max)
 }
 
-impl Rotation {
+impl ManoeuvreMetrics {
     /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
         let end = scenario.duration.seconds();
-        let seen =
-            |unit: &String| Seen { unit: unit.clone(), peak: 0.0, after: Range::EMPTY, late: Range::EMPTY };
+        let seen = |unit: &String| CoordinateRange {
+            unit: unit.clone(),
+            peak: 0.0,
+            after: Range::EMPTY,
+            late: Range::EMPTY,
+        };
         Self {
             goal: scenario.goal(),
-            promise: scenario.promise(),
+            promise: scenario.expected_band(),
             planned: scenario.plan.is_some(),
             reduced: (body.commands_acceleration(), body.has_unit_inertia()),
             late: end - LATE,
@@ -135,23 +139,24 @@ impl Rotation {
             error: (f64::NAN, f64::NAN),
             verdict: None,
             itae: (0.0, 0.0),
-            radius: matches!(scenario.law, Law::Pd(_)).then(|| {
+            radius: matches!(scenario.law, LawKind::Pd(_)).then(|| {
                 if selection.wants_any(&[SPECTRAL_RADIUS]) { spectral_radius(scenario) } else { f64::NAN }
             }),
             outputs: body.outputs.iter().map(|output| seen(&output.unit)).collect(),
-            wants_course: selection.wants_any(OF_COURSE) || selection.wants_any(goal::TOLD),
+            wants_course: selection.wants_any(OF_COURSE) || selection.wants_any(goal::ONE_AXIS_METRICS),
         }
     }
 
     /// Returns the metrics of the run that has ended.
-    pub fn finish(self) -> Vec<MetricValue> {
+    pub fn finish(self) -> Vec<NamedMetric> {
         let mut metrics = Vec::new();
         let (acceleration, unit_inertia) = self.reduced;
         if self.planned {
-            let of =
-                |value: fn(&Arrival) -> f64| Value::Number(self.arrival.as_ref().map_or(f64::NAN, value));
+            let of = |value: fn(&Arrival) -> f64| {
+                MetricValue::Number(self.arrival.as_ref().map_or(f64::NAN, value))
+            };
             let residuals = self.arrival.iter().flat_map(|arrival| &arrival.outputs);
-            let residual = |(output, seen): (&crate::record::Residual, &Seen)| Quantity {
+            let residual = |(output, seen): (&crate::record::Residual, &CoordinateRange)| NumberWithUnit {
                 value: output.amplitude,
                 unit: seen.unit.clone(),
             };
@@ -160,38 +165,42 @@ impl Rotation {
                 (&ARRIVAL_ANGLE, of(|arrival| arrival.angle_error_rad)),
                 (&ARRIVAL_RATE, of(|arrival| arrival.rate_error_rad_s)),
                 (&ANGLE_RESIDUAL, of(|arrival| arrival.angle_residual_rad)),
-                (&OUTPUT_RESIDUALS, Value::Quantities(residuals.zip(&self.outputs).map(residual).collect())),
+                (
+                    &OUTPUT_RESIDUALS,
+                    MetricValue::Quantities(residuals.zip(&self.outputs).map(residual).collect()),
+                ),
                 (energy, of(|arrival| arrival.elastic_energy_j)),
             ]);
         }
-        let outputs = |value: fn(&Seen) -> f64| {
-            let quantity = |seen: &Seen| Quantity { value: value(seen), unit: seen.unit.clone() };
-            Value::Quantities(self.outputs.iter().map(quantity).collect())
+        let outputs = |value: fn(&CoordinateRange) -> f64| {
+            let quantity =
+                |seen: &CoordinateRange| NumberWithUnit { value: value(seen), unit: seen.unit.clone() };
+            MetricValue::Quantities(self.outputs.iter().map(quantity).collect())
         };
         let (peak, feedback) = if acceleration {
             (&PEAK_ACCELERATION, &PEAK_FEEDBACK_ACCELERATION)
         } else {
             (&PEAK_TORQUE, &PEAK_FEEDBACK)
         };
-        let verdict = self.verdict.unwrap_or(Verdict::new(self.end, f64::NAN));
+        let verdict = self.verdict.unwrap_or(GoalMetrics::new(self.end, f64::NAN));
         let itae = if self.verdict.is_some() { self.itae.0 } else { f64::NAN };
         metrics.extend([
-            (peak, Value::Number(self.torque.0)),
-            (feedback, Value::Number(self.torque.1)),
+            (peak, MetricValue::Number(self.torque.0)),
+            (feedback, MetricValue::Number(self.torque.1)),
             (&PEAK_OUTPUTS, outputs(|output| output.peak)),
-            (&ANGLE_ERROR_PEAK, Value::Number(self.error.0)),
-            (&SETTLING_TIME, Value::Number(verdict.settled(self.end))),
-            (&ITAE, Value::Number(itae)),
-            (&ANGLE_ERROR_LATE, Value::Number(self.error.1)),
+            (&ANGLE_ERROR_PEAK, MetricValue::Number(self.error.0)),
+            (&SETTLING_TIME, MetricValue::Number(verdict.settling_time(self.end))),
+            (&ITAE, MetricValue::Number(itae)),
+            (&ANGLE_ERROR_LATE, MetricValue::Number(self.error.1)),
             (&OUTPUT_SWINGS, outputs(|output| output.after.swing())),
             (&OUTPUT_SWINGS_LATE, outputs(|output| output.late.swing())),
         ]);
         metrics.extend(verdict.finish(self.end));
-        metrics.extend(self.radius.map(|radius| (&SPECTRAL_RADIUS, Value::Number(radius))));
+        metrics.extend(self.radius.map(|radius| (&SPECTRAL_RADIUS, MetricValue::Number(radius))));
         metrics
     }
 
-    fn see(&mut self, stretch: &Stretch) {
+    fn see(&mut self, stretch: &MotionPiece) {
         self.torque.0 = stretch.applied.magnitude(self.torque.0);
         self.torque.1 = self.torque.1.max(stretch.feedback.abs());
         for (seen, output) in self.outputs.iter_mut().zip(&stretch.outputs) {
@@ -201,32 +210,33 @@ impl Rotation {
         let part = |from: f64| (from - stretch.from) / stretch.length;
         let (goal, late) = (part(self.goal.from.seconds()), part(self.late));
         if goal < 1.0 {
-            self.see_after(stretch, goal.max(0.0));
+            self.observe_after_end(stretch, goal.max(0.0));
         }
         if goal < 1.0 && late < 1.0 {
-            self.see_late(stretch, goal.max(late).max(0.0));
+            self.observe_late(stretch, goal.max(late).max(0.0));
         }
     }
 
     /// Returns the distance from the goal (rad) over the last part of a stretch, from the fraction `from` of it on.
-    fn error(&self, stretch: &Stretch, from: f64) -> Polynomial {
+    fn error(&self, stretch: &MotionPiece, from: f64) -> Polynomial {
         let since = stretch.from - self.goal.from.seconds();
         let (start, slope) = (self.goal.angle + self.goal.rate * since, self.goal.rate * stretch.length);
-        let error = stretch.angle.less(start, slope);
-        if from > 0.0 { error.part(from, 1.0) } else { error }
+        let error = stretch.angle.minus_line(start, slope);
+        if from > 0.0 { error.restrict(from, 1.0) } else { error }
     }
 
     /// Returns the collector of the verdict, which starts at a distance from the goal (rad).
-    fn judge(&mut self, distance: f64) -> &mut Verdict {
+    fn judge(&mut self, distance: f64) -> &mut GoalMetrics {
         let Self { goal, promise, .. } = self;
-        self.verdict.get_or_insert_with(|| Verdict::new(goal.from.seconds(), promise.band(distance.abs())))
+        self.verdict
+            .get_or_insert_with(|| GoalMetrics::new(goal.from.seconds(), promise.band(distance.abs())))
     }
 
-    fn see_after(&mut self, stretch: &Stretch, from: f64) {
+    fn observe_after_end(&mut self, stretch: &MotionPiece, from: f64) {
         let error = self.error(stretch, from);
         let (begins, length) = (stretch.from + from * stretch.length, (1.0 - from) * stretch.length);
         let goal = self.goal.from.seconds();
-        self.judge(error.at(0.0)).see(begins, length, &error);
+        self.judge(error.at(0.0)).observe(begins, length, &error);
         // The larger one; NaN is ignored.
         self.error.0 = error.magnitude(self.error.0.max(0.0));
         let integral = integral(&error, begins - goal, length) - self.itae.1;
@@ -234,18 +244,18 @@ impl Rotation {
         self.itae = (total, (total - self.itae.0) - integral);
         for (seen, output) in self.outputs.iter_mut().zip(&stretch.outputs) {
             if from > 0.0 {
-                seen.after.widen(&output.part(from, 1.0));
+                seen.after.widen(&output.restrict(from, 1.0));
             } else {
                 seen.after.widen(output);
             }
         }
     }
 
-    fn see_late(&mut self, stretch: &Stretch, from: f64) {
+    fn observe_late(&mut self, stretch: &MotionPiece, from: f64) {
         self.error.1 = self.error(stretch, from).magnitude(self.error.1.max(0.0));
         for (seen, output) in self.outputs.iter_mut().zip(&stretch.outputs) {
             if from > 0.0 {
-                seen.late.widen(&output.part(from, 1.0));
+                seen.late.widen(&output.restrict(from, 1.0));
             } else {
                 seen.late.widen(output);
             }
@@ -269,9 +279,9 @@ fn integral(value: &Polynomial, begins: f64, length: f64) -> f64 {
     edges.windows(2).map(piece).sum()
 }
 
-impl Record for Rotation {
-    fn course(&self) -> Course {
-        if self.wants_course { Course::All } else { Course::None }
+impl Record for ManoeuvreMetrics {
+    fn piece_demand(&self) -> PieceDemand {
+        if self.wants_course { PieceDemand::All } else { PieceDemand::None }
     }
 
     fn record(&mut self, _: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
@@ -281,7 +291,7 @@ impl Record for Rotation {
         Ok(())
     }
 
-    fn stretch(&mut self, _: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+    fn piece(&mut self, _: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
         self.see(stretch);
         Ok(())
     }

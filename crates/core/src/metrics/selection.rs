@@ -1,6 +1,6 @@
 //! Selection of the metrics that are wanted: all, or those that are named.
 
-use super::{ALL, Meaning, Metrics};
+use super::{ALL, MetricDescription, Metrics};
 use crate::document::nearest;
 
 /// Metrics in a campaign's table.
@@ -15,7 +15,7 @@ impl Selection {
     ///
     /// # Errors
     /// A name that is not a metric's.
-    pub fn of<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Self, String> {
+    pub fn from_names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Self, String> {
         let mut wanted = Vec::new();
         for name in names {
             let name = name.as_ref().trim();
@@ -41,7 +41,7 @@ impl Selection {
     }
 
     /// Returns true if any of some metrics is wanted.
-    pub fn wants_any(&self, metrics: &[Meaning]) -> bool {
+    pub fn wants_any(&self, metrics: &[MetricDescription]) -> bool {
         metrics.iter().any(|meaning| self.wants(meaning.name))
     }
 
@@ -52,7 +52,7 @@ impl Selection {
 
     /// Returns those metrics of a run that are wanted, in the order in which all are reported.
     #[must_use]
-    pub fn of_run(&self, metrics: Metrics) -> Metrics {
+    pub fn select(&self, metrics: Metrics) -> Metrics {
         match self.0 {
             None => metrics,
             Some(_) => {

@@ -1,25 +1,26 @@
 //! Metrics of a relay law's switchings: pushes, impulse, envelope, adaptation, limit cycle.
 
-use super::envelope::Windows;
-use super::goal::{self, Verdict};
+use super::envelope::EnvelopeMetrics;
+use super::goal::{self, GoalMetrics};
 use super::{
     CYCLE_DUTY, CYCLE_IMPULSE, CYCLE_KIND, CYCLE_MULTIPLIER_ARGUMENTS, CYCLE_MULTIPLIER_MAX,
     CYCLE_MULTIPLIERS, CYCLE_ORDER, CYCLE_PERIOD, CYCLE_REDUCED_IMPULSE, CYCLE_SYMMETRIC, DUTY,
     ENVELOPE_FROZEN, FROZEN_REDUCTION, GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, IMPULSE,
-    Meaning, MetricValue, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS, Selection, Value,
+    MetricDescription, MetricValue, NamedMetric, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS,
+    Selection,
 };
 use crate::adaptation::Objective;
-use crate::analysis::cycle::CycleWatch;
+use crate::analysis::limit_cycle::LimitCycleDetector;
 use crate::body::Planar;
-use crate::law::{Goal, Phase};
-use crate::motion::Stretch;
-use crate::record::{Course, Record, RecordError, Sample};
+use crate::law::{Phase, Setpoint};
+use crate::motion::MotionPiece;
+use crate::record::{PieceDemand, Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::{Instant, Span};
 
 /// Collector of the switchings of a relay law, of window means and of the adaptation's steps.
 #[derive(Clone, Debug)]
-pub struct Switchings {
+pub struct RelayMetrics {
     duration: f64,
     count: u64,
     pushes: (u64, u64),
@@ -27,24 +28,24 @@ pub struct Switchings {
     impulse: f64,
     /// Time of the last switching, its torque, and true if that is strong.
     since: (Instant, f64, bool),
-    windows: Windows,
+    windows: EnvelopeMetrics,
     gain: (f64, f64),
     /// Initial value of the gain that the adaptation tunes.
     tuned: Option<f64>,
     frozen_at: f64,
-    cycle: CycleWatch,
+    cycle: LimitCycleDetector,
     observed: bool,
     adapted: bool,
     /// True if torques are accelerations.
     reduced: bool,
-    goal: Goal,
-    verdict: Verdict,
-    wanted: Wanted,
+    goal: Setpoint,
+    verdict: GoalMetrics,
+    wanted: WantedMetrics,
 }
 
 /// Groups of these metrics that are wanted.
 #[derive(Copy, Clone, Debug)]
-struct Wanted {
+struct WantedMetrics {
     cycle: bool,
     verdict: bool,
     /// True if counts, duty or impulse are wanted.
@@ -52,7 +53,7 @@ struct Wanted {
 }
 
 /// Metrics of the limit cycle.
-const OF_CYCLE: &[Meaning] = &[
+const OF_CYCLE: &[MetricDescription] = &[
     CYCLE_KIND,
     CYCLE_PERIOD,
     CYCLE_ORDER,
@@ -65,13 +66,13 @@ const OF_CYCLE: &[Meaning] = &[
 ];
 
 /// Metrics of the switchings without those of the cycle.
-const COUNTED: &[Meaning] = &[SWITCHINGS, PUSHES_RIGHT, PUSHES_LEFT, DUTY, IMPULSE];
+const COUNTED: &[MetricDescription] = &[SWITCHINGS, PUSHES_RIGHT, PUSHES_LEFT, DUTY, IMPULSE];
 
-impl Switchings {
+impl RelayMetrics {
     /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
         // Multipliers are defined for uncoupled modes only.
-        let smooth = scenario.study.sampling.is_none() && scenario.linear.is_none();
+        let smooth = scenario.study.sample_period.is_none() && scenario.linear.is_none();
         Self {
             duration: scenario.duration.seconds(),
             count: 0,
@@ -79,60 +80,66 @@ impl Switchings {
             strong: Span::ZERO,
             impulse: 0.0,
             since: (Instant::START, 0.0, false),
-            windows: Windows::new(scenario),
+            windows: EnvelopeMetrics::new(scenario),
             gain: (f64::NAN, f64::NAN),
-            tuned: scenario.tuned(),
+            tuned: scenario.tuned_parameter(),
             frozen_at: f64::NAN,
-            cycle: CycleWatch::new(body, smooth),
+            cycle: LimitCycleDetector::new(body, smooth),
             observed: scenario.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()),
             adapted: scenario.objective() == Some(Objective::EnvelopeMean),
             reduced: body.commands_acceleration(),
             goal: scenario.goal(),
-            verdict: Verdict::new(scenario.goal().from.seconds(), scenario.promise().band(f64::NAN)),
-            wanted: Wanted {
+            verdict: GoalMetrics::new(
+                scenario.goal().from.seconds(),
+                scenario.expected_band().band(f64::NAN),
+            ),
+            wanted: WantedMetrics {
                 cycle: selection.wants_any(OF_CYCLE),
-                verdict: selection.wants_any(goal::TOLD),
+                verdict: selection.wants_any(goal::ONE_AXIS_METRICS),
                 counts: selection.wants_any(COUNTED),
             },
         }
     }
 
     /// Returns the metrics of the run that has ended.
-    pub fn finish(mut self, scenario: &Scenario) -> Vec<MetricValue> {
+    pub fn finish(mut self, scenario: &Scenario) -> Vec<NamedMetric> {
         self.switch(Instant::START + scenario.duration, 0.0, false);
         let hours = self.duration / 3600.0;
         let mut metrics = vec![
-            (&SWITCHINGS, Value::Count(self.count)),
-            (&PUSHES_RIGHT, Value::Count(self.pushes.0)),
-            (&PUSHES_LEFT, Value::Count(self.pushes.1)),
-            (&DUTY, Value::Number(self.strong.seconds() / self.duration)),
-            (if self.reduced { &REDUCED_IMPULSE } else { &IMPULSE }, Value::Number(self.impulse / hours)),
+            (&SWITCHINGS, MetricValue::Count(self.count)),
+            (&PUSHES_RIGHT, MetricValue::Count(self.pushes.0)),
+            (&PUSHES_LEFT, MetricValue::Count(self.pushes.1)),
+            (&DUTY, MetricValue::Number(self.strong.seconds() / self.duration)),
+            (
+                if self.reduced { &REDUCED_IMPULSE } else { &IMPULSE },
+                MetricValue::Number(self.impulse / hours),
+            ),
         ];
         if self.observed {
             metrics.extend(self.windows.finish());
         }
-        metrics.push((&GAIN_INITIAL, Value::Number(self.gain.0)));
-        metrics.push((&GAIN_FINAL, Value::Number(self.gain.1)));
-        metrics.push((&GAIN_FROZEN_AT, Value::Number(self.frozen_at)));
+        metrics.push((&GAIN_INITIAL, MetricValue::Number(self.gain.0)));
+        metrics.push((&GAIN_FINAL, MetricValue::Number(self.gain.1)));
+        metrics.push((&GAIN_FROZEN_AT, MetricValue::Number(self.frozen_at)));
         if self.adapted {
             metrics.extend(self.frozen());
         }
-        metrics.extend(cycle_metrics(self.cycle, self.reduced));
+        metrics.extend(limit_cycle_metrics(self.cycle, self.reduced));
         metrics.extend(self.verdict.finish(self.duration));
         metrics
     }
 
-    fn frozen(&self) -> [MetricValue; 3] {
+    fn frozen(&self) -> [NamedMetric; 3] {
         let level = if self.frozen_at.is_nan() {
             f64::NAN
         } else {
-            self.windows.since(self.frozen_at).unwrap_or(self.windows.last())
+            self.windows.mean_since(self.frozen_at).unwrap_or(self.windows.last_mean())
         };
         let gain = if self.frozen_at.is_nan() { f64::NAN } else { self.gain.1 };
         [
-            (&GAIN_FROZEN, Value::Number(gain)),
-            (&ENVELOPE_FROZEN, Value::Number(level)),
-            (&FROZEN_REDUCTION, Value::Number(self.windows.reference() / level)),
+            (&GAIN_FROZEN, MetricValue::Number(gain)),
+            (&ENVELOPE_FROZEN, MetricValue::Number(level)),
+            (&FROZEN_REDUCTION, MetricValue::Number(self.windows.reference_mean() / level)),
         ]
     }
 
@@ -153,43 +160,47 @@ impl Switchings {
     }
 }
 
-fn cycle_metrics(watch: CycleWatch, reduced: bool) -> Vec<MetricValue> {
+fn limit_cycle_metrics(watch: LimitCycleDetector, reduced: bool) -> Vec<NamedMetric> {
     let cycle = watch.cycle();
     let cycle = cycle.as_ref();
-    let number = |value: Option<f64>| Value::Number(value.unwrap_or(f64::NAN));
+    let number = |value: Option<f64>| MetricValue::Number(value.unwrap_or(f64::NAN));
     let multipliers = cycle.map_or(&[][..], |c| &c.multipliers);
     let impulse = cycle.map(|c| c.impulse / c.period * 3600.0);
     vec![
-        (&CYCLE_KIND, Value::Word(cycle.map_or("none", |c| c.kind.word()))),
+        (&CYCLE_KIND, MetricValue::Word(cycle.map_or("none", |c| c.kind.word()))),
         (&CYCLE_PERIOD, number(cycle.map(|c| c.period))),
         (&CYCLE_ORDER, number(cycle.map(|c| c.order as f64))),
         (&CYCLE_SYMMETRIC, number(cycle.map(|c| f64::from(u8::from(c.symmetric))))),
         (&CYCLE_DUTY, number(cycle.map(|c| c.duty))),
         (if reduced { &CYCLE_REDUCED_IMPULSE } else { &CYCLE_IMPULSE }, number(impulse)),
-        (&CYCLE_MULTIPLIERS, Value::Numbers(multipliers.iter().map(|m| m.0).collect())),
-        (&CYCLE_MULTIPLIER_ARGUMENTS, Value::Numbers(multipliers.iter().map(|m| m.1).collect())),
+        (&CYCLE_MULTIPLIERS, MetricValue::Numbers(multipliers.iter().map(|m| m.0).collect())),
+        (&CYCLE_MULTIPLIER_ARGUMENTS, MetricValue::Numbers(multipliers.iter().map(|m| m.1).collect())),
         (&CYCLE_MULTIPLIER_MAX, number(multipliers.first().map(|m| m.0))),
     ]
 }
 
-impl Record for Switchings {
-    fn switchings(&self) -> bool {
+impl Record for RelayMetrics {
+    fn wants_switchings(&self) -> bool {
         self.wanted.counts || self.wanted.cycle
     }
 
-    fn course(&self) -> Course {
+    fn piece_demand(&self) -> PieceDemand {
         if !self.wanted.verdict {
-            return Course::None;
+            return PieceDemand::None;
         }
         // For a goal of 0 from the start on, bounds of the angle show most motions to be inside the band.
-        if self.goal == Goal::default() { Course::Beyond(self.verdict.band()) } else { Course::All }
+        if self.goal == Setpoint::default() {
+            PieceDemand::Beyond(self.verdict.band())
+        } else {
+            PieceDemand::All
+        }
     }
 
-    fn stretch(&mut self, _: Instant, stretch: &Stretch) -> Result<(), RecordError> {
+    fn piece(&mut self, _: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
         let since = stretch.from - self.goal.from.seconds();
         let start = self.goal.angle + self.goal.rate * since;
-        let distance = stretch.angle.less(start, self.goal.rate * stretch.length);
-        self.verdict.see(stretch.from, stretch.length, &distance);
+        let distance = stretch.angle.minus_line(start, self.goal.rate * stretch.length);
+        self.verdict.observe(stretch.from, stretch.length, &distance);
         Ok(())
     }
 

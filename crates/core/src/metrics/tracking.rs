@@ -2,15 +2,15 @@
 
 use super::{
     DAMPING_CYCLES, DAMPING_PAUSES, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, INFLUENCE_ERRORS,
-    INFLUENCE_ESTIMATES, MetricValue, TRACKING_ERROR, Value,
+    INFLUENCE_ESTIMATES, MetricValue, NamedMetric, TRACKING_ERROR,
 };
-use crate::estimator::Estimator;
+use crate::estimator::EstimatorKind;
 use crate::record::{TrackedMode, Tracking, Watch};
 use crate::scenario::Scenario;
 
 /// Collector of the cycles of a run.
 #[derive(Clone, Debug, Default)]
-pub struct Tracked {
+pub struct ObserverMetrics {
     last: Option<Vec<TrackedMode>>,
     /// Sum of the squared errors of the elastic rates (rad²/s²), and the number of cycles.
     square: (f64, u64),
@@ -19,10 +19,10 @@ pub struct Tracked {
     resting: [bool; 3],
 }
 
-impl Tracked {
+impl ObserverMetrics {
     /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let adaptive = matches!(scenario.estimator, Some(Estimator::Adaptive(_)));
+        let adaptive = matches!(scenario.estimator, Some(EstimatorKind::Adaptive(_)));
         Self { last: adaptive.then(Vec::new), ..Self::default() }
     }
 
@@ -41,17 +41,17 @@ impl Tracked {
     }
 
     /// Returns the metrics of the run that has ended; empty without an adaptive observer.
-    pub fn finish(self) -> Vec<MetricValue> {
+    pub fn finish(self) -> Vec<NamedMetric> {
         let Some(last) = self.last else { return Vec::new() };
-        let list = |of: &dyn Fn(&TrackedMode) -> f64| Value::Numbers(last.iter().map(of).collect());
+        let list = |of: &dyn Fn(&TrackedMode) -> f64| MetricValue::Numbers(last.iter().map(of).collect());
         vec![
             (&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)),
             (&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)),
             (&INFLUENCE_ESTIMATES, list(&|of| of.influence)),
             (&INFLUENCE_ERRORS, list(&|of| of.influence / of.true_influence - 1.0)),
-            (&TRACKING_ERROR, Value::Number(f64::sqrt(self.square.0 / self.square.1 as f64))),
-            (&DAMPING_CYCLES, Value::Count(self.cycles)),
-            (&DAMPING_PAUSES, Value::Count(self.pauses)),
+            (&TRACKING_ERROR, MetricValue::Number(f64::sqrt(self.square.0 / self.square.1 as f64))),
+            (&DAMPING_CYCLES, MetricValue::Count(self.cycles)),
+            (&DAMPING_PAUSES, MetricValue::Count(self.pauses)),
         ]
     }
 }

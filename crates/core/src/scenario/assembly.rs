@@ -3,12 +3,12 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use super::{Scenario, Written};
-use crate::body::craft::{Craft, Spacecraft};
-use crate::body::{Body, Model};
-use crate::document::{Document, Fault, ScenarioError};
+use super::{Scenario, ScenarioSpec};
+use crate::body::craft::{AssembledSpacecraft, Spacecraft};
+use crate::body::{Body, BodyModel};
+use crate::document::{ConfigError, Document, ScenarioError};
 
-impl Written {
+impl ScenarioSpec {
     /// Assembles the model from the description of the body, with modes read from files relative to `directory`. Files
     /// and models that are unchanged from `parent` are reused.
     pub(super) fn assemble(
@@ -16,19 +16,21 @@ impl Written {
         document: &Document,
         parent: Option<&Scenario>,
         directory: &Path,
-    ) -> Result<Model, ScenarioError> {
-        let refused = |fault: Fault| document.inconsistent(&fault);
+    ) -> Result<BodyModel, ScenarioError> {
+        let refused = |fault: ConfigError| document.at_key(&fault);
         let key = self.body_key();
         match (&mut self.body, self.spacecraft.clone()) {
             (_, None) if !self.appendage.is_empty() => {
                 let why = "is clamped to the hub of a `[spacecraft]`, and there is none";
-                Err(refused(Fault::new("appendage", why)))
+                Err(refused(ConfigError::new("appendage", why)))
             }
             (None, None) => Err(document.missing("body")),
             (Some(_), Some(_)) => {
-                Err(refused(Fault::new("spacecraft", "is itself a body: leave out `body`")))
+                Err(refused(ConfigError::new("spacecraft", "is itself a body: leave out `body`")))
             }
-            (Some(body), None) => alone(body, parent, directory).map_err(|fault| refused(fault.within(&key))),
+            (Some(body), None) => {
+                single_body(body, parent, directory).map_err(|fault| refused(fault.within(&key)))
+            }
             (None, Some(spacecraft)) => self.craft(&spacecraft, parent, directory).map_err(refused),
         }
     }
@@ -40,7 +42,7 @@ impl Written {
         spacecraft: &Spacecraft,
         parent: Option<&Scenario>,
         directory: &Path,
-    ) -> Result<Model, Fault> {
+    ) -> Result<BodyModel, ConfigError> {
         for (index, appendage) in self.appendage.iter_mut().enumerate() {
             let others = parent.and_then(|parent| parent.appendage.get(index));
             let read = appendage.read_modes(directory, others);
@@ -51,12 +53,21 @@ impl Written {
             Some((wheels, key)) => wheels.rotors().map_err(|fault| fault.within(&key))?,
             None => Vec::new(),
         };
-        Ok(Model::Craft(Arc::new(Craft::assemble(spacecraft, &self.appendage, &angles, &rotors)?)))
+        Ok(BodyModel::Craft(Arc::new(AssembledSpacecraft::assemble(
+            spacecraft,
+            &self.appendage,
+            &angles,
+            &rotors,
+        )?)))
     }
 }
 
 /// Assembles the model of a body that is described in one table.
-fn alone(body: &mut Body, parent: Option<&Scenario>, directory: &Path) -> Result<Model, Fault> {
+fn single_body(
+    body: &mut Body,
+    parent: Option<&Scenario>,
+    directory: &Path,
+) -> Result<BodyModel, ConfigError> {
     let other = parent.and_then(|parent| parent.body.as_ref());
     body.locate(directory);
     body.read(other)?;

@@ -1,30 +1,30 @@
 //! Authority of the actuators about each axis, and the error bands that laws keep with it.
 
-use super::Written;
-use super::study::Study;
-use crate::actuator::{Actuator, PulseWidth};
+use super::ScenarioSpec;
+use super::resolved::ResolvedScenario;
+use crate::actuator::{ActuatorKind, PulseWidth};
 use crate::attitude::rotation_vector;
 use crate::body::Spatial;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::estimator::adaptive;
-use crate::law::{ActiveDamping, Authority, Law, PhasePlane, Promise, band};
+use crate::law::{ActiveDamping, Authority, ErrorBand, LawKind, PhasePlane, error_band};
 use crate::quantity::Positive;
 use crate::time::Instant;
 
 /// Elastic rate that no structure reaches (rad/s).
 const NO_MOTION: f64 = 1.0;
 
-impl Study {
+impl ResolvedScenario {
     /// Returns the authority of all actuators about an axis, until the first of them is at its limit with its share.
-    pub(super) fn authority(&self, written: &Written, axis: usize) -> Authority {
+    pub(super) fn authority(&self, written: &ScenarioSpec, axis: usize) -> Authority {
         let members = written.actuator.members();
         let acting: Vec<_> = members.iter().filter(|member| member.share(axis) > 0.0).collect();
         let (accelerations, width, delay) = match &acting[..] {
             [] => ([0.0; 2], PulseWidth::default(), 0.0),
-            [only] => self.authority_of(&only.kind, axis),
+            [only] => self.actuator_authority(&only.kind, axis),
             several => {
                 let each = several.iter().map(|member| {
-                    let (most, _, delay) = self.authority_of(&member.kind, axis);
+                    let (most, _, delay) = self.actuator_authority(&member.kind, axis);
                     (most.map(|most| most / member.share(axis)), delay)
                 });
                 let (most, late) =
@@ -38,56 +38,59 @@ impl Study {
     }
 
     /// Returns the authority of one actuator acting alone: largest accelerations (rad/s²), pulse widths, and delay (s).
-    fn authority_of(&self, kind: &Actuator, axis: usize) -> ([f64; 2], PulseWidth, f64) {
+    fn actuator_authority(&self, kind: &ActuatorKind, axis: usize) -> ([f64; 2], PulseWidth, f64) {
         let inertia = self.axes[axis].commanded_inertia();
         match kind {
-            Actuator::Ideal(_) | Actuator::Hold(_) => ([f64::INFINITY; 2], PulseWidth::default(), 0.0),
-            Actuator::Own(own) => {
+            ActuatorKind::Ideal(_) | ActuatorKind::Hold(_) => {
+                ([f64::INFINITY; 2], PulseWidth::default(), 0.0)
+            }
+            ActuatorKind::Own(own) => {
                 let most = own.limit(axis).map_or(f64::INFINITY, |limit| limit / inertia);
                 ([most; 2], PulseWidth::default(), 0.0)
             }
-            Actuator::Thrusters(thrusters) => {
+            ActuatorKind::Thrusters(thrusters) => {
                 ([thrusters.torque.about(axis).get() / inertia; 2], thrusters.width(), 0.0)
             }
-            Actuator::Wheel(wheel) => {
+            ActuatorKind::Wheel(wheel) => {
                 let most = wheel.limit.map_or(f64::INFINITY, Positive::get) * wheel.gain.get() / inertia;
                 ([most; 2], PulseWidth::default(), wheel.delay.get())
             }
-            Actuator::Wheels(wheels) => {
+            ActuatorKind::Wheels(wheels) => {
                 let limit = wheels.torque.map_or(f64::INFINITY, Positive::get);
-                let most = self.wheels.as_ref().map_or(f64::INFINITY, |wheels| wheels.most(axis, limit));
+                let most =
+                    self.wheels.as_ref().map_or(f64::INFINITY, |wheels| wheels.largest_torque(axis, limit));
                 ([most / inertia; 2], PulseWidth::default(), 0.0)
             }
-            Actuator::ControlMomentGyros(gyros) => {
-                ([gyros.most(&self.gimbals, axis) / inertia; 2], PulseWidth::default(), 0.0)
+            ActuatorKind::ControlMomentGyros(gyros) => {
+                ([gyros.largest_torque(&self.gimbals, axis) / inertia; 2], PulseWidth::default(), 0.0)
             }
-            Actuator::Magnetorquers(torquers) => {
-                let field = self.around.as_ref().map_or(0.0, |around| around.sky().field_bound());
-                ([torquers.largest() * field / inertia; 2], PulseWidth::default(), 0.0)
+            ActuatorKind::Magnetorquers(torquers) => {
+                let field = self.surroundings.as_ref().map_or(0.0, |around| around.sky().field_bound());
+                ([torquers.largest_moment() * field / inertia; 2], PulseWidth::default(), 0.0)
             }
-            Actuator::Jets(jets) => {
+            ActuatorKind::Jets(jets) => {
                 let groups = self.groups.as_ref().map(|groups| &groups[axis]);
                 let of = |sign: usize| groups.map_or(f64::INFINITY, |groups| groups[sign].acceleration);
-                let period = jets.period.or(self.cycle).unwrap_or(self.tick);
-                ([of(0), of(1)], jets.width(), f64::from(jets.delay) * period.seconds())
+                let period = jets.period.or(self.law_period).unwrap_or(self.assessment_period);
+                ([of(0), of(1)], jets.pulse_width(), f64::from(jets.delay) * period.seconds())
             }
         }
     }
 
     /// Returns the elastic rate above which the active damping of an axis acts (rad/s); 0 for a law without it.
-    pub(super) fn threshold(&self, written: &Written, axis: usize) -> Result<f64, Fault> {
-        let Law::PhasePlane(PhasePlane { damping: Some(damping), .. }) = written.law.about(axis) else {
+    pub(super) fn damping_threshold(&self, written: &ScenarioSpec, axis: usize) -> Result<f64, ConfigError> {
+        let LawKind::PhasePlane(PhasePlane { damping: Some(damping), .. }) = written.law.about(axis) else {
             return Ok(0.0);
         };
         let key = format!("{}.damping", written.law_key(axis));
         let Some(plan) = &self.adaptive else {
             let why = "needs the elastic rates of an `[estimator.adaptive]`, and there is none";
-            return Err(Fault::new(key, why));
+            return Err(ConfigError::new(key, why));
         };
-        let threshold = threshold(damping, plan, &self.authorities[axis], axis);
+        let threshold = damping_threshold(damping, plan, &self.authorities[axis], axis);
         if damping.threshold.is_none() && threshold >= NO_MOTION {
             let name = if self.axes.len() == 1 { "the law" } else { crate::attitude::AXES[axis] };
-            return Err(Fault::new(
+            return Err(ConfigError::new(
                 key,
                 format!(
                     "gives {name} a threshold of {threshold:e} rad/s, which is never reached: with this delay an undamped mode \
@@ -98,19 +101,24 @@ impl Study {
         Ok(threshold)
     }
 
-    pub(super) fn band(&self, written: &Written, body: Option<&Spatial>, axis: usize) -> Option<f64> {
+    pub(super) fn error_band(
+        &self,
+        written: &ScenarioSpec,
+        body: Option<&Spatial>,
+        axis: usize,
+    ) -> Option<f64> {
         match (written.law.about(axis), body) {
-            (Law::PhasePlane(law), _) => Some(band(law, &self.authorities[axis])),
-            (law, Some(body)) => match law.promise() {
-                Promise::Nothing => None,
-                Promise::Within(band) => Some(band),
-                Promise::Part(part) => {
+            (LawKind::PhasePlane(law), _) => Some(error_band(law, &self.authorities[axis])),
+            (law, Some(body)) => match law.expected_band() {
+                ErrorBand::None => None,
+                ErrorBand::Absolute(band) => Some(band),
+                ErrorBand::Fraction(part) => {
                     // Relative to the whole rotation to the last target.
                     let end = Instant::START + written.duration;
-                    let goal = self.way.target(written.last_target(end));
+                    let goal = self.profile.target(written.last_target_start(end));
                     let before = written.targets().iter().rev().nth(1);
-                    let from =
-                        before.map_or_else(|| body.attitude.get(), |target| self.way.target(target.begins()));
+                    let from = before
+                        .map_or_else(|| body.attitude.get(), |target| self.profile.target(target.starts()));
                     let distance = rotation_vector(&goal, &from).norm();
                     (distance > 0.0).then_some(part * distance)
                 }
@@ -120,11 +128,11 @@ impl Study {
     }
 
     /// Returns the arrival band about a target, for each axis (rad); NaN without one.
-    pub fn zones(&self, written: &Written) -> [f64; 3] {
+    pub fn arrival_bands(&self, written: &ScenarioSpec) -> [f64; 3] {
         let mut zones = [f64::NAN; 3];
-        for (axis, (zone, band)) in zones.iter_mut().zip(&self.bands).enumerate() {
+        for (axis, (zone, band)) in zones.iter_mut().zip(&self.expected_bands).enumerate() {
             *zone = match written.law.about(axis) {
-                Law::PhasePlane(law) => law.dead_zone.get(),
+                LawKind::PhasePlane(law) => law.dead_zone.get(),
                 _ => band.unwrap_or(f64::NAN),
             };
         }
@@ -133,19 +141,19 @@ impl Study {
 }
 
 /// Returns the threshold of active damping about an axis (rad/s), for the modes of the observer's design.
-fn threshold(
+fn damping_threshold(
     damping: &ActiveDamping,
     plan: &adaptive::ObserverDesign,
     authority: &Authority,
     axis: usize,
 ) -> f64 {
     let ratio = match &plan.form {
-        adaptive::Form::Gradient(form) => form.damping.get(),
-        adaptive::Form::Recurrence(form) => form.damping.get(),
+        adaptive::ObserverForm::Gradient(form) => form.damping.get(),
+        adaptive::ObserverForm::Recurrence(form) => form.damping.get(),
     };
     let design = &plan.axes[axis];
-    let own = design.own(axis);
-    let mode = |mode: &adaptive::Merged| {
+    let own = design.own_axis_input(axis);
+    let mode = |mode: &adaptive::MergedTracker| {
         let influence = mode.tracker.influence.get(own).map_or(0.0, |influence| influence.get());
         [mode.tracker.frequency.get(), influence.max(0.0) * authority.accelerations[0]]
     };

@@ -2,15 +2,15 @@
 
 use super::epoch::nanoseconds_since_1970;
 use super::{Scenario, meant};
-use crate::actuator::{Actuator, ActuatorMember, Wheel};
+use crate::actuator::{ActuatorKind, AssignedMember, Wheel};
 use crate::attitude::vector;
-use crate::body::craft::Limit;
-use crate::body::{Axes, Drive, Planar};
+use crate::body::craft::RateLimit;
+use crate::body::{BodyAxes, CommandedQuantity, Planar};
 use crate::disturbance::{Disturbance, Pulses};
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::document::key;
-use crate::estimator::Estimator;
-use crate::law::{Extra, Itinerary, Law, Target};
+use crate::estimator::EstimatorKind;
+use crate::law::{AttitudeProfile, AttitudeTarget, Extra, LawKind};
 use crate::quantity::Time;
 
 impl Scenario {
@@ -18,12 +18,12 @@ impl Scenario {
     ///
     /// # Errors
     /// Fails with the first inconsistent key, and the reason.
-    pub(super) fn consistent(&self) -> Result<(), Fault> {
+    pub(super) fn validate(&self) -> Result<(), ConfigError> {
         self.inconsistency().map_or(Ok(()), Err)
     }
 
-    fn inconsistency(&self) -> Option<Fault> {
-        let at = |key: &str, why: String| Some(Fault::new(key, why));
+    fn inconsistency(&self) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         if self.name.contains(['/', '\\']) || self.name.contains(char::is_control) || self.name.len() > 200 {
             let why = "is used for file names: at most 200 bytes, no slash, no control character";
             return at("name", why.to_owned());
@@ -41,7 +41,7 @@ impl Scenario {
             );
             return at("duration", why);
         }
-        if let Some(impossible) = self.impossible() {
+        if let Some(impossible) = self.infeasible_key() {
             return Some(impossible);
         }
         if let Some(fault) = self.log.scene.inconsistency() {
@@ -54,8 +54,8 @@ impl Scenario {
         }
         // The compatibility of three-axis parts was checked before.
         let parts = match self.model.axes() {
-            Axes::One(body) => self.planar_inconsistency(body),
-            Axes::Three(_) => self.spatial_inconsistency(),
+            BodyAxes::One(body) => self.planar_inconsistency(body),
+            BodyAxes::Three(_) => self.spatial_inconsistency(),
         };
         parts.or_else(|| {
             if self.uncertain.is_empty() && self.correlated.is_empty() {
@@ -65,21 +65,21 @@ impl Scenario {
                 return Some(fault);
             }
             let mut written = self.written.clone();
-            written.forget_files();
+            written.inline_files();
             let mut table = written.to_table();
             table.remove("uncertain");
             table.remove("correlated");
             self.uncertain.iter().find_map(|(key, distribution)| {
-                let why = distribution.problem(key::get(&table, key))?;
+                let why = distribution.validate(key::get(&table, key))?;
                 let near = if key::get(&table, key).is_none() { meant::number(&table, key) } else { None };
                 let why = near.map_or(why.clone(), |near| format!("{why}; did you mean `{near}`?"));
-                Some(Fault::new(format!("uncertain.\"{key}\""), why))
+                Some(ConfigError::new(format!("uncertain.\"{key}\""), why))
             })
         })
     }
 
     /// Checks the groups of correlated keys.
-    fn correlation_fault(&self) -> Option<Fault> {
+    fn correlation_fault(&self) -> Option<ConfigError> {
         self.correlated.iter().enumerate().find_map(|(group, correlated)| {
             let within = format!("correlated[{group}]");
             let why = |key: &String| match self.uncertain.get(key) {
@@ -92,64 +92,64 @@ impl Scenario {
                 }
                 _ => None,
             };
-            let fault = correlated.keys.iter().find_map(why).map(|why| Fault::new("keys", why));
-            fault.or_else(|| correlated.fault()).map(|fault| fault.within(&within))
+            let fault = correlated.keys.iter().find_map(why).map(|why| ConfigError::new("keys", why));
+            fault.or_else(|| correlated.validate()).map(|fault| fault.within(&within))
         })
     }
 
-    fn spatial_inconsistency(&self) -> Option<Fault> {
+    fn spatial_inconsistency(&self) -> Option<ConfigError> {
         let estimator = self.estimator.as_ref();
-        self.drive_fault()
+        self.validate_drives()
             .or_else(|| self.schedule_inconsistency())
             .or_else(|| self.timing_inconsistency())
             .or_else(|| self.rate_inconsistency())
-            .or_else(|| self.drift_inconsistency())
-            .or_else(|| self.envelope_inconsistency())
-            .or_else(|| self.filter_inconsistency(estimator?))
-            .or_else(|| self.adaptation_inconsistency())
+            .or_else(|| self.validate_drift())
+            .or_else(|| self.validate_envelope())
+            .or_else(|| self.validate_filter(estimator?))
+            .or_else(|| self.validate_adaptation())
     }
 
     /// Checks that a spacecraft does not rotate faster than the limit of its modal model.
-    fn rate_inconsistency(&self) -> Option<Fault> {
+    fn rate_inconsistency(&self) -> Option<ConfigError> {
         let craft = self.model.craft()?;
-        let Limit { rate: limit, why } = craft.rate_limit()?;
+        let RateLimit { rate: limit, why } = craft.rate_limit()?;
         let start = vector(&craft.spatial.rate).norm();
         if start > limit {
             let why = format!("must be below {limit:.3e} rad/s together, {why}, got {start:.3e}");
-            return Some(Fault::new("spacecraft.rate", why));
+            return Some(ConfigError::new("spacecraft.rate", why));
         }
-        let own = matches!(&self.law, Law::PhasePlane(law) if !law.targets.is_empty());
+        let own = matches!(&self.law, LawKind::PhasePlane(law) if !law.targets.is_empty());
         let key = if own { "law.phase_plane.targets" } else { "target" };
-        let way = Itinerary::new(self.targets(), &self.sky(), &self.model.free_modes());
-        let fast = |(index, target): (usize, &Target)| {
+        let way = AttitudeProfile::new(self.targets(), &self.orbit_environment(), &self.model.free_modes());
+        let fast = |(index, target): (usize, &AttitudeTarget)| {
             let planned = || Some(("duration", way.fastest(index).filter(|_| target.command.is_some())?));
             let (of, rate) = target.fastest().or_else(planned).filter(|(_, rate)| *rate > limit)?;
             let why = format!("must be below {limit:.3e} rad/s, {why}, got {rate}");
-            Some(Fault::new(format!("{key}[{index}].{of}"), why))
+            Some(ConfigError::new(format!("{key}[{index}].{of}"), why))
         };
         self.targets().iter().enumerate().find_map(fast)
     }
 
-    fn planar_inconsistency(&self, body: &Planar) -> Option<Fault> {
+    fn planar_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
         self.law_inconsistency()
             .or_else(|| self.damping_inconsistency(body))
             .or_else(|| self.schedule_inconsistency())
-            .or_else(|| self.drift_inconsistency())
+            .or_else(|| self.validate_drift())
             .or_else(|| self.coupling_inconsistency(body))
             .or_else(|| self.timing_inconsistency())
             .or_else(|| self.drive_inconsistency(body))
-            .or_else(|| self.estimator_inconsistency(body))
-            .or_else(|| self.adaptation_inconsistency())
+            .or_else(|| self.validate_estimator(body))
+            .or_else(|| self.validate_adaptation())
     }
 
-    fn law_inconsistency(&self) -> Option<Fault> {
-        let Law::Relay(_) = &self.law else { return None };
-        let at = |key: &str, why: String| Some(Fault::new(key, why));
+    fn law_inconsistency(&self) -> Option<ConfigError> {
+        let LawKind::Relay(_) = &self.law else { return None };
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         if self.manoeuvre.is_some() {
             let why = "holds the angle at 0: with a `[manoeuvre]` use the law `pd`, or none";
             return at("law.relay", why.to_owned());
         }
-        let continuous = self.study.sampling.is_none();
+        let continuous = self.study.sample_period.is_none();
         if self.model.chain().is_some() && continuous {
             let why = "must be \"linear\" for a law `relay`, whose crossings are found in closed form; or use a `[sensor.sampled]`";
             return at("body.panels.kinematics", why.to_owned());
@@ -159,7 +159,7 @@ impl Scenario {
             return at("law.relay", why.to_owned());
         }
         let limited = |wheel: &Wheel| wheel.rotor.as_ref().is_some_and(|rotor| rotor.speed_limit.is_some());
-        if let Some((_, key)) = self.actuator.wheel().filter(|(wheel, _)| limited(wheel) && continuous) {
+        if let Some((_, key)) = self.actuator.flywheel().filter(|(wheel, _)| limited(wheel) && continuous) {
             let why = "is checked at the law's commands: with a law `relay` it needs a `[sensor.sampled]`";
             return at(&format!("{key}.rotor.speed_limit"), why.to_owned());
         }
@@ -171,34 +171,36 @@ impl Scenario {
         format!("body.{}.damping_matrix", self.body_kind())
     }
 
-    fn damping_inconsistency(&self, body: &Planar) -> Option<Fault> {
+    fn damping_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
         if self.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.planned_for(body).is_coupled()) {
             let why = "couples modes, and a `[manoeuvre]` treats each mode on its own: give it a `model` without this matrix";
-            return Some(Fault::new(self.damping_key(), why));
+            return Some(ConfigError::new(self.damping_key(), why));
         }
         if !body.is_coupled() {
             return None;
         }
         let why = match &self.estimator {
             _ if self.drift.is_some() => "has no closed form for modes that drift",
-            _ if self.manoeuvre.is_some() && self.actuator.any(|kind| matches!(kind, Actuator::Ideal(_))) => {
+            _ if self.manoeuvre.is_some()
+                && self.actuator.has_kind(|kind| matches!(kind, ActuatorKind::Ideal(_))) =>
+            {
                 "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \
                  thrusters"
             }
-            Some(Estimator::Envelope(_)) => {
+            Some(EstimatorKind::Envelope(_)) => {
                 "couples modes, and an `[estimator.envelope]` treats each mode on its own"
             }
-            Some(Estimator::ExtendedKalman(_) | Estimator::UnscentedKalman(_)) => {
+            Some(EstimatorKind::ExtendedKalman(_) | EstimatorKind::UnscentedKalman(_)) => {
                 "couples modes, and a filter of their frequencies predicts each mode on its own: use `kalman`"
             }
             _ => return None,
         };
-        Some(Fault::new(self.damping_key(), why))
+        Some(ConfigError::new(self.damping_key(), why))
     }
 
-    fn coupling_inconsistency(&self, body: &Planar) -> Option<Fault> {
-        let at = |key: &str, why: String| Some(Fault::new(key, why));
-        let wheel = self.actuator.wheel().map(|(_, key)| key);
+    fn coupling_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+        let wheel = self.actuator.flywheel().map(|(_, key)| key);
         if wheel.is_none() && self.drift.is_none() {
             return None;
         }
@@ -207,11 +209,11 @@ impl Scenario {
             let why = "executes a `[manoeuvre]` sample by sample of a law, and the law has no period: give it a `[law.pd]`";
             return at(key, why.to_owned());
         }
-        if self.manoeuvre.is_some() && self.actuator.any(|kind| matches!(kind, Actuator::Ideal(_))) {
+        if self.manoeuvre.is_some() && self.actuator.has_kind(|kind| matches!(kind, ActuatorKind::Ideal(_))) {
             let why = "has no closed form: execute the `[manoeuvre]` by an `[actuator.hold]` or thrusters";
             return at(key, why.to_owned());
         }
-        if self.model.chain().is_some() || body.drive == Drive::Motion {
+        if self.model.chain().is_some() || body.drive == CommandedQuantity::Motion {
             let why = "needs linear modes of a body that a torque drives";
             return at(key, why.to_owned());
         }
@@ -219,12 +221,12 @@ impl Scenario {
     }
 
     /// Checks that the points of gain schedules are in order.
-    fn schedule_inconsistency(&self) -> Option<Fault> {
+    fn schedule_inconsistency(&self) -> Option<ConfigError> {
         (0..self.axis_count()).find_map(|axis| {
-            let Law::Pd(pd) = self.law.about(axis) else { return None };
+            let LawKind::Pd(pd) = self.law.about(axis) else { return None };
             let Some(Extra::Schedule(points)) = &pd.extra else { return None };
             let at = |key: &str, why: String| {
-                Some(Fault::new(format!("{}.extra.schedule{key}", self.law_key(axis)), why))
+                Some(ConfigError::new(format!("{}.extra.schedule{key}", self.law_key(axis)), why))
             };
             if points.is_empty() {
                 return at("", "must have at least one point".to_owned());
@@ -239,8 +241,8 @@ impl Scenario {
     }
 
     /// Checks the order of times, and times against their periods.
-    fn timing_inconsistency(&self) -> Option<Fault> {
-        let at = |key: &str, why: String| Some(Fault::new(key, why));
+    fn timing_inconsistency(&self) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);
         if let Some(index) = self.disturbance.iter().position(|d| !ordered(d)) {
             let Disturbance { from, to, .. } = &self.disturbance[index];
@@ -262,12 +264,12 @@ impl Scenario {
                 return at(&format!("disturbance[{index}].pulse.on"), why);
             }
         }
-        if let Some(fault) = self.failing_fault() {
+        if let Some(fault) = self.validate_failures() {
             return Some(fault);
         }
         for member in self.actuator.members() {
-            let Actuator::Thrusters(thrusters) = &*member.kind else { continue };
-            let at = |key: &str, why: String| Some(Fault::new(format!("{}.{key}", member.key), why));
+            let ActuatorKind::Thrusters(thrusters) = &*member.kind else { continue };
+            let at = |key: &str, why: String| Some(ConfigError::new(format!("{}.{key}", member.key), why));
             let (period, minimum) = (thrusters.period.seconds(), thrusters.minimum_on.get());
             if minimum > period {
                 let why = format!("must be at most the period of {period} s, got {minimum}");
@@ -282,35 +284,35 @@ impl Scenario {
         None
     }
 
-    fn drive_inconsistency(&self, body: &Planar) -> Option<Fault> {
-        let at = |key: &str, why: String| Some(Fault::new(key, why));
+    fn drive_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
         if estimates
             && self.manoeuvre.is_some()
-            && self.actuator.any(|kind| matches!(kind, Actuator::Ideal(_)))
+            && self.actuator.has_kind(|kind| matches!(kind, ActuatorKind::Ideal(_)))
         {
             let why = "follows torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]`, \
                        thrusters or a wheel";
             return at("estimator.envelope", why.to_owned());
         }
-        if let Some((wheel, key)) = self.actuator.wheel()
+        if let Some((wheel, key)) = self.actuator.flywheel()
             && estimates
             && wheel.back_emf.get() > 0.0
         {
             let why = "must be 0 with an `[estimator.envelope]`, which follows each mode on its own";
             return at(&format!("{key}.back_emf"), why.to_owned());
         }
-        if body.drive == Drive::Motion {
+        if body.drive == CommandedQuantity::Motion {
             let moves =
                 "moves the hub by force, but the body's hub follows a given motion (`drive = \"motion\"`)";
             if !self.disturbance.is_empty() {
                 return at("disturbance[0]", moves.to_owned());
             }
-            let thrusters = |member: &ActuatorMember<'_>| matches!(&*member.kind, Actuator::Thrusters(_));
+            let thrusters = |member: &AssignedMember<'_>| matches!(&*member.kind, ActuatorKind::Thrusters(_));
             if let Some(member) = self.actuator.members().into_iter().find(thrusters) {
                 return at(&member.key, moves.to_owned());
             }
-            if !matches!(self.law, Law::Open(_)) {
+            if !matches!(self.law, LawKind::Open(_)) {
                 return at("law", moves.to_owned());
             }
             if self.model.chain().is_some() {

@@ -3,18 +3,18 @@
 
 use super::Scenario;
 use super::pace::{STEP, SWITCHES, TURNS};
-use crate::actuator::{Actuator, ActuatorTask, Unloads};
+use crate::actuator::{ActuatorKind, ActuatorTask, UnloadingTask};
 use crate::attitude::vector;
 use crate::body::Spatial;
-use crate::body::spatial::Periodic;
-use crate::document::Fault;
-use crate::estimator::Estimator;
+use crate::body::spatial::PeriodicTorque;
+use crate::document::ConfigError;
+use crate::estimator::EstimatorKind;
 use crate::flow::LONGEST_TURN;
-use crate::law::{Law, Target};
-use crate::motion::turning::{Bearing, SHAKE, Surroundings};
+use crate::law::{AttitudeTarget, LawKind};
+use crate::motion::three_axis::{Bearing, SHAKE, Surroundings};
 use crate::quantity::NonNegative;
 use crate::record::Detail;
-use crate::sensor::Sensor;
+use crate::sensor::SensorKind;
 use crate::time::Span;
 
 /// Largest number of steps of one kind in a run; more would take days.
@@ -65,22 +65,23 @@ pub struct Cost {
 impl Cost {
     /// Returns the cost of a computation other than a simulation, of `steps` steps with `step_s` seconds each on one
     /// core.
-    pub fn of_work(what: &str, steps: f64, step_s: f64) -> Self {
+    pub fn from_work(what: &str, steps: f64, step_s: f64) -> Self {
         Self { most: (what.to_owned(), steps), runs: 1.0, seconds: steps * step_s, memory: 0.0, disk: 0.0 }
     }
 
     /// Returns the reason why the computation needs a confirmation; `None` if it is within the limits.
-    pub fn excess(&self) -> Option<String> {
+    pub fn limit_exceeded(&self) -> Option<String> {
         let Self { most: (what, steps), runs, seconds, memory, disk } = self;
         let within = *seconds <= LONG_S && *memory <= MUCH_MEMORY && *disk <= MUCH_DISK;
         if within {
             return None;
         }
-        let each = if *runs > 1.0 { format!(" in each of {} runs", told(*runs)) } else { String::new() };
+        let each =
+            if *runs > 1.0 { format!(" in each of {} runs", after_check(*runs)) } else { String::new() };
         let room = if *disk > 0.0 { format!(", {} for logs", bytes(*disk)) } else { String::new() };
         Some(format!(
             "{what} makes {} steps{each}: about {} on one core, {} of memory{room}, and more than {}, {} or {} must be confirmed",
-            told(*steps),
+            after_check(*steps),
             time(*seconds),
             bytes(*memory),
             time(LONG_S),
@@ -91,7 +92,7 @@ impl Cost {
 
     /// Returns the cost of `runs` such computations, whose results are kept in memory.
     #[must_use]
-    pub fn times(self, runs: u64) -> Self {
+    pub fn scaled_by(self, runs: u64) -> Self {
         let runs = runs as f64;
         let Self { most, seconds, disk, memory, .. } = self;
         Self { most, runs, seconds: runs * seconds, memory: memory + runs * KEPT, disk: runs * disk }
@@ -112,7 +113,7 @@ impl Cost {
     }
 }
 
-fn told(number: f64) -> String {
+fn after_check(number: f64) -> String {
     if number < 1e6 { format!("{number:.0}") } else { format!("{number:.1e}") }
 }
 
@@ -122,7 +123,7 @@ fn time(seconds: f64) -> String {
         s if s < 7200.0 => format!("{:.0} min", s / 60.0),
         s if s < 172_800.0 => format!("{:.0} h", s / 3600.0),
         s if s < 3.2e7 => format!("{:.0} days", s / 86_400.0),
-        s => format!("{} years", told(libm::round(s / 3.156e7))),
+        s => format!("{} years", after_check(libm::round(s / 3.156e7))),
     }
 }
 
@@ -130,7 +131,7 @@ fn bytes(number: f64) -> String {
     match number {
         n if n < 1e9 => format!("{:.0} MB", n / 1e6),
         n if n < 1e12 => format!("{:.0} GB", n / 1e9),
-        n => format!("{} TB", told(libm::round(n / 1e12))),
+        n => format!("{} TB", after_check(libm::round(n / 1e12))),
     }
 }
 
@@ -139,7 +140,7 @@ impl Scenario {
     pub fn cost(&self, log: Option<Detail>, in_memory: bool) -> Cost {
         let modes = self.mode_count() as f64;
         let step = STEP.0 + modes * STEP.1;
-        let acts = self.steps();
+        let acts = self.step_counts();
         let mut seconds = self.run_seconds(&acts);
         let mut most = acts.into_iter().max_by(|a, b| a.1.total_cmp(&b.1));
         let mut room = 0.0;
@@ -156,47 +157,51 @@ impl Scenario {
     }
 
     /// Returns the error at the first key that is infeasible on any machine.
-    pub(super) fn impossible(&self) -> Option<Fault> {
+    pub(super) fn infeasible_key(&self) -> Option<ConfigError> {
         let modes = self.mode_count();
-        let filtered = self.estimator.as_ref().is_some_and(Estimator::filters);
-        let coupled = self.drift.is_some() || self.actuator.wheel().is_some();
+        let filtered = self.estimator.as_ref().is_some_and(EstimatorKind::filters_measurements);
+        let coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let why = if filtered { "that a filter estimates" } else { "that a wheel or a drift couples" };
         for (applies, most, why) in
             [(true, MOST_MODES, "of a body"), (coupled || filtered, MOST_COUPLED, why)]
         {
             if applies && modes > most {
                 let why = format!("gives {modes} modes, and at most {most} {why} are supported");
-                return Some(Fault::new(self.body_key(), why));
+                return Some(ConfigError::new(self.body_key(), why));
             }
         }
-        if let (Some((wheel, key)), Some(period)) = (self.actuator.wheel(), self.decided_every()) {
+        if let (Some((wheel, key)), Some(period)) = (self.actuator.flywheel(), self.decided_every()) {
             let waiting = wheel.delay.get().min(self.duration.seconds()) / period.seconds();
             if waiting > MOST_WAITING {
                 let why = format!(
                     "keeps {} commands waiting, one every {} s: at most {} are supported",
-                    told(waiting),
+                    after_check(waiting),
                     period.seconds(),
-                    told(MOST_WAITING)
+                    after_check(MOST_WAITING)
                 );
-                return Some(Fault::new(format!("{key}.delay"), why));
+                return Some(ConfigError::new(format!("{key}.delay"), why));
             }
         }
         let messages = self.messages(Some(Detail::Scene));
-        let (key, steps) = self.steps().into_iter().chain(messages).find(|(_, steps)| *steps > MOST_STEPS)?;
-        let (duration, most) = (self.duration.seconds(), told(MOST_STEPS));
-        Some(Fault::new(
+        let (key, steps) =
+            self.step_counts().into_iter().chain(messages).find(|(_, steps)| *steps > MOST_STEPS)?;
+        let (duration, most) = (self.duration.seconds(), after_check(MOST_STEPS));
+        Some(ConfigError::new(
             key,
-            format!("makes {} steps in the run's {duration} s: at most {most} are allowed", told(steps)),
+            format!(
+                "makes {} steps in the run's {duration} s: at most {most} are allowed",
+                after_check(steps)
+            ),
         ))
     }
 
     /// Returns the period of the commands to a wheel, if they come at fixed times.
     fn decided_every(&self) -> Option<Span> {
-        self.study.cycle.or(self.study.sampling)
+        self.study.law_period.or(self.study.sample_period)
     }
 
     /// Returns the recurring actions of a run: the key of each, and the number of its steps.
-    fn steps(&self) -> Vec<(String, f64)> {
+    fn step_counts(&self) -> Vec<(String, f64)> {
         let duration = self.duration.seconds();
         let mut steps = Vec::new();
         let mut each = |key: String, span: f64, period: Span| {
@@ -204,8 +209,8 @@ impl Scenario {
         };
         for (index, sensor) in self.sensor.iter().enumerate() {
             let own = match sensor {
-                Sensor::Tachometer(tachometer) => Some(tachometer.period),
-                Sensor::Accelerometer(accelerometer) => Some(accelerometer.period),
+                SensorKind::Tachometer(tachometer) => Some(tachometer.period),
+                SensorKind::Accelerometer(accelerometer) => Some(accelerometer.period),
                 _ => sensor.period(None),
             };
             if let Some(period) = own {
@@ -226,11 +231,11 @@ impl Scenario {
             if let Some(period) = member.kind.period() {
                 each(format!("{}.period", member.key), duration, period);
             }
-            if let ActuatorTask::Unloads(Unloads { period: Some(period), .. }) = &member.task {
-                each(format!("{}.period", member.unloads_key()), duration, *period);
+            if let ActuatorTask::Unloads(UnloadingTask { period: Some(period), .. }) = &member.task {
+                each(format!("{}.period", member.unloading_key()), duration, *period);
             }
         }
-        if let Some(envelope) = self.estimator.as_ref().and_then(Estimator::envelope) {
+        if let Some(envelope) = self.estimator.as_ref().and_then(EstimatorKind::envelope) {
             each("estimator.envelope.window".to_owned(), duration, envelope.window);
         }
         if let Some((adaptation, window)) = self.adaptation.as_ref().and_then(|of| Some((of, of.window()?))) {
@@ -252,7 +257,7 @@ impl Scenario {
         // Crossings are predicted or searched, and exact panels integrated, by steps that are a part of a vibration.
         let strides = match &self.law {
             _ if self.model.chain().is_some() => 20.0,
-            Law::Relay(_) if self.study.sampling.is_none() => RELAY_STRIDES,
+            LawKind::Relay(_) if self.study.sample_period.is_none() => RELAY_STRIDES,
             _ => 0.0,
         };
         let modes = self.model.planar().into_iter().flat_map(|body| &body.modes);
@@ -260,13 +265,13 @@ impl Scenario {
         if strides * fastest > 0.0 {
             steps.push(("duration".to_owned(), strides * duration * fastest));
         }
-        if let (Law::Relay(law), Some(body)) = (&self.law, self.model.planar()) {
+        if let (LawKind::Relay(law), Some(body)) = (&self.law, self.model.planar()) {
             steps.push((SWITCHES.to_owned(), duration / law.mean_switching(body.commanded_inertia())));
         }
         if let Some(body) = self.model.spatial() {
-            let rate = self.fastest_turn(body);
+            let rate = self.largest_expected_rate(body);
             let step = self.model.flexible().map_or(LONGEST_TURN / rate, |flexible| flexible.step(rate));
-            let step = step.min(self.shaken_every());
+            let step = step.min(self.imbalance_step_count());
             if step.is_finite() {
                 steps.push((TURNS.to_owned(), duration / step));
             }
@@ -275,21 +280,22 @@ impl Scenario {
     }
 
     /// Returns the expected largest frequency (rad/s) of the rotation and loads of a three-axis body.
-    fn fastest_turn(&self, body: &Spatial) -> f64 {
+    fn largest_expected_rate(&self, body: &Spatial) -> f64 {
         let start = vector(&body.rate).norm();
-        let limits = self.targets().iter().filter_map(Target::fastest).map(|(_, rate)| rate);
-        let around = self.study.around.as_ref().map_or(0.0, Surroundings::frequency);
-        let own = body.disturbance.as_ref().map_or(0.0, Periodic::frequency);
-        let gimbals = self.actuator.control_moment_gyros().map_or(0.0, |(gyros, _)| gyros.fastest());
+        let limits = self.targets().iter().filter_map(AttitudeTarget::fastest).map(|(_, rate)| rate);
+        let around = self.study.surroundings.as_ref().map_or(0.0, Surroundings::frequency);
+        let own = body.disturbance.as_ref().map_or(0.0, PeriodicTorque::frequency);
+        let gimbals =
+            self.actuator.control_moment_gyros().map_or(0.0, |(gyros, _)| gyros.largest_gimbal_rate());
         limits.fold(start, f64::max) + around + own + gimbals
     }
 
     /// Returns the length of steps that resolve the imbalance of wheels at their initial or bias speed (s); infinite
     /// without wheels.
-    fn shaken_every(&self) -> f64 {
+    fn imbalance_step_count(&self) -> f64 {
         let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
         let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
-        SHAKE / (highest * wheels.fastest())
+        SHAKE / (highest * wheels.largest_initial_speed())
     }
 
     /// Returns the periodic messages of a log of the given detail: the key and the number of messages of each.
@@ -301,7 +307,7 @@ impl Scenario {
             messages.push(("log.period".to_owned(), topics * duration / period.seconds()));
             // A row for each edge of a pulse.
             for member in self.actuator.members() {
-                if let Actuator::Thrusters(thrusters) = &*member.kind {
+                if let ActuatorKind::Thrusters(thrusters) = &*member.kind {
                     let edges = 2.0 * duration / thrusters.period.seconds();
                     messages.push((format!("{}.period", member.key), topics * edges));
                 }

@@ -9,7 +9,7 @@ use toml::value::Datetime;
 use crate::document::DATE;
 
 /// Deserialises a date and time.
-pub fn read<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Datetime>, D::Error> {
+pub fn parse<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Datetime>, D::Error> {
     struct Date;
     impl Visitor<'_> for Date {
         type Value = Datetime;

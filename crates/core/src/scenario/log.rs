@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::Positive;
 use crate::time::Span;
 
@@ -19,7 +19,8 @@ const LARGEST_FACTOR: f64 = 1e9;
 /// Contents of a full log.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Log {
+#[schemars(rename = "Log")]
+pub struct LogSpec {
     /// Sampling period of the motion in a full log (s); default: the first of 0.1, 0.2, 0.5, 1, 2, 5 and so on that gives at
     /// most 10 000 samples.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -33,7 +34,7 @@ fn tenth() -> Span {
     Span::from_seconds(0.1)
 }
 
-impl Log {
+impl LogSpec {
     /// Returns the sampling period for runs of this duration.
     pub fn period_for(&self, duration: Span) -> Span {
         if let Some(period) = self.period {
@@ -69,10 +70,10 @@ impl SceneSpec {
     }
 
     /// Checks that the magnifications are not too large; returns the error at the key.
-    pub fn inconsistency(&self) -> Option<Fault> {
+    pub fn inconsistency(&self) -> Option<ConfigError> {
         let factors = [("bending", self.bending), ("turning", self.turning)];
         let (key, factor) = factors.into_iter().find(|(_, f)| f.is_some_and(|f| f.get() > LARGEST_FACTOR))?;
-        Some(Fault::new(
+        Some(ConfigError::new(
             key,
             format!("must be at most {LARGEST_FACTOR:e}, got {:e}", factor.map_or(0.0, Positive::get)),
         ))
@@ -101,7 +102,7 @@ mod tests {
             (86_400.0, 10.0),
             (1e6, 100.0),
         ] {
-            let own = Log::default().period_for(Span::from_seconds(duration));
+            let own = LogSpec::default().period_for(Span::from_seconds(duration));
             assert_eq!(own, Span::from_seconds(period), "{duration}: {own:?}");
         }
     }

@@ -1,70 +1,70 @@
 //! Scenario: everything that a user writes about a study, and the data that follow from it before a run.
 
-mod adapting;
+mod actuator_checks;
+mod adaptation_checks;
+mod appendage_drives;
 mod assembly;
-mod assignment;
 mod authority;
+mod compatibility;
 mod consistency;
 mod cost;
-mod coupled;
-mod drifting;
-mod drives;
+mod coupling;
+mod custom_parts;
+mod drift_checks;
+mod environment_checks;
 mod epoch;
-mod failing;
-mod known;
-mod learning;
+mod estimator_checks;
+mod estimator_context;
+mod failures;
+mod fast_path;
 mod log;
 mod meant;
-mod own;
 mod pace;
-mod parts;
-mod plain;
-mod reference;
+mod reference_values;
 mod remarks;
-mod sensing;
-mod sky;
-mod study;
-mod written;
+mod resolved;
+mod sensor_checks;
+mod spec;
 
 use std::ops::Deref;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use crate::body::{Body, Model, Planar};
-use crate::document::{Document, Fault, ScenarioError};
-use crate::law::{Goal, Law, Promise};
+use crate::body::{Body, BodyModel, Planar};
+use crate::document::{ConfigError, Document, ScenarioError};
+use crate::law::{ErrorBand, LawKind, Setpoint};
 use crate::manoeuvre::Plan;
 use crate::motion::linear::LinearFlow;
 use crate::time::{Instant, Span};
 
+pub use appendage_drives::{AppendageDrives, DriveProfiles};
 pub use cost::{Cost, MOST_RUNS};
-pub use drives::{Courses, Drives};
-pub use failing::Failing;
-pub use log::{Log, SceneSpec};
-pub use own::OwnParts;
-pub use reference::{Pointing, Reference};
-pub use study::Study;
-pub use written::Written;
+pub use custom_parts::CustomParts;
+pub use failures::FailureInterval;
+pub use log::{LogSpec, SceneSpec};
+pub use reference_values::{Pointing, Reference};
+pub use resolved::ResolvedScenario;
+pub use spec::ScenarioSpec;
 
 /// A validated scenario: the keys as written, and the data resolved from them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scenario {
     /// Keys as written, with defaults.
-    pub written: Written,
+    pub written: ScenarioSpec,
     /// Model of the body.
-    pub model: Model,
+    pub model: BodyModel,
     /// Plan of the manoeuvre, if there is one.
     pub plan: Option<Plan>,
     /// Exact flow of a one-axis body with coupled modes, where the motion has a closed form.
     pub linear: Option<Arc<LinearFlow>>,
     /// Data resolved from all parts together.
-    pub study: Study,
+    pub study: ResolvedScenario,
 }
 
 impl Deref for Scenario {
-    type Target = Written;
+    type Target = ScenarioSpec;
 
-    fn deref(&self) -> &Written {
+    fn deref(&self) -> &ScenarioSpec {
         &self.written
     }
 }
@@ -82,54 +82,54 @@ impl Scenario {
 
     /// Reads a scenario from a document.
     pub fn from_document(document: &Document) -> Result<Self, ScenarioError> {
-        Self::solved(document, None, &OwnParts::default(), true)
+        Self::solved(document, None, &CustomParts::default(), true)
     }
 
     /// Reads a scenario from a document that differs from `parent` in some keys. If the body is not among them, its
     /// modes are reused.
-    pub fn from_document_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
-        Self::solved(document, Some(parent), &parent.own_parts(), true)
+    pub fn from_document_reusing(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
+        Self::solved(document, Some(parent), &parent.custom_parts(), true)
     }
 
     /// Reads a scenario from a document that differs from `parent` only in numeric values, without a check for unknown
     /// keys.
-    pub(crate) fn from_numbers_like(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
-        Self::solved(document, Some(parent), &parent.own_parts(), false)
+    pub(crate) fn from_numbers_reusing(document: &Document, parent: &Self) -> Result<Self, ScenarioError> {
+        Self::solved(document, Some(parent), &parent.custom_parts(), false)
     }
 
     fn solved(
         document: &Document,
         parent: Option<&Self>,
-        own: &OwnParts,
+        own: &CustomParts,
         new_keys: bool,
     ) -> Result<Self, ScenarioError> {
         let document = &*document.in_si(units)?;
-        let mut written: Written = document.read()?;
+        let mut written: ScenarioSpec = document.read()?;
         if let Some(error) = new_keys.then(|| document.unread(&written.to_table())).flatten() {
             return Err(error);
         }
-        written.take_own_parts(own, document);
+        written.inherit_custom_parts(own, document);
         if written.name.is_empty() {
             let stem = Path::new(document.origin()).file_stem();
             written.name = stem.unwrap_or_default().to_string_lossy().into_owned();
         }
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
         let model = written.assemble(document, parent, directory)?;
-        if matches!(written.law, Law::Open(_)) && !document.has("law") && written.manoeuvre.is_none() {
+        if matches!(written.law, LawKind::Open(_)) && !document.has("law") && written.manoeuvre.is_none() {
             return Err(document.missing("law"));
         }
-        Self::fitted(written, model).map_err(|fault| document.inconsistent(&fault))
+        Self::fitted(written, model).map_err(|fault| document.at_key(&fault))
     }
 
     /// Completes a scenario from its keys and its model: checks that they are consistent, resolves the data, and plans
     /// the manoeuvre.
-    fn fitted(written: Written, model: Model) -> Result<Self, Fault> {
-        written.fit(&model)?;
-        let study = Study::of(&written, &model)?;
+    fn fitted(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
+        written.validate_compatibility(&model)?;
+        let study = ResolvedScenario::resolve(&written, &model)?;
         let mut scenario = Self { written, model, plan: None, linear: None, study };
-        scenario.consistent()?;
+        scenario.validate()?;
         scenario.plan = scenario.planned()?;
-        scenario.linear = scenario.flow()?;
+        scenario.linear = scenario.linear_flow()?;
         Ok(scenario)
     }
 
@@ -151,25 +151,25 @@ impl Scenario {
     }
 
     /// Plans the manoeuvre, if there is one.
-    fn planned(&self) -> Result<Option<Plan>, Fault> {
+    fn planned(&self) -> Result<Option<Plan>, ConfigError> {
         let (Some(manoeuvre), Some(own)) = (&self.manoeuvre, self.model.planar()) else { return Ok(None) };
         let body = manoeuvre.planned_for(own);
         if body.drive != own.drive {
             let why = "must be the same as the body's".to_owned();
-            return Err(Fault::new("manoeuvre.model.drive", why));
+            return Err(ConfigError::new("manoeuvre.model.drive", why));
         }
         let (start, rate) = (manoeuvre.start_rate.get(), own.rate.get());
         if start != rate {
             let why = format!("must be the body's rate at the start, {rate}, got {start}");
-            return Err(Fault::new("manoeuvre.start_rate", why));
+            return Err(ConfigError::new("manoeuvre.start_rate", why));
         }
         manoeuvre.plan(body).map(Some).map_err(|fault| fault.within("manoeuvre"))
     }
 
     /// Returns the setpoint of a one-axis body: the end of the manoeuvre, or angle 0 from the start on.
-    pub fn goal(&self) -> Goal {
+    pub fn goal(&self) -> Setpoint {
         let planned = self.plan.as_ref().zip(self.model.planar());
-        planned.map_or_else(Goal::default, |(plan, body)| Goal {
+        planned.map_or_else(Setpoint::default, |(plan, body)| Setpoint {
             from: Instant::START + Span::from_seconds(plan.time),
             angle: body.angle.get() + plan.angle,
             rate: plan.end_rate,
@@ -178,13 +178,13 @@ impl Scenario {
     }
 
     /// Returns the error band about the goal: as written in the scenario, else as the manoeuvre or the law promises.
-    pub fn promise(&self) -> Promise {
+    pub fn expected_band(&self) -> ErrorBand {
         match (self.reference.band, &self.plan) {
-            (Some(band), _) => Promise::Within(band.get()),
-            (None, Some(plan)) => Promise::Within(plan.band()),
-            (None, None) => match self.study.bands.first() {
-                Some(Some(band)) if self.axis_count() == 1 => Promise::Within(*band),
-                _ => self.law.promise(),
+            (Some(band), _) => ErrorBand::Absolute(band.get()),
+            (None, Some(plan)) => ErrorBand::Absolute(plan.band()),
+            (None, None) => match self.study.expected_bands.first() {
+                Some(Some(band)) if self.axis_count() == 1 => ErrorBand::Absolute(*band),
+                _ => self.law.expected_band(),
             },
         }
     }
@@ -192,9 +192,9 @@ impl Scenario {
     /// Returns the keys without references to files: matrices of a structure are replaced by their modes, paths of mode
     /// files by the modes.
     #[must_use]
-    pub fn self_contained(&self) -> Written {
+    pub fn self_contained(&self) -> ScenarioSpec {
         let mut written = self.written.clone();
-        written.forget_files();
+        written.inline_files();
         if let (Some(Body::Matrices(_)), Some(body)) = (&written.body, self.model.planar()) {
             written.body = Some(Body::Planar(body.clone()));
             let of_matrices = |key: &String| key.starts_with("body.matrices");
@@ -206,7 +206,7 @@ impl Scenario {
 
     /// Returns the JSON Schema of scenarios.
     pub fn schema() -> serde_json::Value {
-        schemars::schema_for!(Written).to_value()
+        schemars::schema_for!(ScenarioSpec).to_value()
     }
 
     /// Returns the unit of a key, such as rad/s of `body.planar.rate`; `None` for a dimensionless key.

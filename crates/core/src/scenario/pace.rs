@@ -2,9 +2,9 @@
 //! constants are those of an ordinary core, to a factor of two for the shipped scenarios.
 
 use super::Scenario;
-use crate::actuator::Firing;
-use crate::estimator::Estimator;
-use crate::law::Law;
+use crate::actuator::FiringMethod;
+use crate::estimator::EstimatorKind;
+use crate::law::LawKind;
 
 /// The key of the steps of a rotation.
 pub const TURNS: &str = "duration";
@@ -64,11 +64,11 @@ impl Scenario {
         let filtered = events * self.filter_seconds(modes) + windows * takes(STEP);
         if self.axis_count() == 3 {
             let jets = self.actuator.jets();
-            let programmes = jets.is_some_and(|(jets, _)| jets.allocation == Firing::LeastPropellant);
+            let programmes = jets.is_some_and(|(jets, _)| jets.allocation == FiringMethod::LeastPropellant);
             let allocated = if programmes { events * ALLOCATION_S } else { 0.0 };
             let stride = if self.study.hinges() > 0 {
                 Some(HINGES)
-            } else if self.study.around.is_some() {
+            } else if self.study.surroundings.is_some() {
                 Some(SURROUNDED)
             } else {
                 (!self.study.bearings.is_empty()).then_some(BEARINGS)
@@ -81,15 +81,15 @@ impl Scenario {
             };
             return moves + looks * LOOK_S + allocated + filtered;
         }
-        let coupled = self.drift.is_some() || self.actuator.wheel().is_some();
+        let coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let moves = match &self.law {
             _ if self.model.chain().is_some() => turns * takes(CHAIN),
-            Law::Relay(_) if self.study.sampling.is_some() => events * takes(STEP),
-            Law::Relay(_) => {
+            LawKind::Relay(_) if self.study.sample_period.is_some() => events * takes(STEP),
+            LawKind::Relay(_) => {
                 let strides = turns * takes(if coupled { COUPLED_RELAY } else { STEP });
                 strides.max(switchings * SEARCH * takes(STEP))
             }
-            _ if self.actuator.wheel().is_some() && self.study.sampling.is_none() => {
+            _ if self.actuator.flywheel().is_some() && self.study.sample_period.is_none() => {
                 events * takes(UNSAMPLED_WHEEL)
             }
             _ => events * takes(ONE_AXIS),
@@ -100,18 +100,18 @@ impl Scenario {
     /// The time of a sample of its filter (s).
     fn filter_seconds(&self, modes: f64) -> f64 {
         let takes = |(base, each): Pace| base + modes * each;
-        if let Some(filter) = self.estimator.as_ref().and_then(Estimator::attitude) {
+        if let Some(filter) = self.estimator.as_ref().and_then(EstimatorKind::attitude) {
             return filter.elastic.as_ref().map_or(takes(ATTITUDE_FILTER), |elastic| {
                 let order = 6.0 + 3.0 * elastic.modes.len() as f64;
                 ELASTIC_PRODUCTS * order * order * order * PRODUCT_S
             });
         }
         match &self.estimator {
-            Some(Estimator::Adaptive(_)) => takes(ADAPTIVE),
-            Some(filter) if filter.filters() => {
+            Some(EstimatorKind::Adaptive(_)) => takes(ADAPTIVE),
+            Some(filter) if filter.filters_measurements() => {
                 // Matrices of the order of its state.
                 let order = 4.0 + 2.0 * modes;
-                let passes = if matches!(filter, Estimator::UnscentedKalman(_)) { 4.0 } else { 2.0 };
+                let passes = if matches!(filter, EstimatorKind::UnscentedKalman(_)) { 4.0 } else { 2.0 };
                 let axes = self.axis_count() as f64;
                 axes * (takes(KALMAN) + passes * order * order * order * PRODUCT_S)
             }

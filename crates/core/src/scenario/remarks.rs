@@ -3,14 +3,14 @@
 use toml::{Table, Value};
 
 use super::Scenario;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::document::key::bare_or_quoted;
 
 impl Scenario {
     /// Values that are accepted and probably not meant, each with its key and why.
-    pub fn remarks(&self) -> Vec<Fault> {
+    pub fn remarks(&self) -> Vec<ConfigError> {
         let mut written = self.written.clone();
-        written.forget_files();
+        written.inline_files();
         let mut remarks = Vec::new();
         for (key, value) in &written.to_table() {
             let look = match key.as_str() {
@@ -25,7 +25,12 @@ impl Scenario {
 }
 
 /// Looks at a table and at all within it.
-fn each_table(path: &str, value: &Value, look: fn(&str, &Table, &mut Vec<Fault>), remarks: &mut Vec<Fault>) {
+fn each_table(
+    path: &str,
+    value: &Value,
+    look: fn(&str, &Table, &mut Vec<ConfigError>),
+    remarks: &mut Vec<ConfigError>,
+) {
     match value {
         Value::Table(table) => {
             look(path, table, remarks);
@@ -47,19 +52,19 @@ fn number(value: &Value) -> Option<f64> {
 }
 
 /// Modes that do not vibrate.
-fn damping(path: &str, table: &Table, remarks: &mut Vec<Fault>) {
+fn damping(path: &str, table: &Table, remarks: &mut Vec<ConfigError>) {
     let Some(damping) = table.get("damping") else { return };
     let ratios = damping.as_array().map_or(std::slice::from_ref(damping), Vec::as_slice);
     if let Some(ratio) = ratios.iter().filter_map(number).find(|ratio| *ratio > 1.0) {
         let why = format!(
             "is a ratio, and above 1 a mode does not vibrate: is {ratio} a percentage, which is written \"{ratio} %\"?"
         );
-        remarks.push(Fault::new(format!("{path}.damping"), why));
+        remarks.push(ConfigError::new(format!("{path}.damping"), why));
     }
 }
 
 /// Readings that are older than the next ones.
-fn latency(path: &str, table: &Table, remarks: &mut Vec<Fault>) {
+fn latency(path: &str, table: &Table, remarks: &mut Vec<ConfigError>) {
     let of = |key: &str| table.get(key).and_then(number);
     if let (Some(latency), Some(period)) = (of("latency"), of("period"))
         && latency > period
@@ -67,6 +72,6 @@ fn latency(path: &str, table: &Table, remarks: &mut Vec<Fault>) {
         let why = format!(
             "is longer than the period of {period} s: each reading comes after the next one was taken, {latency} s late"
         );
-        remarks.push(Fault::new(format!("{path}.latency"), why));
+        remarks.push(ConfigError::new(format!("{path}.latency"), why));
     }
 }

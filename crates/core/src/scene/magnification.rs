@@ -3,13 +3,13 @@
 //! The largest motion is not known before a run. The actuator's authority and the initial state give the order of
 //! magnitude.
 
-use crate::actuator::{Actuator, ActuatorMember};
-use crate::attitude::{Vector, turned};
-use crate::body::spatial::SpatialMode;
+use crate::actuator::{ActuatorKind, AssignedMember};
+use crate::attitude::{Vector, from_yaw_pitch_roll};
+use crate::body::spatial::ThreeAxisMode;
 use crate::body::{Mode, Planar, Spatial};
 use crate::disturbance::Disturbance;
-use crate::law::{Commands, Frame, Law};
-use crate::motion::turning::HarmonicLine;
+use crate::law::{Frame, LawKind, OutputQuantity};
+use crate::motion::three_axis::HarmonicLine;
 use crate::quantity::{Finite, Positive};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -46,7 +46,7 @@ pub fn turning(estimate: f64) -> f64 {
 /// Returns the factor by which the drawn rotation of a disc with `step` (rad) per frame is slowed: 1, 2 or 5 times a
 /// power of ten, at least 1, so that the drawn steps are at most `TURN`. Viewers would show a faster disc with another
 /// speed or direction.
-pub fn slowing(step: f64) -> f64 {
+pub fn slow_down_factor(step: f64) -> f64 {
     let least = step / TURN;
     if !least.is_finite() || least <= 1.0 {
         return 1.0;
@@ -56,22 +56,23 @@ pub fn slowing(step: f64) -> f64 {
 }
 
 /// Returns the estimated rotation of a one-axis body (rad).
-pub fn angle(scenario: &Scenario, body: &Planar) -> f64 {
+pub fn expected_angle(scenario: &Scenario, body: &Planar) -> f64 {
     let start = body.angle.get();
     let zone = match &scenario.law {
-        Law::Relay(relay) => relay.dead_zone.get(),
+        LawKind::Relay(relay) => relay.dead_zone.get(),
         _ => 0.0,
     };
     start.abs().max(scenario.goal().angle.abs()).max(zone)
 }
 
 /// Returns the estimated largest rate of a one-axis body (rad/s).
-pub fn rate(scenario: &Scenario, body: &Planar) -> f64 {
+pub fn expected_rate(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| 2.0 * scenario.goal().angle.abs() / plan.time);
-    let by_law = match (&scenario.law, scenario.actuator.wheel()) {
+    let by_law = match (&scenario.law, scenario.actuator.flywheel()) {
         // Rate of the free oscillation in which the proportional gain is the spring.
-        (Law::Pd(pd), Some((wheel, _))) => {
-            angle(scenario, body) * f64::sqrt(pd.k_p.get() * wheel.gain.get() / body.commanded_inertia())
+        (LawKind::Pd(pd), Some((wheel, _))) => {
+            expected_angle(scenario, body)
+                * f64::sqrt(pd.k_p.get() * wheel.gain.get() / body.commanded_inertia())
         }
         _ => 0.0,
     };
@@ -79,27 +80,27 @@ pub fn rate(scenario: &Scenario, body: &Planar) -> f64 {
 }
 
 /// Returns the estimated rotation angle of a three-axis body (rad).
-pub fn spatial_angle(scenario: &Scenario, body: &Spatial) -> f64 {
+pub fn expected_attitude_angle(scenario: &Scenario, body: &Spatial) -> f64 {
     let targets = scenario.targets().iter().map(|target| {
         let [roll, pitch, yaw] = [target.roll, target.pitch, target.yaw].map(Finite::get);
-        turned(roll, pitch, yaw)
+        from_yaw_pitch_roll(roll, pitch, yaw)
     });
     // A target in orbital or Sun-pointing axes: the body rotates from its initial attitude to these axes.
     let inertial = scenario.targets().iter().all(|target| target.frame == Frame::Inertial);
-    let at_start = scenario.study.way.target(Instant::START).conjugate() * body.attitude.get();
+    let at_start = scenario.study.profile.target(Instant::START).conjugate() * body.attitude.get();
     let start = if inertial { body.attitude.get() } else { at_start };
     let angle = |q: nalgebra::Quaternion<f64>| 2.0 * libm::acos(q.w.abs().min(1.0));
-    let zones = scenario.study.zones(scenario).into_iter().fold(0.0, f64::max);
+    let zones = scenario.study.arrival_bands(scenario).into_iter().fold(0.0, f64::max);
     targets.chain([start]).map(angle).fold(zones, f64::max)
 }
 
 /// Returns the estimated displacement of each mode (rad): twice the equilibrium under the largest torque, or once if a
 /// wheel under a PD law reduces its torque as the body rotates, but at most the displacement without a spring, or the
 /// initial amplitude if it is larger.
-pub fn displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
-    let travel = angle(scenario, body);
-    let moment = largest(scenario, body) / body.commanded_inertia();
-    let lets_go = scenario.actuator.wheel().is_some() && !scenario.law.switches();
+pub fn expected_displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
+    let travel = expected_angle(scenario, body);
+    let moment = largest_torque(scenario, body) / body.commanded_inertia();
+    let lets_go = scenario.actuator.flywheel().is_some() && !scenario.law.is_switching();
     let times = if lets_go { 1.0 } else { 2.0 };
     let of = |mode: &Mode| {
         let start = mode.start();
@@ -112,26 +113,26 @@ pub fn displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
 }
 
 /// Returns the estimated largest torque (N m; rad/s² if the motion is commanded).
-pub fn largest(scenario: &Scenario, body: &Planar) -> f64 {
+pub fn largest_torque(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| plan.peak().value.abs());
     let by_law = match &scenario.law {
-        Law::Relay(relay) => relay.strong.get(),
-        Law::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * body.angle.get().abs(),
-        Law::StateSpace(law) if scenario.plan.is_none() => {
+        LawKind::Relay(relay) => relay.strong.get(),
+        LawKind::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * body.angle.get().abs(),
+        LawKind::StateSpace(law) if scenario.plan.is_none() => {
             let unit = match law.command {
-                Commands::Torque => 1.0,
-                Commands::Acceleration => body.commanded_inertia(),
+                OutputQuantity::Torque => 1.0,
+                OutputQuantity::Acceleration => body.commanded_inertia(),
             };
             unit * law.first_command(body.angle.get())
         }
-        Law::Attitude(law) if scenario.plan.is_none() => {
+        LawKind::Attitude(law) if scenario.plan.is_none() => {
             law.first_torque(body.angle.get(), body.commanded_inertia())
         }
         _ => 0.0,
     };
-    let of = |member: ActuatorMember<'_>| match &*member.kind {
-        Actuator::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.shaped(by_law)),
-        Actuator::Thrusters(thrusters) => thrusters.torque.about(0).get(),
+    let of = |member: AssignedMember<'_>| match &*member.kind {
+        ActuatorKind::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.execute_command(by_law)),
+        ActuatorKind::Thrusters(thrusters) => thrusters.torque.about(0).get(),
         _ => planned.max(by_law),
     };
     scenario.actuator.members().into_iter().map(of).fold(0.0, f64::max)
@@ -142,7 +143,7 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     let members = scenario.actuator.members();
     let serving = members.iter().find(|member| member.share(axis) > 0.0);
     let unit = serving.map_or(1.0, |member| match &*member.kind {
-        Actuator::Wheel(wheel) => wheel.gain.get(),
+        ActuatorKind::Wheel(wheel) => wheel.gain.get(),
         _ => 1.0,
     });
     let study = &scenario.study;
@@ -152,58 +153,58 @@ fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
 
 /// Returns the estimated largest torque (N m) that a law commands; `unit` is the torque per unit of its command, `most`
 /// the actuator's limit.
-fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &Law, (unit, most): (f64, f64)) -> f64 {
+fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &LawKind, (unit, most): (f64, f64)) -> f64 {
     let study = &scenario.study;
     match law {
-        Law::Relay(relay) => unit * relay.strong.get(),
-        Law::Pd(pd) => {
+        LawKind::Relay(relay) => unit * relay.strong.get(),
+        LawKind::Pd(pd) => {
             let limit = pd.limit.map_or(f64::INFINITY, Positive::get);
-            unit * limit.min(pd.k_p.get() * spatial_angle(scenario, body))
+            unit * limit.min(pd.k_p.get() * expected_attitude_angle(scenario, body))
         }
-        Law::Attitude(law) => {
+        LawKind::Attitude(law) => {
             let inertia = study.axes[axis].inertia.get();
             // A manoeuvre along a profile commands its acceleration, not the whole angle at once.
             let led = scenario.targets().iter().map(|target| target.acceleration.map(Positive::get));
             match led.reduce(|most, next| Some(most?.max(next?))).flatten() {
                 Some(acceleration) => inertia * acceleration,
-                None => law.first_torque(spatial_angle(scenario, body), inertia),
+                None => law.first_torque(expected_attitude_angle(scenario, body), inertia),
             }
         }
-        Law::StateSpace(law) => match law.command {
-            Commands::Torque => unit * law.first_command(spatial_angle(scenario, body)),
-            Commands::Acceleration => {
-                study.axes[axis].inertia.get() * law.first_command(spatial_angle(scenario, body))
+        LawKind::StateSpace(law) => match law.command {
+            OutputQuantity::Torque => unit * law.first_command(expected_attitude_angle(scenario, body)),
+            OutputQuantity::Acceleration => {
+                study.axes[axis].inertia.get() * law.first_command(expected_attitude_angle(scenario, body))
             }
         },
-        Law::PhasePlane(_) => most,
-        Law::Stages(laws) => {
+        LawKind::PhasePlane(_) => most,
+        LawKind::Stages(laws) => {
             laws.laws().map(|law| by_law(scenario, body, axis, law, (unit, most))).fold(0.0, f64::max)
         }
-        Law::BDot(_) => scenario.actuator.magnetorquers().map_or(0.0, |(torquers, _)| {
-            let field = study.around.as_ref().map_or(0.0, |around| around.sky().field_bound());
-            torquers.largest() * field
+        LawKind::BDot(_) => scenario.actuator.magnetorquers().map_or(0.0, |(torquers, _)| {
+            let field = study.surroundings.as_ref().map_or(0.0, |around| around.sky().field_bound());
+            torquers.largest_moment() * field
         }),
-        Law::Open(_) | Law::PerAxis(_) | Law::Own(_) => 0.0,
+        LawKind::Open(_) | LawKind::PerAxis(_) | LawKind::Own(_) => 0.0,
     }
 }
 
 /// Returns the estimated displacements of the modes of a three-axis body (m sqrt(kg)), under the jets, the torque of
 /// any axis, or a force.
-pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
+pub fn expected_modal_displacements(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
     let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
-    let hub = body.shapes(&scenario.study.acts_at);
+    let hub = body.shapes(&scenario.study.torque_point);
     // Pulses may repeat with the period of a mode, and add up.
     let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
     let pushes: Vec<_> =
-        scenario.disturbance.iter().filter_map(|of| Some((of.push(body)?, times(of)))).collect();
+        scenario.disturbance.iter().filter_map(|of| Some((of.force_effect(body)?, times(of)))).collect();
     let warmed = scenario.model.craft().map_or(&[][..], |craft| &craft.bendings);
-    let mode = |(index, mode): (usize, &SpatialMode)| {
+    let mode = |(index, mode): (usize, &ThreeAxisMode)| {
         let w = mode.frequency.get();
         let fired = scenario.study.groups.iter().flatten().flatten().map(|group| group.push.forces[index]);
-        let others = (0..3).filter(|axis| !scenario.study.fired[*axis]);
+        let others = (0..3).filter(|axis| !scenario.study.jet_only_axes[*axis]);
         let torques = others.map(|axis| torques[axis] * hub[index].1[axis]);
         let unloading =
-            scenario.study.unloading.iter().flatten().flatten().map(|group| group.push.forces[index]);
+            scenario.study.unloading_groups.iter().flatten().flatten().map(|group| group.push.forces[index]);
         let pushed = pushes.iter().map(|(push, times)| push.forces[index] * times);
         let force = fired.chain(torques).chain(unloading).chain(pushed).map(f64::abs).fold(0.0, f64::max);
         let held = libm::hypot(mode.displacement.get(), mode.rate.get() / w);
@@ -215,12 +216,12 @@ pub fn modal(scenario: &Scenario, body: &Spatial) -> Vec<f64> {
 
 /// Returns the estimated displacement of a mode by wheel imbalance (m sqrt(kg)): in resonance if a wheel's speed range,
 /// from the slowest initial or bias speed on, contains the mode's frequency, else at the highest speed.
-fn shaken(scenario: &Scenario, index: usize, mode: &SpatialMode, hub: &Vector) -> f64 {
+fn shaken(scenario: &Scenario, index: usize, mode: &ThreeAxisMode, hub: &Vector) -> f64 {
     let Some((wheels, _)) = scenario.actuator.wheels() else { return 0.0 };
     let (w, damping) = (mode.frequency.get(), mode.damping.get().max(LEAST_DAMPING));
     let bias = wheels.speed_bias.map_or(f64::INFINITY, |bias| bias.speed.get().abs());
     let slowest = wheels.speeds.iter().map(|speed| speed.get().abs()).fold(bias, f64::min);
-    let fastest = wheels.fastest();
+    let fastest = wheels.largest_initial_speed();
     let of = |line: &HarmonicLine| {
         let push = [0, 1].map(|part| line.forces[part][index] + hub.dot(&line.torque[part]));
         let size = libm::hypot(push[0], push[1]);
@@ -242,7 +243,7 @@ mod tests {
     #[test]
     fn discs_are_slowed_until_their_steps_show() {
         for (step, by) in [(0.0, 1.0), (1.0, 1.0), (1.2, 2.0), (24.0, 50.0), (50.0, 50.0), (700.0, 1000.0)] {
-            assert_eq!(slowing(step), by, "{step}");
+            assert_eq!(slow_down_factor(step), by, "{step}");
         }
     }
 

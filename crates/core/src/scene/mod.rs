@@ -5,38 +5,38 @@
 //! shows.
 
 mod magnification;
+mod one_axis;
 mod panels;
-mod part;
-mod planar;
 mod plume;
 mod pose;
-mod spatial;
+mod primitives;
+mod three_axis;
 mod wheel;
 
-use crate::body::Axes;
+use crate::body::BodyAxes;
 use crate::record::foxglove::{FrameTransforms, SceneUpdate};
-use crate::record::row::Stamp;
+use crate::record::row::LogDate;
 use crate::scenario::Scenario;
 use crate::time::Span;
 
-pub use planar::{PlanarScene, PlanarView};
-pub use spatial::SpatialScene;
+pub use one_axis::{OneAxisPose, OneAxisScene};
+pub use three_axis::ThreeAxisScene;
 
 /// Scene of a run.
 #[derive(Clone, Debug)]
 pub enum Scene {
     /// Scene of a one-axis body.
-    Planar(PlanarScene),
+    Planar(OneAxisScene),
     /// Scene of a three-axis body.
-    Spatial(SpatialScene),
+    Spatial(ThreeAxisScene),
 }
 
 impl Scene {
     /// Creates the scene of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
         match scenario.model.axes() {
-            Axes::One(body) => Self::Planar(PlanarScene::new(scenario, body)),
-            Axes::Three(body) => Self::Spatial(SpatialScene::new(scenario, body)),
+            BodyAxes::One(body) => Self::Planar(OneAxisScene::new(scenario, body)),
+            BodyAxes::Three(body) => Self::Spatial(ThreeAxisScene::new(scenario, body)),
         }
     }
 
@@ -49,7 +49,7 @@ impl Scene {
     }
 
     /// Returns the entities of the scene.
-    pub fn parts(&self, stamp: Stamp) -> SceneUpdate {
+    pub fn parts(&self, stamp: LogDate) -> SceneUpdate {
         match self {
             Self::Planar(scene) => scene.parts(stamp),
             Self::Spatial(scene) => scene.parts(stamp),
@@ -75,7 +75,7 @@ pub struct Extent {
 
 impl Extent {
     /// Returns the extent of a scenario's scene.
-    pub fn of(scenario: &Scenario) -> Self {
+    pub fn from_scenario(scenario: &Scenario) -> Self {
         Scene::new(scenario).extent()
     }
 

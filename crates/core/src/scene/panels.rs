@@ -1,7 +1,7 @@
 //! Panels of a one-axis body: places of their sections, and their bending.
 
-use super::PlanarView;
-use super::magnification::displacements;
+use super::OneAxisPose;
+use super::magnification::expected_displacements;
 use crate::body::{Body, Planar};
 use crate::scenario::Scenario;
 
@@ -16,7 +16,7 @@ const MOST_PANELS: u32 = 12;
 
 /// Source of the sections' bending angles.
 #[derive(Clone, Debug)]
-enum Bends {
+enum SectionBending {
     /// Angles of the body's own sections.
     Own,
     /// Slopes of the modes along the panel: the angle of each section for a unit of each mode.
@@ -34,13 +34,13 @@ pub struct ScenePanels {
     pub count: u32,
     /// Estimated bending (rad).
     pub bent: f64,
-    bends: Bends,
+    bends: SectionBending,
 }
 
 impl ScenePanels {
     /// Returns the panels of a scenario's body.
-    pub fn of(scenario: &Scenario, body: &Planar) -> Self {
-        let reached = displacements(scenario, body);
+    pub fn from_scenario(scenario: &Scenario, body: &Planar) -> Self {
+        let reached = expected_displacements(scenario, body);
         if let Some(Body::Panels(panels)) = &scenario.body {
             let bent = body.outputs.iter().map(|output| {
                 output.modes.iter().zip(&reached).map(|(weight, x)| (weight.get() * x).abs()).sum()
@@ -48,7 +48,7 @@ impl ScenePanels {
             return Self {
                 root: panels.root.get(),
                 lengths: panels.sections.iter().map(|section| section.length.get()).collect(),
-                bends: Bends::Own,
+                bends: SectionBending::Own,
                 count: panels.count.min(MOST_PANELS),
                 bent: bent.fold(0.0, f64::max),
             };
@@ -56,7 +56,7 @@ impl ScenePanels {
         Self {
             root: ROOT,
             lengths: vec![LENGTH / SECTIONS as f64; SECTIONS],
-            bends: Bends::Modes((0..body.modes.len()).map(|mode| slopes(mode, SECTIONS)).collect()),
+            bends: SectionBending::Modes((0..body.modes.len()).map(|mode| slopes(mode, SECTIONS)).collect()),
             count: 2,
             bent: reached.iter().sum(),
         }
@@ -73,12 +73,12 @@ impl ScenePanels {
     }
 
     /// Returns the angle of each section relative to the hub (rad), multiplied by `bending`.
-    pub fn angles(&self, bending: f64, view: PlanarView<'_>) -> Vec<f64> {
+    pub fn angles(&self, bending: f64, view: OneAxisPose<'_>) -> Vec<f64> {
         let drawn = |angle: f64| (bending * angle).clamp(-LARGEST, LARGEST);
         match &self.bends {
-            Bends::Own => view.sections.iter().copied().map(drawn).collect(),
+            SectionBending::Own => view.sections.iter().copied().map(drawn).collect(),
             // The panels bend against the elastic rotation of the hub.
-            Bends::Modes(slopes) => (0..self.lengths.len())
+            SectionBending::Modes(slopes) => (0..self.lengths.len())
                 .map(|section| {
                     let modes = slopes.iter().zip(view.modes);
                     drawn(-modes.map(|(slopes, mode)| slopes[section] * mode.displacement).sum::<f64>())

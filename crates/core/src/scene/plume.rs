@@ -1,9 +1,9 @@
 //! Plumes of the firing thrusters, logged completely at each change.
 
-use super::part::{PLUME, cone, entity};
+use super::primitives::{PLUME, cone, entity};
 use crate::attitude::Vector;
 use crate::record::foxglove::{Deleted, Plumes, SceneEntityDeletion, SceneUpdate};
-use crate::record::row::Stamp;
+use crate::record::row::LogDate;
 
 /// Nozzle: its frame, the origin of its plume, and the direction of the plume.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,7 +20,7 @@ pub struct ScenePlume {
 
 /// Run-time state of the plumes of some nozzles.
 #[derive(Clone, Debug)]
-pub struct Burning {
+pub struct ActivePlumes {
     nozzles: Vec<ScenePlume>,
     /// Length of a full plume (m).
     length: f64,
@@ -28,7 +28,7 @@ pub struct Burning {
     told: Option<Vec<f64>>,
 }
 
-impl Burning {
+impl ActivePlumes {
     /// Creates the state of nozzles that have not been logged yet.
     pub fn new(nozzles: Vec<ScenePlume>, length: f64) -> Self {
         Self { nozzles, length, told: None }
@@ -40,7 +40,7 @@ impl Burning {
     }
 
     /// Sets the level of each nozzle, from 0 to 1; returns the plumes if the levels have changed.
-    pub fn change(&mut self, stamp: Stamp, parts: Vec<f64>) -> Option<Plumes> {
+    pub fn change(&mut self, stamp: LogDate, parts: Vec<f64>) -> Option<Plumes> {
         if self.told.as_ref() == Some(&parts) {
             return None;
         }

@@ -66,7 +66,7 @@ pub fn pose(at: Vector, turned: &Rotation<f64>) -> Pose {
 }
 
 /// Creates a pose without a rotation.
-pub fn upright(at: Vector) -> Pose {
+pub fn unrotated(at: Vector) -> Pose {
     pose(at, &about(Vector::zeros()))
 }
 

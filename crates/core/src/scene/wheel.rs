@@ -1,12 +1,12 @@
 //! Wheel of a one-axis body: a disc that rotates by its momentum.
 
-use super::PlanarView;
-use super::magnification::{rate, slowing};
-use super::part::{MARK, WHEEL, cone, cube, entity};
+use super::OneAxisPose;
+use super::magnification::{expected_rate, slow_down_factor};
+use super::primitives::{MARK, WHEEL, cone, cube, entity};
 use crate::attitude::Vector;
 use crate::body::Planar;
 use crate::record::foxglove::SceneEntity;
-use crate::record::row::Stamp;
+use crate::record::row::LogDate;
 use crate::scenario::Scenario;
 use crate::time::Span;
 
@@ -26,20 +26,21 @@ pub struct SceneWheel {
 
 impl SceneWheel {
     /// Returns the wheel of a scenario for frames with a period; `None` without a wheel.
-    pub fn of(scenario: &Scenario, body: &Planar, period: Span) -> Option<Self> {
-        let (wheel, _) = scenario.actuator.wheel()?;
+    pub fn from_scenario(scenario: &Scenario, body: &Planar, period: Span) -> Option<Self> {
+        let (wheel, _) = scenario.actuator.flywheel()?;
         let (speed, inertia) = match &wheel.rotor {
             Some(rotor) => (rotor.speed.get(), rotor.inertia.get()),
             None => (0.0, ROTOR * body.inertia.get()),
         };
         let from = (body.angle.get(), body.rate.get());
         let ratio = body.commanded_inertia() / inertia;
-        let slowed = slowing((speed.abs() + ratio * rate(scenario, body)) * period.seconds());
+        let slowed =
+            slow_down_factor((speed.abs() + ratio * expected_rate(scenario, body)) * period.seconds());
         Some(Self { speed, ratio, slowed, from })
     }
 
     /// Returns the drawn angle of the wheel (rad): the integral of its speed, which follows from the body's momentum.
-    pub fn angle(&self, view: PlanarView<'_>) -> f64 {
+    pub fn angle(&self, view: OneAxisPose<'_>) -> f64 {
         let (angle, rate) = self.from;
         let turned = self.speed * view.time - self.ratio * (view.rigid_angle - angle - rate * view.time);
         turned / self.slowed
@@ -47,7 +48,7 @@ impl SceneWheel {
 }
 
 /// Creates a disc on a hub with the half edge `half` (m), with a mark that shows the rotation.
-pub fn disc(stamp: Stamp, half: f64) -> SceneEntity {
+pub fn disc(stamp: LogDate, half: f64) -> SceneEntity {
     let mut disc = entity(stamp, "wheel", "wheel");
     let (low, high) = (Vector::z() * (-0.15 * half), Vector::z() * (0.15 * half));
     disc.cylinders.push(cone(low, high, [2.6 * half; 2], WHEEL));

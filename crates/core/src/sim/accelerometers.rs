@@ -1,25 +1,26 @@
 //! Accelerometers of a run: neither estimators nor laws read them; their samples go to the record.
 
-use super::plant::{Mount, Plant};
+use super::plant::{AccelerometerMount, Plant};
 use super::{Simulation, SimulationError};
 use crate::random::Seed;
 use crate::record::{Acceleration, Accelerations, Record, Sample};
 use crate::scenario::Scenario;
-use crate::sensor::{Accelerating, Accelerometer, MeasuredAcceleration};
+use crate::sensor::{Accelerometer, AccelerometerState, MeasuredAcceleration};
 use crate::time::Instant;
 
 /// Run-time state of the accelerometers, each with its index among the sensors and its mount.
 #[derive(Clone, Debug)]
-pub struct Accelerometers(Vec<(usize, Mount, Accelerating)>);
+pub struct Accelerometers(Vec<(usize, AccelerometerMount, AccelerometerState)>);
 
 impl Accelerometers {
     /// Creates the accelerometers of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         let seed = Seed { scenario: scenario.seed, run };
         let of = |(index, accelerometer): (usize, &Accelerometer)| {
-            let point = scenario.study.sensed_at.get(index)?;
-            let mount = Mount::new(scenario.model.spatial()?, scenario.model.craft()?.mass, point);
-            Some((index, mount, accelerometer.start(seed, scenario.sensor.ordinal(index))))
+            let point = scenario.study.sensor_points.get(index)?;
+            let mount =
+                AccelerometerMount::new(scenario.model.spatial()?, scenario.model.craft()?.mass, point);
+            Some((index, mount, accelerometer.start(seed, scenario.sensor.index_in_kind(index))))
         };
         Self(scenario.sensor.accelerometers().filter_map(of).collect())
     }
@@ -33,18 +34,18 @@ impl Accelerometers {
 impl Simulation {
     /// Samples the accelerometers that are due, after all loads have changed, and records the samples whose latency has
     /// elapsed.
-    pub(super) fn tell_accelerations(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+    pub(super) fn record_accelerations(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
-        if self.telling.accelerometers.due().is_none_or(|due| due > now) {
+        if self.recorder.accelerometers.due().is_none_or(|due| due > now) {
             return Ok(());
         }
-        self.plant.view(now)?;
-        let Plant::Spatial(plant) = &self.plant else { return Ok(()) };
-        for (index, mount, sensor) in &mut self.telling.accelerometers.0 {
-            if sensor.exposes(now) {
+        self.plant.evaluate(now)?;
+        let Plant::ThreeAxis(plant) = &self.plant else { return Ok(()) };
+        for (index, mount, sensor) in &mut self.recorder.accelerometers.0 {
+            if sensor.samples_now(now) {
                 sensor.sample(now, &plant.specific_force(mount));
             }
-            while let Some(felt) = sensor.told(now) {
+            while let Some(felt) = sensor.take_due(now) {
                 let axis = |felt: &MeasuredAcceleration| Acceleration {
                     measured_m_s2: felt.measured,
                     true_m_s2: felt.exact,

@@ -2,7 +2,7 @@
 
 use thiserror::Error;
 
-use crate::own::Halt;
+use crate::custom::PartError;
 use crate::record::RecordError;
 use crate::time::Instant;
 
@@ -52,7 +52,7 @@ pub enum SimulationError {
         /// Role of the part, such as `law`.
         role: &'static str,
         /// Error of the part.
-        source: Halt,
+        source: PartError,
     },
     /// The record could not be written.
     #[error(transparent)]

@@ -2,7 +2,7 @@
 
 use crate::adaptation::Decision;
 use crate::record::foxglove::{Log, LogLevel};
-use crate::record::row::Stamp;
+use crate::record::row::LogDate;
 use crate::record::{Record, RecordError, Sample};
 use crate::scenario::Scenario;
 use crate::time::Instant;
@@ -20,20 +20,20 @@ impl Journal {
     }
 
     /// Writes a line with a level, in the name of a part of the loop.
-    pub fn tell(
+    pub fn write_line(
         self,
         now: Instant,
         (level, name): (LogLevel, &str),
         message: String,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        let timestamp = self.stamp(now);
+        let timestamp = self.date_of(now);
         record.record(now, Sample::Log(&Log { timestamp, level, message, name: name.to_owned() }))
     }
 
     /// Returns the date of an instant.
-    pub fn stamp(self, now: Instant) -> Stamp {
-        Stamp(self.epoch_ns + now.nanoseconds())
+    pub fn date_of(self, now: Instant) -> LogDate {
+        LogDate(self.epoch_ns + now.nanoseconds())
     }
 }
 
@@ -43,7 +43,7 @@ pub fn opening(scenario: &Scenario, run: u64) -> String {
 }
 
 /// Returns the journal line of an adaptation step, with the gain before it and after it.
-pub fn adapted(window: u64, decision: Decision, before: f64, gain: f64) -> String {
+pub fn adaptation_line(window: u64, decision: Decision, before: f64, gain: f64) -> String {
     let why = match decision {
         Decision::Begin => "the search begins",
         Decision::Keep => "the mean fell",

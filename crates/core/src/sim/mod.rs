@@ -5,52 +5,52 @@
 //! Between events every input is constant or a waveform, and the motion is exact. `docs/events.md` states the rules.
 
 mod accelerometers;
-mod arrival;
-mod believing;
-mod beside;
-mod deciding;
-mod departing;
-mod drive;
-mod ends;
+mod batch_hooks;
+mod control_step;
+mod custom_parts;
 mod error;
-mod events;
-mod exposing;
-mod failing;
-mod flying;
-mod instants;
+mod estimation;
+mod exposures;
+mod failures;
+mod guidance;
 mod journal;
-mod metering;
-mod own;
+mod journal_events;
+mod loads;
+mod manoeuvre_end;
+mod motion_segments;
+mod objectives;
+mod observation;
 mod plant;
-mod reference;
-mod sensing;
-mod showing;
-mod sight;
-mod slipping;
+mod recorder;
+mod relay_kernel;
+mod run_to;
+mod scene_frames;
+mod sensors;
+mod start_finish;
 mod stepping;
-mod telling;
+mod wheel_bearings;
 
-use crate::belief::Belief;
-use crate::estimator::{self, Estimate, Meter, Monitor};
-use crate::flight::{self, Setup};
-use crate::law::{Controls, Event};
+use crate::estimator::{self, Estimator, ObjectiveMeter, WindowedEnvelope};
+use crate::law::{Controllers, Event};
 use crate::random::Seed;
 use crate::record::Record;
+use crate::relay_setup::{self, RunSetup};
 use crate::scenario::Scenario;
 use crate::sensor::Orientation;
+use crate::state_estimate::StateEstimate;
 use crate::time::{Instant, Span};
 
-use drive::Loads;
 pub use error::SimulationError;
-use exposing::Exposures;
-pub(crate) use plant::Exerted;
-pub use sight::{LookField, LookGroup};
-pub use stepping::Occasion;
+use exposures::Exposures;
+use loads::Loads;
+pub use observation::{ObservationField, ObservationGroup};
+pub(crate) use plant::AppliedTorque;
+pub use stepping::StopAt;
 
+use guidance::Guidance;
 use plant::Plant;
-use reference::Reference;
-use sensing::Sensing;
-use telling::Telling;
+use recorder::Recorder;
+use sensors::Sensors;
 
 /// Largest number of decisions at one instant; more are chatter, because no scenario's law needs more than a few.
 const MOST_DECISIONS: u32 = 32;
@@ -62,84 +62,84 @@ pub struct Simulation {
     now: Instant,
     end: Instant,
     plant: Plant,
-    sensing: Sensing,
+    sensors: Sensors,
     exposures: Exposures,
-    estimator: Box<dyn Estimate>,
+    estimator: Box<dyn Estimator>,
     /// True if the scenario has an estimator.
-    estimates: bool,
+    has_estimator: bool,
     /// Instant up to which the estimator knows the impulse of the waveform.
-    given: Instant,
-    monitor: Option<Monitor>,
+    inputs_known_until: Instant,
+    monitor: Option<WindowedEnvelope>,
     /// Meter of the adaptation's objective, unless the objective is the envelope.
-    meter: Option<Meter>,
-    reference: Reference,
+    meter: Option<ObjectiveMeter>,
+    guidance: Guidance,
     /// Attitude or angle from which the angles are counted, and (`next_target`) the instant at which it changes next.
-    origin: Orientation,
-    next_target: Option<Instant>,
-    beliefs: Vec<Belief>,
-    laws: Controls,
-    drive: Loads,
+    angle_origin: Orientation,
+    next_origin_change: Option<Instant>,
+    estimates: Vec<StateEstimate>,
+    controllers: Controllers,
+    loads: Loads,
     /// Torques during the current motion segment.
-    exerted: Exerted,
+    applied: AppliedTorque,
     /// Instant and index of the next guard crossing, as long as the inputs do not change before.
-    trip: Option<(Instant, usize)>,
-    decisions: u32,
+    crossing: Option<(Instant, usize)>,
+    decisions_at_now: u32,
     /// How often the law has switched since the last window of switchings ended, and when that was; how long one lasts (s) at least.
     switchings: (u64, Instant),
     shortest_window: f64,
     /// True if a wheel in bearings has stuck or let go at the current instant; `slips`: number of such events within a
     /// nanosecond, and the first's instant.
-    met: bool,
-    slips: (u32, Instant),
-    telling: Telling,
+    bearing_event: bool,
+    recent_bearing_events: (u32, Instant),
+    recorder: Recorder,
     /// True if the sample that was read ahead for the current instant has a measurement; `None` if none was read ahead.
-    read: Option<bool>,
+    sample_read_ahead: Option<bool>,
     /// Event at the current instant to which the laws have not responded yet, because the run was stopped before.
-    unanswered: Option<Event>,
+    pending_event: Option<Event>,
     /// True if there are external commands that the actuator does not have yet.
-    steered: bool,
+    external_command_pending: bool,
     /// True if the scenario has custom parts.
-    own: bool,
+    has_custom_parts: bool,
     /// Initial setup for the relay kernel, if it can simulate this run.
-    flight: Option<Box<Setup>>,
+    kernel_setup: Option<Box<RunSetup>>,
 }
 
 impl Simulation {
     /// Creates the run number `run` of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         let seed = Seed { scenario: scenario.seed, run };
-        let (study, reference) = (&scenario.study, Reference::new(scenario));
+        let (study, reference) = (&scenario.study, Guidance::new(scenario));
         let axes = study.axes.len();
         Self {
             now: Instant::START,
             end: Instant::START + scenario.duration,
             plant: Plant::new(scenario),
-            sensing: Sensing::new(scenario, seed),
+            sensors: Sensors::new(scenario, seed),
             exposures: Exposures::new(scenario),
-            estimator: estimator::start(&scenario.known(), seed),
-            estimates: scenario.estimator.is_some(),
-            given: Instant::START,
+            estimator: estimator::start(&scenario.estimator_context(), seed),
+            has_estimator: scenario.estimator.is_some(),
+            inputs_known_until: Instant::START,
             monitor: scenario.monitor(seed),
-            meter: scenario.meter(seed),
-            origin: reference.origin(Instant::START),
-            next_target: reference.next_target(Instant::START),
-            beliefs: vec![Belief::default(); axes],
-            laws: Controls::new(&scenario.law, &study.authorities),
-            drive: Loads::new(scenario, seed),
-            exerted: Exerted::default(),
-            trip: None,
-            decisions: 0,
+            meter: scenario.objective_meter(seed),
+            angle_origin: reference.origin(Instant::START),
+            next_origin_change: reference.next_change(Instant::START),
+            estimates: vec![StateEstimate::default(); axes],
+            controllers: Controllers::new(&scenario.law, &study.authorities),
+            loads: Loads::new(scenario, seed),
+            applied: AppliedTorque::default(),
+            crossing: None,
+            decisions_at_now: 0,
             switchings: (0, Instant::START),
-            shortest_window: flight::shortest_window(scenario.model.frequencies().fold(0.0, f64::max)),
-            met: false,
-            slips: (0, Instant::START),
-            read: None,
-            unanswered: None,
-            steered: false,
-            own: scenario.has_own_parts(),
-            flight: flight::alone(scenario).map(Box::new),
-            telling: Telling::new(scenario, &reference, run),
-            reference,
+            shortest_window: relay_setup::shortest_window(scenario.model.frequencies().fold(0.0, f64::max)),
+            bearing_event: false,
+            recent_bearing_events: (0, Instant::START),
+            sample_read_ahead: None,
+            pending_event: None,
+            external_command_pending: false,
+            has_custom_parts: scenario.has_custom_parts(),
+            kernel_setup: relay_setup::single(scenario).map(Box::new),
+            recorder: Recorder::new(scenario, &reference, run),
+            guidance: reference,
         }
     }
 
@@ -154,8 +154,8 @@ impl Simulation {
         let until = until.min(self.end);
         self.open(record)?;
         self.resume(None, record)?;
-        self.fly(until, record)?;
-        while self.arrive(until, record)? {
+        self.run_in_kernel(until, record)?;
+        while self.advance_to_next(until, record)? {
             self.serve(record)?;
         }
         self.finish(record)
@@ -163,21 +163,21 @@ impl Simulation {
 
     /// Advances the body to the next instant at which anything is due, at most to `until`; returns true if anything is
     /// due there.
-    fn arrive(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
+    fn advance_to_next(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
         let mut next = self.next();
-        self.exposures.copy_body(self.now, &self.plant);
-        if let Some(at) = self.plant.approach(next.min(until), record)? {
+        self.exposures.copy_plant(self.now, &self.plant);
+        if let Some(at) = self.plant.advance(next.min(until), record)? {
             next = at;
-            self.slips(at)?;
+            self.handle_bearing_event(at)?;
         }
         let now = next.min(until);
-        self.turned(now);
+        self.update_rotor_states(now);
         if now > self.now {
             self.now = now;
-            self.decisions = 0;
+            self.decisions_at_now = 0;
         }
         if next > until {
-            self.plant.view(until)?;
+            self.plant.evaluate(until)?;
         }
         Ok(next <= until)
     }
@@ -185,70 +185,70 @@ impl Simulation {
     /// Returns the next instant at which anything is due.
     #[inline]
     fn next(&self) -> Instant {
-        let trip = self.trip.map(|(at, _)| at);
+        let trip = self.crossing.map(|(at, _)| at);
         let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
         let measured = self.meter.as_ref().map(|meter| meter.closes);
         let due = [
             trip,
-            self.laws.until(),
-            self.drive.due,
-            self.sensing.next,
+            self.controllers.next_timeout(),
+            self.loads.due,
+            self.sensors.next,
             self.exposures.due(),
             closes,
             measured,
-            self.telling.due(),
+            self.recorder.due(),
         ];
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
     /// Processes everything that is due at the current instant.
     fn serve(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let event = self.event();
-        self.perceive(record)?;
-        self.answer(event, record)
+        let event = self.law_event();
+        self.sense_and_estimate(record)?;
+        self.control_and_actuate(event, record)
     }
 
     /// Returns the event at the current instant for the laws.
-    fn event(&self) -> Event {
-        match self.trip {
-            _ if self.samples() || self.read.is_some() => Event::Due { sampled: true },
+    fn law_event(&self) -> Event {
+        match self.crossing {
+            _ if self.sample_is_due() || self.sample_read_ahead.is_some() => Event::Due { sampled: true },
             Some((at, guard)) if at == self.now => Event::Guard(guard),
             _ => Event::Due { sampled: false },
         }
     }
 
     /// Reads the sensors and updates the estimates, windows and objectives that are due at the current instant.
-    fn perceive(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        self.expose(record)?;
+    fn sense_and_estimate(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        self.update_exposures(record)?;
         let now = self.now;
-        if self.samples() || self.read.is_some() {
-            self.sense(record)?;
+        if self.sample_is_due() || self.sample_read_ahead.is_some() {
+            self.update_estimates(record)?;
         }
         if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
-            self.close_window(record)?;
+            self.close_envelope_window(record)?;
         }
-        self.close_objective(record)?;
-        self.tell_arrival(record)
+        self.close_objective_window(record)?;
+        self.record_manoeuvre_end(record)
     }
 
     /// Lets the laws decide on `event`, applies their commands and changes of the loads, and records the instant.
-    fn answer(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
+    fn control_and_actuate(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
-        if self.steered || self.concerns(event) {
-            self.decide(event, record)?;
+        if self.external_command_pending || self.laws_must_decide(event) {
+            self.control_step(event, record)?;
         }
-        let met = std::mem::take(&mut self.met);
-        if met || self.drive.due == Some(now) {
-            self.plant.view(now)?;
-            self.feel();
-            self.drive.serve(now, self.plant.viewed().rigid);
-            self.depart(record)?;
+        let met = std::mem::take(&mut self.bearing_event);
+        if met || self.loads.due == Some(now) {
+            self.plant.evaluate(now)?;
+            self.set_magnetic_field();
+            self.loads.serve(now, self.plant.truth().rigid);
+            self.begin_segment(record)?;
         }
-        self.check_own_parts()?;
-        self.tell_slips(record)?;
-        self.tell_failures(record)?;
-        self.tell_accelerations(record)?;
-        self.tell(record)?;
-        self.show(record)
+        self.check_custom_parts()?;
+        self.record_bearing_events(record)?;
+        self.record_failures(record)?;
+        self.record_accelerations(record)?;
+        self.record_due(record)?;
+        self.record_frames(record)
     }
 }

@@ -8,7 +8,7 @@ use crate::time::Instant;
 
 /// Kind of event at which a run can be stopped.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Occasion {
+pub enum StopAt {
     /// A sensor has measured; estimates are updated, and the laws have not responded yet.
     Sample,
     /// A law is about to decide.
@@ -29,14 +29,14 @@ impl Simulation {
     ///
     /// let text = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";
     /// let mut simulation = Simulation::new(&Scenario::parse("steered.toml", text)?, 0);
-    /// simulation.steer([Command::Torque(0.5); 3]);
+    /// simulation.set_external_command([Command::Torque(0.5); 3]);
     /// simulation.run_up_to(Instant::START + Span::from_seconds(4.0), &mut ())?;
     /// assert_eq!(simulation.state().map(|state| state.rigid_rate), Some(1.0));
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
-    pub fn steer(&mut self, commands: [Command; 3]) {
-        self.laws.steer(commands);
-        self.steered = true;
+    pub fn set_external_command(&mut self, commands: [Command; 3]) {
+        self.controllers.set_external(commands);
+        self.external_command_pending = true;
     }
 
     /// Returns the current instant of the run.
@@ -45,7 +45,7 @@ impl Simulation {
     }
 
     /// Returns true if the run is at its end.
-    pub fn is_done(&self) -> bool {
+    pub fn is_finished(&self) -> bool {
         self.now == self.end
     }
 
@@ -54,9 +54,9 @@ impl Simulation {
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if self.telling.open(self.now, record)? {
-            self.sense(record)?;
-            self.unanswered = Some(Event::Start);
+        if self.recorder.open(self.now, record)? {
+            self.update_estimates(record)?;
+            self.pending_event = Some(Event::Start);
         }
         Ok(())
     }
@@ -68,7 +68,7 @@ impl Simulation {
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub fn run_up_to(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
-        self.walk(until, None, record).map(|_| ())
+        self.run_pieces(until, None, record).map(|_| ())
     }
 
     /// Runs to the next event of a kind, at most to `until`; returns true if it occurred.
@@ -77,55 +77,55 @@ impl Simulation {
     /// Fails like [`Simulation::run_until`].
     pub fn run_to_next(
         &mut self,
-        occasion: Occasion,
+        occasion: StopAt,
         until: Instant,
         record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
-        self.walk(until, Some(occasion), record)
+        self.run_pieces(until, Some(occasion), record)
     }
 
     /// Completes the record of the current segment when the run is abandoned before its end.
     ///
     /// # Errors
     /// Fails if the record cannot be written.
-    pub fn leave(&self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if !self.is_done() {
-            self.plant.tell_course(self.now, &self.exerted, record)?;
-            self.telling.events.left(self.now, record)?;
+    pub fn record_interruption(&self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        if !self.is_finished() {
+            self.plant.record_pieces(self.now, &self.applied, record)?;
+            self.recorder.events.interrupted(self.now, record)?;
         }
         Ok(())
     }
 
-    fn walk(
+    fn run_pieces(
         &mut self,
         until: Instant,
-        occasion: Option<Occasion>,
+        occasion: Option<StopAt>,
         record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
         let until = until.min(self.end);
         self.open(record)?;
-        if until <= self.now && !self.is_done() {
+        if until <= self.now && !self.is_finished() {
             return Ok(false);
         }
         let mut came = self.resume(occasion, record)?;
-        while !came && self.arrive(until, record)? {
+        while !came && self.advance_to_next(until, record)? {
             let closes = self.monitor.as_ref().is_some_and(|monitor| monitor.closes == self.now);
-            let event = self.event();
-            self.perceive(record)?;
+            let event = self.law_event();
+            self.sense_and_estimate(record)?;
             came = match occasion {
-                Some(Occasion::Sample) => event == Event::Due { sampled: true },
-                Some(Occasion::Decision) => self.concerns(event),
-                Some(Occasion::Window) => closes,
-                Some(Occasion::Switching) | None => false,
+                Some(StopAt::Sample) => event == Event::Due { sampled: true },
+                Some(StopAt::Decision) => self.laws_must_decide(event),
+                Some(StopAt::Window) => closes,
+                Some(StopAt::Switching) | None => false,
             };
-            self.unanswered = Some(event);
-            if (came || self.now == until) && !self.is_done() {
-                self.plant.view(self.now)?;
+            self.pending_event = Some(event);
+            if (came || self.now == until) && !self.is_finished() {
+                self.plant.evaluate(self.now)?;
                 return Ok(came);
             }
             // At the end of the run, the response follows immediately.
             came |= self.resume(occasion, record)?;
-            if came && self.is_done() {
+            if came && self.is_finished() {
                 return self.run_until(until, record).map(|()| true);
             }
         }
@@ -139,29 +139,31 @@ impl Simulation {
     /// `occasion` is a switching and a law has switched.
     pub(super) fn resume(
         &mut self,
-        occasion: Option<Occasion>,
+        occasion: Option<StopAt>,
         record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
-        let event = self.unanswered.take();
-        let Some(event) = event.or(self.steered.then_some(Event::Due { sampled: false })) else {
+        let event = self.pending_event.take();
+        let Some(event) = event.or(self.external_command_pending.then_some(Event::Due { sampled: false }))
+        else {
             return Ok(false);
         };
-        if occasion != Some(Occasion::Switching) {
-            return self.reply(event, record).map(|()| false);
+        if occasion != Some(StopAt::Switching) {
+            return self.respond(event, record).map(|()| false);
         }
-        let states = |of: &Self| [0, 1, 2].map(|axis| of.laws.about(axis.min(of.beliefs.len() - 1)).state());
+        let states =
+            |of: &Self| [0, 1, 2].map(|axis| of.controllers.about(axis.min(of.estimates.len() - 1)).state());
         let before = states(self);
-        self.reply(event, record)?;
+        self.respond(event, record)?;
         Ok(event != Event::Start && states(self) != before)
     }
 
-    fn reply(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if event == Event::Start { self.begin(record) } else { self.answer(event, record) }
+    fn respond(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
+        if event == Event::Start { self.begin(record) } else { self.control_and_actuate(event, record) }
     }
 
     /// Returns true if the laws have to decide on `event`.
-    pub(super) fn concerns(&self, event: Event) -> bool {
+    pub(super) fn laws_must_decide(&self, event: Event) -> bool {
         let sampled = event == Event::Due { sampled: true };
-        matches!(event, Event::Guard(_)) || self.laws.concerned(self.now, sampled, &self.beliefs)
+        matches!(event, Event::Guard(_)) || self.controllers.must_decide(self.now, sampled, &self.estimates)
     }
 }

@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::Finite;
 
 /// Bound of the rounding errors of a zero variance (`[[1, 1], [1, 1]]` is accepted).
@@ -22,8 +22,8 @@ pub struct Correlated {
 
 impl Correlated {
     /// Returns the first inconsistency of the correlations.
-    pub(crate) fn fault(&self) -> Option<Fault> {
-        let fault = |key: &str, why: String| Some(Fault::new(key, why));
+    pub(crate) fn validate(&self) -> Option<ConfigError> {
+        let fault = |key: &str, why: String| Some(ConfigError::new(key, why));
         let order = self.keys.len();
         if order < 2 {
             return fault("keys", format!("needs at least two keys, got {order}"));
@@ -96,7 +96,7 @@ mod tests {
     use super::*;
     use crate::random::Seed;
 
-    fn of(matrix: &[&[f64]]) -> Correlated {
+    fn from_matrix(matrix: &[&[f64]]) -> Correlated {
         let row =
             |row: &&[f64]| row.iter().map(|value| Finite::new(*value).expect("finite")).collect::<Vec<_>>();
         let keys = (0..matrix.len()).map(|key| format!("k{key}")).collect();
@@ -105,8 +105,8 @@ mod tests {
 
     #[test]
     fn numbers_have_the_correlations() {
-        let correlated = of(&[&[1.0, 0.8, -0.3], &[0.8, 1.0, 0.1], &[-0.3, 0.1, 1.0]]);
-        assert_eq!(correlated.fault(), None);
+        let correlated = from_matrix(&[&[1.0, 0.8, -0.3], &[0.8, 1.0, 0.1], &[-0.3, 0.1, 1.0]]);
+        assert_eq!(correlated.validate(), None);
         let mut stream = Seed { scenario: 1, run: 0 }.stream("correlated");
         let count = 100_000;
         let mut sums = [[0.0; 3]; 3];
@@ -129,7 +129,8 @@ mod tests {
 
     #[test]
     fn what_cannot_be_is_refused() {
-        let why = |matrix: &[&[f64]]| of(matrix).fault().map(|fault| fault.why).unwrap_or_default();
+        let why =
+            |matrix: &[&[f64]]| from_matrix(matrix).validate().map(|fault| fault.why).unwrap_or_default();
         assert!(why(&[&[1.0]]).contains("two keys"));
         assert!(why(&[&[1.0, 0.5], &[0.4, 1.0]]).contains("symmetric"));
         assert!(why(&[&[1.0, 1.5], &[1.5, 1.0]]).contains("from -1 to 1"));
@@ -138,7 +139,7 @@ mod tests {
         let impossible: [&[f64]; 3] = [&[1.0, 0.9, -0.9], &[0.9, 1.0, 0.9], &[-0.9, 0.9, 1.0]];
         assert!(why(&impossible).contains("negative eigenvalue"));
         // Keys with one and the same number.
-        assert_eq!(of(&[&[1.0, 1.0], &[1.0, 1.0]]).fault(), None);
-        assert_eq!(of(&[&[1.0, 1.0], &[1.0, 1.0]]).correlate(&[0.5, 2.0]), [0.5, 0.5]);
+        assert_eq!(from_matrix(&[&[1.0, 1.0], &[1.0, 1.0]]).validate(), None);
+        assert_eq!(from_matrix(&[&[1.0, 1.0], &[1.0, 1.0]]).correlate(&[0.5, 2.0]), [0.5, 0.5]);
     }
 }

@@ -4,14 +4,14 @@ use std::fmt;
 
 /// Key with an invalid value, and the reason.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Fault {
+pub struct ConfigError {
     /// Key relative to the part that reports the error; empty for the part itself.
     pub key: String,
     /// Reason, as a text that follows the key.
     pub why: String,
 }
 
-impl Fault {
+impl ConfigError {
     /// Creates a fault at a key.
     pub fn new(key: impl Into<String>, why: impl Into<String>) -> Self {
         Self { key: key.into(), why: why.into() }
@@ -29,13 +29,13 @@ impl Fault {
     }
 }
 
-impl fmt::Display for Fault {
+impl fmt::Display for ConfigError {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "`{}` {}", self.key, self.why)
     }
 }
 
-impl std::error::Error for Fault {}
+impl std::error::Error for ConfigError {}
 
 #[cfg(test)]
 mod tests {
@@ -43,10 +43,10 @@ mod tests {
 
     #[test]
     fn keys_are_joined_as_toml_joins_them() {
-        let within = |key: &str| Fault::new(key, "must be given").within("law.pd").key;
+        let within = |key: &str| ConfigError::new(key, "must be given").within("law.pd").key;
         assert_eq!(within(""), "law.pd");
         assert_eq!(within("gain"), "law.pd.gain");
         assert_eq!(within("[2].gain"), "law.pd[2].gain");
-        assert_eq!(Fault::new("gain", "must be given").to_string(), "`gain` must be given");
+        assert_eq!(ConfigError::new("gain", "must be given").to_string(), "`gain` must be given");
     }
 }

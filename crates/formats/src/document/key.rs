@@ -5,36 +5,36 @@ use std::ops::Range;
 use toml::de::{DeString, DeTable, DeValue};
 use toml::{Spanned, Table, Value};
 
-use super::deep::{DEEPEST, WHY};
-use super::nearest::{american, spelt};
+use super::nesting::{DEEPEST, WHY};
+use super::suggestions::{american_spelling, british_spelling};
 
 /// One step of a path: a key, or an index into an array.
 #[derive(Clone, Debug, PartialEq)]
-enum Step<'a> {
+enum PathStep<'a> {
     Key(&'a str),
     Index(usize),
 }
 
 /// Splits a path into its steps. A key that contains a dot stands in quotes: `uncertain."law.relay.k_t"`.
-fn steps(path: &str) -> Option<Vec<Step<'_>>> {
+fn steps(path: &str) -> Option<Vec<PathStep<'_>>> {
     let mut steps = Vec::new();
     let mut rest = path;
     loop {
         if let Some(quoted) = rest.strip_prefix('"') {
             let (key, after) = quoted.split_once('"')?;
-            steps.push(Step::Key(key));
+            steps.push(PathStep::Key(key));
             rest = after;
         } else {
             let (key, after) = rest.split_at(rest.find(['.', '[']).unwrap_or(rest.len()));
             if key.is_empty() {
                 return None;
             }
-            steps.push(key.parse().map_or(Step::Key(spelt(key)), Step::Index));
+            steps.push(key.parse().map_or(PathStep::Key(british_spelling(key)), PathStep::Index));
             rest = after;
         }
         while let Some(indexed) = rest.strip_prefix('[') {
             let (index, after) = indexed.split_once(']')?;
-            steps.push(Step::Index(index.parse().ok()?));
+            steps.push(PathStep::Index(index.parse().ok()?));
             rest = after;
         }
         if rest.is_empty() {
@@ -53,9 +53,11 @@ pub fn respell(table: &mut Table) {
             _ => {}
         }
     }
-    if table.keys().any(|key| spelt(key) != key && !table.contains_key(spelt(key))) {
-        *table =
-            std::mem::take(table).into_iter().map(|(key, value)| (spelt(&key).to_owned(), value)).collect();
+    if table.keys().any(|key| british_spelling(key) != key && !table.contains_key(british_spelling(key))) {
+        *table = std::mem::take(table)
+            .into_iter()
+            .map(|(key, value)| (british_spelling(&key).to_owned(), value))
+            .collect();
     }
     table.iter_mut().for_each(|(_, value)| within(value));
 }
@@ -69,11 +71,11 @@ pub fn bare_or_quoted(key: &str) -> String {
 /// Returns the value at a path.
 pub fn get<'a>(table: &'a Table, path: &str) -> Option<&'a Value> {
     let mut steps = steps(path)?.into_iter();
-    let Some(Step::Key(first)) = steps.next() else { return None };
+    let Some(PathStep::Key(first)) = steps.next() else { return None };
     let first = table.get(first)?;
     steps.try_fold(first, |value, step| match step {
-        Step::Key(key) => value.get(key),
-        Step::Index(index) => value.get(index),
+        PathStep::Key(key) => value.get(key),
+        PathStep::Index(index) => value.get(index),
     })
 }
 
@@ -84,25 +86,25 @@ pub fn set(table: &mut Table, path: &str, value: Value) -> Result<(), String> {
     if steps.len() > DEEPEST {
         return Err(WHY.to_owned());
     }
-    let Some((Step::Key(first), rest)) = steps.split_first() else {
+    let Some((PathStep::Key(first), rest)) = steps.split_first() else {
         return Err(not_a_path().to_owned());
     };
     let mut place = table.entry(*first).or_insert_with(|| Value::Table(Table::new()));
     for step in rest {
         place = match (step, place) {
-            (Step::Key(key), Value::Table(inner)) => {
+            (PathStep::Key(key), Value::Table(inner)) => {
                 inner.entry(*key).or_insert_with(|| Value::Table(Table::new()))
             }
-            (Step::Index(index), Value::Array(array)) => {
+            (PathStep::Index(index), Value::Array(array)) => {
                 let length = array.len();
                 array
                     .get_mut(*index)
                     .ok_or_else(|| format!("there is no element {index}: the array has {length}"))?
             }
-            (Step::Key(key), other) => {
+            (PathStep::Key(key), other) => {
                 return Err(format!("there is no `{key}` in a value of type {}", other.type_str()));
             }
-            (Step::Index(index), other) => {
+            (PathStep::Index(index), other) => {
                 return Err(format!("there is no element {index} in a {}", other.type_str()));
             }
         };
@@ -127,18 +129,18 @@ fn written<'a>(
     table: &'a DeTable<'a>,
     key: &str,
 ) -> Option<(&'a Spanned<DeString<'a>>, &'a Spanned<DeValue<'a>>)> {
-    table.get_key_value(key).or_else(|| table.get_key_value(american(key)?))
+    table.get_key_value(key).or_else(|| table.get_key_value(american_spelling(key)?))
 }
 
 /// Returns the value at a path, or the nearest table above it.
 fn nearest<'a>(table: &'a DeTable<'a>, path: &str) -> Option<&'a Spanned<DeValue<'a>>> {
     let mut steps = steps(path)?.into_iter();
-    let Some(Step::Key(first)) = steps.next() else { return None };
+    let Some(PathStep::Key(first)) = steps.next() else { return None };
     let mut value = written(table, first)?.1;
     for step in steps {
         let inner = match (step, value.get_ref()) {
-            (Step::Key(key), DeValue::Table(table)) => written(table, key).map(|(_, value)| value),
-            (Step::Index(index), DeValue::Array(array)) => array.get(index),
+            (PathStep::Key(key), DeValue::Table(table)) => written(table, key).map(|(_, value)| value),
+            (PathStep::Index(index), DeValue::Array(array)) => array.get(index),
             _ => None,
         };
         match inner {

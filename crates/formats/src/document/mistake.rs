@@ -8,7 +8,7 @@ pub const SHOWN: usize = 80;
 
 /// Error in a document. It is printed as `file:line:column: message`, with the line below and carets under the place.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Mistake {
+pub struct Diagnostic {
     /// Name of the document's source, such as its path.
     pub origin: String,
     /// Place in the text, if there is one.
@@ -32,7 +32,7 @@ pub struct TextPlace {
     quoted: String,
 }
 
-impl Mistake {
+impl Diagnostic {
     /// Creates an error without a key and a place.
     pub fn new(origin: &str, message: impl Into<String>) -> Self {
         Self { origin: origin.to_owned(), place: None, key: None, message: message.into(), suggestion: None }
@@ -47,12 +47,12 @@ impl Mistake {
     /// Sets the place of the error in a text.
     #[must_use]
     pub fn at(self, text: &str, span: &Range<usize>) -> Self {
-        Self { place: Some(TextPlace::of(text, span)), ..self }
+        Self { place: Some(TextPlace::from_span(text, span)), ..self }
     }
 }
 
 impl TextPlace {
-    fn of(text: &str, span: &Range<usize>) -> Self {
+    fn from_span(text: &str, span: &Range<usize>) -> Self {
         let start = span.start.min(text.len());
         let before = &text[..start];
         let line_start = before.rfind('\n').map_or(0, |newline| newline + 1);
@@ -72,7 +72,7 @@ impl TextPlace {
     }
 }
 
-impl fmt::Display for Mistake {
+impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { origin, place, message, .. } = self;
         match place {

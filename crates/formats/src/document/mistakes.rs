@@ -4,9 +4,9 @@ use serde::de::DeserializeOwned;
 use toml::{Table, Value};
 
 use super::key::{bare_or_quoted, get, set};
-use super::nearest::is_other_word;
+use super::mismatch::Mismatch;
 use super::reader::read;
-use super::wrong::Wrong;
+use super::suggestions::is_other_word;
 
 /// Largest number of errors reported at once.
 const MOST: usize = 20;
@@ -14,7 +14,7 @@ const MOST: usize = 20;
 const FITS: f64 = 0.5;
 
 /// Returns all errors of a table that is to be read as a part: the known first one, and the others.
-pub fn all<T: DeserializeOwned>(table: &Table, first: Wrong) -> Vec<Wrong> {
+pub fn all<T: DeserializeOwned>(table: &Table, first: Mismatch) -> Vec<Mismatch> {
     let (mut table, mut found) = (table.clone(), Vec::new());
     let mut replaced: Vec<String> = Vec::new();
     let mut next = Some(first);
@@ -34,7 +34,7 @@ pub fn all<T: DeserializeOwned>(table: &Table, first: Wrong) -> Vec<Wrong> {
 }
 
 /// Replaces an invalid value by one that may be valid, and returns its path.
-fn replace(table: &mut Table, wrong: &Wrong) -> Option<String> {
+fn replace(table: &mut Table, wrong: &Mismatch) -> Option<String> {
     let path = wrong.path();
     let within = |key: &str| if path.is_empty() { key.to_owned() } else { format!("{path}.{key}") };
     if let Some(key) = wrong.key() {
@@ -119,19 +119,20 @@ mod tests {
             "durations = 'long'\nwings = 2\nlaw.rely = { deadzone = true, hysteresis = 1e-4, strong = -1 }";
         let table = text.parse().expect("TOML");
         let first = read::<Whole>(&table).map(|_| ()).expect_err("wrong");
-        let told: Vec<_> =
+        let described: Vec<_> =
             all::<Whole>(&table, first).iter().map(|wrong| format!("{}: {wrong}", wrong.path())).collect();
-        let holds = |path: &str, words: &str| told.iter().any(|t| t.starts_with(path) && t.contains(words));
-        assert!(holds(": ", "did you mean `duration`"), "{told:#?}");
-        assert!(holds("duration: ", "found string \"long\""), "{told:#?}");
-        assert!(holds(": ", "unknown key `wings`"), "{told:#?}");
-        assert!(holds("law: ", "did you mean `relay`"), "{told:#?}");
-        assert!(holds("law.relay: ", "did you mean `dead_zone`"), "{told:#?}");
-        assert!(holds("law.relay.dead_zone: ", "found boolean"), "{told:#?}");
-        assert!(holds("law.relay: ", "missing key `weak`"), "{told:#?}");
-        assert!(holds("law.relay: ", "missing key `k_t`"), "{told:#?}");
-        assert!(holds("law.relay.strong: ", "must be"), "{told:#?}");
-        assert_eq!(told.len(), 9, "{told:#?}");
+        let holds =
+            |path: &str, words: &str| described.iter().any(|t| t.starts_with(path) && t.contains(words));
+        assert!(holds(": ", "did you mean `duration`"), "{described:#?}");
+        assert!(holds("duration: ", "found string \"long\""), "{described:#?}");
+        assert!(holds(": ", "unknown key `wings`"), "{described:#?}");
+        assert!(holds("law: ", "did you mean `relay`"), "{described:#?}");
+        assert!(holds("law.relay: ", "did you mean `dead_zone`"), "{described:#?}");
+        assert!(holds("law.relay.dead_zone: ", "found boolean"), "{described:#?}");
+        assert!(holds("law.relay: ", "missing key `weak`"), "{described:#?}");
+        assert!(holds("law.relay: ", "missing key `k_t`"), "{described:#?}");
+        assert!(holds("law.relay.strong: ", "must be"), "{described:#?}");
+        assert_eq!(described.len(), 9, "{described:#?}");
     }
 
     #[test]
@@ -143,8 +144,8 @@ mod tests {
         }
         let table = "law.bangbang = { bandwidth = 1, q = 2 }".parse().expect("TOML");
         let first = read::<Whole>(&table).map(|_| ()).expect_err("wrong");
-        let told: Vec<_> = all::<Whole>(&table, first).iter().map(ToString::to_string).collect();
-        assert_eq!(told.len(), 1, "{told:#?}");
-        assert!(told[0].contains("did you mean `relay`?"), "{told:#?}");
+        let described: Vec<_> = all::<Whole>(&table, first).iter().map(ToString::to_string).collect();
+        assert_eq!(described.len(), 1, "{described:#?}");
+        assert!(described[0].contains("did you mean `relay`?"), "{described:#?}");
     }
 }

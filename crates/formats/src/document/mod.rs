@@ -1,16 +1,16 @@
 //! TOML text of a scenario: keys addressed by their paths, and errors that point at the value.
 
-mod deep;
 mod fault;
 pub mod key;
+mod messages;
+mod mismatch;
 mod mistake;
 mod mistakes;
-mod nearest;
+mod nesting;
 mod quantity;
 mod reader;
+mod suggestions;
 mod units;
-mod words;
-mod wrong;
 
 use std::borrow::Cow;
 use std::fs;
@@ -20,16 +20,16 @@ use thiserror::Error;
 use toml::de::DeTable;
 use toml::{Table, Value};
 
-pub use fault::Fault;
-pub use mistake::{Mistake, TextPlace};
-pub use nearest::meant as nearest;
+pub use fault::ConfigError;
+pub use mismatch::Mismatch;
+pub use mistake::{Diagnostic, TextPlace};
 pub use quantity::unit_at;
 pub use reader::{DATE, read_value};
-pub use wrong::Wrong;
+pub use suggestions::nearest_name as nearest;
 
 use key::{bare_or_quoted, span_of};
+use messages::{diagnostic, mismatch, mismatch_at, parse_error};
 use mistake::shortened;
-use words::{mistaken, told, unfit, unparsed};
 
 /// Largest length of a scenario (bytes).
 pub const LONGEST: u64 = 4 << 20;
@@ -46,8 +46,8 @@ pub enum ScenarioError {
         why: String,
     },
     /// Document with errors.
-    #[error("{}", all_of(.0))]
-    Invalid(Vec<Mistake>),
+    #[error("{}", join_diagnostics(.0))]
+    Invalid(Vec<Diagnostic>),
     /// Key set in addition to the document that is not accepted.
     #[error("{origin}: {key}: {why}")]
     Key {
@@ -61,24 +61,24 @@ pub enum ScenarioError {
 }
 
 /// Joins the messages of several errors, one on each line.
-fn all_of(mistakes: &[Mistake]) -> String {
+fn join_diagnostics(mistakes: &[Diagnostic]) -> String {
     mistakes.iter().map(ToString::to_string).collect::<Vec<_>>().join("\n")
 }
 
 impl ScenarioError {
     /// Returns all errors.
-    pub fn mistakes(&self) -> Vec<Mistake> {
+    pub fn mistakes(&self) -> Vec<Diagnostic> {
         match self {
-            Self::Unreadable { path, why } => vec![Mistake::new(&path.display().to_string(), why)],
+            Self::Unreadable { path, why } => vec![Diagnostic::new(&path.display().to_string(), why)],
             Self::Invalid(mistakes) => mistakes.clone(),
             Self::Key { origin, key, why } => {
-                vec![Mistake::new(origin, format!("{key}: {why}")).about(key)]
+                vec![Diagnostic::new(origin, format!("{key}: {why}")).about(key)]
             }
         }
     }
 }
 
-impl Mistake {
+impl Diagnostic {
     /// Returns the scenario error that consists of this error alone.
     fn alone(self) -> ScenarioError {
         ScenarioError::Invalid(vec![self])
@@ -126,7 +126,7 @@ impl Document {
 
     /// Parses a text that messages call `origin`.
     pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
-        let mut table = text.parse::<Table>().map_err(|error| unparsed(origin, &text, &error).alone())?;
+        let mut table = text.parse::<Table>().map_err(|error| parse_error(origin, &text, &error).alone())?;
         key::respell(&mut table);
         Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
     }
@@ -163,7 +163,7 @@ impl Document {
     /// Returns the error of a missing top-level key.
     pub fn missing(&self, key: &str) -> ScenarioError {
         let message = format!("missing key `{key}`");
-        let mistake = Mistake::new(&self.origin, message).about(key);
+        let mistake = Diagnostic::new(&self.origin, message).about(key);
         match &self.text {
             Some(text) => mistake.at(text, &(0..0)).alone(),
             None => mistake.alone(),
@@ -199,7 +199,7 @@ impl Document {
         match &quantity::to_si(&mut converted.table, schema())[..] {
             [] => Ok(Cow::Owned(converted)),
             faults => {
-                let mistakes = faults.iter().flat_map(|fault| self.inconsistent(fault).mistakes());
+                let mistakes = faults.iter().flat_map(|fault| self.at_key(fault).mistakes());
                 Err(ScenarioError::Invalid(mistakes.collect()))
             }
         }
@@ -216,35 +216,35 @@ impl Document {
     }
 
     /// Returns the error of a mismatch, with its place if the text has it.
-    fn unfit(&self, wrong: &Wrong) -> Mistake {
+    fn unfit(&self, wrong: &Mismatch) -> Diagnostic {
         let message = match (&self.text, self.changed.as_slice()) {
-            (Some(text), []) => return unfit(&self.origin, text, wrong),
-            (_, []) => told(wrong),
+            (Some(text), []) => return mismatch(&self.origin, text, wrong),
+            (_, []) => mismatch_at(wrong),
             (_, changed) => match meant_of(wrong, changed) {
                 Some((key, meant)) => {
-                    return mistaken(
+                    return diagnostic(
                         &self.origin,
                         wrong,
                         format!("there is no key `{key}`; did you mean `{meant}`?"),
                     );
                 }
-                None => format!("{} (with {} set)", told(wrong), changed.join(", ")),
+                None => format!("{} (with {} set)", mismatch_at(wrong), changed.join(", ")),
             },
         };
-        mistaken(&self.origin, wrong, message)
+        diagnostic(&self.origin, wrong, message)
     }
 
     /// Returns an error at the first value that was not read completely; `understood` is the part that was read.
     pub fn unread(&self, understood: &Table) -> Option<ScenarioError> {
         let mut pairs = self.table.iter().filter_map(|(key, value)| Some((key, value, understood.get(key)?)));
         let fault = pairs.find_map(|(key, given, read)| unread(&bare_or_quoted(key), given, read))?;
-        Some(self.inconsistent(&fault))
+        Some(self.at_key(&fault))
     }
 
     /// Returns the error of a fault, with the place of its value if the text has it.
-    pub fn inconsistent(&self, fault: &Fault) -> ScenarioError {
+    pub fn at_key(&self, fault: &ConfigError) -> ScenarioError {
         let key = &fault.key;
-        let mistake = Mistake::new(&self.origin, fault.to_string()).about(key);
+        let mistake = Diagnostic::new(&self.origin, fault.to_string()).about(key);
         if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
             let table = DeTable::parse(text).ok();
             if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
@@ -260,7 +260,7 @@ impl Document {
 }
 
 /// A key that was set within a table of a wrong name, and what was probably meant by it.
-fn meant_of(wrong: &Wrong, changed: &[String]) -> Option<(String, String)> {
+fn meant_of(wrong: &Mismatch, changed: &[String]) -> Option<(String, String)> {
     let (path, name, meant) = (wrong.path(), bare_or_quoted(wrong.key()?), wrong.meant()?);
     let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
     let wrong = within(&name);
@@ -274,26 +274,26 @@ fn too_long(length: u64) -> String {
 
 /// Reads a part of a scenario, such as one law, from a TOML text of its own, for unit tests.
 pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
-    let table = text.parse().map_err(|error| unparsed("text", text, &error).alone())?;
-    read_value(&Value::Table(table)).map_err(|wrong| unfit("text", text, &wrong).alone())
+    let table = text.parse().map_err(|error| parse_error("text", text, &error).alone())?;
+    read_value(&Value::Table(table)).map_err(|wrong| mismatch("text", text, &wrong).alone())
 }
 
 /// Returns a fault at the first part of a value that is not in `read`.
-fn unread(key: &str, given: &Value, read: &Value) -> Option<Fault> {
+fn unread(key: &str, given: &Value, read: &Value) -> Option<ConfigError> {
     match (given, read) {
         (Value::Table(given), Value::Table(read)) => given.iter().find_map(|(name, value)| {
             unread(&format!("{key}.{}", bare_or_quoted(name)), value, read.get(name)?)
         }),
         (Value::Array(given), Value::Array(read)) if given.len() > read.len() => {
             let why = format!("has {} values, expected {}", given.len(), read.len());
-            Some(Fault::new(key, why))
+            Some(ConfigError::new(key, why))
         }
         (Value::Array(given), Value::Array(read)) => given
             .iter()
             .zip(read)
             .enumerate()
             .find_map(|(index, (given, read))| unread(&format!("{key}[{index}]"), given, read)),
-        (Value::Array(_), Value::Table(_)) => Some(Fault::new(key, "is an array, expected a table")),
+        (Value::Array(_), Value::Table(_)) => Some(ConfigError::new(key, "is an array, expected a table")),
         _ => None,
     }
 }

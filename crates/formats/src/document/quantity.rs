@@ -5,7 +5,7 @@
 use serde_json::Value as Json;
 use toml::{Table, Value};
 
-use super::Fault;
+use super::ConfigError;
 use super::key::bare_or_quoted;
 use super::units::{KNOWN, Unit, meant};
 
@@ -30,7 +30,7 @@ pub fn any(table: &Table) -> bool {
 
 /// Converts numbers with units to SI in place, and returns a fault for each unit that is unknown or does not fit its
 /// key.
-pub fn to_si(table: &mut Table, schema: &Json) -> Vec<Fault> {
+pub fn to_si(table: &mut Table, schema: &Json) -> Vec<ConfigError> {
     let mut faults = Vec::new();
     let root = [Node { schema, unit: None }];
     for (key, value) in table.iter_mut() {
@@ -46,7 +46,7 @@ pub fn to_si(table: &mut Table, schema: &Json) -> Vec<Fault> {
 /// The table of distributions by the paths of keys: numbers in a distribution take the units of its key.
 const UNCERTAIN: &str = "uncertain";
 
-fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<Fault>) {
+fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<ConfigError>) {
     let Value::Table(uncertain) = uncertain else { return };
     for (key, value) in uncertain.iter_mut() {
         let (ends, Value::Table(kinds)) = (ends_at(schema, key), value) else { continue };
@@ -63,7 +63,7 @@ fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<Fault>) 
     }
 }
 
-fn each_in_si(value: &mut Value, path: &str, ends: &[Node<'_>], faults: &mut Vec<Fault>) {
+fn each_in_si(value: &mut Value, path: &str, ends: &[Node<'_>], faults: &mut Vec<ConfigError>) {
     match value {
         Value::Table(table) => {
             for (key, value) in table.iter_mut() {
@@ -79,7 +79,7 @@ fn each_in_si(value: &mut Value, path: &str, ends: &[Node<'_>], faults: &mut Vec
             if let Some((number, unit)) = split(text) {
                 match in_si(number, unit, ends) {
                     Ok(number) => *value = Value::Float(number),
-                    Err(why) => faults.push(Fault::new(path, why)),
+                    Err(why) => faults.push(ConfigError::new(path, why)),
                 }
             }
         }
@@ -114,7 +114,7 @@ struct Node<'a> {
     unit: Option<&'a str>,
 }
 
-fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, faults: &mut Vec<Fault>) {
+fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, faults: &mut Vec<ConfigError>) {
     match value {
         Value::Table(table) => {
             for (key, value) in table.iter_mut() {
@@ -137,7 +137,7 @@ fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, fau
             }
             match in_si(number, unit, &ends) {
                 Ok(number) => *value = Value::Float(number),
-                Err(why) => faults.push(Fault::new(path, why)),
+                Err(why) => faults.push(ConfigError::new(path, why)),
             }
         }
         _ => {}

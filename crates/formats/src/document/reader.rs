@@ -7,19 +7,19 @@ use serde::de::{
 };
 use toml::{Table, Value};
 
-use super::wrong::Wrong;
+use super::mismatch::Mismatch;
 
 /// Newtype name by which a type requests a date, as its text.
 pub const DATE: &str = "date";
 
 /// Reads a part from a table.
-pub fn read<T: DeserializeOwned>(table: &Table) -> Result<T, Wrong> {
-    struct Whole<'a>(&'a Table);
-    impl<'de> Deserializer<'de> for Whole<'de> {
-        type Error = Wrong;
+pub fn read<T: DeserializeOwned>(table: &Table) -> Result<T, Mismatch> {
+    struct TableReader<'a>(&'a Table);
+    impl<'de> Deserializer<'de> for TableReader<'de> {
+        type Error = Mismatch;
 
-        fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
-            visitor.visit_map(Entries::new(self.0))
+        fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
+            visitor.visit_map(EntryReader::new(self.0))
         }
 
         serde::forward_to_deserialize_any! {
@@ -27,11 +27,11 @@ pub fn read<T: DeserializeOwned>(table: &Table) -> Result<T, Wrong> {
             newtype_struct seq tuple tuple_struct map struct enum identifier ignored_any
         }
     }
-    T::deserialize(Whole(table))
+    T::deserialize(TableReader(table))
 }
 
 /// Reads a part from a value.
-pub fn read_value<T: DeserializeOwned>(value: &Value) -> Result<T, Wrong> {
+pub fn read_value<T: DeserializeOwned>(value: &Value) -> Result<T, Mismatch> {
     T::deserialize(Reader(value))
 }
 
@@ -53,32 +53,32 @@ impl<'de> Reader<'de> {
         }
     }
 
-    fn refused<T>(self, visitor: &impl Visitor<'de>) -> Result<T, Wrong> {
-        Err(Wrong::invalid_type(self.found(), visitor))
+    fn refused<T>(self, visitor: &impl Visitor<'de>) -> Result<T, Mismatch> {
+        Err(Mismatch::invalid_type(self.found(), visitor))
     }
 
-    fn text<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn text<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         match self.0 {
             Value::String(text) => visitor.visit_str(text),
             _ => self.refused(&visitor),
         }
     }
 
-    fn values<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn values<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         match self.0 {
-            Value::Array(values) => visitor.visit_seq(Items { values: values.iter(), index: 0 }),
+            Value::Array(values) => visitor.visit_seq(ArrayReader { values: values.iter(), index: 0 }),
             _ => self.refused(&visitor),
         }
     }
 
-    fn table<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn table<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         match self.0 {
             Value::Table(table) => {
-                let mut entries = Entries::new(table);
+                let mut entries = EntryReader::new(table);
                 let made = visitor.visit_map(&mut entries)?;
                 // A part that reads a kind from a map uses its first key, and would leave others unread.
                 if entries.entries.next().is_some() {
-                    Err(Wrong::several_kinds(table, &[]))
+                    Err(Mismatch::several_kinds(table, &[]))
                 } else {
                     Ok(made)
                 }
@@ -89,9 +89,9 @@ impl<'de> Reader<'de> {
 }
 
 impl<'de> Deserializer<'de> for Reader<'de> {
-    type Error = Wrong;
+    type Error = Mismatch;
 
-    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_any<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         match self.0 {
             Value::String(text) => visitor.visit_str(text),
             Value::Integer(number) => visitor.visit_i64(*number),
@@ -103,15 +103,15 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         }
     }
 
-    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_str<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         self.text(visitor)
     }
 
-    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_string<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         self.text(visitor)
     }
 
-    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_option<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         visitor.visit_some(self)
     }
 
@@ -119,7 +119,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         self,
         name: &'static str,
         visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    ) -> Result<V::Value, Mismatch> {
         match self.0 {
             Value::Datetime(date) if name == DATE => visitor.visit_str(&date.to_string()),
             _ if name == DATE => self.refused(&visitor),
@@ -127,11 +127,11 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         }
     }
 
-    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_seq<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         self.values(visitor)
     }
 
-    fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_tuple<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Mismatch> {
         self.values(visitor)
     }
 
@@ -140,11 +140,11 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         _: &'static str,
         _: usize,
         visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    ) -> Result<V::Value, Mismatch> {
         self.values(visitor)
     }
 
-    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Wrong> {
+    fn deserialize_map<V: Visitor<'de>>(self, visitor: V) -> Result<V::Value, Mismatch> {
         self.table(visitor)
     }
 
@@ -153,7 +153,7 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         _: &'static str,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    ) -> Result<V::Value, Mismatch> {
         self.table(visitor)
     }
 
@@ -162,18 +162,20 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         _: &'static str,
         known: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    ) -> Result<V::Value, Mismatch> {
         match self.0 {
-            Value::String(name) => visitor.visit_enum(Kind { name, value: None }),
+            Value::String(name) => visitor.visit_enum(VariantReader { name, value: None }),
             Value::Table(kinds) => {
                 let mut given = kinds.iter();
                 match (given.next(), given.next()) {
-                    (Some((name, value)), None) => visitor.visit_enum(Kind { name, value: Some(value) }),
-                    (None, _) => Err(Wrong::custom("exactly one kind is needed here, and none is given")),
-                    _ => Err(Wrong::several_kinds(kinds, known)),
+                    (Some((name, value)), None) => {
+                        visitor.visit_enum(VariantReader { name, value: Some(value) })
+                    }
+                    (None, _) => Err(Mismatch::custom("exactly one kind is needed here, and none is given")),
+                    _ => Err(Mismatch::several_kinds(kinds, known)),
                 }
             }
-            _ => Err(Wrong::no_kind(self.0)),
+            _ => Err(Mismatch::no_kind(self.0)),
         }
     }
 
@@ -183,15 +185,15 @@ impl<'de> Deserializer<'de> for Reader<'de> {
 }
 
 /// Access to the values of an array.
-struct Items<'a> {
+struct ArrayReader<'a> {
     values: std::slice::Iter<'a, Value>,
     index: usize,
 }
 
-impl<'de> SeqAccess<'de> for Items<'de> {
-    type Error = Wrong;
+impl<'de> SeqAccess<'de> for ArrayReader<'de> {
+    type Error = Mismatch;
 
-    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Wrong> {
+    fn next_element_seed<T: DeserializeSeed<'de>>(&mut self, seed: T) -> Result<Option<T::Value>, Mismatch> {
         let Some(value) = self.values.next() else { return Ok(None) };
         let index = self.index;
         self.index += 1;
@@ -204,28 +206,28 @@ impl<'de> SeqAccess<'de> for Items<'de> {
 }
 
 /// Access to the entries of a table.
-struct Entries<'a> {
+struct EntryReader<'a> {
     entries: toml::map::Iter<'a, String, Value>,
     entry: Option<(&'a str, &'a Value)>,
 }
 
-impl<'a> Entries<'a> {
+impl<'a> EntryReader<'a> {
     fn new(table: &'a Table) -> Self {
         Self { entries: table.iter(), entry: None }
     }
 }
 
-impl<'de> MapAccess<'de> for Entries<'de> {
-    type Error = Wrong;
+impl<'de> MapAccess<'de> for EntryReader<'de> {
+    type Error = Mismatch;
 
-    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Wrong> {
+    fn next_key_seed<K: DeserializeSeed<'de>>(&mut self, seed: K) -> Result<Option<K::Value>, Mismatch> {
         self.entry = self.entries.next().map(|(key, value)| (key.as_str(), value));
         let Some((key, _)) = self.entry else { return Ok(None) };
-        seed.deserialize(StrDeserializer::new(key)).map(Some).map_err(|wrong: Wrong| wrong.at_key(key))
+        seed.deserialize(StrDeserializer::new(key)).map(Some).map_err(|wrong: Mismatch| wrong.at_key(key))
     }
 
-    fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, Wrong> {
-        let Some((key, value)) = self.entry else { return Err(Wrong::custom("a value without a key")) };
+    fn next_value_seed<S: DeserializeSeed<'de>>(&mut self, seed: S) -> Result<S::Value, Mismatch> {
+        let Some((key, value)) = self.entry else { return Err(Mismatch::custom("a value without a key")) };
         seed.deserialize(Reader(value)).map_err(|wrong| wrong.in_key(key))
     }
 
@@ -235,17 +237,17 @@ impl<'de> MapAccess<'de> for Entries<'de> {
 }
 
 /// Access to an enum: the name of the kind, and its table if it has one.
-struct Kind<'a> {
+struct VariantReader<'a> {
     name: &'a str,
     value: Option<&'a Value>,
 }
 
-impl<'de> EnumAccess<'de> for Kind<'de> {
-    type Error = Wrong;
+impl<'de> EnumAccess<'de> for VariantReader<'de> {
+    type Error = Mismatch;
     type Variant = Self;
 
-    fn variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<(S::Value, Self), Wrong> {
-        let name = StrDeserializer::<Wrong>::new(self.name);
+    fn variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<(S::Value, Self), Mismatch> {
+        let name = StrDeserializer::<Mismatch>::new(self.name);
         let kind = seed.deserialize(name);
         let kind =
             kind.map_err(|wrong| if self.value.is_some() { wrong.at_key(self.name) } else { wrong })?;
@@ -253,32 +255,32 @@ impl<'de> EnumAccess<'de> for Kind<'de> {
     }
 }
 
-impl<'de> Kind<'de> {
-    fn reader(&self) -> Result<Reader<'de>, Wrong> {
-        self.value.map(Reader).ok_or_else(Wrong::only_a_name)
+impl<'de> VariantReader<'de> {
+    fn reader(&self) -> Result<Reader<'de>, Mismatch> {
+        self.value.map(Reader).ok_or_else(Mismatch::only_a_name)
     }
 }
 
-impl<'de> VariantAccess<'de> for Kind<'de> {
-    type Error = Wrong;
+impl<'de> VariantAccess<'de> for VariantReader<'de> {
+    type Error = Mismatch;
 
-    fn unit_variant(self) -> Result<(), Wrong> {
+    fn unit_variant(self) -> Result<(), Mismatch> {
         match self.value {
             None => Ok(()),
             Some(Value::Table(keys)) if keys.is_empty() => Ok(()),
             Some(Value::Table(keys)) => {
                 let key = keys.keys().next().map_or("", String::as_str);
-                Err(Wrong::unknown_field(key, &[]).at_key(key).in_key(self.name))
+                Err(Mismatch::unknown_field(key, &[]).at_key(key).in_key(self.name))
             }
-            Some(value) => Err(Wrong::invalid_type(Reader(value).found(), &"a table").in_key(self.name)),
+            Some(value) => Err(Mismatch::invalid_type(Reader(value).found(), &"a table").in_key(self.name)),
         }
     }
 
-    fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, Wrong> {
+    fn newtype_variant_seed<S: DeserializeSeed<'de>>(self, seed: S) -> Result<S::Value, Mismatch> {
         seed.deserialize(self.reader()?).map_err(|wrong| wrong.in_key(self.name))
     }
 
-    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Wrong> {
+    fn tuple_variant<V: Visitor<'de>>(self, _: usize, visitor: V) -> Result<V::Value, Mismatch> {
         self.reader()?.values(visitor).map_err(|wrong| wrong.in_key(self.name))
     }
 
@@ -286,7 +288,7 @@ impl<'de> VariantAccess<'de> for Kind<'de> {
         self,
         _: &'static [&'static str],
         visitor: V,
-    ) -> Result<V::Value, Wrong> {
+    ) -> Result<V::Value, Mismatch> {
         self.reader()?.table(visitor).map_err(|wrong| wrong.in_key(self.name))
     }
 }
@@ -311,32 +313,32 @@ mod tests {
             Simple,
             Full { value: f64 },
         }
-        let told = |text: &str| {
+        let reported = |text: &str| {
             let wrong = read::<Part>(&text.parse().expect("TOML")).expect_err("wrong");
             (wrong.path(), wrong.key().map(str::to_owned), wrong.to_string())
         };
         let at = |path: &str, key: Option<&str>, why: &str| {
             (path.to_owned(), key.map(str::to_owned), why.to_owned())
         };
-        assert_eq!(told("list = []"), at("", None, "missing key `kind`"));
+        assert_eq!(reported("list = []"), at("", None, "missing key `kind`"));
         assert_eq!(
-            told("kind.full.value = 'x'"),
+            reported("kind.full.value = 'x'"),
             at("kind.full.value", None, "found string \"x\", expected a number")
         );
-        assert_eq!(told("kind.full = {}"), at("kind.full", None, "missing key `value`"));
+        assert_eq!(reported("kind.full = {}"), at("kind.full", None, "missing key `value`"));
         assert_eq!(
-            told("kind.simple.x = 1"),
+            reported("kind.simple.x = 1"),
             at("kind.simple", Some("x"), "unknown key `x`, there are no keys here")
         );
         let unknown = "`ful` is not known here, expected `simple` or `full`; did you mean `full`?";
-        assert_eq!(told("kind.ful = 1"), at("kind", Some("ful"), unknown));
-        assert_eq!(told("kind = 'ful'"), at("kind", None, unknown));
+        assert_eq!(reported("kind.ful = 1"), at("kind", Some("ful"), unknown));
+        assert_eq!(reported("kind = 'ful'"), at("kind", None, unknown));
         assert_eq!(
-            told("kind = 'simple'\nlist = [[1, 2], [1]]"),
+            reported("kind = 'simple'\nlist = [[1, 2], [1]]"),
             at("list[1]", None, "found an array of length 1, expected an array of length 2")
         );
         assert_eq!(
-            told("knd = 1"),
+            reported("knd = 1"),
             at("", Some("knd"), "unknown key `knd`, expected `kind` or `list`; did you mean `kind`?")
         );
     }

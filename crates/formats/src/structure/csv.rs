@@ -43,7 +43,7 @@ pub fn records(path: &Path, most: usize, called: &str) -> Result<Vec<(u64, Strin
         .from_reader(open_text(path)?);
     let mut records = Vec::new();
     for record in reader.into_records() {
-        let record = record.map_err(told)?;
+        let record = record.map_err(csv_error)?;
         let line = record.position().map_or(0, ::csv::Position::line);
         if records.len() == most {
             return Err(format!("line {line}: must have at most {most} {called}"));
@@ -57,7 +57,7 @@ pub fn records(path: &Path, most: usize, called: &str) -> Result<Vec<(u64, Strin
     Ok(records)
 }
 
-fn told(error: ::csv::Error) -> String {
+fn csv_error(error: ::csv::Error) -> String {
     match error.into_kind() {
         ::csv::ErrorKind::Io(error) => error.to_string(),
         ::csv::ErrorKind::Utf8 { pos, .. } => {

@@ -7,10 +7,10 @@
 use nalgebra::{Cholesky, DMatrix, SymmetricEigen};
 
 #[cfg(feature = "matrices")]
-use super::large::large;
+use super::eigen_large::large;
+use super::eigen_reduced::{EigenError, ReducedEigen, is_definite};
 #[cfg(not(feature = "matrices"))]
-use super::left_out::large;
-use super::reduced::{Reduced, Unsolved, is_definite};
+use super::unavailable::large;
 
 /// Largest order that nalgebra solves, with the same result on every machine. Above it faer is many times faster, but
 /// the last digits of its results depend on the processor.
@@ -29,7 +29,7 @@ pub fn modes(
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
     functionals: &DMatrix<f64>,
-) -> Result<EigenModes, Unsolved> {
+) -> Result<EigenModes, EigenError> {
     let order = stiffness.nrows();
     let reduced = if order <= SMALL {
         small(stiffness, mass, functionals)?
@@ -63,24 +63,24 @@ fn small(
     stiffness: DMatrix<f64>,
     mass: DMatrix<f64>,
     functionals: &DMatrix<f64>,
-) -> Result<Reduced, Unsolved> {
+) -> Result<ReducedEigen, EigenError> {
     let factor = |matrix: DMatrix<f64>, indefinite| {
         let diagonal = matrix.diagonal();
         let factor = Cholesky::new(matrix).ok_or(indefinite)?.unpack();
         let pivots = (0..diagonal.len()).map(|i| (factor[(i, i)], diagonal[i]));
         if is_definite(pivots) { Ok(factor) } else { Err(indefinite) }
     };
-    let l = factor(stiffness, Unsolved::Stiffness)?;
-    let r = factor(mass, Unsolved::Mass)?;
+    let l = factor(stiffness, EigenError::Stiffness)?;
+    let r = factor(mass, EigenError::Mass)?;
     // The factors have no zeros on their diagonals.
     let b = l.solve_lower_triangular(&r).unwrap_or(r);
     let square = &b * b.transpose();
     if square.iter().any(|element| !element.is_finite()) {
-        return Err(Unsolved::Range);
+        return Err(EigenError::Range);
     }
     let eigen = SymmetricEigen::new(square);
     let functionals = l.solve_lower_triangular(functionals).unwrap_or_else(|| functionals.clone());
-    Ok(Reduced {
+    Ok(ReducedEigen {
         squares: eigen.eigenvalues.as_slice().to_vec(),
         values: eigen.eigenvectors.tr_mul(&functionals),
     })

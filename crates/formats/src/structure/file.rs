@@ -13,16 +13,16 @@ pub fn open(path: &Path) -> Result<File, String> {
 }
 
 fn open_up_to(path: &Path, longest: u64) -> Result<File, String> {
-    let told = |error: std::io::Error| error.to_string();
+    let reported = |error: std::io::Error| error.to_string();
     // A pipe or a device may never end, and opening a pipe may block.
-    let metadata = fs::metadata(path).map_err(told)?;
+    let metadata = fs::metadata(path).map_err(reported)?;
     if !metadata.is_file() {
         return Err("not a file".to_owned());
     }
     if metadata.len() > longest {
         return Err(format!("must have at most {longest} bytes, got {}", metadata.len()));
     }
-    File::open(path).map_err(told)
+    File::open(path).map_err(reported)
 }
 
 /// Opens a file for sequential reading, limited to the largest size.

@@ -9,12 +9,12 @@ use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
-#[cfg(not(feature = "matrices"))]
-use super::left_out::npz;
 #[cfg(feature = "matrices")]
 use super::npz;
-use super::{csv, market};
-use crate::document::Fault;
+#[cfg(not(feature = "matrices"))]
+use super::unavailable::npz;
+use super::{csv, matrix_market};
+use crate::document::ConfigError;
 use flexsc_motion::quantity::Finite;
 
 /// Dense matrix, or the path of its file.
@@ -40,19 +40,19 @@ impl Matrix {
     }
 
     /// Returns the numbers, read from the file if there is one. The key of a fault is relative to the matrix.
-    pub fn read(&self) -> Result<DMatrix<f64>, Fault> {
+    pub fn read(&self) -> Result<DMatrix<f64>, ConfigError> {
         match self {
             Self::Rows(rows) => {
                 let columns = rows.first().map_or(0, Vec::len);
                 for (index, row) in rows.iter().enumerate() {
                     if row.len() != columns {
                         let why = format!("must have {columns} numbers, as the first row, got {}", row.len());
-                        return Err(Fault::new(format!("[{index}]"), why));
+                        return Err(ConfigError::new(format!("[{index}]"), why));
                     }
                 }
                 Ok(DMatrix::from_fn(rows.len(), columns, |i, j| rows[i][j].get()))
             }
-            Self::File(file) => read_file(file).map_err(|why| Fault::new("", why)),
+            Self::File(file) => read_file(file).map_err(|why| ConfigError::new("", why)),
         }
     }
 }
@@ -68,7 +68,7 @@ fn read_file(file: &str) -> Result<DMatrix<f64>, String> {
     let (kind, path) = (extension(path), Path::new(path));
     let read = match kind.as_deref() {
         Some("csv") => csv::read(path),
-        Some("mtx") => market::read(path),
+        Some("mtx") => matrix_market::read(path),
         Some("npz") => npz::read(path, array),
         _ => return Err(format!("must be {EXPECTED}, got `{file}`")),
     };

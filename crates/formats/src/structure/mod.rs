@@ -8,26 +8,26 @@
 
 mod csv;
 mod eigen;
+#[cfg(feature = "matrices")]
+mod eigen_large;
+mod eigen_reduced;
 pub mod fe;
 mod file;
-#[cfg(feature = "matrices")]
-mod large;
-#[cfg(not(feature = "matrices"))]
-mod left_out;
-mod market;
 mod matrix;
+mod matrix_market;
 pub mod mode_table;
 #[cfg(feature = "matrices")]
 mod npz;
-mod reduced;
 mod shape;
+#[cfg(not(feature = "matrices"))]
+mod unavailable;
 
 use nalgebra::{DMatrix, DVector};
 
-use crate::document::Fault;
+use crate::document::ConfigError;
 pub use eigen::values as eigenvalues;
+use eigen_reduced::EigenError;
 pub use matrix::Matrix;
-use reduced::Unsolved;
 pub use shape::Shape;
 
 /// Largest order of the matrices.
@@ -83,7 +83,7 @@ impl Structure {
         stiffness: DMatrix<f64>,
         hub: usize,
         rotation: Option<&[f64]>,
-    ) -> Result<Self, Fault> {
+    ) -> Result<Self, ConfigError> {
         let mass = symmetric("mass", mass)?;
         let stiffness = symmetric("stiffness", stiffness)?;
         let order = mass.nrows();
@@ -126,7 +126,7 @@ impl Structure {
                 )
             };
             let key = rotation.map_or_else(|| format!("stiffness[{i}][{hub}]"), |_| "rotation".to_owned());
-            return Err(Fault::new(key, why));
+            return Err(ConfigError::new(key, why));
         }
         Ok(Self { mass, stiffness, hub, rotation: turned })
     }
@@ -145,7 +145,7 @@ impl Structure {
     ///
     /// # Errors
     /// A matrix that is not symmetric and finite, that does not fit, or that resists the rotation.
-    pub fn damping(&self, damping: DMatrix<f64>) -> Result<DMatrix<f64>, Fault> {
+    pub fn damping(&self, damping: DMatrix<f64>) -> Result<DMatrix<f64>, ConfigError> {
         let damping = symmetric("damping_matrix", damping)?;
         let (order, found) = (self.mass.nrows(), damping.nrows());
         if found != order {
@@ -171,7 +171,7 @@ impl Structure {
     ///
     /// # Errors
     /// A matrix that is not positive definite.
-    pub fn modes(&self, hub: HubState, observed: &[Vec<f64>]) -> Result<Modes, Fault> {
+    pub fn modes(&self, hub: HubState, observed: &[Vec<f64>]) -> Result<Modes, ConfigError> {
         let elastic: Vec<usize> = (0..self.mass.nrows()).filter(|i| *i != self.hub).collect();
         let order = elastic.len();
         let momenta = &self.mass * &self.rotation;
@@ -191,14 +191,14 @@ impl Structure {
             _ => observed[column - 1][elastic[i]],
         });
         let solved = eigen::modes(block(&self.stiffness), mass, &functionals).map_err(|which| match which {
-            Unsolved::Range => Fault::new("mass", TOO_FAR_APART),
+            EigenError::Range => ConfigError::new("mass", TOO_FAR_APART),
             #[cfg(not(feature = "matrices"))]
-            Unsolved::LeftOut => {
-                let (most, why) = (eigen::SMALL, left_out::LEFT_OUT);
-                Fault::new("mass", format!("has {order} elastic coordinates: more than {most} {why}"))
+            EigenError::LeftOut => {
+                let (most, why) = (eigen::SMALL, unavailable::LEFT_OUT);
+                ConfigError::new("mass", format!("has {order} elastic coordinates: more than {most} {why}"))
             }
-            Unsolved::Mass => Fault::new("mass", format!("{DEFINITE}, and is not")),
-            Unsolved::Stiffness => Fault::new("stiffness", format!(
+            EigenError::Mass => ConfigError::new("mass", format!("{DEFINITE}, and is not")),
+            EigenError::Stiffness => ConfigError::new("stiffness", format!(
                     "{DEFINITE} with the hub held, and is not: the structure has another motion without strain \
                      beside the rotation, or a negative stiffness"
                 )),
@@ -234,12 +234,12 @@ fn dot(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).fold(0.0, |sum, (a, b)| sum + a * b)
 }
 
-fn fault<T>(key: &str, why: String) -> Result<T, Fault> {
-    Err(Fault::new(key, why))
+fn fault<T>(key: &str, why: String) -> Result<T, ConfigError> {
+    Err(ConfigError::new(key, why))
 }
 
 /// Checks that a matrix is square, finite and symmetric within rounding, and makes it symmetric to the last digit.
-fn symmetric(key: &str, mut matrix: DMatrix<f64>) -> Result<DMatrix<f64>, Fault> {
+fn symmetric(key: &str, mut matrix: DMatrix<f64>) -> Result<DMatrix<f64>, ConfigError> {
     let (order, columns) = matrix.shape();
     if order != columns {
         return fault(key, format!("must be square, got {order} x {columns}"));

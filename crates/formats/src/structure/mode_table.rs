@@ -30,16 +30,16 @@ pub trait ModeRow: Clone + Serialize + DeserializeOwned + JsonSchema {
     /// Extensions of the files that contain such modes, for messages.
     const FILES: &'static str;
     /// Columns specific to this kind of mode.
-    const OWN: &'static [&'static str];
+    const EXTRA_COLUMNS: &'static [&'static str];
 
     /// Creates a mode of which only the natural frequency is known.
-    fn of(frequency: Frequency) -> Self;
+    fn from_frequency(frequency: Frequency) -> Self;
 
     /// Returns the values that every kind of mode has.
     fn common(&mut self) -> ModeCommon<'_>;
 
-    /// Sets the value of a column, given by its index in [`Self::OWN`].
-    fn set_own(&mut self, column: usize, value: Finite);
+    /// Sets the value of a column, given by its index in [`Self::EXTRA_COLUMNS`].
+    fn set_extra(&mut self, column: usize, value: Finite);
 }
 
 /// Values that every kind of mode has besides its frequency.
@@ -62,12 +62,12 @@ pub struct ModeTable<M> {
 }
 
 /// Contents of a column of the file.
-enum Column {
+enum FileColumn {
     Frequency,
     Damping,
     Displacement,
     Rate,
-    /// Column specific to this kind of mode, by its index in [`ModeRow::OWN`].
+    /// Column specific to this kind of mode, by its index in [`ModeRow::EXTRA_COLUMNS`].
     Own(usize),
     /// Component of the shape at a point, by its index in [`COMPONENTS`].
     Shape(String, usize),
@@ -127,7 +127,7 @@ impl<M: ModeRow> ModeTable<M> {
     }
 
     /// Keeps the modes inline, and removes the reference to their file.
-    pub fn forget_file(&mut self) {
+    pub fn inline(&mut self) {
         self.file = None;
     }
 }
@@ -151,9 +151,11 @@ fn read_file<M: ModeRow>(path: &Path) -> Result<Vec<M>, String> {
         if header.iter().take(index).any(|other| other == name) {
             return Err(format!("line {line}: must have each column once, got `{name}` again"));
         }
-        columns.push(Column::of(name, M::OWN).map_err(|why| format!("line {line}: {why}"))?);
+        columns.push(
+            FileColumn::from_name(name, M::EXTRA_COLUMNS).map_err(|why| format!("line {line}: {why}"))?,
+        );
     }
-    let Some(frequency) = columns.iter().position(|column| matches!(column, Column::Frequency)) else {
+    let Some(frequency) = columns.iter().position(|column| matches!(column, FileColumn::Frequency)) else {
         return Err(format!("line {line}: must have a column `frequency`"));
     };
     let mut modes = Vec::with_capacity(rows.len());
@@ -162,18 +164,18 @@ fn read_file<M: ModeRow>(path: &Path) -> Result<Vec<M>, String> {
             let (expected, found) = (columns.len(), row.len());
             return Err(format!("line {line}: must have {expected} numbers, as the header, got {found}"));
         }
-        let told = |name: &str, why: &str| format!("line {line}: `{name}` {why}");
-        let mut mode = M::of(number(&row[frequency]).map_err(|why| told("frequency", &why))?);
+        let reported = |name: &str, why: &str| format!("line {line}: `{name}` {why}");
+        let mut mode = M::from_frequency(number(&row[frequency]).map_err(|why| reported("frequency", &why))?);
         for ((column, name), field) in columns.iter().zip(header).zip(row) {
-            column.set(&mut mode, field).map_err(|why| told(name, &why))?;
+            column.set(&mut mode, field).map_err(|why| reported(name, &why))?;
         }
         modes.push(mode);
     }
     Ok(modes)
 }
 
-impl Column {
-    fn of(name: &str, own: &[&str]) -> Result<Self, String> {
+impl FileColumn {
+    fn from_name(name: &str, own: &[&str]) -> Result<Self, String> {
         Ok(match name {
             "frequency" => Self::Frequency,
             "damping" => Self::Damping,
@@ -205,7 +207,7 @@ impl Column {
             Self::Damping => *mode.common().damping = number(field)?,
             Self::Displacement => *mode.common().displacement = number(field)?,
             Self::Rate => *mode.common().rate = number(field)?,
-            Self::Own(column) => mode.set_own(*column, number(field)?),
+            Self::Own(column) => mode.set_extra(*column, number(field)?),
             Self::Shape(point, index) => {
                 let shape = mode.common().shapes.entry(point.clone()).or_default();
                 if *index < 3 {

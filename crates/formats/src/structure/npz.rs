@@ -161,18 +161,18 @@ impl Archive {
 /// Returns the first bytes of an array, up to the end of its header, and the rest. A header is a Python expression,
 /// whose parser takes twice as long with each level of brackets.
 fn header<R: Read>(mut entry: R) -> Result<(Vec<u8>, R), String> {
-    let told = |error: std::io::Error| error.to_string();
+    let reported = |error: std::io::Error| error.to_string();
     let mut first = vec![0; 8];
-    entry.read_exact(&mut first).map_err(told)?;
+    entry.read_exact(&mut first).map_err(reported)?;
     // The length has two bytes in the first version, four in the others.
     let mut length = vec![0; if first[6] == 1 { 2 } else { 4 }];
-    entry.read_exact(&mut length).map_err(told)?;
+    entry.read_exact(&mut length).map_err(reported)?;
     let bytes = length.iter().rev().fold(0, |all, byte| all << 8 | usize::from(*byte));
     if bytes > LONGEST_HEADER {
         return Err(format!("its header must have at most {LONGEST_HEADER} bytes, got {bytes}"));
     }
     let mut text = vec![0; bytes];
-    entry.read_exact(&mut text).map_err(told)?;
+    entry.read_exact(&mut text).map_err(reported)?;
     if text.iter().filter(|byte| b"([{".contains(byte)).count() > MOST_BRACKETS {
         return Err(format!("its header must have at most {MOST_BRACKETS} brackets"));
     }

@@ -8,8 +8,8 @@ use pulp::x86::V3;
 #[cfg(all(target_arch = "x86_64", feature = "wide"))]
 use pulp::x86::V4;
 
-use super::real::LaneWork;
-use super::register::{Alone, Vectorized};
+use super::float::SimdTask;
+use super::register::{ScalarTask, VectorTask};
 
 /// SIMD instruction set of this processor.
 #[derive(Copy, Clone, Debug)]
@@ -70,26 +70,26 @@ impl Processor {
     }
 
     /// Runs a task on single numbers, compiled for the instruction set; AVX-512 is of no use for single numbers.
-    pub fn run_alone<W: LaneWork>(self, work: W) -> W::Output {
+    pub fn run_scalar<W: SimdTask>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(all(target_arch = "x86_64", feature = "wide"))]
-            Instructions::Avx512(simd) => Simd::vectorize(*simd, Alone(work)),
+            Instructions::Avx512(simd) => Simd::vectorize(*simd, ScalarTask(work)),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(simd) => Simd::vectorize(simd, Alone(work)),
+            Instructions::Avx2(simd) => Simd::vectorize(simd, ScalarTask(work)),
             #[cfg(target_arch = "aarch64")]
-            Instructions::Neon(simd) => Simd::vectorize(simd, Alone(work)),
+            Instructions::Neon(simd) => Simd::vectorize(simd, ScalarTask(work)),
         }
     }
 
     /// Runs a task on lanes of N registers.
-    pub fn run<const N: usize, W: LaneWork>(self, work: W) -> W::Output {
+    pub fn run<const N: usize, W: SimdTask>(self, work: W) -> W::Output {
         match self.0 {
             #[cfg(all(target_arch = "x86_64", feature = "wide"))]
-            Instructions::Avx512(simd) => Simd::vectorize(simd, Vectorized::<W, N>(work)),
+            Instructions::Avx512(simd) => Simd::vectorize(simd, VectorTask::<W, N>(work)),
             #[cfg(target_arch = "x86_64")]
-            Instructions::Avx2(simd) => Simd::vectorize(simd, Vectorized::<W, N>(work)),
+            Instructions::Avx2(simd) => Simd::vectorize(simd, VectorTask::<W, N>(work)),
             #[cfg(target_arch = "aarch64")]
-            Instructions::Neon(simd) => Simd::vectorize(simd, Vectorized::<W, N>(work)),
+            Instructions::Neon(simd) => Simd::vectorize(simd, VectorTask::<W, N>(work)),
         }
     }
 }

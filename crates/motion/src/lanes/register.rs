@@ -7,7 +7,7 @@ use std::ops::{Add, BitAnd, BitOr, Div, Mul, Neg, Not, Sub};
 
 use pulp::{Simd, WithSimd};
 
-use super::real::{LaneWork, Mask, Real, WHOLE};
+use super::float::{LaneFloat, Mask, SimdTask, WHOLE};
 
 /// Indices of the lanes.
 const PLACES: [f64; 16] =
@@ -83,7 +83,7 @@ macro_rules! operator {
 
             #[inline(always)]
             fn $name(self, other: f64) -> Self {
-                $trait::$name(self, self.of(other))
+                $trait::$name(self, self.splat(other))
             }
         }
     };
@@ -107,12 +107,12 @@ impl<S: Simd, const N: usize> Neg for Lanes<S, N> {
     }
 }
 
-impl<S: Simd, const N: usize> Real for Lanes<S, N> {
+impl<S: Simd, const N: usize> LaneFloat for Lanes<S, N> {
     type Mask = LaneMask<S, N>;
     const LANES: usize = N * S::F64_LANES;
 
     #[inline(always)]
-    fn of(self, value: f64) -> Self {
+    fn splat(self, value: f64) -> Self {
         Self { simd: self.simd, registers: [self.simd.splat_f64s(value); N] }
     }
 
@@ -133,8 +133,8 @@ impl<S: Simd, const N: usize> Real for Lanes<S, N> {
     #[inline(always)]
     fn with_lane(self, lane: usize, value: f64) -> Self {
         // Selected in the registers: a number written to memory would stall the load of the whole register.
-        let (at, half) = (self.load(&PLACES) - self.of(lane as f64), self.of(0.5));
-        Self::select(at.abs().lt(half), self.of(value), self)
+        let (at, half) = (self.load(&PLACES) - self.splat(lane as f64), self.splat(0.5));
+        Self::select(at.abs().lt(half), self.splat(value), self)
     }
 
     #[inline(always)]
@@ -188,8 +188,8 @@ impl<S: Simd, const N: usize> Real for Lanes<S, N> {
     }
 
     #[inline(always)]
-    fn apart<W: LaneWork>(self, work: W) -> W::Output {
-        self.simd.vectorize(Vectorized::<W, N>(work))
+    fn run_outlined<W: SimdTask>(self, work: W) -> W::Output {
+        self.simd.vectorize(VectorTask::<W, N>(work))
     }
 }
 
@@ -244,9 +244,9 @@ impl<S: Simd, const N: usize> Mask for LaneMask<S, N> {
 }
 
 /// Task compiled for a processor's instruction set, on lanes of N registers.
-pub(super) struct Vectorized<W, const N: usize>(pub W);
+pub(super) struct VectorTask<W, const N: usize>(pub W);
 
-impl<W: LaneWork, const N: usize> WithSimd for Vectorized<W, N> {
+impl<W: SimdTask, const N: usize> WithSimd for VectorTask<W, N> {
     type Output = W::Output;
 
     #[inline(always)]
@@ -256,9 +256,9 @@ impl<W: LaneWork, const N: usize> WithSimd for Vectorized<W, N> {
 }
 
 /// Task compiled for a processor's instruction set, on single numbers.
-pub(super) struct Alone<W>(pub W);
+pub(super) struct ScalarTask<W>(pub W);
 
-impl<W: LaneWork> WithSimd for Alone<W> {
+impl<W: SimdTask> WithSimd for ScalarTask<W> {
     type Output = W::Output;
 
     #[inline(always)]

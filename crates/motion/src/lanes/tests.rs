@@ -1,7 +1,7 @@
 //! Tests that every operation in every lane of every width equals that of f64, to the bit.
 
 use super::register::Lanes;
-use super::{LaneWork, Mask, Processor, Real};
+use super::{LaneFloat, Mask, Processor, SimdTask};
 
 /// Special values that are critical for arithmetic.
 const ODD: [f64; 28] = [
@@ -36,10 +36,10 @@ const ODD: [f64; 28] = [
 ];
 
 /// Returns the results of all operations on two numbers.
-fn results<R: Real>(a: R, b: R) -> Vec<R> {
-    let yes = |mask: R::Mask| R::select(mask, a.of(1.0), a.of(0.0));
+fn results<R: LaneFloat>(a: R, b: R) -> Vec<R> {
+    let yes = |mask: R::Mask| R::select(mask, a.splat(1.0), a.splat(0.0));
     // Beyond 2^51 `quadrant` is not defined.
-    let small = R::select(a.abs().lt(a.of(2_251_799_813_685_248.0)), a, a.of(7.0));
+    let small = R::select(a.abs().lt(a.splat(2_251_799_813_685_248.0)), a, a.splat(7.0));
     let (whole, odd, second) = small.quadrant();
     vec![
         a + b,
@@ -71,11 +71,11 @@ fn results<R: Real>(a: R, b: R) -> Vec<R> {
 
 struct Pairs;
 
-impl LaneWork for Pairs {
+impl SimdTask for Pairs {
     type Output = usize;
 
     #[inline(always)]
-    fn run<R: Real>(self, kind: R) -> usize {
+    fn run<R: LaneFloat>(self, kind: R) -> usize {
         let lanes = R::LANES;
         for from in 0..ODD.len() {
             for with in 0..ODD.len() {
@@ -117,33 +117,33 @@ fn integers_and_quarters_are_as_arithmetic_has_them() {
         (1e15 + 1.0, 1e15 + 1.0, true, false),
         (-1e15 - 1.0, -1e15 - 1.0, true, true),
     ] {
-        assert_eq!(Real::quadrant(x), (whole, odd, second), "{x}");
+        assert_eq!(LaneFloat::quadrant(x), (whole, odd, second), "{x}");
     }
-    assert_eq!((Real::min(1.0, f64::NAN)).to_bits(), f64::NAN.to_bits());
-    assert_eq!(Real::min(f64::NAN, 1.0), 1.0);
-    assert_eq!(Real::max(0.0, -0.0).to_bits(), (-0.0_f64).to_bits());
+    assert_eq!((LaneFloat::min(1.0, f64::NAN)).to_bits(), f64::NAN.to_bits());
+    assert_eq!(LaneFloat::min(f64::NAN, 1.0), 1.0);
+    assert_eq!(LaneFloat::max(0.0, -0.0).to_bits(), (-0.0_f64).to_bits());
 }
 
 struct Chosen;
 
-impl LaneWork for Chosen {
+impl SimdTask for Chosen {
     type Output = ();
 
     #[inline(always)]
-    fn run<R: Real>(self, kind: R) {
-        let (none, rising) = (kind.of(0.0), kind.load(&ODD).with_lane(R::LANES - 1, 7.0));
+    fn run<R: LaneFloat>(self, kind: R) {
+        let (none, rising) = (kind.splat(0.0), kind.load(&ODD).with_lane(R::LANES - 1, 7.0));
         assert_eq!(rising.lane(R::LANES - 1), 7.0);
-        assert!(!rising.lt(none.of(f64::NEG_INFINITY)).any());
+        assert!(!rising.lt(none.splat(f64::NEG_INFINITY)).any());
         // A single true lane is `any`, and `all` only if there is one lane.
-        let one = rising.gt(none.of(6.0)) & rising.lt(none.of(8.0));
+        let one = rising.gt(none.splat(6.0)) & rising.lt(none.splat(8.0));
         assert!(one.any());
         assert_eq!(one.all(), R::LANES == 1);
         assert!((one | !one).all());
         for lane in 0..R::LANES {
-            let one = none.with_lane(lane, 7.0).gt(none.of(6.0));
+            let one = none.with_lane(lane, 7.0).gt(none.splat(6.0));
             assert!(one.any() && one.all() == (R::LANES == 1), "{lane} of {}", R::LANES);
         }
-        let apart = kind.apart(Lane(R::LANES - 1));
+        let apart = kind.run_outlined(Lane(R::LANES - 1));
         assert_eq!(apart, 7.0);
     }
 }
@@ -151,17 +151,17 @@ impl LaneWork for Chosen {
 /// Task that returns the number in a lane, run as a separate function.
 struct Lane(usize);
 
-impl LaneWork for Lane {
+impl SimdTask for Lane {
     type Output = f64;
 
     #[inline(always)]
-    fn run<R: Real>(self, kind: R) -> f64 {
-        kind.of(1.0).with_lane(self.0, 7.0).lane(self.0)
+    fn run<R: LaneFloat>(self, kind: R) -> f64 {
+        kind.splat(1.0).with_lane(self.0, 7.0).lane(self.0)
     }
 }
 
 #[test]
-fn masks_and_lanes_are_told_apart() {
+fn masks_select_lanes() {
     Chosen.run(f64::NAN);
     for processor in Processor::all() {
         processor.run::<1, _>(Chosen);

@@ -1,14 +1,14 @@
 //! Bounds of the second and third derivative of an output for the time to come.
 
 use super::flow::{Cluster, LinearFlow};
-use super::segment::{LinearSegment, LinearSight};
+use super::segment::{LinearOutput, LinearSegment};
 use crate::numerics::phasor::{Phasor, abs};
 use nalgebra::DVector;
 
 impl LinearFlow {
     /// Updates the bounds from the decay e^(sigma h) of each pole and the residues of the segment. They are valid for
     /// `seen.window` (s).
-    pub(super) fn bound(&self, segment: &LinearSegment, seen: &mut LinearSight) {
+    pub(super) fn bound(&self, segment: &LinearSegment, seen: &mut LinearOutput) {
         let count = self.poles.len();
         seen.window = self.window;
         let mut beaten = f64::INFINITY;

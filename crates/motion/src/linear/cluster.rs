@@ -9,14 +9,14 @@ use crate::numerics::phasor::{Phasor, abs};
 
 /// Values of e^(T h) r, h phi_1(T h) r and h² phi_2(T h) r.
 #[derive(Clone, Debug)]
-pub struct Moved {
+pub struct ClusterFunctions {
     pub exp: DVector<Phasor>,
     pub first: DVector<Phasor>,
     pub second: DVector<Phasor>,
 }
 
 /// Computes the functions of a triangular matrix applied to a vector at the time `h` (s).
-pub fn moved(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
+pub fn moved(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> ClusterFunctions {
     let diagonal = t.diagonal();
     let sizes = diagonal.iter().map(|z| abs(*z) * h);
     let (least, most) = sizes.fold((f64::INFINITY, 0.0), |(a, b), z| (f64::min(a, z), f64::max(b, z)));
@@ -29,7 +29,7 @@ pub fn moved(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     }
 }
 
-fn series(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
+fn series(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> ClusterFunctions {
     let step = t * Phasor { re: h, im: 0.0 };
     let mut second = r.clone();
     for n in (3..40).rev() {
@@ -39,12 +39,12 @@ fn series(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     let first = r + &step * &second;
     let exp = r + &step * &first;
     let times = |v: DVector<Phasor>, h: f64| v * Phasor { re: h, im: 0.0 };
-    Moved { exp, first: times(first, h), second: times(second, h * h) }
+    ClusterFunctions { exp, first: times(first, h), second: times(second, h * h) }
 }
 
 /// Computes the functions for two poles: with m = (l1 + l2)/2 and d = (l1 - l2)/2 the off-diagonal element of the
 /// exponential is s h e^(m h) sinh(d h)/(d h).
-fn two(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
+fn two(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> ClusterFunctions {
     let (l1, l2, s) = (t[(0, 0)], t[(1, 1)], t[(0, 1)]);
     let (e1, e2) = (exponential(l1 * h), exponential(l2 * h));
     let z = (l1 - l2) * (0.5 * h);
@@ -65,11 +65,11 @@ fn two(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     };
     let first = divided(&exp - r);
     let second = divided(&first - r * Phasor { re: h, im: 0.0 });
-    Moved { exp, first, second }
+    ClusterFunctions { exp, first, second }
 }
 
 /// Computes the functions by the exponential of T h bordered with r, whose last columns are the integrals.
-fn augmented(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
+fn augmented(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> ClusterFunctions {
     let count = t.nrows();
     let size = f64::sqrt(r.iter().map(Phasor::norm_sqr).sum());
     let unit = |re: f64| Phasor { re, im: 0.0 };
@@ -81,7 +81,7 @@ fn augmented(t: &DMatrix<Phasor>, r: &DVector<Phasor>, h: f64) -> Moved {
     let whole = triangular_exponential(&whole);
     let exp = whole.view((0, 0), (count, count)) * r;
     let column = |j: usize, factor: f64| whole.view((0, j), (count, 1)).column(0) * unit(factor);
-    Moved { exp, first: column(count, scale * h), second: column(count + 1, scale * h * h) }
+    ClusterFunctions { exp, first: column(count, scale * h), second: column(count + 1, scale * h * h) }
 }
 
 /// Returns exp(M) of an upper triangular matrix, by scaling, Taylor's series and squaring.

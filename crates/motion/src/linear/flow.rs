@@ -2,9 +2,9 @@
 
 use nalgebra::{DMatrix, DVector};
 
-use super::form::StateForm;
 use super::phi::Pole;
-use super::poles::{Block, blocks};
+use super::poles::{PoleBlock, blocks};
+use super::split_form::SplitPlant;
 use crate::numerics::phasor::{Phasor, abs};
 
 /// Limit on the time for which bounds of growing poles are valid (s).
@@ -13,8 +13,8 @@ const LONGEST: f64 = 1e6;
 /// Linear plant as poles and clusters, ready to compute motions.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LinearFlow {
-    form: StateForm,
-    pub(super) poles: Vec<Simple>,
+    form: SplitPlant,
+    pub(super) poles: Vec<SimplePole>,
     pub(super) clusters: Vec<Cluster>,
     /// Matrix C_t of the outputs.
     pub(super) rigid: DMatrix<f64>,
@@ -27,7 +27,7 @@ pub struct LinearFlow {
 
 /// Isolated pole.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Simple {
+pub struct SimplePole {
     pub pole: Pole,
     /// Weight: 2 for a conjugate pair, else 1.
     pub weight: f64,
@@ -55,7 +55,7 @@ pub struct PoleOutput {
 /// Cluster of poles that are kept together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cluster {
-    pub block: Block,
+    pub block: PoleBlock,
     /// Time for which its bounds are valid (s), and the factor by which its rates can grow meanwhile.
     pub window: f64,
     pub growth: f64,
@@ -71,7 +71,7 @@ pub struct Cluster {
 
 /// State in modal coordinates: the cyclic coordinates, and w of the simple poles and of the clusters.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct Modal {
+pub struct ModalState {
     pub(super) cyclic: Vec<f64>,
     pub(super) simple: Vec<Phasor>,
     pub(super) clusters: Vec<DVector<Phasor>>,
@@ -80,7 +80,7 @@ pub struct Modal {
 impl LinearFlow {
     /// Creates the flow of a plant; `None` if its numbers leave the range of doubles, or if an input changes the rate
     /// of an output instantaneously.
-    pub fn new(form: StateForm) -> Option<Self> {
+    pub fn new(form: SplitPlant) -> Option<Self> {
         let [rigid, seen] = form.output.clone();
         if (&seen * &form.input).iter().any(|jump| *jump != 0.0) {
             return None;
@@ -95,13 +95,13 @@ impl LinearFlow {
         let (mut poles, mut clusters) = (Vec::new(), Vec::new());
         for block in blocks {
             if block.triangle.nrows() == 1 {
-                poles.push(Simple::new(&block, &form, (&seen, &carried), window));
+                poles.push(SimplePole::new(&block, &form, (&seen, &carried), window));
             } else {
                 clusters.push(Cluster::new(block, &form, (&seen, &carried)));
             }
         }
         let finite =
-            |simple: &Simple| simple.outputs.iter().all(|s| s.residue.is_finite() && s.angle.is_finite());
+            |simple: &SimplePole| simple.outputs.iter().all(|s| s.residue.is_finite() && s.angle.is_finite());
         let beats = beats(&poles);
         poles.iter().all(finite).then_some(Self { form, poles, clusters, rigid, beats, window })
     }
@@ -128,13 +128,13 @@ impl LinearFlow {
     }
 
     /// Transforms a state x to modal coordinates.
-    pub fn modal(&self, x: &DVector<f64>) -> Modal {
+    pub fn to_modal(&self, x: &DVector<f64>) -> ModalState {
         let [cyclic, rest] = &self.form.split;
         let w = (rest * x).map(|re| Phasor { re, im: 0.0 });
         let dot = |left: &DVector<Phasor>| {
             left.iter().zip(w.iter()).fold(Phasor::default(), |sum, (l, w)| sum + l * w)
         };
-        Modal {
+        ModalState {
             cyclic: (cyclic * x).as_slice().to_vec(),
             simple: self.poles.iter().map(|simple| dot(&simple.left)).collect(),
             clusters: self.clusters.iter().map(|cluster| &cluster.block.left * &w).collect(),
@@ -142,7 +142,7 @@ impl LinearFlow {
     }
 
     /// Transforms modal coordinates to the state x.
-    pub fn vector(&self, modal: &Modal) -> DVector<f64> {
+    pub fn to_state(&self, modal: &ModalState) -> DVector<f64> {
         let mut w = DVector::zeros(self.form.matrix.nrows());
         for (simple, z) in self.poles.iter().zip(&modal.simple) {
             for (w, right) in w.iter_mut().zip(simple.right.iter()) {
@@ -162,10 +162,10 @@ impl LinearFlow {
     }
 }
 
-impl Simple {
+impl SimplePole {
     fn new(
-        block: &Block,
-        form: &StateForm,
+        block: &PoleBlock,
+        form: &SplitPlant,
         (seen, carried): (&DMatrix<f64>, &DMatrix<f64>),
         window: f64,
     ) -> Self {
@@ -198,7 +198,7 @@ impl Simple {
 }
 
 impl Cluster {
-    fn new(block: Block, form: &StateForm, (seen, carried): (&DMatrix<f64>, &DMatrix<f64>)) -> Self {
+    fn new(block: PoleBlock, form: &SplitPlant, (seen, carried): (&DMatrix<f64>, &DMatrix<f64>)) -> Self {
         let complex = |m: &DMatrix<f64>| m.map(|re| Phasor { re, im: 0.0 });
         let t = &block.triangle;
         let angle = complex(seen) * &block.right;
@@ -232,7 +232,7 @@ impl Cluster {
 }
 
 /// Returns disjoint pairs of poles that do not grow and are near enough to beat.
-fn beats(poles: &[Simple]) -> Vec<(usize, usize, f64, f64)> {
+fn beats(poles: &[SimplePole]) -> Vec<(usize, usize, f64, f64)> {
     let mut beats: Vec<(usize, usize, f64, f64)> = Vec::new();
     for (i, one) in poles.iter().enumerate() {
         let taken =
@@ -240,7 +240,7 @@ fn beats(poles: &[Simple]) -> Vec<(usize, usize, f64, f64)> {
         if taken(i, &beats) || one.pole.lambda.re > 1e-12 * one.pole.size {
             continue;
         }
-        let near = |(j, other): (usize, &Simple)| {
+        let near = |(j, other): (usize, &SimplePole)| {
             let apart = abs(one.pole.lambda - other.pole.lambda);
             let beat = j > i && apart < 0.02 * one.pole.size && other.weight == one.weight;
             (beat && other.pole.lambda.re <= 1e-12 * one.pole.size && !taken(j, &beats)).then_some((j, apart))

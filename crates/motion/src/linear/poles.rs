@@ -22,7 +22,7 @@ const UNPOLISHED: f64 = 1e-8;
 
 /// Group of poles with their invariant subspace: F `right` = `right` `triangle`, `left` `right` = 1.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Block {
+pub struct PoleBlock {
     pub triangle: DMatrix<Phasor>,
     pub right: DMatrix<Phasor>,
     pub left: DMatrix<Phasor>,
@@ -30,7 +30,7 @@ pub struct Block {
     pub weight: f64,
 }
 
-impl Block {
+impl PoleBlock {
     fn pole(&self) -> Phasor {
         self.triangle[(0, 0)]
     }
@@ -43,7 +43,7 @@ impl Block {
 
 /// Computes the blocks of a matrix. The rows of `seen` and `carried` are each output's weights of w and of the
 /// integral of w, which determine the phase of each pole's vector. Returns `None` if there is no Schur form.
-pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>) -> Option<Vec<Block>> {
+pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>) -> Option<Vec<PoleBlock>> {
     let order = matrix.nrows();
     let schur = Schur::new(matrix)?;
     let norm = matrix.norm();
@@ -66,9 +66,9 @@ pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>
     if blocks.iter().any(|(block, _)| block.condition() > LOST) {
         let unit = schur.basis.clone();
         let left = unit.adjoint();
-        return Some(vec![Block { triangle: schur.triangle, right: unit, left, weight: 1.0 }]);
+        return Some(vec![PoleBlock { triangle: schur.triangle, right: unit, left, weight: 1.0 }]);
     }
-    let mut blocks: Vec<Block> = blocks.into_iter().map(|(block, _)| block).collect();
+    let mut blocks: Vec<PoleBlock> = blocks.into_iter().map(|(block, _)| block).collect();
     for _ in 0..2 {
         polish(&mut blocks, matrix, norm);
     }
@@ -77,7 +77,7 @@ pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>
     }
     invert(&mut blocks, order)?;
     blocks.sort_by(|a, b| {
-        let key = |block: &Block| (abs(block.pole()), block.pole().im);
+        let key = |block: &PoleBlock| (abs(block.pole()), block.pole().im);
         let ((x, u), (y, v)) = (key(a), key(b));
         x.total_cmp(&y).then(u.total_cmp(&v))
     });
@@ -147,7 +147,7 @@ impl Spectrum {
 }
 
 /// Computes the blocks of the groups, one per conjugate pair, each with the index of one of its poles.
-fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Option<Vec<(Block, usize)>> {
+fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Option<Vec<(PoleBlock, usize)>> {
     let mut blocks = Vec::new();
     let mut done = vec![false; groups.len()];
     for first in 0..groups.len() {
@@ -167,7 +167,7 @@ fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Optio
         let coupled = coupling.fold(0.0, f64::max) > 64.0 * f64::EPSILON * norm;
         if count > 1 && coupled {
             let left = right.adjoint();
-            blocks.push((Block { triangle, right, left, weight }, first));
+            blocks.push((PoleBlock { triangle, right, left, weight }, first));
             continue;
         }
         // A multiple pole with independent vectors is split into several poles.
@@ -179,10 +179,10 @@ fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Optio
                 make_real(&mut vector);
             }
             let triangle = DMatrix::from_element(1, 1, pole);
-            blocks.push((Block { triangle, left: vector.adjoint(), right: vector, weight }, *member));
+            blocks.push((PoleBlock { triangle, left: vector.adjoint(), right: vector, weight }, *member));
         }
     }
-    let mut bare: Vec<Block> = blocks.iter().map(|(block, _)| block.clone()).collect();
+    let mut bare: Vec<PoleBlock> = blocks.iter().map(|(block, _)| block.clone()).collect();
     invert(&mut bare, groups.len())?;
     Some(bare.into_iter().zip(blocks).map(|(block, (_, pole))| (block, pole)).collect())
 }
@@ -194,16 +194,16 @@ fn make_real(vector: &mut DMatrix<Phasor>) {
 }
 
 /// Multiplies a vector by the phase factor that makes its largest output contribution a real number.
-fn turn(block: &mut Block, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f64) {
+fn turn(block: &mut PoleBlock, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f64) {
     let pole = block.pole();
     if pole.im == 0.0 || abs(pole) < 1e-13 * norm {
         return;
     }
-    let sight = |rows: &DMatrix<f64>, j: usize| {
+    let measurement = |rows: &DMatrix<f64>, j: usize| {
         let row = rows.row(j);
         row.iter().zip(block.right.iter()).fold(Phasor::default(), |sum, (c, v)| sum + v * *c)
     };
-    let sights = (0..seen.nrows()).map(|j| sight(seen, j) + sight(carried, j) / pole);
+    let sights = (0..seen.nrows()).map(|j| measurement(seen, j) + measurement(carried, j) / pole);
     let largest = sights.fold(Phasor::default(), |a, b| if abs(b) > abs(a) { b } else { a });
     if abs(largest) > 1e-14 * size(&block.right) {
         block.right.apply(|v| *v /= largest);
@@ -212,9 +212,9 @@ fn turn(block: &mut Block, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f6
 }
 
 /// Applies a Newton step to every isolated pole, with the residual in extended precision.
-fn polish(blocks: &mut [Block], matrix: &DMatrix<f64>, norm: f64) {
+fn polish(blocks: &mut [PoleBlock], matrix: &DMatrix<f64>, norm: f64) {
     let old = blocks.to_vec();
-    let spread = |pole: Phasor, block: &Block| {
+    let spread = |pole: Phasor, block: &PoleBlock| {
         let diagonal = block.triangle.diagonal();
         let (one, other) = (diagonal.iter(), diagonal.iter().map(Phasor::conj));
         one.copied()
@@ -224,7 +224,7 @@ fn polish(blocks: &mut [Block], matrix: &DMatrix<f64>, norm: f64) {
     };
     for (index, block) in blocks.iter_mut().enumerate().filter(|(_, block)| block.triangle.nrows() == 1) {
         let pole = block.pole();
-        let alone = |(i, other): (usize, &Block)| i == index || spread(pole, other) > UNPOLISHED * norm;
+        let alone = |(i, other): (usize, &PoleBlock)| i == index || spread(pole, other) > UNPOLISHED * norm;
         if !old.iter().enumerate().all(alone) {
             continue;
         }
@@ -255,7 +255,7 @@ fn polish(blocks: &mut [Block], matrix: &DMatrix<f64>, norm: f64) {
 }
 
 /// Sets the left vectors to the inverse of the right ones, with one step of Newton's iteration.
-fn invert(blocks: &mut [Block], order: usize) -> Option<()> {
+fn invert(blocks: &mut [PoleBlock], order: usize) -> Option<()> {
     let mut right = DMatrix::zeros(order, order);
     let mut at = 0;
     for block in blocks.iter() {

@@ -1,7 +1,7 @@
 //! Certified search on a linear plant: any number of guards on any outputs, in one search.
 
-use super::segment::{LinearSegment, LinearSight};
-use crate::crossing::{Approach, first_root};
+use super::segment::{LinearOutput, LinearSegment};
+use crate::crossing::{BoundedMotion, first_root};
 use crate::guard::Guard;
 use crate::time::Span;
 
@@ -10,41 +10,46 @@ const LONG: f64 = 1e3;
 
 /// Guard on one of the outputs.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct GuardLevel {
+pub struct OutputGuard {
     /// Index of the output.
     pub output: usize,
     /// Threshold and direction.
     pub guard: Guard,
 }
 
-impl Approach for LinearSegment {
-    type Guard = GuardLevel;
-    type State = LinearSight;
-    type Sensed = ();
+impl BoundedMotion for LinearSegment {
+    type Guard = OutputGuard;
+    type State = LinearOutput;
+    type Observation = ();
 
-    fn begin(&self, seen: &mut LinearSight) {
-        self.origin(seen);
+    fn initial(&self, seen: &mut LinearOutput) {
+        self.initial_output(seen);
     }
 
-    fn go(&self, h: f64, seen: &mut LinearSight) {
+    fn evaluate(&self, h: f64, seen: &mut LinearOutput) {
         self.at(h, seen);
     }
 
-    fn is_finite(seen: &LinearSight, (): ()) -> bool {
+    fn is_finite(seen: &LinearOutput, (): ()) -> bool {
         seen.outputs.iter().all(|sensed| sensed.angle.is_finite())
     }
 
-    fn holds(level: GuardLevel, seen: &LinearSight, (): ()) -> bool {
+    fn holds(level: OutputGuard, seen: &LinearOutput, (): ()) -> bool {
         level.guard.holds(seen.outputs[level.output].angle)
     }
 
-    fn window(seen: &LinearSight) -> f64 {
+    fn bounds_valid_for(seen: &LinearOutput) -> f64 {
         seen.window
     }
 
     /// Returns the earliest trip by a bound: fast non-growing poles stay within their residues of a line; slow ones
     /// accelerate towards the guard at most as at one of the ends, or by their change of phase meanwhile.
-    fn earliest(&self, GuardLevel { output, guard }: GuardLevel, horizon: Span, seen: &LinearSight) -> f64 {
+    fn earliest_crossing(
+        &self,
+        OutputGuard { output, guard }: OutputGuard,
+        horizon: Span,
+        seen: &LinearOutput,
+    ) -> f64 {
         let (flow, towards) = (&*self.flow, guard.side.sign());
         let horizon = horizon.seconds().min(LONG).min(seen.window);
         let (mut angle, mut rate) = self.origins[output];
@@ -78,7 +83,7 @@ impl Approach for LinearSegment {
         first_root(gap, towards * rate, acceleration).min(horizon)
     }
 
-    fn stride(&self, GuardLevel { output, guard }: GuardLevel, seen: &LinearSight, (): ()) -> f64 {
+    fn safe_stride(&self, OutputGuard { output, guard }: OutputGuard, seen: &LinearOutput, (): ()) -> f64 {
         let (now, towards) = (seen.outputs[output], guard.side.sign());
         let (gap, speed, acceleration) =
             (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
@@ -87,10 +92,10 @@ impl Approach for LinearSegment {
         first_root(gap, speed, steepest).min(seen.window)
     }
 
-    fn is_clear(
+    fn has_no_crossing(
         &self,
-        GuardLevel { output, guard }: GuardLevel,
-        seen: &LinearSight,
+        OutputGuard { output, guard }: OutputGuard,
+        seen: &LinearOutput,
         (): (),
         time: f64,
     ) -> bool {

@@ -6,15 +6,15 @@ use std::sync::Arc as Shared;
 use nalgebra::DVector;
 
 use super::cluster::moved;
-use super::flow::{LinearFlow, Modal};
-use crate::Sensed;
+use super::flow::{LinearFlow, ModalState};
+use crate::AngleObservation;
 use crate::numerics::phasor::{Phasor, abs};
 
 /// Motion of a linear plant under one constant input.
 #[derive(Clone, Debug)]
 pub struct LinearSegment {
     pub(super) flow: Shared<LinearFlow>,
-    from: Modal,
+    from: ModalState,
     /// Modal rates at the start of the segment.
     rates: Vec<Phasor>,
     cluster_rates: Vec<DVector<Phasor>>,
@@ -27,9 +27,9 @@ pub struct LinearSegment {
 
 /// Outputs at one instant, with bounds of their later derivatives.
 #[derive(Clone, Debug, Default)]
-pub struct LinearSight {
+pub struct LinearOutput {
     /// Value, rate and acceleration of each output.
-    pub outputs: Vec<Sensed>,
+    pub outputs: Vec<AngleObservation>,
     /// Bound of |y''| of each output within the window.
     pub curvature: Vec<f64>,
     /// Bound of |y'''| of each output within the window.
@@ -47,7 +47,7 @@ impl LinearSegment {
     pub fn new(flow: Shared<LinearFlow>) -> Self {
         let (outputs, poles) = (flow.outputs(), flow.poles.len());
         Self {
-            from: Modal::default(),
+            from: ModalState::default(),
             rates: vec![Phasor::default(); poles],
             cluster_rates: Vec::new(),
             residues: vec![Phasor::default(); outputs * poles],
@@ -58,7 +58,7 @@ impl LinearSegment {
     }
 
     /// Begins a new segment from a state, under a constant input.
-    pub fn depart(&mut self, from: &Modal, input: &[f64]) {
+    pub fn depart(&mut self, from: &ModalState, input: &[f64]) {
         self.from.clone_from(from);
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         for (j, origin) in self.origins.iter_mut().enumerate() {
@@ -92,11 +92,11 @@ impl LinearSegment {
     }
 
     /// Evaluates the outputs at `h` (s) since the start of the segment.
-    pub fn at(&self, h: f64, seen: &mut LinearSight) {
+    pub fn at(&self, h: f64, seen: &mut LinearOutput) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
         for (sensed, (y, v)) in seen.outputs.iter_mut().zip(&self.origins) {
-            *sensed = Sensed { angle: y + v * h, rate: *v, acceleration: 0.0 };
+            *sensed = AngleObservation { angle: y + v * h, rate: *v, acceleration: 0.0 };
         }
         for (k, simple) in flow.poles.iter().enumerate() {
             let phi = simple.pole.phi(h);
@@ -124,7 +124,7 @@ impl LinearSegment {
     }
 
     /// Evaluates the outputs at the start of the segment, which needs no exponential.
-    pub fn origin(&self, seen: &mut LinearSight) {
+    pub fn initial_output(&self, seen: &mut LinearOutput) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
         seen.fit(self);
         seen.exponentials.fill((Phasor { re: 1.0, im: 0.0 }, 1.0));
@@ -134,14 +134,14 @@ impl LinearSegment {
             for (cluster, rates) in flow.clusters.iter().zip(&self.cluster_rates) {
                 acceleration += cluster.block.weight * (cluster.residue.row(j) * rates)[0].re;
             }
-            *sensed = Sensed { angle: *angle, rate: *rate, acceleration };
+            *sensed = AngleObservation { angle: *angle, rate: *rate, acceleration };
         }
         seen.rates.clone_from(&self.cluster_rates);
         flow.bound(self, seen);
     }
 
     /// Evaluates the state at `h` (s) since the start of the segment.
-    pub fn arrive(&self, h: f64, state: &mut Modal) {
+    pub fn state_at(&self, h: f64, state: &mut ModalState) {
         state.clone_from(&self.from);
         for (k, simple) in self.flow.poles.iter().enumerate() {
             let phi = simple.pole.phi(h);
@@ -163,11 +163,11 @@ impl LinearSegment {
     }
 }
 
-impl LinearSight {
+impl LinearOutput {
     fn fit(&mut self, segment: &LinearSegment) {
         let outputs = segment.origins.len();
         if self.outputs.len() != outputs || self.exponentials.len() != segment.rates.len() {
-            self.outputs = vec![Sensed::default(); outputs];
+            self.outputs = vec![AngleObservation::default(); outputs];
             self.curvature = vec![0.0; outputs];
             self.jerk = vec![0.0; outputs];
             self.exponentials = vec![Default::default(); segment.rates.len()];

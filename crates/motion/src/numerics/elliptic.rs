@@ -50,7 +50,7 @@ fn principal<const N: usize>(angles: [(f64, f64); N], complement: f64) -> [f64; 
 /// completes the result (\[Carlson95\]).
 fn carlson<const N: usize>(mut of: Triples<N>) -> [(f64, f64); N] {
     loop {
-        let apart = of.are_apart();
+        let apart = of.needs_duplication();
         if !apart.contains(&true) {
             return from_fn(|at| of.series(at));
         }
@@ -75,7 +75,7 @@ impl<const N: usize> Triples<N> {
     }
 
     /// Returns which triples are too far apart for the series.
-    fn are_apart(&self) -> [bool; N] {
+    fn needs_duplication(&self) -> [bool; N] {
         from_fn(|at| {
             let mean = self.mean(at);
             let [x, y, z] = [self.x[at], self.y[at], self.z[at]].map(|of| (mean - of).abs());

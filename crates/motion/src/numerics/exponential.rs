@@ -2,7 +2,7 @@
 
 use nalgebra::DMatrix;
 
-use crate::lanes::{LaneWork, Processor, Real};
+use crate::lanes::{LaneFloat, Processor, SimdTask};
 
 /// Returns exp(M), by scaling, Taylor's series and squaring. Every sum has a fixed order: the result has the same
 /// bits on every machine.
@@ -41,18 +41,18 @@ pub fn exponentials(matrices: &[DMatrix<f64>]) -> Vec<DMatrix<f64>> {
     let Some(processor) = Processor::best().filter(|_| matrices.len() > 1) else {
         return matrices.iter().map(exponential).collect();
     };
-    let some = |some: &[DMatrix<f64>]| processor.run::<1, _>(Several(some));
+    let some = |some: &[DMatrix<f64>]| processor.run::<1, _>(MatrixBatch(some));
     matrices.chunks(processor.lanes(1)).flat_map(some).collect()
 }
 
 /// SIMD task for at most as many matrices as there are lanes.
-struct Several<'a>(&'a [DMatrix<f64>]);
+struct MatrixBatch<'a>(&'a [DMatrix<f64>]);
 
-impl LaneWork for Several<'_> {
+impl SimdTask for MatrixBatch<'_> {
     type Output = Vec<DMatrix<f64>>;
 
     #[inline(always)]
-    fn run<R: Real>(self, kind: R) -> Vec<DMatrix<f64>> {
+    fn run<R: LaneFloat>(self, kind: R) -> Vec<DMatrix<f64>> {
         let Self(matrices) = self;
         let order = matrices[0].nrows();
         let (mut each, mut squarings) = ([0.0; 16], [0; 16]);
@@ -61,7 +61,7 @@ impl LaneWork for Several<'_> {
             (squarings[lane], scales[lane]) = scaling(matrix);
         }
         let scale = kind.load(&scales);
-        let zero = kind.of(0.0);
+        let zero = kind.splat(0.0);
         let mut small = vec![zero; order * order];
         for (at, entry) in small.iter_mut().enumerate() {
             for (lane, matrix) in matrices.iter().enumerate() {
@@ -71,13 +71,13 @@ impl LaneWork for Several<'_> {
         }
         let mut term = vec![zero; order * order];
         for at in 0..order {
-            term[at * order + at] = kind.of(1.0);
+            term[at * order + at] = kind.splat(1.0);
         }
         let mut sum = term.clone();
         let mut room = term.clone();
         for n in 1..=15 {
             multiply(&term, &small, order, &mut room);
-            let divisor = kind.of(f64::from(n));
+            let divisor = kind.splat(f64::from(n));
             for at in 0..order * order {
                 term[at] = room[at] / divisor;
                 sum[at] = sum[at] + term[at];
@@ -106,7 +106,7 @@ impl LaneWork for Several<'_> {
 
 /// Multiplies square matrices stored by columns, each sum in the order of nalgebra's.
 #[inline(always)]
-pub fn multiply<R: Real>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
+pub fn multiply<R: LaneFloat>(a: &[R], b: &[R], order: usize, into: &mut [R]) {
     for column in 0..order {
         for row in 0..order {
             let mut sum = a[row] * b[column * order];

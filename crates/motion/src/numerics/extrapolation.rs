@@ -132,7 +132,7 @@ impl Trajectory {
     }
 
     /// Returns y at the last observed time.
-    pub fn here(&self) -> &[f64] {
+    pub fn current(&self) -> &[f64] {
         &self.here
     }
 
@@ -144,7 +144,7 @@ impl Trajectory {
 
     /// Advances by one step towards `h` (s) since the start of the segment, unless it was reached; returns true once
     /// it is reached.
-    pub fn approach(&mut self, field: &impl RightHandSide, h: f64) -> bool {
+    pub fn step_towards(&mut self, field: &impl RightHandSide, h: f64) -> bool {
         let Self { integrator, node, next, step, .. } = self;
         if next.0 < h {
             node.clone_from(next);
@@ -158,7 +158,7 @@ impl Trajectory {
     /// Returns y at `h` (s) since the start of the segment, which must not decrease between calls. The field's time
     /// counts from the start of the segment.
     pub fn at(&mut self, field: &impl RightHandSide, h: f64) -> &[f64] {
-        while !self.approach(field, h) {}
+        while !self.step_towards(field, h) {}
         let Self { integrator, node, here, .. } = self;
         // An observation between two steps changes neither.
         here.clone_from(&node.1);

@@ -1,9 +1,9 @@
 //! Numerical methods, independent of spacecraft: special functions, quadrature, integration, roots.
 
 pub mod biquad;
-pub mod decay;
 pub mod delay_margin;
 pub mod elliptic;
+pub mod exp_branch_free;
 pub mod exponential;
 pub mod extrapolation;
 pub mod gauss_legendre;
@@ -11,7 +11,7 @@ pub mod normal;
 pub mod phasor;
 pub mod phi;
 pub mod polynomial;
-pub mod polynomials;
+pub mod polynomial_lanes;
 pub mod quadrature;
 pub mod simplex;
 pub mod stumpff;

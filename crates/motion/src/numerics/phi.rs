@@ -32,7 +32,7 @@ pub fn phi(n: usize, z: Phasor) -> Phasor {
 }
 
 /// Returns exp(z) and phi_1 to phi_3, at the cost of one of them.
-pub fn first(z: Phasor) -> [Phasor; 4] {
+pub fn phi_1_to_3(z: Phasor) -> [Phasor; 4] {
     let whole = exp(z);
     if abs(z) < 4.0 {
         // The term 4^26/29! is below the last bit of 1/6, and so are all later ones.
@@ -74,7 +74,7 @@ mod tests {
                 let gap = abs(z * phi(n + 1, z) - phi(n, z) + 1.0 / factorial);
                 assert!(gap * factorial < 2e-14, "n {n}, z {z}: {gap:e}");
             }
-            for (n, value) in first(z).into_iter().enumerate() {
+            for (n, value) in phi_1_to_3(z).into_iter().enumerate() {
                 let exact = if n == 0 { exp(z) } else { phi(n, z) };
                 assert!(abs(value - exact) < 1e-15, "n {n}, z {z}: {value} {exact}");
             }

@@ -24,7 +24,7 @@ impl Polynomial {
     }
 
     /// Creates the polynomial of a Taylor series in time, over the time from 0 to `length`.
-    pub fn of(series: &Series, length: f64) -> Self {
+    pub fn from_series(series: &Series, length: f64) -> Self {
         let mut power = 1.0;
         Self(series.map(|c| {
             let scaled = c * power;
@@ -46,7 +46,7 @@ impl Polynomial {
 
     /// Subtracts the straight line `start + slope s`.
     #[must_use]
-    pub fn less(&self, start: f64, slope: f64) -> Self {
+    pub fn minus_line(&self, start: f64, slope: f64) -> Self {
         let mut less = *self;
         less.0[0] -= start;
         less.0[1] -= slope;
@@ -67,14 +67,14 @@ impl Polynomial {
 
     /// Returns the part between two points, mapped to the interval from 0 to 1.
     #[must_use]
-    pub fn part(&self, from: f64, to: f64) -> Self {
+    pub fn restrict(&self, from: f64, to: f64) -> Self {
         let mut part = self.0;
         for low in 0..TERMS {
             for n in (low..TERMS - 1).rev() {
                 part[n] += from * part[n + 1];
             }
         }
-        Self::of(&part, to - from)
+        Self::from_series(&part, to - from)
     }
 
     /// Returns the largest value, or `floor` if that is larger.
@@ -284,7 +284,7 @@ mod tests {
     #[test]
     fn a_part_is_the_same_polynomial() {
         let p = polynomial(&[1.0, -2.0, 3.0, 0.25]);
-        let part = p.part(0.25, 0.75).less(1.0, 2.0);
+        let part = p.restrict(0.25, 0.75).minus_line(1.0, 2.0);
         for s in [0.0, 0.3, 1.0] {
             assert!((part.at(s) + 1.0 + 2.0 * s - p.at(0.25 + 0.5 * s)).abs() < 1e-15);
         }

@@ -94,7 +94,7 @@ mod tests {
     }
 
     #[test]
-    fn nodes_average_what_is_no_faster_than_they_were_told() {
+    fn nodes_average_signals_up_to_their_band() {
         for turn in [0.0, 1e-3, 0.4, 2.0, 7.9, 15.9, 16.1, 40.0, 300.0] {
             let nodes = nodes(2.5, turn / 2.5);
             assert!(nodes.windows(2).all(|pair| pair[0].0 < pair[1].0), "{turn}");

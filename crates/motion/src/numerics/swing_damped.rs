@@ -8,9 +8,9 @@
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 #![allow(clippy::excessive_precision, reason = "more digits than a double has")]
 
-use super::decay::exp;
+use super::exp_branch_free::exp;
 use super::trig::{nearest, sincos};
-use crate::lanes::{Mask, Real};
+use crate::lanes::{LaneFloat, Mask};
 
 /// Number of pairs of nodes.
 const PAIRS: usize = 6;
@@ -66,13 +66,13 @@ const fn lagrange() -> [[f64; PAIRS]; PAIRS] {
 /// Composite Gauss-Legendre, 12 nodes in panels of 0.4 to 6 radians. In a panel near a zero of Z the factor of that
 /// zero is integrated with its moments in closed form. The error is 3e-12 of h times the larger of |c| and |W|.
 #[inline(always)]
-pub fn damped<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, frequency: R, h: R) -> R {
-    let (zero, one) = (h.of(0.0), h.of(1.0));
+pub fn damped<R: LaneFloat>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, frequency: R, h: R) -> R {
+    let (zero, one) = (h.splat(0.0), h.splat(1.0));
     let radians = radians(centre, [from, to]);
     let panels = (frequency + decay) * h / radians;
     let near = nearest(panels);
-    let count = R::select(near.lt(panels), near + one, near).max(one).min(h.of(MOST));
-    let half = h.of(0.5) * h / count;
+    let count = R::select(near.lt(panels), near + one, near).max(one).min(h.splat(MOST));
+    let half = h.splat(0.5) * h / count;
     let (mut after, mut before) = ([[zero; 2]; PAIRS], [[zero; 2]; PAIRS]);
     for pair in 0..PAIRS {
         let t = half * NODES[pair].0;
@@ -118,8 +118,8 @@ pub fn damped<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, freque
 /// Returns the zero of c + W exp(-L x), and the lanes in which it is close enough to the panel from -1 to 1 to be
 /// treated separately.
 #[inline(always)]
-fn root<R: Real>(centre: [R; 2], deviation: [R; 2], rate: [R; 2]) -> ([R; 2], R::Mask) {
-    let one = rate[0].of(1.0);
+fn root<R: LaneFloat>(centre: [R; 2], deviation: [R; 2], rate: [R; 2]) -> ([R; 2], R::Mask) {
+    let one = rate[0].splat(1.0);
     // By L x = ln(-W/c) = 2 artanh((W + c)/(W - c)).
     let below = [deviation[0] - centre[0], deviation[1] - centre[1]];
     let u = over([deviation[0] + centre[0], deviation[1] + centre[1]], below);
@@ -140,12 +140,12 @@ fn root<R: Real>(centre: [R; 2], deviation: [R; 2], rate: [R; 2]) -> ([R; 2], R:
 /// dx with S = |x - zero|, zero = a + i b, follow from the derivative of x^(k-1) S³: (k + 2) M_k = [x^(k-1) S³] + (2
 /// k + 1) a M_(k-1) - (k - 1) (a² + b²) M_(k-2).
 #[inline(always)]
-fn beside<R: Real>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
-    let (zero, half) = (a.of(0.0), a.of(0.5));
+fn beside<R: LaneFloat>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
+    let (zero, half) = (a.splat(0.0), a.splat(0.5));
     let b = b * b + 1e-60;
     let (mut even, mut odd) = ([zero; PAIRS], [zero; PAIRS]);
     for pair in 0..PAIRS {
-        let x = a.of(NODES[pair].0);
+        let x = a.splat(NODES[pair].0);
         let (left, right) = (x + a, x - a);
         let earlier = sizes[pair][0] / (left * left + b).sqrt();
         let later = sizes[pair][1] / (right * right + b).sqrt();
@@ -177,7 +177,7 @@ fn beside<R: Real>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
 
 /// Returns the natural logarithm, lane by lane.
 #[inline(always)]
-fn logarithm<R: Real>(of: R) -> R {
+fn logarithm<R: LaneFloat>(of: R) -> R {
     let mut all = [1.0; 16];
     of.store(&mut all);
     for lane in 0..R::LANES {
@@ -188,8 +188,8 @@ fn logarithm<R: Real>(of: R) -> R {
 
 /// Returns the length of the panels (rad).
 #[inline(always)]
-fn radians<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2]) -> R {
-    let (zero, one) = (from[0].of(0.0), from[0].of(1.0));
+fn radians<R: LaneFloat>(centre: [R; 2], [from, to]: [[R; 2]; 2]) -> R {
+    let (zero, one) = (from[0].splat(0.0), from[0].splat(1.0));
     let (c, first, last) = (square(centre), square(from), square(to));
     // Squares of the larger and smaller of |c| and |W| where they are nearest to each other; equal if one passes the
     // other.
@@ -200,29 +200,29 @@ fn radians<R: Real>(centre: [R; 2], [from, to]: [[R; 2]; 2]) -> R {
     // Lower bound of -ln(ratio), the beginning of a series of positive terms.
     let part = (one - ratio) / (one + ratio);
     let z = part * part;
-    let distance = (part + part) * (one + z * (z.of(1.0 / 3.0) + z * 0.2));
+    let distance = (part + part) * (one + z * (z.splat(1.0 / 3.0) + z * 0.2));
     (distance * RATIO).max(one * SHORTEST).min(one * LONGEST)
 }
 
 #[inline(always)]
-fn times<R: Real>([a, b]: [R; 2], [c, d]: [R; 2]) -> [R; 2] {
+fn times<R: LaneFloat>([a, b]: [R; 2], [c, d]: [R; 2]) -> [R; 2] {
     [a * c - b * d, a * d + b * c]
 }
 
 #[inline(always)]
-fn over<R: Real>(above: [R; 2], [re, im]: [R; 2]) -> [R; 2] {
-    let inverse = re.of(1.0) / square([re, im]);
+fn over<R: LaneFloat>(above: [R; 2], [re, im]: [R; 2]) -> [R; 2] {
+    let inverse = re.splat(1.0) / square([re, im]);
     times(above, [inverse * re, -(inverse * im)])
 }
 
 #[inline(always)]
-fn square<R: Real>([re, im]: [R; 2]) -> R {
+fn square<R: LaneFloat>([re, im]: [R; 2]) -> R {
     re * re + im * im
 }
 
 /// Returns the absolute value of a sum.
 #[inline(always)]
-fn size<R: Real>([a, b]: [R; 2], [c, d]: [R; 2]) -> R {
+fn size<R: LaneFloat>([a, b]: [R; 2], [c, d]: [R; 2]) -> R {
     square([a + c, b + d]).sqrt()
 }
 

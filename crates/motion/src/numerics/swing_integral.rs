@@ -4,7 +4,7 @@
 
 use super::elliptic::second_kind;
 use super::swing_series::{Circle, LARGE, MIDDLE, SMALL};
-use crate::lanes::{Mask, Real};
+use crate::lanes::{LaneFloat, Mask};
 use crate::numerics::phasor::{Phasor, abs, arg};
 
 /// Returns the integral over [0, h] of abs(c + W exp(-i w t)) for an undamped mode, in closed form (the envelope's
@@ -14,22 +14,22 @@ use crate::numerics::phasor::{Phasor, abs, arg};
 /// 0.002 of 1 the integral is computed by Carlson's duplication. The error is 1e-13 of h times the larger of both.
 #[allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #[inline(always)]
-pub fn undamped<R: Real>(centre: R, [from, to]: [[R; 2]; 2], frequency: R, h: R) -> R {
+pub fn undamped<R: LaneFloat>(centre: R, [from, to]: [[R; 2]; 2], frequency: R, h: R) -> R {
     let angle = frequency * h;
     let circle = Circle::new(centre, [from, to], angle);
-    let below = circle.modulus.lt(angle.of(SMALL));
+    let below = circle.modulus.lt(angle.splat(SMALL));
     let mut swept = angle;
     if below.any() {
-        swept = circle.alone();
+        swept = circle.integrate_small();
     }
     if !below.all() {
         let mut smaller = circle;
-        let is_wide = angle.of(MIDDLE).le(circle.modulus);
+        let is_wide = angle.splat(MIDDLE).le(circle.modulus);
         if is_wide.any() {
-            smaller = Circle::select(is_wide, &circle.once(), &circle);
+            smaller = Circle::select(is_wide, &circle.landen_step(), &circle);
         }
-        swept = R::select(below, swept, smaller.twice().after());
-        if !circle.modulus.lt(angle.of(LARGE)).all() {
+        swept = R::select(below, swept, smaller.two_landen_steps().integrate_after());
+        if !circle.modulus.lt(angle.splat(LARGE)).all() {
             for lane in 0..R::LANES {
                 if circle.modulus.lane(lane) >= LARGE {
                     let deviation = Phasor { re: from[0].lane(lane), im: from[1].lane(lane) };

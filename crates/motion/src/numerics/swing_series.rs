@@ -18,7 +18,7 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
 use super::trig::argument;
-use crate::lanes::Real;
+use crate::lanes::LaneFloat;
 
 /// Modulus below which the series suffices without Landen steps.
 pub const SMALL: f64 = 0.1;
@@ -88,11 +88,11 @@ pub struct Circle<R> {
     sum: R,
 }
 
-impl<R: Real> Circle<R> {
+impl<R: LaneFloat> Circle<R> {
     /// Creates the motion of c + W e^(-i t) over an angle (rad), from the centre c and W at both ends.
     #[inline(always)]
     pub fn new(centre: R, [from, to]: [[R; 2]; 2], angle: R) -> Self {
-        let (zero, one) = (centre.of(0.0), centre.of(1.0));
+        let (zero, one) = (centre.splat(0.0), centre.splat(1.0));
         let square = from[0] * from[0] + from[1] * from[1];
         let (radius, distance) = (square.sqrt(), centre.abs());
         // Uses |c + W| = |c| |1 + W*/c| = |W| |1 + c/W|.
@@ -113,7 +113,7 @@ impl<R: Real> Circle<R> {
     /// Transforms the integral to a smaller circle by one Landen step, for a modulus near 1.
     #[inline(always)]
     #[must_use]
-    pub fn once(&self) -> Self {
+    pub fn landen_step(&self) -> Self {
         let (step, mut smaller) = self.step(self.complement(), self.sizes());
         smaller.angle = (self.angle - argument(step.between)) * 2.0;
         smaller
@@ -122,7 +122,7 @@ impl<R: Real> Circle<R> {
     /// Transforms the integral by two Landen steps, for a modulus below [`MIDDLE`]; the new modulus is below 0.042.
     #[inline(always)]
     #[must_use]
-    pub fn twice(&self) -> Self {
+    pub fn two_landen_steps(&self) -> Self {
         let (complement, sizes) = (self.complement(), self.sizes());
         let (first, once) = self.step(complement, sizes);
         // For the smaller circle, complement and sizes follow without a root of values that depend on the ends.
@@ -142,7 +142,7 @@ impl<R: Real> Circle<R> {
     /// Returns k' of the modulus.
     #[inline(always)]
     fn complement(&self) -> R {
-        let one = self.modulus.of(1.0);
+        let one = self.modulus.splat(1.0);
         ((one - self.modulus) * (one + self.modulus)).sqrt()
     }
 
@@ -156,8 +156,8 @@ impl<R: Real> Circle<R> {
 
     /// Performs a Landen step, given k' and |1 + z| at both ends; sets all of the new circle but its angle.
     #[inline(always)]
-    fn step(&self, complement: R, sizes: [R; 2]) -> (Step<R>, Self) {
-        let step = Step::new(self, complement, sizes);
+    fn step(&self, complement: R, sizes: [R; 2]) -> (LandenStep<R>, Self) {
+        let step = LandenStep::new(self, complement, sizes);
         // The new modulus (1 - k')/(1 + k') is the square of this.
         let root = self.modulus * step.inverse;
         let smaller = Self {
@@ -165,7 +165,7 @@ impl<R: Real> Circle<R> {
             modulus: root * root,
             ends: step.ends,
             angle: self.angle,
-            length: self.length * ((complement.of(1.0) + complement) * 0.5),
+            length: self.length * ((complement.splat(1.0) + complement) * 0.5),
             inverse: step.inverse * (self.inverse - self.length * (complement * complement)),
             sum: self.sum + self.length * step.rise * 2.0,
         };
@@ -192,7 +192,7 @@ impl<R: Real> Circle<R> {
 
     /// Returns the integral over the angle by the series alone, for a modulus below [`SMALL`].
     #[inline(always)]
-    pub fn alone(&self) -> R {
+    pub fn integrate_small(&self) -> R {
         let square = self.modulus * self.modulus;
         let mut sums = [Clenshaw::new(self.ends[0], square), Clenshaw::new(self.ends[1], square)];
         each!(N in [10, 9, 8, 7, 6, 5, 4, 3, 2, 1] {
@@ -206,7 +206,7 @@ impl<R: Real> Circle<R> {
 
     /// Returns the integral over the angle by the series after Landen steps.
     #[inline(always)]
-    pub fn after(&self) -> R {
+    pub fn integrate_after(&self) -> R {
         let square = self.modulus * self.modulus;
         let mut sums = [Clenshaw::new(self.ends[0], square), Clenshaw::new(self.ends[1], square)];
         each!(N in [8, 7, 6, 5, 4, 3, 2, 1] {
@@ -224,7 +224,7 @@ impl<R: Real> Circle<R> {
 }
 
 /// Result of a Landen step at both ends.
-struct Step<R> {
+struct LandenStep<R> {
     /// Factor 1/(1 + k').
     inverse: R,
     /// Values of 1/|1 + z| at both ends.
@@ -237,7 +237,7 @@ struct Step<R> {
     between: [R; 2],
 }
 
-impl<R: Real> Step<R> {
+impl<R: LaneFloat> LandenStep<R> {
     /// Computes the step of a circle from k' and |1 + z| at both ends.
     #[inline(always)]
     fn new(circle: &Circle<R>, complement: R, [a_size, b_size]: [R; 2]) -> Self {
@@ -245,7 +245,7 @@ impl<R: Real> Step<R> {
         let [a, b] = circle.ends;
         // One division serves all three.
         let (above, sizes) = (complement + 1.0, a_size * b_size);
-        let all = square.of(1.0) / (above * sizes);
+        let all = square.splat(1.0) / (above * sizes);
         let (inverse, both) = (all * sizes, all * above);
         let sizes_inverse = [both * b_size, both * a_size];
         let a_u = [sizes_inverse[0] * (a[0] + square), sizes_inverse[0] * a[1]];
@@ -267,10 +267,10 @@ impl<R: Real> Step<R> {
 
 /// Evaluates the first `TERMS` terms of a polynomial.
 #[inline(always)]
-fn polynomial<R: Real, const TERMS: usize>(coefficients: &[f64; POWERS], x: R) -> R {
-    let mut sum = x.of(coefficients[TERMS - 1]);
+fn polynomial<R: LaneFloat, const TERMS: usize>(coefficients: &[f64; POWERS], x: R) -> R {
+    let mut sum = x.splat(coefficients[TERMS - 1]);
     for k in (0..TERMS - 1).rev() {
-        sum = x.of(coefficients[k]) + x * sum;
+        sum = x.splat(coefficients[k]) + x * sum;
     }
     sum
 }
@@ -285,10 +285,10 @@ struct Clenshaw<R> {
     before: R,
 }
 
-impl<R: Real> Clenshaw<R> {
+impl<R: LaneFloat> Clenshaw<R> {
     #[inline(always)]
     fn new([re, im]: [R; 2], square: R) -> Self {
-        let zero = re.of(0.0);
+        let zero = re.splat(0.0);
         Self { twice: re + re, imaginary: im, square, last: zero, before: zero }
     }
 

@@ -5,7 +5,7 @@
 
 use std::f64::consts::FRAC_2_PI;
 
-use crate::lanes::Real;
+use crate::lanes::LaneFloat;
 
 /// Angle (rad) up to which the reduction by pi/2 in three parts is exact.
 pub const FARTHEST: f64 = 1e6;
@@ -49,28 +49,28 @@ const ARC: [f64; 11] = [
 
 /// Returns the integer nearest to a number below 2^51.
 #[inline(always)]
-pub fn nearest<R: Real>(x: R) -> R {
-    let rounder = x.of(ROUNDER);
+pub fn nearest<R: LaneFloat>(x: R) -> R {
+    let rounder = x.splat(ROUNDER);
     (x + rounder) - rounder
 }
 
 /// Returns sine and cosine of an angle (rad) up to [`FARTHEST`]; within 1 unit in the last place.
 #[inline(always)]
-pub fn sincos<R: Real>(x: R) -> (R, R) {
-    let turns = nearest(x * x.of(FRAC_2_PI));
+pub fn sincos<R: LaneFloat>(x: R) -> (R, R) {
+    let turns = nearest(x * x.splat(FRAC_2_PI));
     // The products of the first two parts, and the first difference, are exact.
-    let first = x - turns * x.of(HALF_PI[0]);
-    let second = turns * x.of(HALF_PI[1]);
+    let first = x - turns * x.splat(HALF_PI[0]);
+    let second = turns * x.splat(HALF_PI[1]);
     let high = first - second;
     let back = first - high;
     let low = (first - (high + back)) + (back - second);
-    let rest = turns * x.of(HALF_PI[2]) - low;
+    let rest = turns * x.splat(HALF_PI[2]) - low;
     let angle = high - rest;
     let (sin, cos) = within(angle, (high - angle) - rest);
     // Quarter turns modulo 4, -2 to 2, rotate the pair: by products with 1, 0 or -1 only, which are exact.
-    let quarters = turns - x.of(4.0) * nearest(turns * x.of(0.25));
+    let quarters = turns - x.splat(4.0) * nearest(turns * x.splat(0.25));
     let size = quarters.abs();
-    let (along, across) = (x.of(1.0) - size, quarters * (x.of(2.0) - size));
+    let (along, across) = (x.splat(1.0) - size, quarters * (x.splat(2.0) - size));
     (along * sin + across * cos, along * cos - across * sin)
 }
 
@@ -82,32 +82,34 @@ pub fn sincos_any(x: f64) -> (f64, f64) {
 
 /// Returns sine and cosine of an angle (rad) of at most pi/4.
 #[inline(always)]
-pub fn sincos_short<R: Real>(x: R) -> (R, R) {
+pub fn sincos_short<R: LaneFloat>(x: R) -> (R, R) {
     let z = x * x;
     let w = z * z;
-    let sines =
-        x.of(SINE[1]) + z * (x.of(SINE[2]) + z * x.of(SINE[3])) + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
-    let sin = x + z * x * (x.of(SINE[0]) + z * sines);
-    let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))
-        + w * w * (x.of(COSINE[3]) + z * (x.of(COSINE[4]) + z * x.of(COSINE[5])));
-    let one = x.of(1.0);
-    let half = x.of(0.5) * z;
+    let sines = x.splat(SINE[1])
+        + z * (x.splat(SINE[2]) + z * x.splat(SINE[3]))
+        + z * w * (x.splat(SINE[4]) + z * x.splat(SINE[5]));
+    let sin = x + z * x * (x.splat(SINE[0]) + z * sines);
+    let cosines = z * (x.splat(COSINE[0]) + z * (x.splat(COSINE[1]) + z * x.splat(COSINE[2])))
+        + w * w * (x.splat(COSINE[3]) + z * (x.splat(COSINE[4]) + z * x.splat(COSINE[5])));
+    let one = x.splat(1.0);
+    let half = x.splat(0.5) * z;
     let near = one - half;
     (sin, near + (((one - near) - half) + z * cosines))
 }
 
 /// Returns sine and cosine of an angle (rad) of at most pi/4, given as a sum of two parts.
 #[inline(always)]
-fn within<R: Real>(x: R, y: R) -> (R, R) {
+fn within<R: LaneFloat>(x: R, y: R) -> (R, R) {
     let z = x * x;
     let w = z * z;
-    let (one, half) = (x.of(1.0), x.of(0.5));
-    let sines =
-        x.of(SINE[1]) + z * (x.of(SINE[2]) + z * x.of(SINE[3])) + z * w * (x.of(SINE[4]) + z * x.of(SINE[5]));
+    let (one, half) = (x.splat(1.0), x.splat(0.5));
+    let sines = x.splat(SINE[1])
+        + z * (x.splat(SINE[2]) + z * x.splat(SINE[3]))
+        + z * w * (x.splat(SINE[4]) + z * x.splat(SINE[5]));
     let v = z * x;
-    let sin = x - ((z * (half * y - v * sines) - y) - v * x.of(SINE[0]));
-    let cosines = z * (x.of(COSINE[0]) + z * (x.of(COSINE[1]) + z * x.of(COSINE[2])))
-        + w * w * (x.of(COSINE[3]) + z * (x.of(COSINE[4]) + z * x.of(COSINE[5])));
+    let sin = x - ((z * (half * y - v * sines) - y) - v * x.splat(SINE[0]));
+    let cosines = z * (x.splat(COSINE[0]) + z * (x.splat(COSINE[1]) + z * x.splat(COSINE[2])))
+        + w * w * (x.splat(COSINE[3]) + z * (x.splat(COSINE[4]) + z * x.splat(COSINE[5])));
     let hz = half * z;
     let near = one - hz;
     (sin, near + (((one - near) - hz) + (z * cosines - x * y)))
@@ -115,23 +117,23 @@ fn within<R: Real>(x: R, y: R) -> (R, R) {
 
 /// Returns the arc tangent of a number up to 0.4375; within 1 unit in the last place.
 #[inline(always)]
-pub fn arc<R: Real>(t: R) -> R {
+pub fn arc<R: LaneFloat>(t: R) -> R {
     let z = t * t;
     let w = z * z;
-    let (mut odd, mut even) = (t.of(ARC[10]), t.of(ARC[9]));
+    let (mut odd, mut even) = (t.splat(ARC[10]), t.splat(ARC[9]));
     for i in [8, 6, 4, 2, 0] {
-        odd = t.of(ARC[i]) + w * odd;
+        odd = t.splat(ARC[i]) + w * odd;
     }
     for i in [7, 5, 3, 1] {
-        even = t.of(ARC[i]) + w * even;
+        even = t.splat(ARC[i]) + w * even;
     }
     t - t * (z * odd + w * even)
 }
 
 /// Returns the argument of a non-zero complex number, from -pi to pi (rad); within 1e-15.
 #[inline(always)]
-pub fn argument<R: Real>([re, im]: [R; 2]) -> R {
-    let zero = re.of(0.0);
+pub fn argument<R: LaneFloat>([re, im]: [R; 2]) -> R {
+    let zero = re.splat(0.0);
     let (along, across) = (re.abs(), im.abs());
     let is_steep = along.lt(across);
     let (large, small) = (R::select(is_steep, across, along), R::select(is_steep, along, across));
@@ -139,9 +141,9 @@ pub fn argument<R: Real>([re, im]: [R; 2]) -> R {
     let is_near = (large * std::f64::consts::SQRT_2 - large).lt(small);
     let above = R::select(is_near, small - large, small);
     let below = R::select(is_near, small + large, large);
-    let angle = R::select(is_near, re.of(std::f64::consts::FRAC_PI_4), zero) + arc(above / below);
-    let angle = R::select(is_steep, re.of(std::f64::consts::FRAC_PI_2) - angle, angle);
-    let angle = R::select(re.lt(zero), re.of(std::f64::consts::PI) - angle, angle);
+    let angle = R::select(is_near, re.splat(std::f64::consts::FRAC_PI_4), zero) + arc(above / below);
+    let angle = R::select(is_steep, re.splat(std::f64::consts::FRAC_PI_2) - angle, angle);
+    let angle = R::select(re.lt(zero), re.splat(std::f64::consts::PI) - angle, angle);
     R::select(im.lt(zero), -angle, angle)
 }
 

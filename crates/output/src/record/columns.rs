@@ -1,7 +1,7 @@
 //! Columns: the rows of a topic as one array for each field.
 
-use super::row::{Field, Kind, Row, Sink};
-use crate::label::Labels;
+use super::row::{FieldKind, Row, RowField, Sink};
+use crate::enum_label::LoggedEnum;
 
 /// Rows of one topic, column by column.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -29,26 +29,26 @@ pub enum Column {
 
 impl Columns {
     /// Creates empty columns for the fields.
-    pub fn new(fields: &[Field]) -> Self {
+    pub fn new(fields: &[RowField]) -> Self {
         let mut columns = Self::default();
         columns.add("", fields);
         columns
     }
 
     /// Adds empty columns; the name of a nested row precedes those of its fields: `rotation.x`.
-    fn add(&mut self, before: &str, fields: &[Field]) {
+    fn add(&mut self, before: &str, fields: &[RowField]) {
         for field in fields {
             let name = format!("{before}{}", field.name);
             let column = match field.kind {
-                Kind::Number | Kind::Time(_) => Column::Numbers(Vec::new()),
-                Kind::Count | Kind::Flag => Column::Counts(Vec::new()),
-                Kind::Label(labels) => {
+                FieldKind::Number | FieldKind::Time(_) => Column::Numbers(Vec::new()),
+                FieldKind::Count | FieldKind::Flag => Column::Counts(Vec::new()),
+                FieldKind::Label(labels) => {
                     let owned = labels.values.iter().map(|&l| l.to_owned()).collect();
                     Column::Labels(Vec::new(), owned)
                 }
-                Kind::Text => Column::Texts(Vec::new()),
-                Kind::Rows(message) => Column::Rows(Vec::new(), Self::new(message.fields)),
-                Kind::Row(message) => {
+                FieldKind::Text => Column::Texts(Vec::new()),
+                FieldKind::Rows(message) => Column::Rows(Vec::new(), Self::new(message.fields)),
+                FieldKind::Row(message) => {
                     self.add(&format!("{name}."), message.fields);
                     continue;
                 }
@@ -82,7 +82,7 @@ impl Columns {
 
     /// Appends a row of the type for which the columns were created.
     pub fn push<R: Row>(&mut self, row: &R) {
-        row.put(&mut Filler { columns: self.columns.iter_mut() });
+        row.put(&mut ColumnFiller { columns: self.columns.iter_mut() });
     }
 }
 
@@ -106,11 +106,11 @@ impl Column {
 }
 
 /// Sink that writes the fields of a row into columns, which are in the same order.
-struct Filler<'a> {
+struct ColumnFiller<'a> {
     columns: std::slice::IterMut<'a, (String, Column)>,
 }
 
-impl Sink for Filler<'_> {
+impl Sink for ColumnFiller<'_> {
     #[inline]
     fn number(&mut self, value: f64) {
         if let Some((_, Column::Numbers(values))) = self.columns.next() {
@@ -126,7 +126,7 @@ impl Sink for Filler<'_> {
     }
 
     #[inline]
-    fn label(&mut self, index: usize, _: &'static Labels) {
+    fn label(&mut self, index: usize, _: &'static LoggedEnum) {
         if let Some((_, Column::Labels(values, _))) = self.columns.next() {
             values.push(index as u8);
         }

@@ -2,7 +2,7 @@
 
 use serde_json::{Map, Value, json};
 
-use super::row::{Field, Kind};
+use super::row::{FieldKind, RowField};
 use super::topics::TOPICS;
 
 /// Returns the description of every topic, by name without its slash: `message`, `doc` and `fields`.
@@ -11,41 +11,42 @@ use super::topics::TOPICS;
 /// `label` with its `labels`, or `row` and `rows` with the `fields` of each row.
 pub fn topics() -> Value {
     let topics = TOPICS.iter().map(|topic| {
-        let told = json!({"message": topic.message, "doc": text(topic.doc), "fields": fields(topic.fields)});
-        (topic.name.trim_start_matches('/').to_owned(), told)
+        let reported =
+            json!({"message": topic.message, "doc": text(topic.doc), "fields": fields(topic.fields)});
+        (topic.name.trim_start_matches('/').to_owned(), reported)
     });
     Value::Object(topics.collect::<Map<_, _>>())
 }
 
-fn fields(of: &[Field]) -> Value {
+fn fields(of: &[RowField]) -> Value {
     of.iter().map(field).collect()
 }
 
-fn field(field: &Field) -> Value {
-    let mut told = json!({"name": field.name, "doc": text(field.doc)});
-    told["kind"] = match field.kind {
-        Kind::Number => "number",
-        Kind::Count => "count",
-        Kind::Text => "text",
-        Kind::Flag => "flag",
-        Kind::Time(_) => "time",
-        Kind::Label(labels) => {
+fn field(field: &RowField) -> Value {
+    let mut reported = json!({"name": field.name, "doc": text(field.doc)});
+    reported["kind"] = match field.kind {
+        FieldKind::Number => "number",
+        FieldKind::Count => "count",
+        FieldKind::Text => "text",
+        FieldKind::Flag => "flag",
+        FieldKind::Time(_) => "time",
+        FieldKind::Label(labels) => {
             let meanings = labels.values.iter().zip(labels.docs);
             let meaning = |(value, doc): (&&str, &&str)| ((*value).to_owned(), Value::from(doc.trim()));
-            told["labels"] = Value::Object(meanings.map(meaning).collect());
+            reported["labels"] = Value::Object(meanings.map(meaning).collect());
             "label"
         }
-        Kind::Row(message) => {
-            told["fields"] = fields(message.fields);
+        FieldKind::Row(message) => {
+            reported["fields"] = fields(message.fields);
             "row"
         }
-        Kind::Rows(message) => {
-            told["fields"] = fields(message.fields);
+        FieldKind::Rows(message) => {
+            reported["fields"] = fields(message.fields);
             "rows"
         }
     }
     .into();
-    told
+    reported
 }
 
 fn text(lines: &[&str]) -> String {

@@ -8,13 +8,13 @@ use prost_types::{DescriptorProto, EnumDescriptorProto, FieldDescriptorProto, Fi
 
 /// Types of a schema, by their full names.
 #[derive(Default)]
-pub struct Pool {
+pub struct DescriptorPool {
     messages: BTreeMap<String, DescriptorProto>,
     enums: BTreeMap<String, EnumDescriptorProto>,
 }
 
 /// Type of the contents of a field.
-pub enum Content<'a> {
+pub enum FieldContent<'a> {
     /// Number, text or bytes.
     Scalar(Type),
     /// Message with its full name.
@@ -23,7 +23,7 @@ pub enum Content<'a> {
     Enum(&'a EnumDescriptorProto),
 }
 
-impl Pool {
+impl DescriptorPool {
     /// Reads a serialised set of file descriptors.
     pub fn decode(data: &[u8]) -> Result<Self, String> {
         let files = FileDescriptorSet::decode(data).map_err(|error| error.to_string())?;
@@ -55,18 +55,18 @@ impl Pool {
     }
 
     /// Returns the type of a message's field; `None` if it is not in the schema.
-    pub fn kind(&self, message: &str, field: &FieldDescriptorProto) -> Option<Content<'_>> {
+    pub fn kind(&self, message: &str, field: &FieldDescriptorProto) -> Option<FieldContent<'_>> {
         match field.r#type.and_then(|kind| Type::try_from(kind).ok()) {
             None | Some(Type::Message | Type::Group | Type::Enum) => self.named(message, field.type_name()),
-            Some(kind) => Some(Content::Scalar(kind)),
+            Some(kind) => Some(FieldContent::Scalar(kind)),
         }
     }
 
     /// Finds the type of a name: a full name begins with a dot, others are searched from the inner to the outer scopes.
-    fn named(&self, scope: &str, name: &str) -> Option<Content<'_>> {
+    fn named(&self, scope: &str, name: &str) -> Option<FieldContent<'_>> {
         let full = |name: &str| {
-            let message = self.message(name).map(|(name, message)| Content::Message(name, message));
-            message.or_else(|| self.enums.get(name).map(Content::Enum))
+            let message = self.message(name).map(|(name, message)| FieldContent::Message(name, message));
+            message.or_else(|| self.enums.get(name).map(FieldContent::Enum))
         };
         if let Some(name) = name.strip_prefix('.') {
             return full(name);

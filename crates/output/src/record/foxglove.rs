@@ -3,8 +3,8 @@
 //! Names and numbers of the fields are those of the published schemas. Unused fields at the end of a message are left
 //! out.
 
-use super::row::{Lifetime, Row, Sink, Stamp, Topic, TopicRow, label_cells, rows};
-use crate::label::Labels;
+use super::row::{LogDate, LogSpan, Row, Sink, Topic, TopicRow, label_cells, rows};
+use crate::enum_label::LoggedEnum;
 
 /// Severity of a log line.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -25,7 +25,7 @@ pub enum LogLevel {
 
 impl LogLevel {
     /// Labels of the enumeration, for a log column.
-    pub const LABELS: Labels = Labels {
+    pub const LABELS: LoggedEnum = LoggedEnum {
         name: "Log.Level",
         docs: &[
             " Unknown severity.",
@@ -49,7 +49,7 @@ pub enum Deleted {
 }
 
 impl Deleted {
-    const LABELS: Labels = Labels {
+    const LABELS: LoggedEnum = LoggedEnum {
         name: "SceneEntityDeletion.Type",
         docs: &[" The entity of this id.", " All entities of the topic."],
         values: &["matching id", "all"],
@@ -68,7 +68,7 @@ pub enum LineType {
 }
 
 impl LineType {
-    const LABELS: Labels = Labels {
+    const LABELS: LoggedEnum = LoggedEnum {
         name: "LinePrimitive.Type",
         docs: &[" Each point with the next.", " Also the last point with the first.", " In pairs."],
         values: &["line strip", "line loop", "line list"],
@@ -83,7 +83,7 @@ rows! {
     /// A line of the log.
     Log = "/log" {
         /// Time of the message.
-        timestamp: Stamp,
+        timestamp: LogDate,
         /// Severity.
         level: LogLevel,
         /// Text of the message.
@@ -141,7 +141,7 @@ rows! {
     /// Pose of a frame in another.
     FrameTransform {
         /// Time of the message.
-        timestamp: Stamp,
+        timestamp: LogDate,
         /// Name of the parent frame.
         parent_frame_id: String,
         /// Name of the frame.
@@ -159,7 +159,7 @@ rows! {
     /// Entities that a scene no longer has.
     SceneEntityDeletion {
         /// Time of the message.
-        timestamp: Stamp,
+        timestamp: LogDate,
         /// Kind of deletion.
         r#type: Deleted,
         /// Id of the entity.
@@ -260,13 +260,13 @@ rows! {
     /// A thing in a scene.
     SceneEntity {
         /// Time of the message.
-        timestamp: Stamp,
+        timestamp: LogDate,
         /// Frame in which it is drawn.
         frame_id: String,
         /// Id; a later entity with the same id replaces it.
         id: String,
         /// Time for which it is shown.
-        lifetime: Lifetime,
+        lifetime: LogSpan,
         /// Whether it moves with its frame.
         frame_locked: bool,
         /// Remarks.
@@ -301,7 +301,7 @@ pub struct Plumes(pub SceneUpdate);
 
 impl Row for Plumes {
     const DOC: &'static [&'static str] = SceneUpdate::DOC;
-    const FIELDS: &'static [super::row::Field] = SceneUpdate::FIELDS;
+    const FIELDS: &'static [super::row::RowField] = SceneUpdate::FIELDS;
 
     fn put<S: Sink>(&self, sink: &mut S) {
         self.0.put(sink);

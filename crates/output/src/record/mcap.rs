@@ -7,18 +7,18 @@ use std::path::Path;
 use mcap::records::{MessageHeader, Metadata};
 use mcap::{McapError, WriteOptions, Writer};
 
-use super::measured::Metrics;
-use super::message::{Encode, Message, Messages};
+use super::message::{Message, MessageEncoder, MessageSink};
+use super::metrics::Metrics;
 use super::{Attachment, Detail, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
+use crate::atomic_file::AtomicFile;
 use crate::time::Instant;
-use crate::whole::Partial;
 
 /// Number of messages after which a chunk is closed: the largest number lost with a killed run.
 const MESSAGES_PER_FLUSH: u64 = 2000;
 
 /// Log of a run, written while it runs.
 struct McapLog<W: Write + Seek> {
-    log: Encode<Channels<W>>,
+    log: MessageEncoder<Channels<W>>,
 }
 
 impl<W: Write + Seek> McapLog<W> {
@@ -44,7 +44,7 @@ impl<W: Write + Seek> McapLog<W> {
         let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
         write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
         let channels = Channels { writer, of: vec![None; TOPICS.len()], since_flush: 0 };
-        Ok(Self { log: Encode::new(channels, from, detail)? })
+        Ok(Self { log: MessageEncoder::new(channels, from, detail)? })
     }
 
     /// Writes the metrics, the end of the run, and the file's summary.
@@ -84,8 +84,8 @@ impl<W: Write + Seek> Channels<W> {
     }
 }
 
-impl<W: Write + Seek> Messages for Channels<W> {
-    fn take(&mut self, message: Message<'_>) -> Result<(), RecordError> {
+impl<W: Write + Seek> MessageSink for Channels<W> {
+    fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         let (channel_id, sequence) = self.channel(message.topic)?;
         self.of[message.topic] = Some((channel_id, sequence.wrapping_add(1)));
         let log_time = message.time_ns;
@@ -103,13 +103,13 @@ impl<W: Write + Seek> Messages for Channels<W> {
 
 /// Log on disk, under a `.partial` name until it is finished. If it is dropped before, it is removed.
 pub struct LogFile {
-    log: McapLog<BufWriter<Partial>>,
+    log: McapLog<BufWriter<AtomicFile>>,
 }
 
 impl LogFile {
     /// Creates the file under its `.partial` name.
     pub fn create(path: &Path, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
-        let file = BufWriter::new(Partial::create(path)?);
+        let file = BufWriter::new(AtomicFile::create(path)?);
         Ok(Self { log: McapLog::new(file, from, detail)? })
     }
 
@@ -144,12 +144,12 @@ impl LogBytes {
 macro_rules! records_within {
     ($($log:ty),+) => {
         $(impl Record for $log {
-            fn dense(&self) -> bool {
-                self.log.dense()
+            fn wants_motion(&self) -> bool {
+                self.log.wants_motion()
             }
 
-            fn scene(&self) -> bool {
-                self.log.scene()
+            fn wants_scene(&self) -> bool {
+                self.log.wants_scene()
             }
 
             fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
@@ -159,7 +159,7 @@ macro_rules! records_within {
     };
 }
 
-records_within!(McapLog<BufWriter<Partial>>, McapLog<Cursor<Vec<u8>>>, LogFile, LogBytes);
+records_within!(McapLog<BufWriter<AtomicFile>>, McapLog<Cursor<Vec<u8>>>, LogFile, LogBytes);
 
 fn attach<W: Write + Seek>(
     writer: &mut Writer<W>,

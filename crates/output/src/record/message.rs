@@ -1,11 +1,11 @@
 //! Messages: the rows of a run as bytes, identical for files and viewers.
 
 use super::foxglove::{Log, LogLevel};
-use super::measured::Metrics;
+use super::metrics::Metrics;
 use super::proto::Encoder;
-use super::row::{Stamp, TopicRow};
+use super::row::{LogDate, TopicRow};
 use super::topics::index_of;
-use super::{Detail, OutputName, Params, Record, RecordError, Sample, Summary, TakeRow};
+use super::{Detail, OutputName, Params, Record, RecordError, RowTaker, Sample, Summary};
 use crate::time::{Instant, Span};
 
 /// Provenance of a log.
@@ -90,13 +90,13 @@ pub struct Message<'a> {
 }
 
 /// Destination of messages: a file or a viewer.
-pub trait Messages {
+pub trait MessageSink {
     /// Writes the next message. Times never decrease.
-    fn take(&mut self, message: Message<'_>) -> Result<(), RecordError>;
+    fn push(&mut self, message: Message<'_>) -> Result<(), RecordError>;
 }
 
 /// Record that turns a run into messages.
-pub struct Encode<M> {
+pub struct MessageEncoder<M> {
     to: M,
     detail: Detail,
     epoch_ns: u64,
@@ -104,7 +104,7 @@ pub struct Encode<M> {
     buffer: Vec<u8>,
 }
 
-impl<M: Messages> Encode<M> {
+impl<M: MessageSink> MessageEncoder<M> {
     /// Creates the messages of a run, beginning with its parameters.
     pub fn new(to: M, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
         let mut encode =
@@ -116,7 +116,7 @@ impl<M: Messages> Encode<M> {
             toml: from.toml.clone(),
             outputs: from.outputs.clone(),
         };
-        encode.rows().take(Instant::START, &params)?;
+        encode.rows().take_row(Instant::START, &params)?;
         Ok(encode)
     }
 
@@ -125,40 +125,40 @@ impl<M: Messages> Encode<M> {
     pub fn finish(mut self, metrics: &Metrics, end: RunEnd) -> Result<(M, Instant), RecordError> {
         if !metrics.0.is_empty() {
             let last = self.last;
-            self.rows().take(last, &Summary::of(metrics))?;
-            self.rows().take(last, &metrics.to_row())?;
+            self.rows().take_row(last, &Summary::from_metrics(metrics))?;
+            self.rows().take_row(last, &metrics.to_row())?;
         }
         if end != RunEnd::Complete {
-            let timestamp = Stamp(self.epoch_ns + self.last.nanoseconds());
+            let timestamp = LogDate(self.epoch_ns + self.last.nanoseconds());
             let message = format!("the run {} at {} s", end.verb(), self.last.seconds());
             let (level, name) = (LogLevel::Warning, "run".to_owned());
             let last = self.last;
-            self.rows().take(last, &Log { timestamp, level, message, name })?;
+            self.rows().take_row(last, &Log { timestamp, level, message, name })?;
         }
         Ok((self.to, self.last))
     }
 }
 
-impl<M: Messages> Encode<M> {
-    fn rows(&mut self) -> Rows<'_> {
-        Rows { to: &mut self.to, epoch_ns: self.epoch_ns, last: &mut self.last, buffer: &mut self.buffer }
+impl<M: MessageSink> MessageEncoder<M> {
+    fn rows(&mut self) -> RowSink<'_> {
+        RowSink { to: &mut self.to, epoch_ns: self.epoch_ns, last: &mut self.last, buffer: &mut self.buffer }
     }
 }
 
 /// Encoder of rows for any destination of messages.
-struct Rows<'a> {
-    to: &'a mut dyn Messages,
+struct RowSink<'a> {
+    to: &'a mut dyn MessageSink,
     epoch_ns: u64,
     last: &'a mut Instant,
     buffer: &'a mut Vec<u8>,
 }
 
-impl TakeRow for Rows<'_> {
-    fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
+impl RowTaker for RowSink<'_> {
+    fn take_row<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
         self.buffer.clear();
         Encoder::encode(row, self.buffer);
         *self.last = now;
-        self.to.take(Message {
+        self.to.push(Message {
             topic: const { index_of(R::TOPIC.name) },
             time_ns: self.epoch_ns + now.nanoseconds(),
             data: self.buffer,
@@ -166,17 +166,17 @@ impl TakeRow for Rows<'_> {
     }
 }
 
-impl<M: Messages> Record for Encode<M> {
-    fn dense(&self) -> bool {
+impl<M: MessageSink> Record for MessageEncoder<M> {
+    fn wants_motion(&self) -> bool {
         self.detail >= Detail::Full
     }
 
-    fn scene(&self) -> bool {
+    fn wants_scene(&self) -> bool {
         self.detail >= Detail::Scene
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // The sample may be meant for a record of more detail.
-        if sample.detail() > self.detail { Ok(()) } else { self.rows().take_sample(now, sample) }
+        if sample.detail() > self.detail { Ok(()) } else { self.rows().take_sample_rows(now, sample) }
     }
 }

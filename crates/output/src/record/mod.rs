@@ -1,25 +1,25 @@
 //! Record: the only output of a simulation.
 
-mod bounds;
-mod budget;
 mod columns;
-mod combined;
+mod composite;
+mod decoder;
 pub mod description;
 mod descriptor;
 pub mod foxglove;
-mod log;
+mod log_file;
 mod mcap;
-pub mod measured;
+mod mcap_reader;
+mod memory_budget;
 mod message;
-mod origin;
+pub mod metrics;
 mod proto;
+mod provenance_check;
 mod recover;
 pub mod row;
-mod shape;
-mod spatial;
 mod states;
 mod summary;
-mod table;
+mod three_axis;
+mod topic_table;
 mod topics;
 mod trace;
 mod wire;
@@ -28,17 +28,17 @@ use std::io;
 
 use thiserror::Error;
 
-use crate::motion::{State, Stretch};
+use crate::motion::{AxisState, MotionPiece};
 use crate::time::Instant;
 
 pub use columns::{Column, Columns};
-pub use log::{Log, LogError};
+pub use log_file::{Log, LogError};
 pub use mcap::{LogBytes, LogFile};
-pub use message::{Attachment, COMMANDS, Encode, Message, Messages, Provenance, RunEnd};
-pub use origin::{There, difference, there};
+pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Provenance, RunEnd};
+pub use provenance_check::{ExistingLog, difference, existing_log};
 pub use recover::recover;
-pub use spatial::{SpatialCycle, SpatialMotion, Steered};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
+pub use three_axis::{SteeringRecord, ThreeAxisCycle, ThreeAxisMotionSample};
 pub use topics::{
     Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
     BearingMotion, Bearings, ChannelState, Command, ControlMomentGyro, ControlMomentGyros, Decision,
@@ -57,7 +57,7 @@ pub enum Sample<'a> {
     /// Start of the run, with the law in this state.
     Begin(&'a Law),
     /// Switching of the law, with the body in this state.
-    Switching(&'a Command, &'a State),
+    Switching(&'a Command, &'a AxisState),
     /// Motion at one instant: at each period of a dense record, and at every switching.
     Motion(&'a Motion),
     /// State of the law, once a second in a dense record.
@@ -85,11 +85,11 @@ pub enum Sample<'a> {
     /// Start or end of a failure of a sensor or an actuator.
     Fault(&'a FaultEvent),
     /// Start of a cycle of a three-axis body.
-    Cycle(&'a SpatialCycle),
+    Cycle(&'a ThreeAxisCycle),
     /// Estimates of adaptive observers after a cycle's sample.
     Tracking(&'a Tracking),
     /// Motion of a spatial body at one instant, at each period of a dense record.
-    SpatialMotion(&'a SpatialMotion),
+    SpatialMotion(&'a ThreeAxisMotionSample),
     /// Log line for people.
     Log(&'a foxglove::Log),
     /// Contents of the scene, once.
@@ -140,7 +140,7 @@ pub struct Motion {
 
 /// Selection of the pieces of motion that a record needs as a whole.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Course {
+pub enum PieceDemand {
     /// No piece.
     None,
     /// Pieces on which the angle may be farther from 0 than this (rad).
@@ -149,7 +149,7 @@ pub enum Course {
     All,
 }
 
-impl Course {
+impl PieceDemand {
     /// Returns the smallest selection that contains both.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
@@ -164,33 +164,33 @@ impl Course {
 /// Observer of a simulation.
 pub trait Record {
     /// Returns true if the record needs the motion at each period of the scenario's log.
-    fn dense(&self) -> bool {
+    fn wants_motion(&self) -> bool {
         false
     }
 
     /// Returns true if the record needs a filter's estimate at each sample.
-    fn estimates(&self) -> bool {
-        self.dense()
+    fn wants_estimates(&self) -> bool {
+        self.wants_motion()
     }
 
     /// Returns true if the record needs switchings.
-    fn switchings(&self) -> bool {
+    fn wants_switchings(&self) -> bool {
         true
     }
 
     /// Returns the selection of pieces of a one-axis motion that the record needs as a whole. A piece lasts from one
     /// change of the input to the next, whatever instants other records observe.
-    fn course(&self) -> Course {
-        Course::None
+    fn piece_demand(&self) -> PieceDemand {
+        PieceDemand::None
     }
 
     /// Observes a piece of motion that ends now.
-    fn stretch(&mut self, _now: Instant, _stretch: &Stretch) -> Result<(), RecordError> {
+    fn piece(&mut self, _now: Instant, _stretch: &MotionPiece) -> Result<(), RecordError> {
         Ok(())
     }
 
     /// Returns true if the record needs the scene, which a simulation has only if it was requested.
-    fn scene(&self) -> bool {
+    fn wants_scene(&self) -> bool {
         false
     }
 
@@ -230,78 +230,78 @@ pub enum Detail {
 }
 
 /// Destination of rows of any topic: messages, or columns in memory.
-trait TakeRow {
-    fn take<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
+trait RowTaker {
+    fn take_row<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
 
     /// Records the rows of which a sample consists.
-    fn take_sample(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+    fn take_sample_rows(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
-            Sample::Begin(law) | Sample::Law(law) => self.take(now, law),
-            Sample::Switching(command, _) => self.take(now, command),
-            Sample::Window(mean) => self.take(now, mean),
-            Sample::Objective(row) => self.take(now, row),
-            Sample::Adaptation(step) => self.take(now, step),
-            Sample::Arrival(arrival) => self.take(now, arrival),
-            Sample::Estimate(estimate) => self.take(now, estimate),
-            Sample::Estimates(estimates) => self.take(now, estimates),
-            Sample::AttitudeEstimate(estimate) => self.take(now, estimate),
-            Sample::ElasticEstimates(estimates) => self.take(now, estimates),
-            Sample::Tracking(tracking) => self.take(now, tracking),
-            Sample::WheelEvent(event) => self.take(now, event),
-            Sample::Fault(event) => self.take(now, event),
-            Sample::Accelerations(row) => self.take(now, row),
-            Sample::Log(line) => self.take(now, line),
-            Sample::Scene(scene) => self.take(now, scene),
-            Sample::Frames(frames) => self.take(now, frames),
-            Sample::Plumes(plumes) => self.take(now, plumes),
-            Sample::Cycle(SpatialCycle { pulses: 0, .. }) => Ok(()),
+            Sample::Begin(law) | Sample::Law(law) => self.take_row(now, law),
+            Sample::Switching(command, _) => self.take_row(now, command),
+            Sample::Window(mean) => self.take_row(now, mean),
+            Sample::Objective(row) => self.take_row(now, row),
+            Sample::Adaptation(step) => self.take_row(now, step),
+            Sample::Arrival(arrival) => self.take_row(now, arrival),
+            Sample::Estimate(estimate) => self.take_row(now, estimate),
+            Sample::Estimates(estimates) => self.take_row(now, estimates),
+            Sample::AttitudeEstimate(estimate) => self.take_row(now, estimate),
+            Sample::ElasticEstimates(estimates) => self.take_row(now, estimates),
+            Sample::Tracking(tracking) => self.take_row(now, tracking),
+            Sample::WheelEvent(event) => self.take_row(now, event),
+            Sample::Fault(event) => self.take_row(now, event),
+            Sample::Accelerations(row) => self.take_row(now, row),
+            Sample::Log(line) => self.take_row(now, line),
+            Sample::Scene(scene) => self.take_row(now, scene),
+            Sample::Frames(frames) => self.take_row(now, frames),
+            Sample::Plumes(plumes) => self.take_row(now, plumes),
+            Sample::Cycle(ThreeAxisCycle { pulses: 0, .. }) => Ok(()),
             Sample::Cycle(cycle) => {
-                self.take(now, &cycle.jets)?;
+                self.take_row(now, &cycle.jets)?;
                 if cycle.thrusters.is_empty() {
                     return Ok(());
                 }
                 let thrusters = cycle.thrusters.iter().map(|on_s| ThrusterPulse { on_s: *on_s }).collect();
-                self.take(now, &Thrusters { thrusters })
+                self.take_row(now, &Thrusters { thrusters })
             }
             Sample::SpatialMotion(motion) => {
-                self.take(now, &motion.pointing)?;
-                self.take(now, &motion.rates)?;
-                self.take(now, &motion.vibrations)?;
-                self.take(now, &motion.energy)?;
+                self.take_row(now, &motion.pointing)?;
+                self.take_row(now, &motion.rates)?;
+                self.take_row(now, &motion.vibrations)?;
+                self.take_row(now, &motion.energy)?;
                 if let Some(position) = &motion.position {
-                    self.take(now, position)?;
+                    self.take_row(now, position)?;
                 }
                 if let Some(torques) = &motion.torques {
-                    self.take(now, torques)?;
+                    self.take_row(now, torques)?;
                 }
                 if let Some(orbit) = &motion.orbit {
-                    self.take(now, orbit)?;
+                    self.take_row(now, orbit)?;
                 }
                 if let Some(magnetorquers) = &motion.magnetorquers {
-                    self.take(now, magnetorquers)?;
+                    self.take_row(now, magnetorquers)?;
                 }
-                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))?;
-                motion.drives.as_ref().map_or(Ok(()), |drives| self.take(now, drives))?;
-                motion.hinges.as_ref().map_or(Ok(()), |hinges| self.take(now, hinges))?;
-                motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take(now, bearings))?;
-                motion.gimbals.as_ref().map_or(Ok(()), |gimbals| self.take(now, gimbals))?;
-                motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take(now, wheels))
+                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take_row(now, envelope))?;
+                motion.drives.as_ref().map_or(Ok(()), |drives| self.take_row(now, drives))?;
+                motion.hinges.as_ref().map_or(Ok(()), |hinges| self.take_row(now, hinges))?;
+                motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take_row(now, bearings))?;
+                motion.gimbals.as_ref().map_or(Ok(()), |gimbals| self.take_row(now, gimbals))?;
+                motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take_row(now, wheels))
             }
             Sample::Motion(motion) => {
-                self.take(now, &motion.attitude)?;
-                self.take(now, &motion.rate)?;
-                self.take(now, &motion.modes)?;
+                self.take_row(now, &motion.attitude)?;
+                self.take_row(now, &motion.rate)?;
+                self.take_row(now, &motion.modes)?;
                 if let Some(outputs) = &motion.outputs {
-                    self.take(now, outputs)?;
+                    self.take_row(now, outputs)?;
                 }
                 if let Some((goal, torque)) = &motion.drive {
-                    self.take(now, goal)?;
-                    self.take(now, torque)?;
+                    self.take_row(now, goal)?;
+                    self.take_row(now, torque)?;
                 }
                 if let Some(wheel) = &motion.wheel {
-                    self.take(now, wheel)?;
+                    self.take_row(now, wheel)?;
                 }
-                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take(now, envelope))
+                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take_row(now, envelope))
             }
         }
     }

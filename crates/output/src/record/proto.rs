@@ -9,8 +9,8 @@ use prost_types::{
     FileDescriptorProto, FileDescriptorSet, SourceCodeInfo,
 };
 
-use super::row::{Field, Kind, Message, Row, Sink, Topic};
-use crate::label::Labels;
+use super::row::{FieldKind, Row, RowField, RowMessage, Sink, Topic};
+use crate::enum_label::LoggedEnum;
 
 const GOOGLE: &str = "google.protobuf";
 
@@ -18,7 +18,7 @@ impl Topic {
     /// Returns the topic's schema: a serialised `FileDescriptorSet` with its imports and comments.
     pub fn schema(&self) -> Vec<u8> {
         let mut files = Vec::new();
-        let message = Message { name: self.message, doc: self.doc, fields: self.fields };
+        let message = RowMessage { name: self.message, doc: self.doc, fields: self.fields };
         add_message(&message, &mut files);
         FileDescriptorSet { file: files }.encode_to_vec()
     }
@@ -42,20 +42,20 @@ fn file(package: &str, name: &str) -> FileDescriptorProto {
 }
 
 /// Adds a message's file after its imports; returns the file's name.
-fn add_message(message: &Message, files: &mut Vec<FileDescriptorProto>) -> String {
+fn add_message(message: &RowMessage, files: &mut Vec<FileDescriptorProto>) -> String {
     let (package, name) = parts(message.name);
     let mut imports = Vec::new();
     let mut nested = Vec::new();
     for field in message.fields {
         let import = match field.kind {
-            Kind::Row(inner) | Kind::Rows(inner) => add_message(inner, files),
-            Kind::Time(name) => add_time(name, files),
-            Kind::Label(labels) if labels.name.contains('.') => {
+            FieldKind::Row(inner) | FieldKind::Rows(inner) => add_message(inner, files),
+            FieldKind::Time(name) => add_time(name, files),
+            FieldKind::Label(labels) if labels.name.contains('.') => {
                 nested.push(enumeration(labels));
                 continue;
             }
-            Kind::Label(labels) => add_enumeration(package, labels, files),
-            Kind::Number | Kind::Count | Kind::Text | Kind::Flag => continue,
+            FieldKind::Label(labels) => add_enumeration(package, labels, files),
+            FieldKind::Number | FieldKind::Count | FieldKind::Text | FieldKind::Flag => continue,
         };
         if !imports.contains(&import) {
             imports.push(import);
@@ -90,9 +90,9 @@ fn add(files: &mut Vec<FileDescriptorProto>, file: FileDescriptorProto) -> Strin
     name
 }
 
-fn enumeration(labels: &Labels) -> EnumDescriptorProto {
+fn enumeration(labels: &LoggedEnum) -> EnumDescriptorProto {
     let value = |(number, label): (usize, &&str)| EnumValueDescriptorProto {
-        name: Some(Labels::identifier(label)),
+        name: Some(LoggedEnum::identifier(label)),
         number: Some(number as i32),
         options: None,
     };
@@ -103,7 +103,7 @@ fn enumeration(labels: &Labels) -> EnumDescriptorProto {
     }
 }
 
-fn add_enumeration(package: &str, labels: &Labels, files: &mut Vec<FileDescriptorProto>) -> String {
+fn add_enumeration(package: &str, labels: &LoggedEnum, files: &mut Vec<FileDescriptorProto>) -> String {
     let comment = |(number, doc): (usize, &&str)| comment(&[5, 0, 2, number as i32], &[doc]);
     let location = labels.docs.iter().enumerate().map(comment).collect();
     add(
@@ -135,17 +135,19 @@ fn add_time(name: &str, files: &mut Vec<FileDescriptorProto>) -> String {
     add(files, FileDescriptorProto { message_type: vec![message], ..file(GOOGLE, name) })
 }
 
-fn descriptor(package: &str, field: &Field, number: i32) -> FieldDescriptorProto {
+fn descriptor(package: &str, field: &RowField, number: i32) -> FieldDescriptorProto {
     let (of, type_name) = match field.kind {
-        Kind::Number => (Type::Double, None),
-        Kind::Count => (Type::Uint64, None),
-        Kind::Text => (Type::String, None),
-        Kind::Flag => (Type::Bool, None),
-        Kind::Time(name) => (Type::Message, Some(format!(".{GOOGLE}.{name}"))),
-        Kind::Label(labels) => (Type::Enum, Some(format!(".{package}.{}", labels.name))),
-        Kind::Row(message) | Kind::Rows(message) => (Type::Message, Some(format!(".{}", message.name))),
+        FieldKind::Number => (Type::Double, None),
+        FieldKind::Count => (Type::Uint64, None),
+        FieldKind::Text => (Type::String, None),
+        FieldKind::Flag => (Type::Bool, None),
+        FieldKind::Time(name) => (Type::Message, Some(format!(".{GOOGLE}.{name}"))),
+        FieldKind::Label(labels) => (Type::Enum, Some(format!(".{package}.{}", labels.name))),
+        FieldKind::Row(message) | FieldKind::Rows(message) => {
+            (Type::Message, Some(format!(".{}", message.name)))
+        }
     };
-    let repeated = matches!(field.kind, Kind::Rows(_));
+    let repeated = matches!(field.kind, FieldKind::Rows(_));
     FieldDescriptorProto {
         name: Some(field.name.to_owned()),
         number: Some(number),
@@ -206,7 +208,7 @@ impl Sink for Encoder<'_> {
     }
 
     #[inline]
-    fn label(&mut self, index: usize, _: &'static Labels) {
+    fn label(&mut self, index: usize, _: &'static LoggedEnum) {
         self.count(index as u64);
     }
 

@@ -10,8 +10,8 @@ use mcap::sans_io::LinearReaderOptions;
 use mcap::{McapError, WriteOptions, Writer};
 
 use super::LogError;
-use super::bounds::walk;
-use super::log::read_file;
+use super::log_file::read_file;
+use super::mcap_reader::for_each_record;
 
 /// Returns a log of the complete part of a torn one, and the number of messages saved.
 pub fn recover(torn: &Path) -> Result<(Vec<u8>, u64), LogError> {
@@ -70,7 +70,7 @@ fn copy_records(bytes: &[u8], writer: &mut Writer<Cursor<Vec<u8>>>) -> Result<u6
     };
     // A reading error is expected in a torn log, but a writing error must be returned.
     let mut unwritten = None;
-    let _torn = walk(bytes, options, |record| {
+    let _torn = for_each_record(bytes, options, |record| {
         let outcome = copied(record);
         Ok(outcome.unwrap_or_else(|error| {
             unwritten = Some(error);

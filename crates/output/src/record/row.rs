@@ -1,6 +1,6 @@
 //! Rows: the fields of a topic listed once, for protobuf schemas, protobuf bytes, columns and CSV.
 
-use crate::label::Labels;
+use crate::enum_label::LoggedEnum;
 
 /// Topic of the log.
 #[derive(Copy, Clone, Debug)]
@@ -12,29 +12,29 @@ pub struct Topic {
     /// Description of the topic.
     pub doc: &'static [&'static str],
     /// Fields, in the order of their protobuf numbers.
-    pub fields: &'static [Field],
+    pub fields: &'static [RowField],
 }
 
 /// Field of a row.
 #[derive(Copy, Clone, Debug)]
-pub struct Field {
+pub struct RowField {
     /// Name with its unit: `angle_rad`.
     pub name: &'static str,
     /// Description of the field.
     pub doc: &'static [&'static str],
     /// Kind of the contents.
-    pub kind: Kind,
+    pub kind: FieldKind,
 }
 
 /// Kind of a field's contents.
 #[derive(Copy, Clone, Debug)]
-pub enum Kind {
+pub enum FieldKind {
     /// Floating-point number; NaN if there is no value.
     Number,
     /// Integer count.
     Count,
     /// Value of an enumeration.
-    Label(&'static Labels),
+    Label(&'static LoggedEnum),
     /// Text value.
     Text,
     /// Boolean value.
@@ -42,20 +42,20 @@ pub enum Kind {
     /// Date or time span, as this message of the package `google.protobuf`.
     Time(&'static str),
     /// Nested row.
-    Row(&'static Message),
+    Row(&'static RowMessage),
     /// Any number of nested rows.
-    Rows(&'static Message),
+    Rows(&'static RowMessage),
 }
 
 /// Protobuf message of a row.
 #[derive(Debug)]
-pub struct Message {
+pub struct RowMessage {
     /// Full name: `flexsc.v1.ModeMotion`.
     pub name: &'static str,
     /// Description, line by line.
     pub doc: &'static [&'static str],
     /// Fields of the message.
-    pub fields: &'static [Field],
+    pub fields: &'static [RowField],
 }
 
 /// Row with a fixed list of fields.
@@ -63,7 +63,7 @@ pub trait Row {
     /// Description, line by line.
     const DOC: &'static [&'static str];
     /// Fields of the row.
-    const FIELDS: &'static [Field];
+    const FIELDS: &'static [RowField];
 
     /// Writes the fields into a sink, in their order.
     fn put<S: Sink>(&self, sink: &mut S);
@@ -82,7 +82,7 @@ pub trait Sink {
     /// Writes a count.
     fn count(&mut self, value: u64);
     /// Writes the index of an enumeration's value.
-    fn label(&mut self, index: usize, labels: &'static Labels);
+    fn label(&mut self, index: usize, labels: &'static LoggedEnum);
     /// Writes a text.
     fn text(&mut self, text: &str);
     /// Writes a boolean.
@@ -96,39 +96,39 @@ pub trait Sink {
 }
 
 /// Type that can be a field.
-pub trait Cell {
+pub trait FieldType {
     /// Kind of the field's contents.
-    const KIND: Kind;
+    const KIND: FieldKind;
 
     /// Writes the field into a sink.
     fn put<S: Sink>(&self, sink: &mut S);
 }
 
-impl Cell for f64 {
-    const KIND: Kind = Kind::Number;
+impl FieldType for f64 {
+    const KIND: FieldKind = FieldKind::Number;
     #[inline]
     fn put<S: Sink>(&self, sink: &mut S) {
         sink.number(*self);
     }
 }
 
-impl Cell for u64 {
-    const KIND: Kind = Kind::Count;
+impl FieldType for u64 {
+    const KIND: FieldKind = FieldKind::Count;
     #[inline]
     fn put<S: Sink>(&self, sink: &mut S) {
         sink.count(*self);
     }
 }
 
-impl Cell for String {
-    const KIND: Kind = Kind::Text;
+impl FieldType for String {
+    const KIND: FieldKind = FieldKind::Text;
     fn put<S: Sink>(&self, sink: &mut S) {
         sink.text(self);
     }
 }
 
-impl Cell for bool {
-    const KIND: Kind = Kind::Flag;
+impl FieldType for bool {
+    const KIND: FieldKind = FieldKind::Flag;
     fn put<S: Sink>(&self, sink: &mut S) {
         sink.flag(*self);
     }
@@ -136,10 +136,10 @@ impl Cell for bool {
 
 /// Date on the time base of a log: nanoseconds since 1970 UTC, or since the start of a run whose scenario has no date.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub struct Stamp(pub u64);
+pub struct LogDate(pub u64);
 
-impl Cell for Stamp {
-    const KIND: Kind = Kind::Time("Timestamp");
+impl FieldType for LogDate {
+    const KIND: FieldKind = FieldKind::Time("Timestamp");
     fn put<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
     }
@@ -147,17 +147,17 @@ impl Cell for Stamp {
 
 /// Time span in nanoseconds; 0 if unlimited.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
-pub struct Lifetime(pub u64);
+pub struct LogSpan(pub u64);
 
-impl Cell for Lifetime {
-    const KIND: Kind = Kind::Time("Duration");
+impl FieldType for LogSpan {
+    const KIND: FieldKind = FieldKind::Time("Duration");
     fn put<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
     }
 }
 
 /// Returns a field's name without the prefix `r#` of Rust keywords.
-pub const fn plain(name: &'static str) -> &'static str {
+pub const fn field_name(name: &'static str) -> &'static str {
     match name.as_bytes() {
         [b'r', b'#', ..] => name.split_at(2).1,
         _ => name,
@@ -178,37 +178,37 @@ macro_rules! rows {
 
             impl $crate::record::row::Row for $name {
                 const DOC: &'static [&'static str] = &[$($doc),*];
-                const FIELDS: &'static [$crate::record::row::Field] = &[
-                    $($crate::record::row::Field {
-                        name: $crate::record::row::plain(stringify!($field)),
+                const FIELDS: &'static [$crate::record::row::RowField] = &[
+                    $($crate::record::row::RowField {
+                        name: $crate::record::row::field_name(stringify!($field)),
                         doc: &[$($field_doc),*],
-                        kind: <$of as $crate::record::row::Cell>::KIND,
+                        kind: <$of as $crate::record::row::FieldType>::KIND,
                     }),+
                 ];
 
                 #[inline]
                 fn put<S: $crate::record::row::Sink>(&self, sink: &mut S) {
-                    $($crate::record::row::Cell::put(&self.$field, sink);)+
+                    $($crate::record::row::FieldType::put(&self.$field, sink);)+
                 }
             }
 
             impl $name {
-                const MESSAGE: $crate::record::row::Message = $crate::record::row::Message {
+                const MESSAGE: $crate::record::row::RowMessage = $crate::record::row::RowMessage {
                     name: concat!($package, ".", stringify!($name)),
                     doc: <$name as $crate::record::row::Row>::DOC,
                     fields: <$name as $crate::record::row::Row>::FIELDS,
                 };
             }
 
-            impl $crate::record::row::Cell for $name {
-                const KIND: $crate::record::row::Kind = $crate::record::row::Kind::Row(&<$name>::MESSAGE);
+            impl $crate::record::row::FieldType for $name {
+                const KIND: $crate::record::row::FieldKind = $crate::record::row::FieldKind::Row(&<$name>::MESSAGE);
                 fn put<S: $crate::record::row::Sink>(&self, sink: &mut S) {
                     sink.row(self);
                 }
             }
 
-            impl $crate::record::row::Cell for Vec<$name> {
-                const KIND: $crate::record::row::Kind = $crate::record::row::Kind::Rows(&<$name>::MESSAGE);
+            impl $crate::record::row::FieldType for Vec<$name> {
+                const KIND: $crate::record::row::FieldKind = $crate::record::row::FieldKind::Rows(&<$name>::MESSAGE);
                 fn put<S: $crate::record::row::Sink>(&self, sink: &mut S) {
                     sink.rows(self);
                 }
@@ -237,8 +237,8 @@ macro_rules! rows {
 /// Implements `Cell` for labelled enumerations.
 macro_rules! label_cells {
     ($($of:ty),+ $(,)?) => {
-        $(impl $crate::record::row::Cell for $of {
-            const KIND: $crate::record::row::Kind = $crate::record::row::Kind::Label(&<$of>::LABELS);
+        $(impl $crate::record::row::FieldType for $of {
+            const KIND: $crate::record::row::FieldKind = $crate::record::row::FieldKind::Label(&<$of>::LABELS);
             #[inline]
             fn put<S: $crate::record::row::Sink>(&self, sink: &mut S) {
                 sink.label(*self as usize, &<$of>::LABELS);

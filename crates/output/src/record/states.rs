@@ -1,7 +1,7 @@
 //! States of laws, filters, observers and dampers, with their names in a log.
 
 use super::row::label_cells;
-use crate::label::labels;
+use crate::enum_label::labels;
 
 /// Declares enumerations of two values, the second of which corresponds to `true`.
 macro_rules! states {

@@ -1,6 +1,6 @@
 //! Metrics of a run as texts, for the tables of viewers.
 
-use super::measured::{MetricValue, Metrics, Value};
+use super::metrics::{MetricValue, Metrics, NamedMetric};
 use super::{MetricLine, MetricPage, Summary};
 
 /// Largest number of values that are written of a list.
@@ -11,19 +11,19 @@ impl Summary {
     pub const PAGE: usize = 10;
 
     /// Creates the summary of metrics.
-    pub fn of(metrics: &Metrics) -> Self {
-        let page = |page: &[MetricValue]| MetricPage { metrics: page.iter().map(line).collect() };
+    pub fn from_metrics(metrics: &Metrics) -> Self {
+        let page = |page: &[NamedMetric]| MetricPage { metrics: page.iter().map(line).collect() };
         Self { pages: metrics.0.chunks(Self::PAGE).map(page).collect() }
     }
 }
 
-fn line((meaning, value): &MetricValue) -> MetricLine {
+fn line((meaning, value): &NamedMetric) -> MetricLine {
     let value = match value {
-        Value::Count(count) => count.to_string(),
-        Value::Number(value) => number(*value),
-        Value::Word(word) => (*word).to_owned(),
-        Value::Numbers(numbers) => list(numbers, |value| number(*value)),
-        Value::Quantities(quantities) => {
+        MetricValue::Count(count) => count.to_string(),
+        MetricValue::Number(value) => number(*value),
+        MetricValue::Word(word) => (*word).to_owned(),
+        MetricValue::Numbers(numbers) => list(numbers, |value| number(*value)),
+        MetricValue::Quantities(quantities) => {
             list(quantities, |of| format!("{} {}", number(of.value), of.unit).trim_end().to_owned())
         }
     };
@@ -59,26 +59,28 @@ fn number(value: f64) -> String {
 
 #[cfg(test)]
 mod tests {
-    use super::super::measured::Meaning;
+    use super::super::metrics::MetricDescription;
     use super::*;
 
-    static MEANING: Meaning = Meaning { name: "a", unit: "s", doc: "" };
+    static MEANING: MetricDescription = MetricDescription { name: "a", unit: "s", doc: "" };
 
     #[test]
     fn lists_are_one_line_and_pages_have_ten() {
-        let list = |count: usize| Value::Numbers((0..count).map(|i| 0.5 + i as f64).collect());
+        let list = |count: usize| MetricValue::Numbers((0..count).map(|i| 0.5 + i as f64).collect());
         let mut values = vec![
-            Value::Number(718.275_4),
-            Value::Number(-1.5e-7),
-            Value::Number(12.0),
-            Value::Number(f64::NAN),
-            Value::Count(3),
+            MetricValue::Number(718.275_4),
+            MetricValue::Number(-1.5e-7),
+            MetricValue::Number(12.0),
+            MetricValue::Number(f64::NAN),
+            MetricValue::Count(3),
             list(0),
             list(2),
             list(7),
         ];
-        values.extend([0.0; 3].map(Value::Number));
-        let pages = Summary::of(&Metrics(values.into_iter().map(|value| (&MEANING, value)).collect())).pages;
+        values.extend([0.0; 3].map(MetricValue::Number));
+        let pages =
+            Summary::from_metrics(&Metrics(values.into_iter().map(|value| (&MEANING, value)).collect()))
+                .pages;
         assert_eq!(pages.iter().map(|page| page.metrics.len()).collect::<Vec<_>>(), [10, 1]);
         let values: Vec<&str> = pages[0].metrics[..8].iter().map(|line| &line.value[..]).collect();
         let long = "0.50000, 1.5000, 2.5000, 3.5000, 4.5000, 5.5000, … (7 in all)";

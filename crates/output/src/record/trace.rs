@@ -2,7 +2,7 @@
 
 use super::row::TopicRow;
 use super::topics::index_of;
-use super::{Column, Columns, Detail, Record, RecordError, Sample, TOPICS, TakeRow};
+use super::{Column, Columns, Detail, Record, RecordError, RowTaker, Sample, TOPICS};
 use crate::time::Instant;
 
 /// Columns of every topic, each with the times of its rows.
@@ -39,8 +39,8 @@ impl Trace {
     }
 }
 
-impl TakeRow for Trace {
-    fn take<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
+impl RowTaker for Trace {
+    fn take_row<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
         let index = const { index_of(R::TOPIC.name) };
         let (times, columns) = &mut self.topics[index];
         times.push(now.seconds());
@@ -50,13 +50,13 @@ impl TakeRow for Trace {
 }
 
 impl Record for Trace {
-    fn dense(&self) -> bool {
+    fn wants_motion(&self) -> bool {
         self.detail >= Detail::Full
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // The sample may be meant for a record of more detail, and data for viewers has no columns.
         let wanted = self.detail.min(Detail::Full);
-        if sample.detail() > wanted { Ok(()) } else { self.take_sample(now, sample) }
+        if sample.detail() > wanted { Ok(()) } else { self.take_sample_rows(now, sample) }
     }
 }

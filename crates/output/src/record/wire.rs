@@ -6,7 +6,7 @@ pub struct WireMessage<'a>(&'a [u8]);
 
 /// Value of a field in the wire format.
 #[derive(Copy, Clone)]
-pub enum Raw<'a> {
+pub enum WireValue<'a> {
     /// Number of up to 64 bits.
     Varint(u64),
     /// Number of eight bytes.
@@ -21,49 +21,49 @@ pub enum Raw<'a> {
 
 impl<'a> WireMessage<'a> {
     /// Creates the reader of a message.
-    pub fn of(bytes: &'a [u8]) -> Self {
+    pub fn new(bytes: &'a [u8]) -> Self {
         Self(bytes)
     }
 
     /// Reads the next field's number and value; `None` at the end.
-    pub fn field(&mut self) -> Result<Option<(u32, Raw<'a>)>, String> {
+    pub fn field(&mut self) -> Result<Option<(u32, WireValue<'a>)>, String> {
         if self.0.is_empty() {
             return Ok(None);
         }
         self.next().map(Some).ok_or_else(|| "a message ends within a field".to_owned())
     }
 
-    fn next(&mut self) -> Option<(u32, Raw<'a>)> {
+    fn next(&mut self) -> Option<(u32, WireValue<'a>)> {
         let (number, mut raw) = self.one()?;
-        if matches!(raw, Some(Raw::Group)) {
+        if matches!(raw, Some(WireValue::Group)) {
             // Nested groups end before their group does.
             let mut open = 1_u64;
             while open > 0 {
                 match self.one()?.1 {
-                    Some(Raw::Group) => open += 1,
+                    Some(WireValue::Group) => open += 1,
                     None => open -= 1,
                     Some(_) => {}
                 }
             }
-            raw = Some(Raw::Group);
+            raw = Some(WireValue::Group);
         }
         Some((number, raw?))
     }
 
     /// Reads a field, the beginning of a group or, without a value, its end.
-    fn one(&mut self) -> Option<(u32, Option<Raw<'a>>)> {
+    fn one(&mut self) -> Option<(u32, Option<WireValue<'a>>)> {
         let key = self.varint()?;
         let number = u32::try_from(key >> 3).ok()?;
         let raw = match key & 7 {
-            0 => Raw::Varint(self.varint()?),
-            1 => Raw::Fixed64(self.fixed64()?),
+            0 => WireValue::Varint(self.varint()?),
+            1 => WireValue::Fixed64(self.fixed64()?),
             2 => {
                 let length = usize::try_from(self.varint()?).ok()?;
-                Raw::Block(self.take(length)?)
+                WireValue::Block(self.take(length)?)
             }
-            3 => Raw::Group,
+            3 => WireValue::Group,
             4 => return Some((number, None)),
-            5 => Raw::Fixed32(self.fixed32()?),
+            5 => WireValue::Fixed32(self.fixed32()?),
             _ => return None,
         };
         Some((number, Some(raw)))

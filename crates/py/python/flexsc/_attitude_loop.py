@@ -35,7 +35,7 @@ class _Sensor:
     rate: Matrix
 
     @classmethod
-    def of(cls, parts: Mapping[str, Any], order: int) -> _Sensor:
+    def from_parts(cls, parts: Mapping[str, Any], order: int) -> _Sensor:
         import numpy as np
 
         angle, rate = np.zeros((3, order)), np.zeros((3, order))
@@ -52,7 +52,7 @@ class _Filter:
     def __init__(self, parts: Mapping[str, Any], order: int) -> None:
         import numpy as np
 
-        self.gyro, self.sensor = _Sensor.of(parts["gyro"], order), _Sensor.of(parts["sensor"], order)
+        self.gyro, self.sensor = _Sensor.from_parts(parts["gyro"], order), _Sensor.from_parts(parts["sensor"], order)
         self.gain = np.array(parts["gain"], dtype=np.float64)
         # Exposures that may still correct it, the newest first, and what they show beyond what is expected.
         count = (self.sensor.latency + self.gyro.period) // self.sensor.period + 2

@@ -89,7 +89,7 @@ def _rows(
     """Simulate parts of a campaign: a worker's task. Return its duration (s) and the columns of each part."""
     began = time.perf_counter()
     runs, sample, replicas, names = study
-    work = engine.Work.of(scenario._native, runs, [], sample, replicas, names, None, True, True)
+    work = engine.Work.create(scenario._native, runs, [], sample, replicas, names, None, True, True)
     told = [(part, work.make(part, jobs)[0]) for part in parts]
     return time.perf_counter() - began, told
 

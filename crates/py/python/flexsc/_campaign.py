@@ -93,7 +93,7 @@ def campaign(
         jobs = 1
     names = None if metrics is None else list(metrics)
     part_s = None if executor is None else task_s
-    work = engine.Work.of(scenario._native, span, [], sample, replicas, names, part_s, yes, True)
+    work = engine.Work.create(scenario._native, span, [], sample, replicas, names, part_s, yes, True)
     if out is None and executor is None and progress is None:
         return _made(work, jobs)
     if executor is not None and out is None and scenario.parts:
@@ -165,7 +165,7 @@ def sweep(
     if jobs is None and scenario.parts:
         jobs = 1
     names = None if metrics is None else list(metrics)
-    work = engine.Work.of(scenario._native, (0, runs), grids, "random", replicas, names, None, yes, uncertain)
+    work = engine.Work.create(scenario._native, (0, runs), grids, "random", replicas, names, None, yes, uncertain)
     return _made(work, jobs)
 
 

@@ -61,7 +61,7 @@ class Fields:
             at += 1 if count is None else count
         self._units = {group: MappingProxyType(each) for group, each in units.items()}
 
-    def of(self, group: str, rows: npt.NDArray[np.float64]) -> Quantities:
+    def view(self, group: str, rows: npt.NDArray[np.float64]) -> Quantities:
         values = {name: rows[..., place] for name, place in self._places[group]}
         return Quantities(values, self._units[group])
 

@@ -136,7 +136,7 @@ class Simulator:
         of shape (modes,); the `torque` of the actuator (N m); and `wheel_speeds` (rad/s) of shape (wheels,)
         if there are wheels.
         """
-        return self._fields.of("state", self._look())
+        return self._fields.view("state", self._look())
 
     @property
     def measured(self) -> Quantities:
@@ -145,13 +145,13 @@ class Simulator:
 
         NaN before the first sample. Without a sampled sensor they are the true motion at the present time.
         """
-        return self._fields.of("measured", self._look())
+        return self._fields.view("measured", self._look())
 
     @property
     def believed(self) -> Quantities:
         """The input of the laws, from the estimators: the same quantities as `measured`, at the last
         sample."""
-        return self._fields.of("believed", self._look())
+        return self._fields.view("believed", self._look())
 
     def _look(self) -> npt.NDArray[np.float64]:
         if self._row is None:

@@ -125,17 +125,17 @@ class Simulators:
     @property
     def state(self) -> Quantities:
         """The true states at the present time: those of `Simulator.state`, of shape (n,) or (n, k)."""
-        return self._fields.of("state", self._look())
+        return self._fields.view("state", self._look())
 
     @property
     def measured(self) -> Quantities:
         """The latest measurements of the sensors: see `Simulator.measured`."""
-        return self._fields.of("measured", self._look())
+        return self._fields.view("measured", self._look())
 
     @property
     def believed(self) -> Quantities:
         """The input of the laws: see `Simulator.believed`."""
-        return self._fields.of("believed", self._look())
+        return self._fields.view("believed", self._look())
 
     def _look(self) -> npt.NDArray[np.float64]:
         if self._rows is None:

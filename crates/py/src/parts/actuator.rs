@@ -2,9 +2,9 @@
 
 use std::any::Any;
 
-use flexsc_core::actuator::{Actuate, Demand, Effector, TorquerSetting as EngineSetting};
+use flexsc_core::actuator::{Actuator, ActuatorSpec, AxisActuatorContext as EngineSetting, Demand};
 use flexsc_core::attitude::Vector;
-use flexsc_core::own::Halt;
+use flexsc_core::custom::PartError;
 use flexsc_core::time::{Instant as Exact, Span};
 use flexsc_core::wrench::Wrench;
 use pyo3::exceptions::PyValueError;
@@ -135,7 +135,7 @@ pub struct Brought {
 
 impl Brought {
     /// Reads what an actuator says of itself.
-    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let limit = part.getattr("limit")?;
         let limits = if limit.is_none() {
             Vec::new()
@@ -153,9 +153,9 @@ impl Brought {
     }
 }
 
-impl Effector for Brought {
-    fn start(&self, settings: &[EngineSetting]) -> Box<dyn Actuate> {
-        let told: Vec<Setting> = settings
+impl ActuatorSpec for Brought {
+    fn start(&self, settings: &[EngineSetting]) -> Box<dyn Actuator> {
+        let reported: Vec<Setting> = settings
             .iter()
             .map(|setting| Setting {
                 axis: setting.axis,
@@ -164,7 +164,7 @@ impl Effector for Brought {
                 period: setting.cycle.map(Span::seconds),
             })
             .collect();
-        let method = Python::attach(|py| Method::new(self.object.begun(py, (told,)), "command"));
+        let method = Python::attach(|py| Method::new(self.object.begun(py, (reported,)), "command"));
         Box::new(Acting {
             method,
             asked: [0.0; 3],
@@ -203,7 +203,7 @@ impl Acting {
         let Self { method, demands, field, .. } = self;
         let (demanded, axes) =
             (Demanded { now, demands: demands.clone(), rigid, field: *field }, demands.len());
-        let told = Python::attach(|py| {
+        let reported = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, demanded)?.into_any());
             method.call(py, argument, |told| {
                 let effort = match told.cast::<Effort>() {
@@ -221,13 +221,13 @@ impl Acting {
                 Ok(effort)
             })
         });
-        let effort = told.unwrap_or(Effort { torques: vec![0.0; axes], after: None });
+        let effort = reported.unwrap_or(Effort { torques: vec![0.0; axes], after: None });
         self.torques[..axes].copy_from_slice(&effort.torques);
         self.due = effort.after.map(|after| now + after);
     }
 }
 
-impl Actuate for Acting {
+impl Actuator for Acting {
     fn command(&mut self, now: Exact, demands: &[Demand], rigid: [f64; 3]) {
         self.demands = demands.iter().take(self.inertias.len()).copied().collect();
         for (asked, demand) in self.asked.iter_mut().zip(&self.demands) {
@@ -236,7 +236,7 @@ impl Actuate for Acting {
         self.act(now, rigid);
     }
 
-    fn feel(&mut self, field: Vector) {
+    fn set_magnetic_field(&mut self, field: Vector) {
         self.field = Some(field);
     }
 
@@ -244,33 +244,33 @@ impl Actuate for Acting {
         self.due
     }
 
-    fn serve(&mut self, now: Exact, rigid: [f64; 3]) {
+    fn update(&mut self, now: Exact, rigid: [f64; 3]) {
         if self.due == Some(now) {
             self.act(now, rigid);
         }
     }
 
-    fn exert(&self, _: Exact, onto: &mut Wrench) {
+    fn apply(&self, _: Exact, onto: &mut Wrench) {
         onto.hub.iter_mut().zip(&self.torques).for_each(|(hub, torque)| *hub += torque);
     }
 
-    fn asked(&self, axis: usize) -> f64 {
+    fn demanded_torque(&self, axis: usize) -> f64 {
         self.asked[axis]
     }
 
-    fn torque(&self, axis: usize) -> f64 {
+    fn held_torque(&self, axis: usize) -> f64 {
         self.torques[axis]
     }
 
-    fn moment(&self, axis: usize) -> f64 {
+    fn reduced_moment(&self, axis: usize) -> f64 {
         self.torques[axis] / self.inertias[axis]
     }
 
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         self.method.halted()
     }
 
-    fn copy(&self) -> Box<dyn Actuate> {
+    fn copy(&self) -> Box<dyn Actuator> {
         Box::new(Self {
             method: self.method.copy("command"),
             inertias: self.inertias.clone(),

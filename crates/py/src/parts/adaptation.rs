@@ -2,8 +2,8 @@
 
 use std::any::Any;
 
-use flexsc_core::adaptation::{Adapt, Decision, Learn, Objective, SearchStep};
-use flexsc_core::own::Halt;
+use flexsc_core::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
+use flexsc_core::custom::PartError;
 use flexsc_core::random::Seed;
 use flexsc_core::time::{Instant, Span};
 use pyo3::exceptions::PyValueError;
@@ -24,10 +24,10 @@ pub struct Brought {
 
 impl Brought {
     /// Reads what an adaptation says of itself.
-    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let word: String = part.getattr("objective")?.extract()?;
-        let objective = Objective::named(&word).ok_or_else(|| {
-            let all = Objective::ALL.map(|objective| format!("'{}'", objective.word())).join(", ");
+        let objective = Objective::from_key(&word).ok_or_else(|| {
+            let all = Objective::ALL.map(|objective| format!("'{}'", objective.key())).join(", ");
             PyValueError::new_err(format!("objective must be one of {all}, got {word:?}"))
         })?;
         let window: Option<f64> = part.getattr("window")?.extract()?;
@@ -40,7 +40,7 @@ impl Brought {
     }
 }
 
-impl Adapt for Brought {
+impl AdaptationSpec for Brought {
     fn tunes(&self) -> &str {
         &self.tunes
     }
@@ -53,7 +53,7 @@ impl Adapt for Brought {
         self.window
     }
 
-    fn start(&self, value: f64, seed: Seed) -> Box<dyn Learn> {
+    fn start(&self, value: f64, seed: Seed) -> Box<dyn Adaptation> {
         let method = Python::attach(|py| {
             let begun = Py::new(py, Draws(seed)).and_then(|draws| self.object.begun(py, (value, draws)));
             Method::new(begun, "learn")
@@ -75,26 +75,26 @@ struct Learning {
     last: f64,
 }
 
-impl Learn for Learning {
+impl Adaptation for Learning {
     fn learn(&mut self, now: Instant, measured: f64) -> Option<SearchStep> {
         let before = std::mem::replace(&mut self.last, measured);
-        let told = Python::attach(|py| {
+        let reported = Python::attach(|py| {
             self.method.other(py, |part| {
-                let told = part.call_method1(pyo3::intern!(py, "learn"), (now.seconds(), measured))?;
-                told.extract::<Option<f64>>()
+                let reported = part.call_method1(pyo3::intern!(py, "learn"), (now.seconds(), measured))?;
+                reported.extract::<Option<f64>>()
             })
         });
-        self.value = told.flatten()?;
+        self.value = reported.flatten()?;
         let change = ((measured - before) / measured).abs();
         let decision = if before.is_nan() { Decision::Begin } else { Decision::Keep };
         Some(SearchStep { decision, change, draw: 0.0, gain: self.value, settled: 0 })
     }
 
-    fn halted(&self) -> Option<Halt> {
+    fn halted(&self) -> Option<PartError> {
         self.method.halted()
     }
 
-    fn copy(&self) -> Box<dyn Learn> {
+    fn copy(&self) -> Box<dyn Adaptation> {
         Box::new(Self { method: self.method.copy("learn"), ..*self })
     }
 }

@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use super::object::{exactly, numbers};
 
 /// Result of a part: the state of its filter, and the innovation of its last sample, if that measured the attitude.
-type Told = (AttitudeFilterState, Option<Innovation>);
+type FilterUpdate = (AttitudeFilterState, Option<Innovation>);
 
 /// Innovation of a sample.
 #[derive(Copy, Clone, Debug, Default)]
@@ -43,7 +43,7 @@ fn innovation(of: &Bound<'_, PyAny>) -> PyResult<Innovation> {
 
 /// Reads the filter state that a part returns: attitude, bias and covariance, and the innovation of a sample that
 /// measured the attitude; `None` before there is one.
-pub fn told(of: &Bound<'_, PyAny>) -> PyResult<Option<Told>> {
+pub fn from_python(of: &Bound<'_, PyAny>) -> PyResult<Option<FilterUpdate>> {
     if of.is_none() {
         return Ok(None);
     }
@@ -69,10 +69,10 @@ pub fn told(of: &Bound<'_, PyAny>) -> PyResult<Option<Told>> {
 }
 
 /// Returns the filter's row of the log, for this true orientation and true bias of the gyro (rad/s).
-pub fn row((filter, learnt): &Told, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+pub fn row((filter, learnt): &FilterUpdate, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
     let Orientation::Attitude(truth) = truth else { return None };
     let bias = Vector::from(bias);
-    let told = learnt.unwrap_or_default();
+    let reported = learnt.unwrap_or_default();
     let [angle_sd, bias_sd] = filter.deviations();
     let [angle_error, bias_error] = filter.error(truth, &bias);
     let axis = |axis: usize| AxisEstimate {
@@ -81,7 +81,7 @@ pub fn row((filter, learnt): &Told, truth: &Orientation, bias: [f64; 3]) -> Opti
         bias_rad_s: filter.bias[axis],
         bias_error_rad_s: -bias_error[axis],
         bias_sd_rad_s: bias_sd[axis],
-        innovation_rad: told.off[axis],
+        innovation_rad: reported.off[axis],
     };
     Some(AttitudeEstimate {
         q_w: filter.attitude.w,
@@ -90,8 +90,8 @@ pub fn row((filter, learnt): &Told, truth: &Orientation, bias: [f64; 3]) -> Opti
         q_z: filter.attitude.k,
         axes: [0, 1, 2].map(axis).into(),
         nees: filter.nees(truth, &bias) / AttitudeEstimate::STATES,
-        nis: told.nis / AttitudeEstimate::MEASUREMENTS,
-        numbers: told.numbers,
+        nis: reported.nis / AttitudeEstimate::MEASUREMENTS,
+        numbers: reported.numbers,
         measured: learnt.is_some().into(),
     })
 }

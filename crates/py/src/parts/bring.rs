@@ -10,7 +10,7 @@ use crate::error::scenario_error;
 /// The scenario with parts written in Python in place of its own, each with its role.
 #[pyfunction]
 pub fn with_parts(py: Python<'_>, scenario: &Scenario, parts: Vec<Named>) -> PyResult<Scenario> {
-    Scenario::new(&scenario.origin, scenario.inner.bringing(own_parts(py, parts)?))
+    Scenario::new(&scenario.origin, scenario.inner.with_custom_parts(own_parts(py, parts)?))
 }
 
 /// A scenario of a text beside which parts stand that are written in Python.
@@ -18,17 +18,17 @@ pub fn with_parts(py: Python<'_>, scenario: &Scenario, parts: Vec<Named>) -> PyR
 pub fn beside_parts(py: Python<'_>, text: &str, name: &str, parts: Vec<Named>) -> PyResult<Scenario> {
     let document = Document::parse(name, text.to_owned()).map_err(scenario_error)?;
     let own = own_parts(py, parts)?;
-    Scenario::new(name, flexsc_core::Scenario::from_document_beside(&document, &own))
+    Scenario::new(name, flexsc_core::Scenario::from_document_with(&document, &own))
 }
 
 /// Returns the parts of a scenario that are written in Python, each with its role.
 #[pyfunction]
 pub fn parts_of(py: Python<'_>, scenario: &Scenario) -> Vec<Named> {
-    named(py, &scenario.inner.own_parts())
+    named(py, &scenario.inner.custom_parts())
 }
 
 /// The text of what is not written in Python.
 #[pyfunction]
 pub fn text_beside_parts(scenario: &Scenario) -> String {
-    toml::to_string(&scenario.inner.table_beside_own_parts()).unwrap_or_default()
+    toml::to_string(&scenario.inner.table_without_custom_parts()).unwrap_or_default()
 }

@@ -2,10 +2,12 @@
 
 use std::any::Any;
 
-use flexsc_core::belief::Belief;
+use flexsc_core::custom::PartError;
 use flexsc_core::guard::Guard;
-use flexsc_core::law::{Authority, Cause, Command, Control, Goal, Guards, Hold, Phase, Promise, Rule};
-use flexsc_core::own::Halt;
+use flexsc_core::law::{
+    Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, Phase, Setpoint,
+};
+use flexsc_core::state_estimate::StateEstimate;
 use flexsc_core::time::{Instant, Span};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
@@ -30,7 +32,7 @@ pub struct Brought {
 
 impl Brought {
     /// Reads what a compiled law says of itself.
-    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let address: usize = part.getattr("address")?.extract()?;
         if address == 0 {
             return Err(PyValueError::new_err("address must be the address of a function, got 0"));
@@ -53,8 +55,8 @@ fn of_address(address: usize) -> Function {
     unsafe { std::mem::transmute::<*const (), Function>(address as *const ()) }
 }
 
-impl Rule for Brought {
-    fn start(&self, _: &Authority) -> Box<dyn Control> {
+impl LawSpec for Brought {
+    fn start(&self, _: &Authority) -> Box<dyn Law> {
         Box::new(Deciding {
             function: self.function,
             period: self.period,
@@ -70,12 +72,12 @@ impl Rule for Brought {
         self.period
     }
 
-    fn switches(&self) -> bool {
+    fn is_switching(&self) -> bool {
         self.switches
     }
 
-    fn promise(&self) -> Promise {
-        self.promise.map_or(Promise::Nothing, Promise::Within)
+    fn expected_band(&self) -> ErrorBand {
+        self.promise.map_or(ErrorBand::None, ErrorBand::Absolute)
     }
 
     fn any(&self) -> Option<&dyn Any> {
@@ -93,17 +95,23 @@ struct Deciding {
     /// Whether the first guard is one of at least an angle.
     above: bool,
     phase: Phase,
-    halted: Option<Halt>,
+    halted: Option<PartError>,
 }
 
-impl Control for Deciding {
+impl Law for Deciding {
     #[expect(unsafe_code, reason = "the function is foreign")]
-    fn decide(&mut self, now: Instant, cause: Cause, goal: &Goal, belief: &Belief) -> Hold {
+    fn decide(
+        &mut self,
+        now: Instant,
+        cause: DecisionCause,
+        goal: &Setpoint,
+        belief: &StateEstimate,
+    ) -> ControlOutput {
         let cause = match cause {
-            Cause::Start => 0.0,
-            Cause::Timeout => 1.0,
-            Cause::Guard(0) if self.above => 2.0,
-            Cause::Guard(_) => 3.0,
+            DecisionCause::Start => 0.0,
+            DecisionCause::Timeout => 1.0,
+            DecisionCause::Guard(0) if self.above => 2.0,
+            DecisionCause::Guard(_) => 3.0,
         };
         let since = self.last.replace(now).map_or(0.0, |last| now.since(last).seconds());
         let (angle, rate) = goal.at(now);
@@ -127,8 +135,8 @@ impl Control for Deciding {
         let [torque, after, above, below, state] = hold;
         if !torque.is_finite() || after < 0.0 || after.is_infinite() {
             let why = format!("a compiled law gave a torque of {torque} and a time of {after} s");
-            self.halted = Some(Halt::new(PyRuntimeError::new_err(why)));
-            return Hold::NONE;
+            self.halted = Some(PartError::new(PyRuntimeError::new_err(why)));
+            return ControlOutput::NONE;
         }
         self.phase = if state.is_nan() {
             Phase::Feedback
@@ -143,18 +151,18 @@ impl Control for Deciding {
             (true, true) => Guards::NONE,
         };
         let after = if after.is_nan() { self.period } else { Some(Span::from_seconds(after)) };
-        Hold { command: Command::Torque(torque), until: after.map(|after| now + after), guards }
+        ControlOutput { command: Command::Torque(torque), until: after.map(|after| now + after), guards }
     }
 
     fn state(&self) -> Phase {
         self.phase
     }
 
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         self.halted.clone()
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
     }
 }

@@ -2,12 +2,14 @@
 
 use std::any::Any;
 
-use flexsc_core::belief::{Belief, Dominant, Reads};
-use flexsc_core::estimator::{Estimate, Known as EngineKnown, Observe, Taken as EngineTaken};
-use flexsc_core::own::Halt;
+use flexsc_core::custom::PartError;
+use flexsc_core::estimator::{
+    Estimator, EstimatorContext as EngineKnown, EstimatorSpec, SampleContext as EngineTaken,
+};
 use flexsc_core::random::Seed;
 use flexsc_core::record::AttitudeEstimate;
 use flexsc_core::sensor::Orientation;
+use flexsc_core::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
 use flexsc_core::time::{Instant as Exact, Span};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -167,7 +169,7 @@ struct Also {
 
 impl Brought {
     /// Reads what an estimator says of itself.
-    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let has = |method| overrides(part, "Estimator", method);
         let also = Also {
             given: has("given")?,
@@ -179,20 +181,20 @@ impl Brought {
     }
 }
 
-impl Observe for Brought {
-    fn start(&self, known: &EngineKnown<'_>, seed: Seed) -> Box<dyn Estimate> {
-        let reads = |reads: &Reads| match reads {
-            Reads::Nothing => "nothing",
-            Reads::Field => "field",
-            Reads::Motion => "motion",
-            Reads::DominantMode => "dominant_mode",
-            Reads::ElasticRates => "elastic_rates",
+impl EstimatorSpec for Brought {
+    fn start(&self, known: &EngineKnown<'_>, seed: Seed) -> Box<dyn Estimator> {
+        let reads = |reads: &EstimateNeeds| match reads {
+            EstimateNeeds::Nothing => "nothing",
+            EstimateNeeds::Field => "field",
+            EstimateNeeds::Motion => "motion",
+            EstimateNeeds::DominantMode => "dominant_mode",
+            EstimateNeeds::ElasticRates => "elastic_rates",
         };
         let modes = known.axes.iter().map(|axis| {
             let modes = axis.modes.iter();
             modes.map(|mode| (mode.frequency.get(), mode.damping.get(), mode.gain.get())).collect()
         });
-        let told = Known {
+        let reported = Known {
             inertias: known.axes.iter().map(|axis| axis.inertia.get()).collect(),
             modes: modes.collect(),
             period: known.sampling,
@@ -202,7 +204,7 @@ impl Observe for Brought {
             seed,
         };
         let method = Python::attach(|py| {
-            Method::new(Py::new(py, told).and_then(|told| self.object.begun(py, (told,))), "take")
+            Method::new(Py::new(py, reported).and_then(|told| self.object.begun(py, (told,))), "take")
         });
         Box::new(Observing { method, also: self.also })
     }
@@ -220,7 +222,7 @@ struct Observing {
 }
 
 /// Writes an estimator's state estimate about each axis.
-fn write(told: &Bound<'_, PyAny>, beliefs: &mut [Belief]) -> PyResult<()> {
+fn write(told: &Bound<'_, PyAny>, beliefs: &mut [StateEstimate]) -> PyResult<()> {
     if told.is_none() {
         return Ok(());
     }
@@ -241,14 +243,14 @@ fn write(told: &Bound<'_, PyAny>, beliefs: &mut [Belief]) -> PyResult<()> {
     for (belief, row) in beliefs.iter_mut().zip(rows) {
         [belief.angle, belief.rate] = [row[0], row[1]];
         if let [_, _, displacement, rate, frequency] = row[..] {
-            belief.dominant = Dominant { displacement, rate, frequency };
+            belief.dominant = DominantMode { displacement, rate, frequency };
         }
     }
     Ok(())
 }
 
-impl Estimate for Observing {
-    fn given(&mut self, now: Exact, moments: [f64; 3]) {
+impl Estimator for Observing {
+    fn input_changed(&mut self, now: Exact, moments: [f64; 3]) {
         if self.also.given {
             let moments: Three = moments.into();
             let with = (Instant(now), moments);
@@ -256,31 +258,35 @@ impl Estimate for Observing {
         }
     }
 
-    fn take(&mut self, taken: &EngineTaken<'_>, beliefs: &mut [Belief]) {
+    fn update(&mut self, taken: &EngineTaken<'_>, beliefs: &mut [StateEstimate]) {
         let axes = 0..beliefs.len();
         let truth = |axis| {
             let state = (taken.truth)(axis);
             (state.rigid_angle, state.rigid_rate)
         };
-        let told = Taken {
+        let reported = Taken {
             now: taken.now,
             measured: taken.measured.map(|all| all.iter().map(|pair| (*pair).into()).collect()),
-            readings: taken.readings.iter().map(|reading| reading.as_ref().map(Reading::of)).collect(),
+            readings: taken
+                .readings
+                .iter()
+                .map(|reading| reading.as_ref().map(Reading::from_engine))
+                .collect(),
             origin: *taken.origin,
             truth: axes.clone().map(truth).collect(),
-            torque: axes.map(|axis| taken.actuator.torque(axis)).collect(),
+            torque: axes.map(|axis| taken.actuator.held_torque(axis)).collect(),
         };
         Python::attach(|py| {
-            let argument = || Ok(Bound::new(py, told)?.into_any());
+            let argument = || Ok(Bound::new(py, reported)?.into_any());
             self.method.call(py, argument, |told| write(told, beliefs))
         });
     }
 
-    fn carry(&self, now: Exact, origin: &Orientation, beliefs: &mut [Belief]) {
+    fn predict(&self, now: Exact, origin: &Orientation, beliefs: &mut [StateEstimate]) {
         if !self.also.carry {
             return;
         }
-        let told = Taken {
+        let reported = Taken {
             now,
             measured: None,
             readings: Vec::new(),
@@ -289,11 +295,11 @@ impl Estimate for Observing {
             torque: Vec::new(),
         };
         Python::attach(|py| {
-            self.method.other(py, |part| write(&part.call_method1("carry", (told,))?, beliefs));
+            self.method.other(py, |part| write(&part.call_method1("carry", (reported,))?, beliefs));
         });
     }
 
-    fn shift(&mut self, by: [f64; 3]) {
+    fn shift_origin(&mut self, by: [f64; 3]) {
         if self.also.shift {
             let by: Three = by.into();
             Python::attach(|py| {
@@ -302,21 +308,22 @@ impl Estimate for Observing {
         }
     }
 
-    fn attitude(&self, now: Exact, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+    fn attitude_row(&self, now: Exact, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
         if !self.also.attitude {
             return None;
         }
-        let told =
-            |part: &Bound<'_, PyAny>| super::attitude::told(&part.call_method1("attitude", (Instant(now),))?);
-        let filter = Python::attach(|py| self.method.other(py, told))??;
+        let reported = |part: &Bound<'_, PyAny>| {
+            super::attitude::from_python(&part.call_method1("attitude", (Instant(now),))?)
+        };
+        let filter = Python::attach(|py| self.method.other(py, reported))??;
         super::attitude::row(&filter, truth, bias)
     }
 
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         self.method.halted()
     }
 
-    fn copy(&self) -> Box<dyn Estimate> {
+    fn copy(&self) -> Box<dyn Estimator> {
         Box::new(Self { method: self.method.copy("take"), also: self.also })
     }
 }

@@ -1,7 +1,7 @@
 //! Answers of a law written in Python.
 
 use flexsc_core::guard::Guard;
-use flexsc_core::law::{Command, Guards, Hold as Engine, Phase};
+use flexsc_core::law::{Command, ControlOutput as Engine, Guards, Phase};
 use flexsc_core::time::Span;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -63,7 +63,7 @@ fn finite(what: &str, value: f64) -> PyResult<f64> {
 
 impl Hold {
     /// The engine's answer of a law that is asked again after a period, if it names no time.
-    pub fn of(&self, now: flexsc_core::time::Instant, period: Option<Span>) -> Engine {
+    pub fn to_engine(&self, now: flexsc_core::time::Instant, period: Option<Span>) -> Engine {
         let until = self.until.map(|until| until.0).or_else(|| Some(now + self.after.or(period)?));
         let guards = match (self.at_least, self.at_most) {
             (Some(above), Some(below)) => Guards::two(Guard::at_least(above), Guard::at_most(below)),
@@ -160,17 +160,17 @@ impl Hold {
     }
 
     fn __getnewargs_ex__<'py>(&self, py: Python<'py>) -> PyResult<((), Bound<'py, PyDict>)> {
-        let told = PyDict::new(py);
-        told.set_item("torque", self.torque())?;
-        told.set_item("after", self.after())?;
-        told.set_item("until", self.until)?;
-        told.set_item("at_least", self.at_least)?;
-        told.set_item("at_most", self.at_most)?;
-        told.set_item("state", self.state())?;
-        told.set_item("acceleration", self.acceleration())?;
-        told.set_item("change", self.change())?;
-        told.set_item("moment", self.moment())?;
-        Ok(((), told))
+        let reported = PyDict::new(py);
+        reported.set_item("torque", self.torque())?;
+        reported.set_item("after", self.after())?;
+        reported.set_item("until", self.until)?;
+        reported.set_item("at_least", self.at_least)?;
+        reported.set_item("at_most", self.at_most)?;
+        reported.set_item("state", self.state())?;
+        reported.set_item("acceleration", self.acceleration())?;
+        reported.set_item("change", self.change())?;
+        reported.set_item("moment", self.moment())?;
+        Ok(((), reported))
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {

@@ -4,11 +4,12 @@ use std::any::Any;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use flexsc_core::belief::{Belief, Reads};
+use flexsc_core::custom::PartError;
 use flexsc_core::law::{
-    Authority as EngineAuthority, Cause, Control, Goal, Hold as Held, Phase, Promise, Rule, Tunable,
+    Authority as EngineAuthority, ControlOutput as Held, DecisionCause, ErrorBand, Law, LawSpec, Phase,
+    Setpoint, Tunable,
 };
-use flexsc_core::own::Halt;
+use flexsc_core::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::time::{Instant as Exact, Span};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
@@ -53,8 +54,8 @@ impl Authority {
 pub struct Event {
     now: Exact,
     cause: &'static str,
-    goal: Goal,
-    belief: Belief,
+    goal: Setpoint,
+    belief: StateEstimate,
 }
 
 #[pymethods]
@@ -116,7 +117,7 @@ impl Event {
     /// Length of the rotation vector from the target, of which `angle` is a component (rad); 0 of a body with one angle.
     #[getter]
     fn whole(&self) -> f64 {
-        self.belief.whole
+        self.belief.total_angle
     }
 
     /// How fast the magnetic field along the axis changes (T/s).
@@ -128,7 +129,7 @@ impl Event {
     /// Change of the rate that is commanded, and not yet executed (rad/s).
     #[getter]
     fn queued(&self) -> f64 {
-        self.belief.queued
+        self.belief.queued_rate
     }
 
     /// The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s).
@@ -147,11 +148,11 @@ impl Event {
     /// Whether the elastic modes may be acted on.
     #[getter]
     fn trusted(&self) -> bool {
-        self.belief.trusted
+        self.belief.elastic_is_trusted
     }
 
     fn __repr__(&self) -> String {
-        let Belief { angle, rate, .. } = self.belief;
+        let StateEstimate { angle, rate, .. } = self.belief;
         format!("<flexsc.parts.Event {} at {} s: angle {angle}, rate {rate}>", self.cause, self.now)
     }
 }
@@ -161,7 +162,7 @@ impl Event {
 pub struct Brought {
     object: Object,
     period: Option<Span>,
-    reads: Reads,
+    reads: EstimateNeeds,
     promise: Option<f64>,
     switches: bool,
     tracks: bool,
@@ -182,7 +183,7 @@ fn kept(key: &str) -> &'static str {
 
 impl Brought {
     /// Reads what a law says of itself.
-    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let period: Option<f64> = part.getattr("period")?.extract()?;
         let reads: String = part.getattr("reads")?.extract()?;
         let tunable = part.getattr("tunable")?.call_method0("items")?;
@@ -194,11 +195,11 @@ impl Brought {
             object: Object::new(part),
             period: period.map(|period| positive(period, "period")).transpose()?,
             reads: match reads.as_str() {
-                "nothing" => Reads::Nothing,
-                "field" => Reads::Field,
-                "motion" => Reads::Motion,
-                "dominant_mode" => Reads::DominantMode,
-                "elastic_rates" => Reads::ElasticRates,
+                "nothing" => EstimateNeeds::Nothing,
+                "field" => EstimateNeeds::Field,
+                "motion" => EstimateNeeds::Motion,
+                "dominant_mode" => EstimateNeeds::DominantMode,
+                "elastic_rates" => EstimateNeeds::ElasticRates,
                 other => {
                     let all = "'nothing', 'field', 'motion', 'dominant_mode' or 'elastic_rates'";
                     return Err(PyValueError::new_err(format!("reads must be {all}, got {other:?}")));
@@ -220,8 +221,8 @@ pub fn positive(seconds: f64, what: &str) -> PyResult<Span> {
     }
 }
 
-impl Rule for Brought {
-    fn start(&self, authority: &EngineAuthority) -> Box<dyn Control> {
+impl LawSpec for Brought {
+    fn start(&self, authority: &EngineAuthority) -> Box<dyn Law> {
         let method = Python::attach(|py| {
             let begun = Py::new(py, Authority(*authority)).and_then(|with| self.object.begun(py, (with,)));
             Method::new(begun, "decide")
@@ -240,20 +241,20 @@ impl Rule for Brought {
         self.period
     }
 
-    fn switches(&self) -> bool {
+    fn is_switching(&self) -> bool {
         self.switches
     }
 
-    fn promise(&self) -> Promise {
-        self.promise.map_or(Promise::Nothing, Promise::Within)
+    fn expected_band(&self) -> ErrorBand {
+        self.promise.map_or(ErrorBand::None, ErrorBand::Absolute)
     }
 
-    fn reads(&self) -> Reads {
+    fn needs(&self) -> EstimateNeeds {
         self.reads
     }
 
     fn tunable(&self) -> Vec<Tunable> {
-        self.tunable.iter().map(|(key, value)| Tunable::free(*key, *value)).collect()
+        self.tunable.iter().map(|(key, value)| Tunable::unbounded(*key, *value)).collect()
     }
 
     fn any(&self) -> Option<&dyn Any> {
@@ -274,16 +275,16 @@ struct Deciding {
     phase: Phase,
 }
 
-impl Control for Deciding {
-    fn decide(&mut self, now: Exact, cause: Cause, goal: &Goal, belief: &Belief) -> Held {
+impl Law for Deciding {
+    fn decide(&mut self, now: Exact, cause: DecisionCause, goal: &Setpoint, belief: &StateEstimate) -> Held {
         let cause = match cause {
-            Cause::Start => "start",
-            Cause::Timeout => "timeout",
-            Cause::Guard(0) if self.above => "at_least",
-            Cause::Guard(_) => "at_most",
+            DecisionCause::Start => "start",
+            DecisionCause::Timeout => "timeout",
+            DecisionCause::Guard(0) if self.above => "at_least",
+            DecisionCause::Guard(_) => "at_most",
         };
         let event = Event { now, cause, goal: *goal, belief: belief.clone() };
-        let told = Python::attach(|py| {
+        let reported = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, event)?.into_any());
             self.method.call(py, argument, |told| {
                 if let Ok(hold) = told.cast::<Hold>() {
@@ -293,7 +294,7 @@ impl Control for Deciding {
                 Err(PyTypeError::new_err(format!("decide must return a flexsc.Hold, got {kind}")))
             })
         });
-        let Some(hold) = told else { return Held::NONE };
+        let Some(hold) = reported else { return Held::NONE };
         self.above = hold.at_least.is_some();
         self.phase = hold.phase;
         hold.of(now, self.period)
@@ -303,15 +304,15 @@ impl Control for Deciding {
         self.phase
     }
 
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         self.method.halted()
     }
 
-    fn copy(&self) -> Box<dyn Control> {
+    fn copy(&self) -> Box<dyn Law> {
         Box::new(Self { method: self.method.copy("decide"), ..*self })
     }
 
-    fn tuned(&self) -> f64 {
+    fn tuned_value(&self) -> f64 {
         self.tuned.map_or(f64::NAN, |(_, value)| value)
     }
 
@@ -326,7 +327,7 @@ impl Control for Deciding {
         });
     }
 
-    fn tracks(&self) -> bool {
+    fn tracks_manoeuvre(&self) -> bool {
         self.tracks
     }
 }

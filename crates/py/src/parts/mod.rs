@@ -17,8 +17,8 @@ mod sensor;
 use std::any::Any;
 use std::sync::Arc;
 
-use flexsc_core::own::Own;
-use flexsc_core::scenario::OwnParts;
+use flexsc_core::custom::Custom;
+use flexsc_core::scenario::CustomParts;
 use pyo3::prelude::*;
 
 pub use actuator::{Demanded, Effort, Setting};
@@ -34,36 +34,38 @@ pub use reading::{Reading, Truth};
 pub type Named = (String, Py<PyAny>);
 
 /// The engine's parts of Python's objects.
-pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<OwnParts> {
-    let mut own = OwnParts::default();
+pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<CustomParts> {
+    let mut own = CustomParts::default();
     for (role, part) in named {
         // The caller may change his object: a scenario does not.
         let part = part.bind(py).call_method0("copy")?;
         match role.split_once(' ') {
             Some(("actuator", place)) => {
-                own.actuators.push((place.parse()?, Own::new(Arc::new(actuator::Brought::of(&part)?))));
+                own.actuators
+                    .push((place.parse()?, Custom::new(Arc::new(actuator::Brought::from_python(&part)?))));
             }
             Some((_, place)) => {
-                own.sensors.push((place.parse()?, Own::new(Arc::new(sensor::Brought::of(&part)?))));
+                own.sensors
+                    .push((place.parse()?, Custom::new(Arc::new(sensor::Brought::from_python(&part)?))));
             }
             None if role == "law" && part.hasattr("address")? => {
-                own.law = Some(Own::new(Arc::new(compiled::Brought::of(&part)?)));
+                own.law = Some(Custom::new(Arc::new(compiled::Brought::from_python(&part)?)));
             }
-            None if role == "law" => own.law = Some(Own::new(Arc::new(law::Brought::of(&part)?))),
+            None if role == "law" => own.law = Some(Custom::new(Arc::new(law::Brought::from_python(&part)?))),
             None if role == "estimator" => {
-                own.estimator = Some(Own::new(Arc::new(estimator::Brought::of(&part)?)));
+                own.estimator = Some(Custom::new(Arc::new(estimator::Brought::from_python(&part)?)));
             }
             None if role == "adaptation" => {
-                own.adaptation = Some(Own::new(Arc::new(adaptation::Brought::of(&part)?)));
+                own.adaptation = Some(Custom::new(Arc::new(adaptation::Brought::from_python(&part)?)));
             }
-            None => own.actuators.push((0, Own::new(Arc::new(actuator::Brought::of(&part)?)))),
+            None => own.actuators.push((0, Custom::new(Arc::new(actuator::Brought::from_python(&part)?)))),
         }
     }
     Ok(own)
 }
 
 /// Python's objects of a scenario's parts.
-pub fn named(py: Python<'_>, own: &OwnParts) -> Vec<Named> {
+pub fn named(py: Python<'_>, own: &CustomParts) -> Vec<Named> {
     let object = |any: Option<&dyn Any>| -> Option<Py<PyAny>> {
         Some(any?.downcast_ref::<object::Object>()?.clone_ref(py))
     };

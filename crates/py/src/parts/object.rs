@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::OnceLock;
 
-use flexsc_core::own::Halt;
+use flexsc_core::custom::PartError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 
@@ -47,7 +47,7 @@ impl Object {
 pub struct Method {
     /// The part, and its method.
     at_work: Option<(Object, Py<PyAny>)>,
-    halted: OnceLock<Halt>,
+    halted: OnceLock<PartError>,
 }
 
 impl Method {
@@ -74,8 +74,8 @@ impl Method {
         read: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
     ) -> Option<T> {
         let (_, method) = self.at_work()?;
-        let told = argument().and_then(|argument| method.bind(py).call1((argument,)));
-        self.kept(told.and_then(|told| read(&told)))
+        let reported = argument().and_then(|argument| method.bind(py).call1((argument,)));
+        self.kept(reported.and_then(|told| read(&told)))
     }
 
     /// Calls another of the part's methods.
@@ -89,10 +89,10 @@ impl Method {
 
     /// Returns the value of a call; an error is kept.
     fn kept<T>(&self, told: PyResult<T>) -> Option<T> {
-        told.map_err(|error| self.halted.set(Halt::new(error))).ok()
+        told.map_err(|error| self.halted.set(PartError::new(error))).ok()
     }
 
-    pub fn halted(&self) -> Option<Halt> {
+    pub fn halted(&self) -> Option<PartError> {
         self.halted.get().cloned()
     }
 

@@ -1,7 +1,7 @@
 //! True values and readings of sensors, for Python.
 
 use flexsc_core::attitude::Vector;
-use flexsc_core::sensor::{Orientation, Reading as Engine, Truth as EngineTruth, VectorSight};
+use flexsc_core::sensor::{Orientation, Reading as Engine, Truth as EngineTruth, VectorMeasurement};
 use flexsc_core::time::Instant as Exact;
 use nalgebra::Quaternion;
 use pyo3::exceptions::PyValueError;
@@ -41,11 +41,11 @@ pub struct Reading {
     /// Orientation of the body, of a sensor that measures it.
     at: Option<Orientation>,
     rate: Option<[f64; 3]>,
-    sight: Option<VectorSight>,
+    sight: Option<VectorMeasurement>,
 }
 
 impl Reading {
-    pub fn of(reading: &Engine) -> Self {
+    pub fn from_engine(reading: &Engine) -> Self {
         Self { at: Some(reading.at), rate: reading.rate, sight: reading.sight }
     }
 
@@ -100,8 +100,8 @@ impl Reading {
         let of = |vector: Option<&Bound<'_, PyAny>>, what: &str| {
             vector.map(|of| exactly::<3>(of, what)).transpose()
         };
-        let sight = match (of(vector, "vector")?, of(inertial, "inertial")?) {
-            (Some(vector), Some(inertial)) => Some(VectorSight {
+        let measurement = match (of(vector, "vector")?, of(inertial, "inertial")?) {
+            (Some(vector), Some(inertial)) => Some(VectorMeasurement {
                 vector: Vector::from(vector),
                 inertial: Vector::from(inertial),
                 is_direction,
@@ -116,7 +116,7 @@ impl Reading {
                 Err(_) => Some(exactly::<3>(rate, "rate")?),
             },
         };
-        Ok(Self { at, rate, sight })
+        Ok(Self { at, rate, sight: measurement })
     }
 
     #[getter]
@@ -225,6 +225,6 @@ impl Truth {
 
     /// The attitude turned by small angles about the body's axes.
     fn attitude_at(&self, angles: &Bound<'_, PyAny>) -> PyResult<Option<Four>> {
-        Ok(attitude(&self.truth.orientation.at(exactly::<3>(angles, "angles")?)))
+        Ok(attitude(&self.truth.orientation.rotated_by(exactly::<3>(angles, "angles")?)))
     }
 }

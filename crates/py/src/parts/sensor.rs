@@ -2,9 +2,9 @@
 
 use std::any::Any;
 
-use flexsc_core::own::Halt;
+use flexsc_core::custom::PartError;
 use flexsc_core::random::Seed;
-use flexsc_core::sensor::{Instrument, Reading as EngineReading, Sense, Truth as EngineTruth};
+use flexsc_core::sensor::{Reading as EngineReading, Sensor, SensorSpec, Truth as EngineTruth};
 use flexsc_core::time::{Instant, Span};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
@@ -25,7 +25,7 @@ pub struct Brought {
 
 impl Brought {
     /// Reads what a sensor says of itself.
-    pub fn of(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         Ok(Self {
             object: Object::new(part),
             period: positive(part.getattr("period")?.extract()?, "period")?,
@@ -35,8 +35,8 @@ impl Brought {
     }
 }
 
-impl Instrument for Brought {
-    fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sense> {
+impl SensorSpec for Brought {
+    fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sensor> {
         let method = Python::attach(|py| {
             let begun = Py::new(py, Draws(seed)).and_then(|draws| self.object.begun(py, (axes, draws)));
             Method::new(begun, "read")
@@ -65,7 +65,7 @@ impl Instrument for Brought {
 #[derive(Debug)]
 struct Reads(Method);
 
-impl Sense for Reads {
+impl Sensor for Reads {
     fn read(
         &mut self,
         now: Instant,
@@ -89,11 +89,11 @@ impl Sense for Reads {
         .flatten()
     }
 
-    fn halted(&self) -> Option<Halt> {
+    fn failure(&self) -> Option<PartError> {
         self.0.halted()
     }
 
-    fn copy(&self) -> Box<dyn Sense> {
+    fn copy(&self) -> Box<dyn Sensor> {
         Box::new(Self(self.0.copy("read")))
     }
 }

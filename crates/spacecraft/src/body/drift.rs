@@ -11,13 +11,14 @@ pub const SERIES: usize = 21;
 /// A profile of the ratio over time.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Profile {
+#[schemars(rename = "Profile")]
+pub enum DriftProfile {
     /// A linear change from 1 to another ratio, which then stays constant.
     Ramp(Ramp),
     /// 1 + amplitude (cos(2 pi (t + phase)/period) - cos(2 pi phase/period)): panels that follow the Sun on an orbit.
     Sinusoid(Sinusoid),
     /// Linear interpolation between points, constant before the first and after the last.
-    Table(Vec<Point>),
+    Table(Vec<ProfilePoint>),
 }
 
 /// A linear change of the ratio.
@@ -49,14 +50,15 @@ pub struct Sinusoid {
 /// A point of a profile.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Point {
+#[schemars(rename = "Point")]
+pub struct ProfilePoint {
     /// Time (s).
     pub time: Time,
     /// Ratio at that time.
     pub ratio: Positive,
 }
 
-impl Profile {
+impl DriftProfile {
     /// Returns the ratio at a time (s).
     pub fn ratio(&self, t: f64) -> f64 {
         match self {
@@ -138,9 +140,9 @@ impl Profile {
 #[serde(rename_all = "snake_case")]
 pub enum Drift {
     /// All frequencies have one ratio.
-    Common(Profile),
+    Common(DriftProfile),
     /// Each frequency has its own ratio, in the order of the modes.
-    Each(Vec<Profile>),
+    Each(Vec<DriftProfile>),
 }
 
 impl Drift {
@@ -181,7 +183,7 @@ impl Drift {
     pub fn kinks(&self) -> Vec<f64> {
         match self {
             Self::Common(profile) => profile.kinks(),
-            Self::Each(profiles) => profiles.iter().flat_map(Profile::kinks).collect(),
+            Self::Each(profiles) => profiles.iter().flat_map(DriftProfile::kinks).collect(),
         }
     }
 }

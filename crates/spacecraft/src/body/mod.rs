@@ -1,19 +1,19 @@
 //! The controlled body, and the ways to describe it.
 
 mod chain;
+mod coordinate_weights;
 pub mod craft;
-mod damping;
+mod damping_ratios;
 mod drift;
-mod hub;
-mod matrices;
+mod free_and_clamped;
 mod mode;
 mod model;
+mod one_axis;
 mod output;
 mod panels;
-mod planar;
 mod reduction;
 pub mod spatial;
-mod weights;
+mod structure_matrices;
 
 use std::path::Path;
 use std::sync::Arc;
@@ -21,20 +21,20 @@ use std::sync::Arc;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::document::Fault;
+use crate::document::ConfigError;
 
 pub use chain::Chain;
-pub use craft::Craft;
-pub use damping::Damping;
-pub use drift::{Drift, Point, Profile, Ramp, SERIES, Sinusoid};
-pub use matrices::{Matrices, Sum};
+pub use coordinate_weights::CoordinateWeights;
+pub use craft::AssembledSpacecraft;
+pub use damping_ratios::DampingRatios;
+pub use drift::{Drift, DriftProfile, ProfilePoint, Ramp, SERIES, Sinusoid};
 pub use mode::Mode;
-pub use model::{Axes, Model};
+pub use model::{BodyAxes, BodyModel};
+pub use one_axis::{CommandedQuantity, Planar};
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
-pub use planar::{Drive, Planar};
 pub use spatial::Spatial;
-pub use weights::Weights;
+pub use structure_matrices::{MatrixBody, WeightedSum};
 
 /// The kinds of body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -43,7 +43,7 @@ pub enum Body {
     /// One angle and any number of elastic modes.
     Planar(Planar),
     /// The matrices of a structure.
-    Matrices(Matrices),
+    Matrices(MatrixBody),
     /// A hub with panels of hinged sections.
     Panels(Panels),
     /// Three axes, and elastic modes with shapes at points of the structure.
@@ -80,11 +80,11 @@ impl Body {
     ///
     /// # Errors
     /// A key within the body, and the error in its file.
-    pub fn read(&mut self, other: Option<&Self>) -> Result<(), Fault> {
+    pub fn read(&mut self, other: Option<&Self>) -> Result<(), ConfigError> {
         let Self::Spatial(spatial) = self else { return Ok(()) };
         let other =
             other.and_then(|other| if let Self::Spatial(other) = other { Some(&other.modes) } else { None });
-        spatial.modes.read(other).map_err(|why| Fault::new("modes", why))
+        spatial.modes.read(other).map_err(|why| ConfigError::new("modes", why))
     }
 
     /// Returns the number of axes.
@@ -99,14 +99,14 @@ impl Body {
     ///
     /// # Errors
     /// An inconsistent key within the body, and the reason.
-    pub fn assemble(&self) -> Result<Model, Fault> {
+    pub fn assemble(&self) -> Result<BodyModel, ConfigError> {
         let body = match self {
             Self::Planar(planar) => planar.clone(),
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
             Self::Spatial(spatial) => {
                 spatial.check()?;
-                return Ok(Model::Spatial(Arc::new(spatial.clone())));
+                return Ok(BodyModel::Spatial(Arc::new(spatial.clone())));
             }
         };
         if let Some(fault) = body.inconsistency() {
@@ -114,6 +114,6 @@ impl Body {
         }
         let chain = if let Self::Panels(panels) = self { panels.chain(&body) } else { None };
         let body = Arc::new(body);
-        Ok(chain.map_or(Model::Planar(body.clone()), |chain| Model::Chain(body, Arc::new(chain))))
+        Ok(chain.map_or(BodyModel::Planar(body.clone()), |chain| BodyModel::Chain(body, Arc::new(chain))))
     }
 }

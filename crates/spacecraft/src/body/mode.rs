@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::motion::Phase;
+use crate::motion::ModeState;
 use crate::quantity::{Finite, Frequency, NonNegative};
 
 /// An elastic mode (\[Silaev\], equation (1), with damping added).
@@ -38,23 +38,26 @@ impl Mode {
 
     /// Returns the amplitude (rad) of the free vibration from a phase: without damping the largest displacement, else
     /// the absolute value of the phasor x + i (x' + zeta w x)/w_d. NaN at critical damping and above.
-    pub fn amplitude(&self, phase: Phase) -> f64 {
+    pub fn amplitude(&self, phase: ModeState) -> f64 {
         let zeta = self.damping.get();
-        let Phase { displacement: x, quadrature: y } = phase;
+        let ModeState { displacement: x, quadrature: y } = phase;
         let imaginary = (y + zeta * x) / f64::sqrt((1.0 - zeta) * (1.0 + zeta));
         f64::sqrt(x * x + imaginary * imaginary)
     }
 
     /// Returns the kinetic and strain energy (J) of the mode on a body of this inertia (kg m²). 0 for a mode without
     /// gain, which no torque on the hub moves and whose energy is therefore unknown.
-    pub fn energy(&self, phase: Phase, inertia: f64) -> f64 {
+    pub fn energy(&self, phase: ModeState, inertia: f64) -> f64 {
         let (w, gain) = (self.frequency.get(), self.gain.get().abs());
-        let Phase { displacement: x, quadrature: y } = phase;
+        let ModeState { displacement: x, quadrature: y } = phase;
         if gain > 0.0 { 0.5 * inertia / gain * w * w * (x * x + y * y) } else { 0.0 }
     }
 
     /// Returns the phase at the start of a run.
-    pub fn start(&self) -> Phase {
-        Phase { displacement: self.displacement.get(), quadrature: self.rate.get() / self.frequency.get() }
+    pub fn start(&self) -> ModeState {
+        ModeState {
+            displacement: self.displacement.get(),
+            quadrature: self.rate.get() / self.frequency.get(),
+        }
     }
 }

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
-use super::{Chain, Craft, Mode, Output, Planar, Spatial};
-use crate::motion::turning::Flexible;
+use super::{AssembledSpacecraft, Chain, Mode, Output, Planar, Spatial};
+use crate::motion::three_axis::FlexibleBody;
 use crate::quantity::Finite;
 
 /// Assembled model of a body.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Model {
+pub enum BodyModel {
     /// One-axis body with modes in closed form.
     Planar(Arc<Planar>),
     /// One-axis body with panels that bend by any angles, and the modes that it has for small angles.
@@ -16,36 +16,36 @@ pub enum Model {
     /// Three-axis body whose modes do not act back on its rotation.
     Spatial(Arc<Spatial>),
     /// Three-axis spacecraft whose rotation and modes are coupled in both directions.
-    Craft(Arc<Craft>),
+    Craft(Arc<AssembledSpacecraft>),
 }
 
 /// Body in free modes, by the number of its axes.
 #[derive(Copy, Clone, Debug)]
-pub enum Axes<'a> {
+pub enum BodyAxes<'a> {
     /// One-axis body.
     One(&'a Planar),
     /// Three-axis body.
     Three(&'a Spatial),
 }
 
-impl Model {
+impl BodyModel {
     /// Returns the body in free modes.
-    pub fn axes(&self) -> Axes<'_> {
+    pub fn axes(&self) -> BodyAxes<'_> {
         match self {
-            Self::Planar(body) | Self::Chain(body, _) => Axes::One(body),
-            Self::Spatial(body) => Axes::Three(body),
-            Self::Craft(craft) => Axes::Three(&craft.spatial),
+            Self::Planar(body) | Self::Chain(body, _) => BodyAxes::One(body),
+            Self::Spatial(body) => BodyAxes::Three(body),
+            Self::Craft(craft) => BodyAxes::Three(&craft.spatial),
         }
     }
 
     /// Returns the body in free modes, if it has one axis.
     pub fn planar(&self) -> Option<&Planar> {
-        if let Axes::One(body) = self.axes() { Some(body) } else { None }
+        if let BodyAxes::One(body) = self.axes() { Some(body) } else { None }
     }
 
     /// Returns the body in free modes, if it has three axes.
     pub fn spatial(&self) -> Option<&Spatial> {
-        if let Axes::Three(body) = self.axes() { Some(body) } else { None }
+        if let BodyAxes::Three(body) = self.axes() { Some(body) } else { None }
     }
 
     /// Returns the exact chain, if the panels bend by any angles.
@@ -54,20 +54,20 @@ impl Model {
     }
 
     /// Returns the spacecraft, if the body is assembled from a hub and appendages.
-    pub fn craft(&self) -> Option<&Craft> {
+    pub fn craft(&self) -> Option<&AssembledSpacecraft> {
         if let Self::Craft(craft) = self { Some(craft) } else { None }
     }
 
     /// Returns the two-way coupling of rotation and modes, which only a spacecraft has.
-    pub fn flexible(&self) -> Option<&Flexible> {
+    pub fn flexible(&self) -> Option<&FlexibleBody> {
         self.craft().map(|craft| &craft.flexible)
     }
 
     /// Returns the number of elastic modes.
     pub fn mode_count(&self) -> usize {
         match self.axes() {
-            Axes::One(body) => body.modes.len(),
-            Axes::Three(body) => body.modes.len(),
+            BodyAxes::One(body) => body.modes.len(),
+            BodyAxes::Three(body) => body.modes.len(),
         }
     }
 
@@ -75,8 +75,12 @@ impl Model {
     pub fn free_modes(&self) -> Vec<Mode> {
         let free = |(frequency, damping)| Mode::at_rest(frequency, Finite::default(), damping);
         match self.axes() {
-            Axes::One(body) => body.modes.iter().map(|mode| free((mode.frequency, mode.damping))).collect(),
-            Axes::Three(body) => body.modes.iter().map(|mode| free((mode.frequency, mode.damping))).collect(),
+            BodyAxes::One(body) => {
+                body.modes.iter().map(|mode| free((mode.frequency, mode.damping))).collect()
+            }
+            BodyAxes::Three(body) => {
+                body.modes.iter().map(|mode| free((mode.frequency, mode.damping))).collect()
+            }
         }
     }
 
@@ -91,7 +95,7 @@ impl Model {
     }
 
     /// Returns the name of the commanded quantity and its unit.
-    pub fn commanded(&self) -> (&'static str, &'static str) {
+    pub fn commanded_quantity(&self) -> (&'static str, &'static str) {
         self.planar().map_or(("torque", "N m"), Planar::commanded)
     }
 

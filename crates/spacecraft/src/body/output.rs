@@ -3,7 +3,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::motion::State;
+use crate::motion::AxisState;
 use crate::quantity::Finite;
 
 /// A coordinate that is observed in addition to the hub's angle: y = rigid x_r + sum modes\[i\] x_i.
@@ -28,13 +28,13 @@ pub(super) fn radians() -> String {
 
 impl Output {
     /// Returns the coordinate in a state.
-    pub fn of(&self, state: &State) -> f64 {
+    pub fn evaluate(&self, state: &AxisState) -> f64 {
         let modes = self.modes.iter().zip(&state.modes);
         modes.fold(self.rigid.get() * state.rigid_angle, |sum, (w, mode)| sum + w.get() * mode.displacement)
     }
 
     /// Returns the rate of the coordinate in a state, for modes of the given frequencies (rad/s).
-    pub fn rate_of(&self, state: &State, frequencies: &[f64]) -> f64 {
+    pub fn rate_of(&self, state: &AxisState, frequencies: &[f64]) -> f64 {
         let modes = self.modes.iter().zip(&state.modes).zip(frequencies);
         modes.fold(self.rigid.get() * state.rigid_rate, |sum, ((weight, mode), w)| {
             sum + weight.get() * w * mode.quadrature

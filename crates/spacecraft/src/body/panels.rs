@@ -14,9 +14,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::output::radians;
-use super::reduction::{Observed, Reduction};
-use super::{Chain, Damping, Drive, Planar};
-use crate::document::Fault;
+use super::reduction::{ModalReduction, ObservedCoordinate};
+use super::{Chain, CommandedQuantity, DampingRatios, Planar};
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Positive, Tolerance};
 use crate::structure::Structure;
 
@@ -44,10 +44,10 @@ pub struct Panels {
     pub tolerance: Tolerance,
     /// Quantity that the actuator commands.
     #[serde(default)]
-    pub drive: Drive,
+    pub drive: CommandedQuantity,
     /// Damping ratio of all modes, or a list with one for each mode that is kept.
     #[serde(default)]
-    pub damping: Damping,
+    pub damping: DampingRatios,
     /// Number of modes to keep, lowest frequencies first; default: all up to 1e3 rad/s.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<u32>,
@@ -98,13 +98,13 @@ impl Panels {
     ///
     /// # Errors
     /// A number of panels or of sections that is zero, or more than 99 sections.
-    pub fn structure(&self) -> Result<Structure, Fault> {
+    pub fn structure(&self) -> Result<Structure, ConfigError> {
         let s = self.sections.len();
         if !(1..=MOST_SECTIONS).contains(&s) {
-            return Err(Fault::new("sections", format!("must be 1 to {MOST_SECTIONS}, got {s}")));
+            return Err(ConfigError::new("sections", format!("must be 1 to {MOST_SECTIONS}, got {s}")));
         }
         if self.count == 0 {
-            return Err(Fault::new("count", "must be 1 or more, got 0"));
+            return Err(ConfigError::new("count", "must be 1 or more, got 0"));
         }
         let count = f64::from(self.count);
         let mut mass = DMatrix::zeros(s + 1, s + 1);
@@ -144,7 +144,7 @@ impl Panels {
             }
             inner = outer;
         }
-        Structure::new(mass, stiffness, 0, None).map_err(|fault| too_far_apart(&fault.why))
+        Structure::new(mass, stiffness, 0, None).map_err(|fault| exceeds_precision(&fault.why))
     }
 
     /// Returns the exact chain, if the sections turn by any angles.
@@ -156,7 +156,7 @@ impl Panels {
 
     /// Computes the planar body with the modes of the structure. Its outputs are the angles phi_k of the sections
     /// relative to the hub (rad): `section_1`, `section_2` and so on.
-    pub fn solve(&self) -> Result<Planar, Fault> {
+    pub fn solve(&self) -> Result<Planar, ConfigError> {
         let structure = self.structure()?;
         let observed = |(index, section): (usize, &Section)| {
             let mut weights = vec![0.0; self.sections.len() + 1];
@@ -164,11 +164,11 @@ impl Panels {
             if index > 0 {
                 weights[index] = -1.0 / section.length.get();
             }
-            Observed { name: format!("section_{}", index + 1), unit: radians(), weights }
+            ObservedCoordinate { name: format!("section_{}", index + 1), unit: radians(), weights }
         };
         let outputs = self.sections.iter().enumerate().map(observed).collect();
         let Self { drive, damping, keep, angle, rate, .. } = self;
-        let reduction = Reduction {
+        let reduction = ModalReduction {
             drive: *drive,
             damping,
             damping_matrix: None,
@@ -179,13 +179,13 @@ impl Panels {
         };
         reduction.planar(&structure).map_err(|fault| match fault.key.as_str() {
             "damping" | "keep" => fault,
-            _ => too_far_apart(&fault.why),
+            _ => exceeds_precision(&fault.why),
         })
     }
 }
 
 /// Returns the fault of panels without modes, which occurs only if rounding removes some because the numbers differ by
 /// many orders of magnitude.
-fn too_far_apart(why: &str) -> Fault {
-    Fault::new("sections", format!("hold numbers that differ too much in size: the matrix {why}"))
+fn exceeds_precision(why: &str) -> ConfigError {
+    ConfigError::new("sections", format!("hold numbers that differ too much in size: the matrix {why}"))
 }

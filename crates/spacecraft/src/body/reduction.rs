@@ -6,37 +6,37 @@
 
 use nalgebra::DMatrix;
 
-use super::planar::HUB_FREE;
-use super::{Damping, Drive, Mode, Output, Planar};
-use crate::document::Fault;
+use super::one_axis::HUB_FREE;
+use super::{CommandedQuantity, DampingRatios, Mode, Output, Planar};
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Frequency, Positive};
 use crate::structure::{HubState, Structure, TOO_FAR_APART, eigenvalues};
 
 /// Settings of a modal reduction: damping, number of modes to keep, initial state and outputs.
-pub struct Reduction<'a> {
-    pub drive: Drive,
-    pub damping: &'a Damping,
+pub struct ModalReduction<'a> {
+    pub drive: CommandedQuantity,
+    pub damping: &'a DampingRatios,
     pub damping_matrix: Option<DMatrix<f64>>,
     pub keep: Option<u32>,
     pub angle: Finite,
     pub rate: Finite,
-    pub outputs: Vec<Observed>,
+    pub outputs: Vec<ObservedCoordinate>,
 }
 
 /// Observed coordinate: its name, its unit, and a weight for each coordinate of the structure.
-pub struct Observed {
+pub struct ObservedCoordinate {
     pub name: String,
     pub unit: String,
     pub weights: Vec<f64>,
 }
 
-impl Reduction<'_> {
+impl ModalReduction<'_> {
     /// Computes the planar body with the modes to keep.
-    pub fn planar(&self, structure: &Structure) -> Result<Planar, Fault> {
+    pub fn planar(&self, structure: &Structure) -> Result<Planar, ConfigError> {
         let mut weights: Vec<_> = self.outputs.iter().map(|output| output.weights.clone()).collect();
         if let Some(damping) = &self.damping_matrix {
-            if self.drive == Drive::Motion {
-                return Err(Fault::new("damping_matrix", HUB_FREE));
+            if self.drive == CommandedQuantity::Motion {
+                return Err(ConfigError::new("damping_matrix", HUB_FREE));
             }
             // Observe every coordinate, to get the complete shape of each mode.
             let order = damping.nrows();
@@ -44,8 +44,8 @@ impl Reduction<'_> {
             weights.extend((0..order).map(unit));
         }
         let hub = match self.drive {
-            Drive::Torque => HubState::Free,
-            Drive::Motion => HubState::Held,
+            CommandedQuantity::Torque => HubState::Free,
+            CommandedQuantity::Motion => HubState::Held,
         };
         let solved = structure.modes(hub, &weights)?;
         let within = |w: &&f64| **w <= Frequency::LARGEST;
@@ -56,26 +56,26 @@ impl Reduction<'_> {
                 "must be at most {resolved}, the number of modes up to {:e} rad/s, got {kept}",
                 Frequency::LARGEST
             );
-            return Err(Fault::new("keep", why));
+            return Err(ConfigError::new("keep", why));
         }
-        let damping = self.damping.of(kept).map_err(|why| Fault::new("damping", why))?;
+        let damping = self.damping.for_modes(kept).map_err(|why| ConfigError::new("damping", why))?;
         let inertia = solved.inertia;
         // Ratio of the body's modal displacement x_n to the structure's f_n.
         let scale = |n: usize| match self.drive {
-            Drive::Torque => solved.participations[n],
-            Drive::Motion => -solved.participations[n] / inertia,
+            CommandedQuantity::Torque => solved.participations[n],
+            CommandedQuantity::Motion => -solved.participations[n] / inertia,
         };
         let mut modes = Vec::with_capacity(kept);
         for (n, damping) in damping.into_iter().enumerate() {
             let w = solved.frequencies[n];
             let frequency = Frequency::new(w).ok_or_else(|| {
                 let why = format!("gives an elastic mode of {w:e} rad/s, and the lowest accepted has 1e-4");
-                Fault::new("stiffness", why)
+                ConfigError::new("stiffness", why)
             })?;
             let gain = finite(inertia * scale(n) * scale(n))?;
             modes.push(Mode::at_rest(frequency, gain, damping));
         }
-        let output = |(observed, (rigid, shape)): (&Observed, (&f64, &Vec<f64>))| {
+        let output = |(observed, (rigid, shape)): (&ObservedCoordinate, (&f64, &Vec<f64>))| {
             let weight = |n: usize| {
                 // A mode that the hub cannot excite stays at rest.
                 if modes[n].gain.get() == 0.0 { Ok(Finite::default()) } else { finite(shape[n] / scale(n)) }
@@ -84,11 +84,11 @@ impl Reduction<'_> {
                 name: observed.name.clone(),
                 unit: observed.unit.clone(),
                 rigid: finite(*rigid)?,
-                modes: (0..kept).map(weight).collect::<Result<_, Fault>>()?,
+                modes: (0..kept).map(weight).collect::<Result<_, ConfigError>>()?,
             })
         };
         let seen = solved.rigid.iter().zip(&solved.shapes);
-        let outputs = self.outputs.iter().zip(seen).map(output).collect::<Result<_, Fault>>()?;
+        let outputs = self.outputs.iter().zip(seen).map(output).collect::<Result<_, ConfigError>>()?;
         let damping_matrix = match &self.damping_matrix {
             Some(matrix) => coupled(matrix, &solved.shapes[self.outputs.len()..], kept, &scale)?,
             None => Vec::new(),
@@ -113,8 +113,8 @@ fn coupled(
     shapes: &[Vec<f64>],
     kept: usize,
     scale: &dyn Fn(usize) -> f64,
-) -> Result<Vec<Vec<Finite>>, Fault> {
-    let at = |why: String| Fault::new("damping_matrix", why);
+) -> Result<Vec<Vec<Finite>>, ConfigError> {
+    let at = |why: String| ConfigError::new("damping_matrix", why);
     let modes = DMatrix::from_fn(shapes.len(), kept, |i, n| shapes[i][n]);
     let damping = modes.tr_mul(&(matrix * &modes));
     let largest = damping.amax();
@@ -141,10 +141,10 @@ fn coupled(
     (0..kept).map(|n| (0..kept).map(|m| element(n, m)).collect()).collect()
 }
 
-fn finite(value: f64) -> Result<Finite, Fault> {
+fn finite(value: f64) -> Result<Finite, ConfigError> {
     Finite::new(value).ok_or_else(too_large)
 }
 
-fn too_large() -> Fault {
-    Fault::new("mass", TOO_FAR_APART)
+fn too_large() -> ConfigError {
+    ConfigError::new("mass", TOO_FAR_APART)
 }

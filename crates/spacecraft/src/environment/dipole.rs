@@ -8,9 +8,9 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::{Orbit, into};
+use super::orbit::{Orbit, to_body};
 use crate::attitude::{Attitude, Vector, vector};
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Positive};
 
 /// A magnetic moment in the field of a dipole.
@@ -44,7 +44,7 @@ fn is_zero(angle: &Finite) -> bool {
 
 /// Field of a dipole along the planet's axis, on a circular orbit.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub(super) struct Axial {
+pub(super) struct AxialDipole {
     strength: f64,
     inclination: f64,
     from_node: f64,
@@ -53,21 +53,21 @@ pub(super) struct Axial {
     orbit: Orbit,
 }
 
-impl Axial {
+impl AxialDipole {
     /// Returns the field in inertial axes (T) at a time since the start (s).
     pub fn at(&self, t: f64) -> Vector {
         let (across, along) = libm::sincos(self.inclination);
         let (sin, cos) = libm::sincos(self.from_node + self.rate * t);
         let local = Vector::new(cos * across, -along, 2.0 * sin * across) * self.strength;
-        self.orbit.inertial(t, &local)
+        self.orbit.to_inertial(t, &local)
     }
 }
 
 impl Dipole {
     /// Returns the dipole's own field, if its keys are given.
-    pub(super) fn own(&self) -> Option<Axial> {
+    pub(super) fn own_field(&self) -> Option<AxialDipole> {
         let (strength, inclination, rate) = (self.strength?, self.inclination?, self.orbit_rate?);
-        Some(Axial {
+        Some(AxialDipole {
             strength: strength.get(),
             inclination: inclination.get(),
             from_node: self.from_node.get(),
@@ -77,7 +77,7 @@ impl Dipole {
     }
 
     /// Returns the key and the reason, if the field is given twice or is missing.
-    pub(super) fn fault(&self, on_orbit: bool, in_field: bool) -> Option<Fault> {
+    pub(super) fn validate(&self, on_orbit: bool, in_field: bool) -> Option<ConfigError> {
         let given = [
             ("strength", self.strength.is_some()),
             ("inclination", self.inclination.is_some()),
@@ -87,18 +87,18 @@ impl Dipole {
             let beside =
                 [("from_node", self.from_node != Finite::ZERO), ("local", !self.local.is_identity())];
             if let Some((key, _)) = given.into_iter().chain(beside).find(|(_, given)| *given) {
-                return Some(Fault::new(key, "follows from the environment's `orbit`: leave it out"));
+                return Some(ConfigError::new(key, "follows from the environment's `orbit`: leave it out"));
             }
             let why = "needs a field: give the environment a `magnetic_field`";
-            return (!in_field).then(|| Fault::new("moment", why));
+            return (!in_field).then(|| ConfigError::new("moment", why));
         }
         let (key, _) = given.into_iter().find(|(_, given)| !given)?;
-        Some(Fault::new(key, "must be given where the environment has no `orbit`"))
+        Some(ConfigError::new(key, "must be given where the environment has no `orbit`"))
     }
 
     /// Returns the torque in the body's axes (N m) of a field in inertial axes (T).
     pub(super) fn torque(&self, field: &Vector, attitude: &Quaternion<f64>) -> Vector {
-        vector(&self.moment).cross(&into(attitude, field))
+        vector(&self.moment).cross(&to_body(attitude, field))
     }
 
     /// Returns an upper bound of the torque (N m), in the dipole's own field or in one of strength `field` (T) at most.

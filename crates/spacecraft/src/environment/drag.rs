@@ -7,10 +7,10 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::into;
+use super::orbit::to_body;
 use super::{Kepler, OrbitPosition};
 use crate::attitude::{Vector, vector};
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Positive};
 
 /// Drag of the atmosphere.
@@ -29,13 +29,14 @@ pub struct Drag {
     #[serde(default = "rotation")]
     pub rotation: Finite,
     /// The plates.
-    pub plates: Vec<Plate>,
+    pub plates: Vec<DragPlate>,
 }
 
 /// A plate; drag acts on one side of it.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Plate {
+#[schemars(rename = "Plate")]
+pub struct DragPlate {
     /// Area (m²).
     pub area: Positive,
     /// Outward normal in the body's axes, of any length.
@@ -54,13 +55,13 @@ fn rotation() -> Finite {
 
 impl Drag {
     /// Returns an inconsistency between values: a key within the drag, and the reason.
-    pub(super) fn fault(&self, on_orbit: bool) -> Option<Fault> {
+    pub(super) fn fault(&self, on_orbit: bool) -> Option<ConfigError> {
         if !on_orbit {
-            return Some(Fault::new("", "needs an `orbit`, and there is none"));
+            return Some(ConfigError::new("", "needs an `orbit`, and there is none"));
         }
-        let flat = |plate: &Plate| plate.normal.iter().all(|part| part.get() == 0.0);
+        let flat = |plate: &DragPlate| plate.normal.iter().all(|part| part.get() == 0.0);
         let index = self.plates.iter().position(flat)?;
-        Some(Fault::new(format!("plates[{index}].normal"), "must not be zero, got [0, 0, 0]"))
+        Some(ConfigError::new(format!("plates[{index}].normal"), "must not be zero, got [0, 0, 0]"))
     }
 
     /// Returns the density at a distance from the planet's centre (m), in kg/m³.
@@ -79,7 +80,7 @@ impl Drag {
         centre: &Vector,
     ) -> Vector {
         let carried = Vector::z().cross(&place.position) * self.rotation.get();
-        let flow = into(attitude, &(place.velocity - carried));
+        let flow = to_body(attitude, &(place.velocity - carried));
         let factor = -0.5 * self.coefficient.get() * self.density_at(place.position.norm(), orbit);
         self.plates.iter().fold(Vector::zeros(), |sum, plate| {
             let met = vector(&plate.normal).normalize().dot(&flow).max(0.0) * plate.area.get();
@@ -92,7 +93,7 @@ impl Drag {
         let nearest = orbit.nearest();
         let speed = nearest * (orbit.fastest() + self.rotation.get().abs());
         let factor = 0.5 * self.coefficient.get() * self.density_at(nearest, orbit) * speed * speed;
-        let arm = |plate: &Plate| plate.area.get() * (vector(&plate.at) - centre).norm();
+        let arm = |plate: &DragPlate| plate.area.get() * (vector(&plate.at) - centre).norm();
         factor * self.plates.iter().map(arm).sum::<f64>()
     }
 }

@@ -8,10 +8,10 @@ use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::{Orbit, into};
-use super::{OrbitPosition, Sky};
+use super::orbit::{Orbit, to_body};
+use super::{OrbitEnvironment, OrbitPosition};
 use crate::attitude::{Attitude, Vector};
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::Positive;
 
 /// Gravity gradient.
@@ -29,18 +29,18 @@ pub struct GravityGradient {
 
 impl GravityGradient {
     /// Returns the key and the reason, if the orbit is given twice or is missing.
-    pub(super) fn fault(&self, on_orbit: bool) -> Option<Fault> {
+    pub(super) fn fault(&self, on_orbit: bool) -> Option<ConfigError> {
         if !on_orbit {
             let why = "must be given where the environment has no `orbit`";
-            return self.orbit_rate.is_none().then(|| Fault::new("orbit_rate", why));
+            return self.orbit_rate.is_none().then(|| ConfigError::new("orbit_rate", why));
         }
         let twice = [("orbit_rate", self.orbit_rate.is_some()), ("local", !self.local.is_identity())];
         let key = twice.into_iter().find(|(_, given)| *given)?.0;
-        Some(Fault::new(key, "follows from the environment's `orbit`: leave it out"))
+        Some(ConfigError::new(key, "follows from the environment's `orbit`: leave it out"))
     }
 
     /// Returns the direction to the planet in the axes of a body of the given attitude, and n² or mu/R³ (1/s²).
-    pub(super) fn pull(
+    pub(super) fn direction_and_strength(
         &self,
         t: f64,
         attitude: &Quaternion<f64>,
@@ -48,7 +48,7 @@ impl GravityGradient {
     ) -> (Vector, f64) {
         match (self.orbit_rate, place) {
             (Some(rate), _) => (Orbit::new(rate, self.local).nadir(t, attitude), rate.get() * rate.get()),
-            (None, Some(place)) => (into(attitude, &place.local[2]), place.tide),
+            (None, Some(place)) => (to_body(attitude, &place.local[2]), place.tide),
             (None, None) => (Vector::zeros(), 0.0),
         }
     }
@@ -59,12 +59,12 @@ impl GravityGradient {
     }
 
     /// Returns the tensor (1/s²) whose element-wise product with J1, summed, is the force on a mode.
-    pub(super) fn tide((nadir, tide): (Vector, f64)) -> Matrix3<f64> {
+    pub(super) fn modal_tensor((nadir, tide): (Vector, f64)) -> Matrix3<f64> {
         (Matrix3::identity() - nadir * nadir.transpose() * 3.0) * (0.5 * tide)
     }
 
     /// Returns an upper bound of the torque on a body of this inertia (N m).
-    pub(super) fn bound(&self, inertia: &Matrix3<f64>, sky: &Sky) -> f64 {
+    pub(super) fn bound(&self, inertia: &Matrix3<f64>, sky: &OrbitEnvironment) -> f64 {
         let on_orbit = sky.orbit().map_or(0.0, |orbit| {
             let nearest = orbit.nearest();
             orbit.gravity.get() / (nearest * nearest * nearest)

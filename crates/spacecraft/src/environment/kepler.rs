@@ -11,7 +11,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::Vector;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Positive};
 
 /// A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation.
@@ -70,10 +70,10 @@ pub struct OrbitPosition {
 
 impl Kepler {
     /// Returns an inconsistency between values: a key within the orbit, and the reason.
-    pub(super) fn fault(&self) -> Option<Fault> {
+    pub(super) fn fault(&self) -> Option<ConfigError> {
         let (e, planet) = (self.eccentricity.get(), self.planet_radius.get());
         if e >= 1.0 {
-            return Some(Fault::new("eccentricity", format!("must be below 1, got {e}")));
+            return Some(ConfigError::new("eccentricity", format!("must be below 1, got {e}")));
         }
         let nearest = self.nearest();
         (nearest <= planet).then(|| {
@@ -81,7 +81,7 @@ impl Kepler {
                 "must keep the perigee, at {nearest} m, above the planet's radius of {planet} m, got {}",
                 self.semi_major_axis.get()
             );
-            Fault::new("semi_major_axis", why)
+            ConfigError::new("semi_major_axis", why)
         })
     }
 

@@ -1,6 +1,5 @@
 //! Environment of a three-axis body: torques that depend on attitude and time.
 
-mod around;
 mod date;
 mod dipole;
 mod drag;
@@ -8,28 +7,29 @@ mod gravity_gradient;
 mod kepler;
 mod magnetic_field;
 mod orbit;
-mod sky;
+mod orbit_environment;
 mod solar_pressure;
 mod sun;
+mod surroundings;
 #[cfg(test)]
 mod tests;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::Finite;
 
-pub use around::Around;
 pub use dipole::Dipole;
-pub use drag::{Drag, Plate};
+pub use drag::{Drag, DragPlate};
 pub use gravity_gradient::GravityGradient;
 pub use kepler::{Kepler, OrbitPosition};
 pub use magnetic_field::MagneticField;
-pub use orbit::into;
-pub use sky::{Sky, SkySight};
-pub use solar_pressure::{LitPlate, SolarPressure};
+pub use orbit::to_body;
+pub use orbit_environment::{EnvironmentObservation, OrbitEnvironment};
+pub use solar_pressure::{SolarPlate, SolarPressure};
 pub use sun::Sun;
+pub use surroundings::SurroundingsState;
 
 /// The environment of a body with three axes. Its torques add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -63,15 +63,15 @@ pub struct Environment {
 
 impl Environment {
     /// Returns an inconsistency between values: a key within the environment, and the reason.
-    pub fn fault(&self) -> Option<Fault> {
+    pub fn fault(&self) -> Option<ConfigError> {
         if let Some(fault) = self.orbit.as_ref().and_then(Kepler::fault) {
             return Some(fault.within("orbit"));
         }
-        if self.sun.is_some_and(|sun| sun.is_nowhere()) {
-            return Some(Fault::new("sun", "must not be zero, got [0, 0, 0]"));
+        if self.sun.is_some_and(|sun| sun.has_no_direction()) {
+            return Some(ConfigError::new("sun", "must not be zero, got [0, 0, 0]"));
         }
         if self.magnetic_field.is_some() && self.orbit.is_none() {
-            return Some(Fault::new("magnetic_field", "needs an `orbit`, and there is none"));
+            return Some(ConfigError::new("magnetic_field", "needs an `orbit`, and there is none"));
         }
         if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
             return Some(fault.within("drag"));
@@ -81,23 +81,24 @@ impl Environment {
     }
 
     /// Returns the key and the reason, if an orbit is given twice or is missing.
-    fn orbit_fault(&self) -> Option<Fault> {
+    fn orbit_fault(&self) -> Option<ConfigError> {
         let (gradient, dipole) = (self.gravity_gradient.as_ref(), self.dipole.as_ref());
         if let Some(fault) = gradient.and_then(|gradient| gradient.fault(self.orbit.is_some())) {
             return Some(fault.within("gravity_gradient"));
         }
         let dipole = dipole?;
-        if let Some(fault) = dipole.fault(self.orbit.is_some(), self.magnetic_field.is_some()) {
+        if let Some(fault) = dipole.validate(self.orbit.is_some(), self.magnetic_field.is_some()) {
             return Some(fault.within("dipole"));
         }
-        let gradient = gradient.filter(|_| dipole.own().is_some())?;
+        let gradient = gradient.filter(|_| dipole.own_field().is_some())?;
         if let (Some(own), Some(other)) = (dipole.orbit_rate, gradient.orbit_rate)
             && own != other
         {
             let why = format!("must be that of `gravity_gradient`, {} rad/s, got {}", other.get(), own.get());
-            return Some(Fault::new("dipole.orbit_rate", why));
+            return Some(ConfigError::new("dipole.orbit_rate", why));
         }
-        (dipole.local != gradient.local)
-            .then(|| Fault::new("dipole.local", "must be that of `gravity_gradient`: there is one orbit"))
+        (dipole.local != gradient.local).then(|| {
+            ConfigError::new("dipole.local", "must be that of `gravity_gradient`: there is one orbit")
+        })
     }
 }

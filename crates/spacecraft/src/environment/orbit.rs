@@ -24,20 +24,20 @@ impl Orbit {
     }
 
     /// Returns a vector of the local axes at `t` seconds after the start, in inertial axes.
-    pub fn inertial(&self, t: f64, v: &Vector) -> Vector {
+    pub fn to_inertial(self, t: f64, v: &Vector) -> Vector {
         let (sin, cos) = libm::sincos(self.rate * t);
         let at_start = Vector::new(cos * v.x - sin * v.z, v.y, sin * v.x + cos * v.z);
-        into(&self.start.conjugate(), &at_start)
+        to_body(&self.start.conjugate(), &at_start)
     }
 
     /// Returns the direction to the planet's centre in the axes of a body of the given attitude.
     pub fn nadir(&self, t: f64, attitude: &Quaternion<f64>) -> Vector {
-        into(attitude, &self.inertial(t, &Vector::z()))
+        to_body(attitude, &self.to_inertial(t, &Vector::z()))
     }
 }
 
 /// Transforms an inertial vector to the body's axes; the attitude quaternion need not have length 1.
-pub fn into(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
+pub fn to_body(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
     let turned = attitude.conjugate() * Quaternion::from_imag(*v) * attitude;
     turned.vector() / attitude.norm_squared()
 }

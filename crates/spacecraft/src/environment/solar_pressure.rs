@@ -9,9 +9,9 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::orbit::into;
+use super::orbit::to_body;
 use crate::attitude::{Vector, vector};
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Positive, Time};
 use crate::time::{Instant, Span};
 
@@ -27,7 +27,7 @@ pub struct SolarPressure {
     pub at: Option<[Finite; 3]>,
     /// Plates that sunlight presses on.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub plates: Vec<LitPlate>,
+    pub plates: Vec<SolarPlate>,
     /// Pressure of sunlight on the plates (N/m²); default: that at 1 au.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub pressure: Option<Positive>,
@@ -39,7 +39,8 @@ pub struct SolarPressure {
 /// A plate; sunlight presses on one side of it.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct LitPlate {
+#[schemars(rename = "LitPlate")]
+pub struct SolarPlate {
     /// Area (m²).
     pub area: Positive,
     /// Outward normal in the body's axes, of any length.
@@ -69,38 +70,44 @@ impl SolarPressure {
     }
 
     /// Returns an inconsistency between values, with or without a Sun: a key within the pressure, and the reason.
-    pub(super) fn fault(&self, has_sun: bool) -> Option<Fault> {
+    pub(super) fn fault(&self, has_sun: bool) -> Option<ConfigError> {
         let alone = self.plates.is_empty();
         for (key, given) in [("force", self.force.is_some()), ("at", self.at.is_some())] {
             if alone && !given {
-                return Some(Fault::new(key, "must be given where there are no `plates`"));
+                return Some(ConfigError::new(key, "must be given where there are no `plates`"));
             }
             if !alone && given {
-                return Some(Fault::new(key, "is for sunlight without `plates`: leave one of them out"));
+                return Some(ConfigError::new(
+                    key,
+                    "is for sunlight without `plates`: leave one of them out",
+                ));
             }
         }
         if alone && self.pressure.is_some() {
-            return Some(Fault::new("pressure", "is that on `plates`, and there are none"));
+            return Some(ConfigError::new("pressure", "is that on `plates`, and there are none"));
         }
         if !alone && !has_sun {
-            return Some(Fault::new("plates", "need `environment.sun`, the direction that they face or not"));
+            return Some(ConfigError::new(
+                "plates",
+                "need `environment.sun`, the direction that they face or not",
+            ));
         }
-        if let Some(fault) = self.plates.iter().enumerate().find_map(LitPlate::fault) {
+        if let Some(fault) = self.plates.iter().enumerate().find_map(SolarPlate::fault) {
             return Some(fault);
         }
         let index = self.shadow.iter().position(|[from, to]| from >= to)?;
         let [from, to] = self.shadow[index].map(Time::get);
         let why = format!("must be [from, to] (s) with `to` later than `from`, got [{from}, {to}]");
-        Some(Fault::new(format!("shadow[{index}]"), why))
+        Some(ConfigError::new(format!("shadow[{index}]"), why))
     }
 
     /// Returns the torque in sunlight about the centre of mass `centre` (m) on a body of the given attitude, in its
     /// axes (N m); `sun` is the direction to the Sun in inertial axes.
     pub(super) fn torque(&self, attitude: &Quaternion<f64>, sun: Option<&Vector>, centre: &Vector) -> Vector {
         if let (Some(force), Some(at)) = (&self.force, &self.at) {
-            return (vector(at) - centre).cross(&into(attitude, &vector(force)));
+            return (vector(at) - centre).cross(&to_body(attitude, &vector(force)));
         }
-        let Some(sun) = sun.map(|sun| into(attitude, sun)) else { return Vector::zeros() };
+        let Some(sun) = sun.map(|sun| to_body(attitude, sun)) else { return Vector::zeros() };
         let pressure = self.pressure();
         self.plates.iter().fold(Vector::zeros(), |sum, plate| {
             sum + (vector(&plate.at) - centre).cross(&(plate.force(&sun) * pressure))
@@ -112,7 +119,7 @@ impl SolarPressure {
         if let (Some(force), Some(at)) = (&self.force, &self.at) {
             return vector(force).norm() * (vector(at) - centre).norm();
         }
-        let most = |plate: &LitPlate| {
+        let most = |plate: &SolarPlate| {
             let part = 1.0 + plate.specular.get() + 2.0 / 3.0 * plate.diffuse.get();
             part * plate.area.get() * (vector(&plate.at) - centre).norm()
         };
@@ -124,14 +131,17 @@ impl SolarPressure {
     }
 }
 
-impl LitPlate {
-    fn fault((index, plate): (usize, &Self)) -> Option<Fault> {
+impl SolarPlate {
+    fn fault((index, plate): (usize, &Self)) -> Option<ConfigError> {
         if plate.normal.iter().all(|part| part.get() == 0.0) {
-            return Some(Fault::new(format!("plates[{index}].normal"), "must not be zero, got [0, 0, 0]"));
+            return Some(ConfigError::new(
+                format!("plates[{index}].normal"),
+                "must not be zero, got [0, 0, 0]",
+            ));
         }
         let reflected = plate.specular.get() + plate.diffuse.get();
         let why = || format!("and `diffuse` must be at most 1 together, got {reflected}");
-        (reflected > 1.0).then(|| Fault::new(format!("plates[{index}].specular"), why()))
+        (reflected > 1.0).then(|| ConfigError::new(format!("plates[{index}].specular"), why()))
     }
 
     /// Returns the force per unit of pressure (m²); `sun` is the direction to the Sun in the body's axes.

@@ -34,7 +34,7 @@ impl Sun {
     }
 
     /// Returns true if the direction is the zero vector.
-    pub fn is_nowhere(&self) -> bool {
+    pub fn has_no_direction(&self) -> bool {
         matches!(self, Self::Towards(direction) if direction.iter().all(|part| part.get() == 0.0))
     }
 }
@@ -62,8 +62,8 @@ impl Serialize for Sun {
 
 impl<'de> Deserialize<'de> for Sun {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
-        struct Either;
-        impl<'de> Visitor<'de> for Either {
+        struct SunSpec;
+        impl<'de> Visitor<'de> for SunSpec {
             type Value = Sun;
 
             fn expecting(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -79,7 +79,7 @@ impl<'de> Deserialize<'de> for Sun {
                 <[Finite; 3]>::deserialize(SeqAccessDeserializer::new(seq)).map(Sun::Towards)
             }
         }
-        deserializer.deserialize_any(Either)
+        deserializer.deserialize_any(SunSpec)
     }
 }
 

@@ -5,11 +5,11 @@ use std::f64::consts::FRAC_PI_2;
 
 use nalgebra::{Matrix3, Quaternion};
 
-use super::{Around, Environment, Sky};
+use super::{Environment, OrbitEnvironment, SurroundingsState};
 use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::body::Spatial;
-use crate::flow::{Rigid, RigidTurn};
-use crate::motion::turning::{Acting, Flexible, FreeMode, Rotor, Surroundings, Turning};
+use crate::flow::{RigidBody, RigidState};
+use crate::motion::three_axis::{FlexibleBody, FreeMode, Rotor, SegmentLoads, Surroundings, ThreeAxisMotion};
 use crate::time::{Instant, Span};
 
 type Never = std::convert::Infallible;
@@ -22,26 +22,31 @@ fn upright() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector::new(1100.0, 1400.0, 500.0))
 }
 
-fn around(text: &str, inertia: &Matrix3<f64>) -> Around {
+fn around(text: &str, inertia: &Matrix3<f64>) -> SurroundingsState {
     let environment: Environment = crate::document::from_text(text).expect("an environment");
-    let sky = Sky::new(&environment, Span::from_seconds(1e5), None);
-    Around::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
+    let sky = OrbitEnvironment::new(&environment, Span::from_seconds(1e5), None);
+    SurroundingsState::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
 }
 
 /// Rigid body in an environment, whose motion is restarted every 20 s as in a plant.
 struct One {
-    rigid: Rigid,
-    turn: RigidTurn,
-    around: Around,
+    rigid: RigidBody,
+    turn: RigidState,
+    around: SurroundingsState,
     t: f64,
 }
 
 impl One {
-    fn new(inertia: &Matrix3<f64>, around: Around, attitude: Quaternion<f64>, rate: Vector) -> Self {
+    fn new(
+        inertia: &Matrix3<f64>,
+        around: SurroundingsState,
+        attitude: Quaternion<f64>,
+        rate: Vector,
+    ) -> Self {
         let rows = (0..3).map(|row| format!("{:?}", inertia.row(row).iter().collect::<Vec<_>>()));
         let text = format!("inertia = [{}]", rows.collect::<Vec<_>>().join(", "));
         let body: Spatial = crate::document::from_text(&text).expect("a body");
-        let rigid = Rigid::new(&body);
+        let rigid = RigidBody::new(&body);
         Self { turn: rigid.start(attitude, rate), rigid, around, t: 0.0 }
     }
 
@@ -67,7 +72,7 @@ fn local(t: f64) -> Quaternion<f64> {
 /// Returns roll, pitch and yaw of a body relative to the local axes, and its rate relative to theirs.
 fn libration(body: &One) -> (Vector, Vector) {
     let attitude = body.turn.attitude;
-    let normal = super::orbit::into(&attitude, &Vector::new(0.0, -RATE, 0.0));
+    let normal = super::orbit::to_body(&attitude, &Vector::new(0.0, -RATE, 0.0));
     (rotation_vector(&local(body.t), &attitude), body.rigid.rate(&body.turn) - normal)
 }
 
@@ -131,7 +136,7 @@ fn roll_and_yaw_swing_with_the_roots_of_the_quartic() {
     let inertia = upright();
     let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
     let start = rotation(&Vector::new(1e-6, 0.0, -5e-7));
-    let normal = super::orbit::into(&start, &Vector::new(0.0, -RATE, 0.0));
+    let normal = super::orbit::to_body(&start, &Vector::new(0.0, -RATE, 0.0));
     let mut body = One::new(&inertia, around, start, normal);
     // Samples of two harmonics obey x[2] + x[-2] - a (x[1] + x[-1]) + b x[0] = 0 with a = 2 (c1 + c2), b = 2 + 4 c1 c2.
     let period = 900.0;
@@ -170,8 +175,8 @@ fn integral(
     t: f64,
 ) -> f64 {
     let nadir = Vector::new(-libm::sin(RATE * t), 0.0, libm::cos(RATE * t));
-    let nadir = super::orbit::into(attitude, &nadir);
-    let normal = super::orbit::into(attitude, &Vector::new(0.0, -RATE, 0.0));
+    let nadir = super::orbit::to_body(attitude, &nadir);
+    let normal = super::orbit::to_body(attitude, &Vector::new(0.0, -RATE, 0.0));
     let gravity = RATE * RATE * (1.5 * nadir.dot(&(inertia * nadir)) - 0.5 * inertia.trace());
     energy + gravity - normal.dot(momentum)
 }
@@ -183,28 +188,28 @@ fn a_rigid_body_keeps_its_energy_in_the_axes_of_the_orbit() {
     let mut body =
         One::new(&inertia, around, rotation(&Vector::new(0.9, -0.4, 1.3)), Vector::new(4e-3, 1e-3, -2e-3));
     let of = |body: &One| {
-        let (energy, momentum) = (body.rigid.energy(&body.turn), Rigid::momentum(&body.turn));
+        let (energy, momentum) = (body.rigid.energy(&body.turn), RigidBody::momentum(&body.turn));
         integral(energy, &body.turn.attitude, &momentum, &inertia, body.t)
     };
-    let (before, momentum) = (of(&body), Rigid::momentum(&body.turn));
+    let (before, momentum) = (of(&body), RigidBody::momentum(&body.turn));
     for k in 1..=20 {
         body.go(1000.0 * f64::from(k));
         let scale = body.rigid.energy(&body.turn);
         assert!((of(&body) - before).abs() < 1e-14 * scale, "{k} {:e}", (of(&body) - before) / scale);
     }
     // Check that gravity did turn the body.
-    let turned = Rigid::momentum(&body.turn).norm() / momentum.norm() - 1.0;
+    let turned = RigidBody::momentum(&body.turn).norm() / momentum.norm() - 1.0;
     assert!(turned.abs() > 1e-2, "{turned}");
 }
 
 /// Returns two modes with first moments and rotations as of panels, and a weakly coupled one that makes steps short.
-fn flexible() -> Flexible {
+fn flexible() -> FlexibleBody {
     let mode = |frequency: f64, rotation: [f64; 3], moments: [f64; 6]| {
         let [xx, yy, zz, yz, zx, xy] = moments;
         let moments = Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz);
         FreeMode { frequency, damping: 0.0, rotation: rotation.into(), moments }
     };
-    Flexible {
+    FlexibleBody {
         inertia: Matrix3::new(1112.5, 6.0, 0.6, 6.0, 311.9, 4.9, 0.6, 4.9, 1089.3),
         modes: vec![
             mode(0.115, [0.02, -1e-3, -0.01], [0.7, 0.5, -0.2, -18.0, 0.1, -8.4]),
@@ -220,13 +225,14 @@ fn a_bent_body_keeps_its_energy_in_the_axes_of_the_orbit() {
     let body = flexible();
     let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &body.inertia);
     let start = rotation(&Vector::new(0.9, -0.4, 1.3));
-    let mut turning = Turning::new(&body, start, Vector::new(4e-3, 1e-3, -2e-3), &[[0.5, 0.0], [0.0, 0.02]]);
+    let mut turning =
+        ThreeAxisMotion::new(&body, start, Vector::new(4e-3, 1e-3, -2e-3), &[[0.5, 0.0], [0.0, 0.02]]);
     let momentum = 2.0;
-    turning.depart(&Acting {
+    turning.depart(&SegmentLoads {
         rotors: vec![Rotor { axis: Vector::new(0.6, 0.0, 0.8), momentum, torque: 0.0 }],
-        ..Acting::default()
+        ..SegmentLoads::default()
     });
-    let of = |turning: &Turning, t: f64| {
+    let of = |turning: &ThreeAxisMotion, t: f64| {
         let seen = turning.seen();
         let energy = seen.rotational + turning.energies().sum::<f64>();
         let energy = integral(energy, &seen.attitude, &seen.momentum, &turning.inertia(), t);
@@ -249,17 +255,17 @@ fn a_torque_that_is_constant_in_inertial_axes_adds_to_the_momentum_as_time_does(
     let start = rotation(&Vector::new(0.3, 1.0, -0.5));
     let mut body = One::new(&inertia, around(text, &inertia), start, rate);
     let in_space =
-        |attitude: Quaternion<f64>, momentum: Vector| super::orbit::into(&attitude.conjugate(), &momentum);
+        |attitude: Quaternion<f64>, momentum: Vector| super::orbit::to_body(&attitude.conjugate(), &momentum);
     let before = in_space(start, inertia * rate);
     for t in [100.0, 1000.0, 3000.0] {
         body.go(t);
-        let now = in_space(body.turn.attitude, Rigid::momentum(&body.turn));
+        let now = in_space(body.turn.attitude, RigidBody::momentum(&body.turn));
         let off = (now - before - torque * t).norm() / now.norm();
         assert!(off < 1e-14, "{t} {off:e}");
     }
     let (body, start) = (flexible(), Quaternion::identity());
     let around = around(text, &body.inertia);
-    let mut turning = Turning::new(&body, start, rate, &[[0.5, 0.0], [0.0, 0.02]]);
+    let mut turning = ThreeAxisMotion::new(&body, start, rate, &[[0.5, 0.0], [0.0, 0.02]]);
     let seen = turning.seen();
     let before = in_space(seen.attitude, seen.momentum);
     for t in [100.0, 1000.0, 3000.0] {
@@ -292,11 +298,11 @@ fn the_field_is_that_of_a_dipole_along_the_axis() {
         let from = up(node + RATE * t);
         let south = -Vector::z();
         let field = (from * (3.0 * south.dot(&from)) - south) * strength;
-        let field_at = dipole.own().expect("a field").at(t);
+        let field_at = dipole.own_field().expect("a field").at(t);
         let found = axes * field_at;
         assert!((found - field).norm() < 1e-14 * strength, "{t} {found} {field}");
         let attitude = rotation(&Vector::new(0.2, 0.4, -1.0));
-        let body = super::orbit::into(&attitude, &field_at);
+        let body = super::orbit::to_body(&attitude, &field_at);
         let torque = around(&text, &upright()).torque(t, &attitude, &upright());
         assert!((torque - Vector::new(1.0, -2.0, 0.5).cross(&body)).norm() < 1e-20);
         assert!(torque.norm() <= dipole.bound(0.0));
@@ -308,8 +314,8 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let text = "solar_pressure = { force = [1e-4, 0.0, 0.0], at = [0.1, 0.5, 0.0], shadow = [[10.0, 20.0]] }";
     let environment: Environment = crate::document::from_text(text).expect("an environment");
     let centre = Vector::new(0.1, 0.3, 0.0);
-    let sky = Sky::new(&environment, Span::from_seconds(100.0), None);
-    let around = Around::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);
+    let sky = OrbitEnvironment::new(&environment, Span::from_seconds(100.0), None);
+    let around = SurroundingsState::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);
     let at = |t: f64| around.torque(t, &Quaternion::identity(), &upright());
     let pushed = Vector::new(0.0, 0.0, -0.2e-4);
     assert!((at(0.0) - pushed).norm() < 1e-19 && (at(20.0) - pushed).norm() < 1e-19);
@@ -317,5 +323,5 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     // On a body turned by a quarter about z the force acts along its -y axis, where it has no arm.
     let quarter = rotation(&Vector::new(0.0, 0.0, FRAC_PI_2));
     assert!(around.torque(0.0, &quarter, &upright()).norm() < 1e-19);
-    assert!(around.edges().map(Instant::seconds).eq([10.0, 20.0]));
+    assert!(around.change_times().map(Instant::seconds).eq([10.0, 20.0]));
 }

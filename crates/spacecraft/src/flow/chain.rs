@@ -2,20 +2,20 @@
 
 use nalgebra::DVector;
 
-use super::forced::{Forced, ForcedInput};
+use super::waveform_response::{ActiveWaveform, SegmentInput};
 use crate::body::Chain;
-use crate::motion::stretch::{Expansion, REACH};
-use crate::motion::{Sensed, State};
+use crate::motion::polynomial_piece::{REACH, SeriesExpansion};
+use crate::motion::{AngleObservation, AxisState};
 use crate::numerics::extrapolation::{RightHandSide, Trajectory};
 use crate::numerics::polynomial::{Series, TERMS};
 
 /// Equations of motion of a chain under one input.
-struct Driven<'a> {
+struct ChainEquations<'a> {
     chain: &'a Chain,
-    input: &'a ForcedInput,
+    input: &'a SegmentInput,
 }
 
-impl Driven<'_> {
+impl ChainEquations<'_> {
     /// Returns the accelerations of all angles (rad/s²) at `t` seconds after the input began.
     fn acceleration(&self, t: f64, y: &[f64]) -> DVector<f64> {
         let Chain { inertia, stiffness, damping, .. } = self.chain;
@@ -40,7 +40,7 @@ impl Driven<'_> {
     }
 }
 
-impl RightHandSide for Driven<'_> {
+impl RightHandSide for ChainEquations<'_> {
     fn rate(&self, t: f64, y: &[f64], rate: &mut [f64]) {
         let n = y.len() / 2;
         rate[..n].copy_from_slice(&y[n..]);
@@ -52,7 +52,7 @@ impl RightHandSide for Driven<'_> {
 #[derive(Clone, Debug)]
 pub struct ChainMotion {
     chain: Chain,
-    input: ForcedInput,
+    input: SegmentInput,
     /// Trajectory of angles and rates.
     trajectory: Trajectory,
     /// Angles and rates at departure.
@@ -64,50 +64,50 @@ impl ChainMotion {
     pub fn new(chain: &Chain, angle: f64, rate: f64) -> Self {
         let step = 0.05 / chain.frequencies.iter().copied().fold(1e-3, f64::max);
         let trajectory = Trajectory::new(chain.tolerance, chain.start(angle, rate), step);
-        let start = trajectory.here().to_vec();
-        Self { chain: chain.clone(), input: ForcedInput::default(), trajectory, start }
+        let start = trajectory.current().to_vec();
+        Self { chain: chain.clone(), input: SegmentInput::default(), trajectory, start }
     }
 
     /// Begins a motion under another input, from the current state.
-    pub fn depart(&mut self, input: &ForcedInput) {
+    pub fn depart(&mut self, input: &SegmentInput) {
         self.input = input.clone();
         self.trajectory.depart();
-        self.start.copy_from_slice(self.trajectory.here());
+        self.start.copy_from_slice(self.trajectory.current());
     }
 
     /// Advances by one integration step towards `h` seconds after departure; returns true if that time is reached.
     pub fn approach(&mut self, h: f64) -> bool {
-        self.trajectory.approach(&Driven { chain: &self.chain, input: &self.input }, h)
+        self.trajectory.step_towards(&ChainEquations { chain: &self.chain, input: &self.input }, h)
     }
 
     /// Writes the state at `h` seconds after departure, which must not precede an earlier request; returns the hub's
     /// motion as a sensor measures it.
-    pub fn at(&mut self, h: f64, state: &mut State) -> Sensed {
-        self.trajectory.at(&Driven { chain: &self.chain, input: &self.input }, h);
+    pub fn at(&mut self, h: f64, state: &mut AxisState) -> AngleObservation {
+        self.trajectory.at(&ChainEquations { chain: &self.chain, input: &self.input }, h);
         self.see(h, state)
     }
 
-    fn see(&self, h: f64, state: &mut State) -> Sensed {
+    fn see(&self, h: f64, state: &mut AxisState) -> AngleObservation {
         let n = self.chain.inertia.nrows();
-        let (angle, rate) = self.trajectory.here().split_at(n);
+        let (angle, rate) = self.trajectory.current().split_at(n);
         let modal = &self.chain.modal * DVector::from_column_slice(angle);
         let modal_rate = &self.chain.modal * DVector::from_column_slice(rate);
         (state.rigid_angle, state.rigid_rate) = (modal[0], modal_rate[0]);
         for (index, (phase, w)) in state.modes.iter_mut().zip(&self.chain.frequencies).enumerate() {
             (phase.displacement, phase.quadrature) = (modal[index + 1], modal_rate[index + 1] / w);
         }
-        let driven = Driven { chain: &self.chain, input: &self.input };
-        Sensed {
+        let driven = ChainEquations { chain: &self.chain, input: &self.input };
+        AngleObservation {
             angle: angle[0],
             rate: rate[0],
-            acceleration: driven.acceleration(h, self.trajectory.here())[0],
+            acceleration: driven.acceleration(h, self.trajectory.current())[0],
         }
     }
 
     /// Returns value and rate of each output: the angle of each section relative to the hub.
     pub fn outputs(&self) -> impl Iterator<Item = (f64, f64)> + '_ {
         let n = self.chain.inertia.nrows();
-        let y = self.trajectory.here();
+        let y = self.trajectory.current();
         (1..n).map(move |k| (y[k] - y[0], y[n + k] - y[n]))
     }
 
@@ -117,21 +117,21 @@ impl ChainMotion {
     }
 
     /// Returns the Taylor expansion of the motion from its departure on.
-    pub fn unfold(&self) -> Flown<'_> {
+    pub fn expansion(&self) -> ChainExpansion<'_> {
         let (angles, rates) = self.start.split_at(self.chain.inertia.nrows());
         let begin = |(angle, rate): (&f64, &f64)| {
             let mut series = [0.0; TERMS];
             (series[0], series[1]) = (*angle, *rate);
             series
         };
-        Flown { flight: self, begins: 0.0, angles: angles.iter().zip(rates).map(begin).collect() }
+        ChainExpansion { flight: self, begins: 0.0, angles: angles.iter().zip(rates).map(begin).collect() }
     }
 
     /// Returns the kinetic and strain energy (J).
     pub fn energy(&self) -> f64 {
         let Chain { inertia, stiffness, .. } = &self.chain;
         let n = inertia.nrows();
-        let (angle, rate) = self.trajectory.here().split_at(n);
+        let (angle, rate) = self.trajectory.current().split_at(n);
         let angles = DVector::from_column_slice(angle);
         let mut twice = (stiffness * &angles).dot(&angles);
         for i in 0..n {
@@ -145,18 +145,18 @@ impl ChainMotion {
 
 /// Chain motion as Taylor series of its angles, each coefficient computed from the previous ones.
 #[derive(Debug)]
-pub struct Flown<'a> {
+pub struct ChainExpansion<'a> {
     flight: &'a ChainMotion,
     /// Origin of the series, after departure (s).
     begins: f64,
     angles: Vec<Series>,
 }
 
-impl Flown<'_> {
+impl ChainExpansion<'_> {
     /// Expands all coordinates at `h` seconds after departure, which must not precede an earlier request, and returns
     /// the time for which the series are valid (s). The waveform must have no break until 2 `middle` after departure
     /// (s).
-    pub fn expand(&mut self, h: f64, middle: f64, into: &mut Expansion) -> f64 {
+    pub fn expand(&mut self, h: f64, middle: f64, into: &mut SeriesExpansion) -> f64 {
         let after = h - self.begins;
         for angle in &mut self.angles {
             let (x, v) = angle.iter().rev().fold((0.0, 0.0), |(x, v), c| (x * after + c, v * after + x));
@@ -170,7 +170,7 @@ impl Flown<'_> {
         torque[0] += self.flight.input.constant;
         self.fill(&torque);
         into.coordinates.copy_from_slice(&self.angles);
-        let command = self.flight.input.waveform.as_ref().map_or(0.0, Forced::fastest);
+        let command = self.flight.input.waveform.as_ref().map_or(0.0, ActiveWaveform::fastest);
         let fastest = self.flight.chain.frequencies.iter().copied().fold(command, f64::max);
         reach(&self.angles, fastest)
     }

@@ -1,6 +1,6 @@
 //! Motion of a body whose frequencies drift, by successive steps of its Taylor series.
 
-use super::series::{Ratio, SAFETY, Springs};
+use super::taylor_series::{DriftingEquations, RatioSeries, SAFETY};
 use crate::body::{Drift, Planar, SERIES};
 use crate::numerics::polynomial::Series;
 
@@ -9,14 +9,14 @@ const STEPS: u32 = 16;
 
 /// Motion of a body with drifting frequencies under a constant input.
 #[derive(Clone, Debug)]
-pub struct Drifting {
+pub struct DriftingFlow {
     drift: Drift,
-    springs: Springs<f64>,
+    springs: DriftingEquations<f64>,
     /// Taylor coefficients by order, for all coordinates: the rigid angle first, then the modes.
     series: Vec<f64>,
     /// True if only the first two terms of the series are valid.
     raw: bool,
-    ratios: Vec<Ratio<f64>>,
+    ratios: Vec<RatioSeries<f64>>,
     moment: f64,
     departed: f64,
     /// Angles, then rates, at departure.
@@ -27,13 +27,13 @@ pub struct Drifting {
     seen: f64,
 }
 
-impl Drifting {
+impl DriftingFlow {
     /// Creates the motion of a body from its initial state, under no input. A wheel's back-EMF a (1/s) acts on the
     /// total rate if `total` is true, else on the rigid rate.
     pub fn new(body: &Planar, drift: &Drift, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
-        let start = body.start().to_vector(&frequencies);
-        let springs = Springs::new(body, back_emf, total);
+        let start = body.initial_state().to_vector(&frequencies);
+        let springs = DriftingEquations::new(body, back_emf, total);
         let mut series = vec![0.0; SERIES * springs.count()];
         // Angles and rates alternate in the state vector.
         for (n, index) in (0..2).flat_map(|n| (0..springs.count()).map(move |index| (n, index))) {
@@ -41,7 +41,7 @@ impl Drifting {
         }
         Self {
             start: series[..2 * springs.count()].to_vec(),
-            ratios: vec![Ratio::new(0.0); drift.count()],
+            ratios: vec![RatioSeries::new(0.0); drift.count()],
             drift: drift.clone(),
             springs,
             series,
@@ -63,7 +63,7 @@ impl Drifting {
 
     /// Sets the rigid angle and rate to 0 in the current state: the accuracy of steps is relative to the largest
     /// coordinate.
-    pub fn rest_hub(&mut self) {
+    pub fn zero_rigid_angle(&mut self) {
         self.rebase(self.seen - self.begins);
         self.begins = self.seen;
         let count = self.springs.count();
@@ -71,7 +71,7 @@ impl Drifting {
     }
 
     /// Returns the equations of motion.
-    pub fn springs(&self) -> &Springs<f64> {
+    pub fn equations(&self) -> &DriftingEquations<f64> {
         &self.springs
     }
 
@@ -81,7 +81,7 @@ impl Drifting {
     }
 
     /// Expands the ratios of the frequencies at a time (s).
-    pub fn expand_ratios(&self, t: f64, into: &mut [Ratio<f64>]) {
+    pub fn expand_ratios(&self, t: f64, into: &mut [RatioSeries<f64>]) {
         for (mode, ratio) in into.iter_mut().enumerate() {
             ratio.expand(&self.drift, mode, t);
         }
@@ -93,13 +93,13 @@ impl Drifting {
     }
 
     /// Returns true if the series begin at departure and are valid.
-    pub fn is_fresh(&self) -> bool {
+    pub fn is_at_start(&self) -> bool {
         self.begins == 0.0 && !self.raw
     }
 
     /// Returns a copy of the motion, restarted from its departure.
     #[must_use]
-    pub fn from_departure(&self) -> Self {
+    pub fn restarted(&self) -> Self {
         let mut again = self.clone();
         again.series[..2 * self.springs.count()].copy_from_slice(&self.start);
         (again.begins, again.seen) = (0.0, 0.0);
@@ -109,7 +109,7 @@ impl Drifting {
     }
 
     /// Moves the origin of the series to `h` seconds after departure, not before the present origin.
-    pub fn unfold(&mut self, h: f64) {
+    pub fn expand_to(&mut self, h: f64) {
         if h > self.begins {
             self.rebase(h - self.begins);
             self.begins = h;
@@ -119,14 +119,14 @@ impl Drifting {
 
     /// Writes the series of all coordinates; returns the time for which they are valid (s), infinite if that is at
     /// least `far`.
-    pub fn tell(&self, far: f64, coordinates: &mut [Series]) -> f64 {
+    pub fn write_series(&self, far: f64, coordinates: &mut [Series]) -> f64 {
         let count = self.springs.count();
         for (index, into) in coordinates.iter_mut().enumerate().take(count) {
             for (n, term) in into[..SERIES].iter_mut().enumerate() {
                 *term = self.series[n * count + index];
             }
         }
-        if self.springs.surely_reach(&self.series, far) { f64::INFINITY } else { self.reach() }
+        if self.springs.certainly_converges_to(&self.series, far) { f64::INFINITY } else { self.reach() }
     }
 
     /// Advances by some steps towards `h` seconds after departure, which must not precede an earlier request; returns
@@ -135,7 +135,7 @@ impl Drifting {
         self.expand();
         for _ in 0..STEPS {
             let left = h - self.begins;
-            if self.springs.surely_reach(&self.series, left) {
+            if self.springs.certainly_converges_to(&self.series, left) {
                 return true;
             }
             let reach = self.reach();
@@ -150,7 +150,7 @@ impl Drifting {
     }
 
     /// Advances to `h` seconds after departure, which must not precede an earlier request.
-    pub fn go(&mut self, h: f64) {
+    pub fn advance(&mut self, h: f64) {
         while !self.approach(h) {}
         self.seen = h;
     }
@@ -186,6 +186,6 @@ impl Drifting {
         for (mode, ratio) in self.ratios.iter_mut().enumerate() {
             ratio.expand(&self.drift, mode, self.departed + self.begins);
         }
-        self.springs.fill(&self.ratios, self.moment, &mut self.series);
+        self.springs.expand(&self.ratios, self.moment, &mut self.series);
     }
 }

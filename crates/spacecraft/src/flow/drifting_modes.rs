@@ -1,17 +1,17 @@
 //! Elastic modes of a spatial body whose frequencies drift: each by the Taylor series of its equation, exact to
 //! rounding.
 
-use super::Drifting;
-use crate::body::spatial::{Spatial, SpatialMode};
+use super::DriftingFlow;
+use crate::body::spatial::{Spatial, ThreeAxisMode};
 use crate::body::{Drift, Mode, Planar};
-use crate::motion::Phase;
+use crate::motion::ModeState;
 use crate::quantity::Finite;
 
 /// Motion of the drifting modes under modal forces that are constant for a while.
 #[derive(Clone, Debug)]
 pub struct DriftingModes {
     /// One motion for each mode, as the only mode of a one-axis body whose moment is the modal force.
-    modes: Vec<Drifting>,
+    modes: Vec<DriftingFlow>,
     drift: Drift,
     /// Frequencies at the start of the run (rad/s).
     frequencies: Vec<f64>,
@@ -21,7 +21,7 @@ impl DriftingModes {
     /// Creates the modes in their initial state, under no force.
     pub fn new(body: &Spatial, drift: &Drift) -> Self {
         let gain = Finite::new(1.0).unwrap_or_default();
-        let alone = |(index, mode): (usize, &SpatialMode)| {
+        let alone = |(index, mode): (usize, &ThreeAxisMode)| {
             let own = match drift {
                 Drift::Common(profile) => Drift::Common(profile.clone()),
                 Drift::Each(profiles) => Drift::Each(profiles.get(index).cloned().into_iter().collect()),
@@ -31,7 +31,7 @@ impl DriftingModes {
                 rate: mode.rate,
                 ..Mode::at_rest(mode.frequency, gain, mode.damping)
             };
-            Drifting::new(&Planar { modes: vec![start], ..Planar::default() }, &own, 0.0, false)
+            DriftingFlow::new(&Planar { modes: vec![start], ..Planar::default() }, &own, 0.0, false)
         };
         Self {
             modes: body.modes.iter().enumerate().map(alone).collect(),
@@ -44,18 +44,18 @@ impl DriftingModes {
     pub fn depart(&mut self, now: f64, forces: &[f64]) {
         let forces = forces.iter().copied().chain(std::iter::repeat(0.0));
         for (mode, force) in self.modes.iter_mut().zip(forces) {
-            mode.rest_hub();
+            mode.zero_rigid_angle();
             mode.depart(now, force);
         }
     }
 
     /// Advances the modes to `h` seconds after departure, which must not precede an earlier request. A phase holds q
     /// and q'/w, with w at the start of the run.
-    pub fn go(&mut self, h: f64, phases: &mut [Phase]) {
+    pub fn advance(&mut self, h: f64, phases: &mut [ModeState]) {
         for ((mode, w), phase) in self.modes.iter_mut().zip(&self.frequencies).zip(phases) {
-            mode.go(h);
+            mode.advance(h);
             if let Some([displacement, rate, _]) = mode.motion().nth(1) {
-                *phase = Phase { displacement, quadrature: rate / w };
+                *phase = ModeState { displacement, quadrature: rate / w };
             }
         }
     }
@@ -66,8 +66,8 @@ impl DriftingModes {
     }
 
     /// Returns the kinetic and strain energy of each mode at a time `t` (s) (J): (q'² + w² q²)/2.
-    pub fn energies(&self, t: f64, phases: &[Phase]) -> Vec<f64> {
-        let energy = |(index, (phase, w)): (usize, (&Phase, &f64))| {
+    pub fn energies(&self, t: f64, phases: &[ModeState]) -> Vec<f64> {
+        let energy = |(index, (phase, w)): (usize, (&ModeState, &f64))| {
             let (rate, stretch) = (w * phase.quadrature, self.drift.ratio(index, t) * w * phase.displacement);
             0.5 * (rate * rate + stretch * stretch)
         };

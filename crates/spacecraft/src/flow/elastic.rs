@@ -3,13 +3,13 @@
 use super::ModeFlow;
 use crate::attitude::Vector;
 use crate::body::Mode;
-use crate::body::spatial::{Spatial, SpatialMode};
-use crate::motion::Phase;
+use crate::body::spatial::{Spatial, ThreeAxisMode};
+use crate::motion::ModeState;
 use crate::quantity::Finite;
 
 /// Flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
 #[derive(Clone, Debug)]
-pub struct Elastic {
+pub struct ElasticModes {
     flows: Vec<ModeFlow>,
     /// Frequent time step (s); transitions over its multiples are cached.
     cycle: f64,
@@ -21,10 +21,10 @@ pub struct Elastic {
 /// Number of multiples of the cycle, from 0, for which transitions are cached.
 const KNOWN: usize = 128;
 
-impl Elastic {
+impl ElasticModes {
     /// Creates the flows of a body's modes, which are often advanced by `cycle` seconds.
     pub fn new(body: &Spatial, cycle: f64) -> Self {
-        let flow = |mode: &SpatialMode| {
+        let flow = |mode: &ThreeAxisMode| {
             ModeFlow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping))
         };
         Self {
@@ -36,8 +36,8 @@ impl Elastic {
     }
 
     /// Returns the phases at the start of a run.
-    pub fn start(body: &Spatial) -> Vec<Phase> {
-        let of = |mode: &SpatialMode| Phase {
+    pub fn start(body: &Spatial) -> Vec<ModeState> {
+        let of = |mode: &ThreeAxisMode| ModeState {
             displacement: mode.displacement.get(),
             quadrature: mode.rate.get() / mode.frequency.get(),
         };
@@ -46,7 +46,7 @@ impl Elastic {
 
     /// Advances the phases by `h` seconds under constant modal forces (N/sqrt(kg), one for each mode, or empty if there
     /// are none): a mode rotates about the equilibrium f/w².
-    pub fn advance(&mut self, phases: &mut [Phase], forces: &[f64], h: f64) {
+    pub fn advance(&mut self, phases: &mut [ModeState], forces: &[f64], h: f64) {
         let known = self.learn(h);
         let force = |index: usize| forces.get(index).copied().unwrap_or(0.0);
         let modes = phases.iter_mut().zip(&self.flows).enumerate();
@@ -89,18 +89,18 @@ impl Elastic {
     }
 
     /// Returns the rates q' of the modes (m sqrt(kg)/s).
-    pub fn rates<'a>(&'a self, phases: &'a [Phase]) -> impl Iterator<Item = f64> + 'a {
+    pub fn rates<'a>(&'a self, phases: &'a [ModeState]) -> impl Iterator<Item = f64> + 'a {
         phases.iter().zip(&self.flows).map(|(phase, flow)| flow.frequency * phase.quadrature)
     }
 
     /// Returns the elastic part of the rates at a point (rad/s), where the modes have the shapes `rotations`.
-    pub fn rate_at(&self, rotations: &[Vector], phases: &[Phase]) -> Vector {
+    pub fn rate_at(&self, rotations: &[Vector], phases: &[ModeState]) -> Vector {
         self.rates(phases).zip(rotations).fold(Vector::zeros(), |sum, (rate, shape)| sum + shape * rate)
     }
 
     /// Returns the kinetic and strain energy of each mode (J): (q'² + w² q²)/2.
-    pub fn energies<'a>(&'a self, phases: &'a [Phase]) -> impl Iterator<Item = f64> + 'a {
-        phases.iter().zip(&self.flows).map(|(Phase { displacement: x, quadrature: y }, flow)| {
+    pub fn energies<'a>(&'a self, phases: &'a [ModeState]) -> impl Iterator<Item = f64> + 'a {
+        phases.iter().zip(&self.flows).map(|(ModeState { displacement: x, quadrature: y }, flow)| {
             0.5 * flow.frequency * flow.frequency * (x * x + y * y)
         })
     }
@@ -108,8 +108,8 @@ impl Elastic {
 
 /// Advances a mode about its equilibrium under a modal force (N/sqrt(kg)), by its transition over a time step.
 #[inline]
-fn turn(phase: &mut Phase, flow: &ModeFlow, &[a, b, c, d]: &[f64; 4], force: f64) {
+fn turn(phase: &mut ModeState, flow: &ModeFlow, &[a, b, c, d]: &[f64; 4], force: f64) {
     let centre = force / (flow.frequency * flow.frequency);
     let (x, y) = (phase.displacement - centre, phase.quadrature);
-    *phase = Phase { displacement: centre + a * x + b * y, quadrature: c * x + d * y };
+    *phase = ModeState { displacement: centre + a * x + b * y, quadrature: c * x + d * y };
 }

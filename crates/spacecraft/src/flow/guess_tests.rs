@@ -1,10 +1,10 @@
 //! Every predicted and certified trip must equal the trip of the certified search.
 
-use super::{ForcedInput, Segment};
+use super::{SegmentInput, UncoupledSegment};
 use crate::body::{Mode, Planar};
 use crate::guard::Guard;
-use crate::motion::State;
-use crate::motion::crossing::locate;
+use crate::motion::AxisState;
+use crate::motion::crossing::first_crossing;
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::time::Span;
 
@@ -35,14 +35,14 @@ impl Seen {
     /// Returns the trip of the search, with the state there, and checks that a certain prediction agrees with it.
     fn compare(
         &mut self,
-        arc: &mut Segment,
+        arc: &mut UncoupledSegment,
         guards: &[Guard],
         horizon: Span,
-        state: &mut State,
+        state: &mut AxisState,
     ) -> Option<(Span, usize)> {
         let mut guessed = state.clone();
-        let guess = arc.guess(guards, horizon, &mut guessed);
-        let found = locate(arc, guards, horizon, state, || Ok::<(), ()>(())).expect("no limit");
+        let guess = arc.predict_crossing(guards, horizon, &mut guessed);
+        let found = first_crossing(arc, guards, horizon, state, || Ok::<(), ()>(())).expect("no limit");
         self.arcs += 1;
         if let Some(guess) = guess {
             self.certain += 1;
@@ -50,10 +50,10 @@ impl Seen {
             if let (Some(guess), Some(found)) = (guess, found) {
                 let apart = guess
                     .after
-                    .minus(found.after)
+                    .remaining_after(found.after)
                     .seconds()
                     .abs()
-                    .min(found.after.minus(guess.after).seconds().abs());
+                    .min(found.after.remaining_after(guess.after).seconds().abs());
                 let (angle, rate) = (found.sight.angle, found.sight.rate);
                 self.worst = self.worst.max(apart * rate.abs());
                 self.trips += 1;
@@ -71,12 +71,12 @@ impl Seen {
 fn study(seen: &mut Seen, modes: &[(f64, f64, f64)], k_t: f64, cycles: usize) {
     let [eps, gamma, strong, weak] = LAW;
     let body = body(modes);
-    let mut arc = Segment::new(&body);
-    let mut state = body.start();
+    let mut arc = UncoupledSegment::new(&body);
+    let mut state = body.initial_state();
     (state.rigid_angle, state.rigid_rate) = (4.5e-4, 2.2e-5);
     let forever = Span::from_seconds(2e4);
-    let depart = |arc: &mut Segment, state: &State, torque| {
-        arc.depart(state, &ForcedInput { constant: torque, waveform: None });
+    let depart = |arc: &mut UncoupledSegment, state: &AxisState, torque| {
+        arc.depart(state, &SegmentInput { constant: torque, waveform: None });
     };
     let mut torque = weak;
     for _ in 0..cycles {
@@ -159,7 +159,7 @@ fn motions_of_all_kinds_have_no_other_first_trip() {
 }
 
 #[test]
-fn nor_have_damped_ones() {
+fn damped_modes_have_no_earlier_crossing() {
     random_motions(16, |draw| 0.97 * draw * draw * draw.abs());
 }
 
@@ -179,14 +179,14 @@ fn random_motions(seed: u64, ratio: impl Fn(f64) -> f64) {
             _ => frequencies.map(|frequency| (frequency, 0.02, ratio(draw()))),
         };
         let body = body(&modes);
-        let mut state = body.start();
+        let mut state = body.initial_state();
         (state.rigid_angle, state.rigid_rate) = (1e-3 * draw(), 4e-5 * draw());
         let size = libm::exp(-8.0 + 4.0 * draw()) * 1e-2;
         for phase in &mut state.modes {
             (phase.displacement, phase.quadrature) = (size * draw(), size * draw());
         }
-        let mut arc = Segment::new(&body);
-        arc.depart(&state, &ForcedInput { constant: 4e-6 * draw() * draw(), waveform: None });
+        let mut arc = UncoupledSegment::new(&body);
+        arc.depart(&state, &SegmentInput { constant: 4e-6 * draw() * draw(), waveform: None });
         let guards = [Guard::at_least(1.2e-3 * draw()), Guard::at_most(1.2e-3 * draw())];
         let guards = if draw() < 0.0 { &guards[..1] } else { &guards };
         let horizon = Span::from_seconds(100.0 + 99.0 * draw());

@@ -1,39 +1,39 @@
 //! Motion of a body between events: exact flows about one axis, of chains, and about three axes if modes do not act
 //! back.
 //!
-//! - [`Segment`]: uncoupled modes in closed form, with the bounds that certify crossings;
-//! - [`Coupling`]: modes coupled by a wheel, a damping matrix or a drift ([`Drifting`]), in closed form or as Taylor
+//! - [`UncoupledSegment`]: uncoupled modes in closed form, with the bounds that certify crossings;
+//! - [`CoupledFlow`]: modes coupled by a wheel, a damping matrix or a drift ([`DriftingFlow`]), in closed form or as Taylor
 //!   series;
 //! - [`ChainMotion`]: the exact chain of rigid sections;
-//! - [`Rigid`] and [`Elastic`] (or [`DriftingModes`]): three axes, with rotation and modes computed separately.
+//! - [`RigidBody`] and [`ElasticModes`] (or [`DriftingModes`]): three axes, with rotation and modes computed separately.
 //!
 //! The coupled motion about three axes is in `motion::turning`.
 
-mod abreast;
 mod chain;
-mod coupled;
+mod coupled_flow;
+mod coupled_matrices;
 mod drifting;
 mod drifting_modes;
 mod elastic;
-mod forced;
 #[cfg(test)]
 mod guess_tests;
 mod mode;
+mod modes_simd;
 mod rigid;
 mod segment;
-mod series;
-mod spatial_state;
-mod wheeled;
+mod taylor_series;
+mod three_axis_state;
+mod waveform_response;
 
-pub use chain::{ChainMotion, Flown};
-pub use coupled::Coupled;
-pub use drifting::Drifting;
+pub use chain::{ChainExpansion, ChainMotion};
+pub use coupled_flow::{CoupledExpansion, CoupledFlow, ExternalMotion, TransitionFlow};
+pub use coupled_matrices::CoupledMatrices;
+pub use drifting::DriftingFlow;
 pub use drifting_modes::DriftingModes;
-pub use elastic::Elastic;
-pub use forced::{Forced, ForcedInput};
+pub use elastic::ElasticModes;
 pub use mode::ModeFlow;
-pub use rigid::{LONGEST_TURN, Rigid, RigidTurn};
-pub use segment::Segment;
-pub use series::{Ratio, Springs};
-pub use spatial_state::SpatialState;
-pub use wheeled::{Constant, Coupling, Lent, Unfolding};
+pub use rigid::{LONGEST_TURN, RigidBody, RigidState};
+pub use segment::UncoupledSegment;
+pub use taylor_series::{DriftingEquations, RatioSeries};
+pub use three_axis_state::ThreeAxisState;
+pub use waveform_response::{ActiveWaveform, SegmentInput};

@@ -1,9 +1,9 @@
 //! Exact flow of one elastic mode, for any damping: three regimes, each in closed form.
 
 use crate::body::Mode;
-use crate::motion::Sensed;
+use crate::motion::AngleObservation;
 use crate::motion::damping::Damped;
-use crate::numerics::decay::exp;
+use crate::numerics::exp_branch_free::exp;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::trig::sincos_any;
 
@@ -22,11 +22,11 @@ pub struct ModeFlow {
     pub jerk: f64,
     /// Twice the decay rate, 2 zeta w (1/s).
     drag: f64,
-    regime: Regime,
+    regime: DampingRegime,
 }
 
 #[derive(Copy, Clone, Debug)]
-enum Regime {
+enum DampingRegime {
     Undamped,
     Under(Damped<f64>),
     /// Critical or overdamped: decay rate, the slower of the two real rates, and half their difference (1/s).
@@ -38,12 +38,12 @@ impl ModeFlow {
     pub fn new(mode: &Mode) -> Self {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
         let regime = if zeta == 0.0 {
-            Regime::Undamped
+            DampingRegime::Undamped
         } else if zeta < 1.0 {
-            Regime::Under(Damped::new(w, zeta))
+            DampingRegime::Under(Damped::new(w, zeta))
         } else {
             let root = f64::sqrt((zeta - 1.0) * (zeta + 1.0));
-            Regime::Over(zeta * w, w / (zeta + root), w * root)
+            DampingRegime::Over(zeta * w, w / (zeta + root), w * root)
         };
         let square = 4.0 * zeta * zeta;
         Self {
@@ -61,9 +61,9 @@ impl ModeFlow {
     /// Returns the pole with a positive imaginary part, -zeta w + i w_d (1/s); `None` at critical damping and above.
     pub fn pole(&self) -> Option<Phasor> {
         match self.regime {
-            Regime::Undamped => Some(Phasor { re: 0.0, im: self.frequency }),
-            Regime::Under(damped) => Some(Phasor { re: -damped.decay, im: damped.frequency }),
-            Regime::Over(..) => None,
+            DampingRegime::Undamped => Some(Phasor { re: 0.0, im: self.frequency }),
+            DampingRegime::Under(damped) => Some(Phasor { re: -damped.decay, im: damped.frequency }),
+            DampingRegime::Over(..) => None,
         }
     }
 
@@ -74,7 +74,13 @@ impl ModeFlow {
 
     /// Adds the mode's part to the motion at a sensor, for a deviation from equilibrium.
     #[inline]
-    pub fn add_to(&self, equilibrium: f64, displacement: f64, quadrature: f64, sensed: &mut Sensed) {
+    pub fn add_to(
+        &self,
+        equilibrium: f64,
+        displacement: f64,
+        quadrature: f64,
+        sensed: &mut AngleObservation,
+    ) {
         let [rate, quadrature_rate] = self.velocity(displacement, quadrature);
         sensed.angle += equilibrium + displacement;
         sensed.rate += rate;
@@ -92,12 +98,12 @@ impl ModeFlow {
     #[inline]
     pub fn transition(&self, h: f64) -> [f64; 4] {
         let (decay, (c, s)) = match self.regime {
-            Regime::Undamped => {
+            DampingRegime::Undamped => {
                 let (sin, cos) = sincos_any(self.frequency * h);
                 return [cos, sin, -sin, cos];
             }
-            Regime::Under(Damped { decay, frequency, .. }) => (decay, spiral(decay, frequency, h)),
-            Regime::Over(decay, slow, split) => (decay, creep(slow, split, h)),
+            DampingRegime::Under(Damped { decay, frequency, .. }) => (decay, spiral(decay, frequency, h)),
+            DampingRegime::Over(decay, slow, split) => (decay, creep(slow, split, h)),
         };
         let cross = self.frequency * s;
         [c + decay * s, cross, -cross, c - decay * s]
@@ -105,17 +111,17 @@ impl ModeFlow {
 
     /// Returns the transition matrix over `h` seconds, bit-identical to the computation in lanes.
     #[inline]
-    pub fn turn(&self, h: f64) -> [f64; 4] {
+    pub fn evaluate(&self, h: f64) -> [f64; 4] {
         match &self.regime {
-            Regime::Under(damped) => turn(damped, h),
-            Regime::Undamped | Regime::Over(..) => self.transition(h),
+            DampingRegime::Under(damped) => evaluate(damped, h),
+            DampingRegime::Undamped | DampingRegime::Over(..) => self.transition(h),
         }
     }
 }
 
 /// Returns the transition below critical damping, computed as in lanes.
 #[inline(never)]
-fn turn(damped: &Damped<f64>, h: f64) -> [f64; 4] {
+fn evaluate(damped: &Damped<f64>, h: f64) -> [f64; 4] {
     damped.transition(sincos_any(damped.frequency * h), exp(-(damped.decay * h)))
 }
 

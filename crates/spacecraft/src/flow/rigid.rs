@@ -9,8 +9,8 @@
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::attitude::Vector;
-use crate::body::spatial::{Periodic, Spatial};
-use crate::motion::turning::Surroundings;
+use crate::body::spatial::{PeriodicTorque, Spatial};
+use crate::motion::three_axis::Surroundings;
 use crate::numerics::gauss_legendre::{MATRIX, NODES, WEIGHTS, exact_sum};
 
 /// Approximate largest rotation in a step (rad): the error of its direction is then below 1e-15 rad.
@@ -23,17 +23,17 @@ const STEPS: u64 = 256;
 
 /// Inertia and periodic disturbance of a rigid body.
 #[derive(Clone, Debug)]
-pub struct Rigid {
+pub struct RigidBody {
     inertia: Matrix3<f64>,
     inverse: Matrix3<f64>,
     /// Upper bound of the rate per unit of angular momentum (1/(kg m²)).
     mobility: f64,
-    disturbance: Option<Periodic>,
+    disturbance: Option<PeriodicTorque>,
 }
 
 /// Attitude and angular momentum of a rigid body.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct RigidTurn {
+pub struct RigidState {
     /// Unit quaternion that transforms vectors from the body's axes to inertial axes.
     pub attitude: Quaternion<f64>,
     /// Angular momentum J w in the body's axes (N m s).
@@ -44,10 +44,10 @@ pub struct RigidTurn {
     lost: (Quaternion<f64>, Vector, Vector),
 }
 
-impl Rigid {
+impl RigidBody {
     /// Creates the rigid body of a spatial body.
     pub fn new(body: &Spatial) -> Self {
-        let inertia = body.tensor();
+        let inertia = body.inertia_tensor();
         // A validated body has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         // Symmetric to the last bit, so that the energy is a quadratic form.
@@ -61,33 +61,33 @@ impl Rigid {
     }
 
     /// Returns the state of an attitude and rates in the body's axes (rad/s).
-    pub fn start(&self, attitude: Quaternion<f64>, rate: Vector) -> RigidTurn {
+    pub fn start(&self, attitude: Quaternion<f64>, rate: Vector) -> RigidState {
         let (momentum, zero) = (self.inertia * rate, Vector::zeros());
-        RigidTurn { attitude, momentum, turned: zero, lost: (Quaternion::default(), zero, zero) }
+        RigidState { attitude, momentum, turned: zero, lost: (Quaternion::default(), zero, zero) }
     }
 
     /// Returns the rates in the body's axes (rad/s).
-    pub fn rate(&self, turn: &RigidTurn) -> Vector {
+    pub fn rate(&self, turn: &RigidState) -> Vector {
         self.inverse * turn.momentum
     }
 
     /// Returns the angular momentum in the body's axes (N m s).
-    pub fn momentum(turn: &RigidTurn) -> Vector {
+    pub fn momentum(turn: &RigidState) -> Vector {
         turn.momentum
     }
 
     /// Returns an upper bound of the rates and of the precession (rad/s), with rotors of momentum `stored` (N m s).
-    pub fn fastest(&self, turn: &RigidTurn, stored: f64) -> f64 {
+    pub fn fastest(&self, turn: &RigidState, stored: f64) -> f64 {
         self.mobility * (turn.momentum.norm() + stored)
     }
 
     /// Returns the integral of the rates since the start (rad).
-    pub fn turned(turn: &RigidTurn) -> Vector {
+    pub fn rigid_angle(turn: &RigidState) -> Vector {
         turn.turned
     }
 
     /// Returns the kinetic energy of the rotation (J).
-    pub fn energy(&self, turn: &RigidTurn) -> f64 {
+    pub fn energy(&self, turn: &RigidState) -> f64 {
         0.5 * turn.momentum.dot(&self.rate(turn))
     }
 
@@ -96,7 +96,7 @@ impl Rigid {
     /// momentum (N m s) and its rate of change (N m), whose reaction on the body is part of the torque.
     pub fn advance<E>(
         &self,
-        turn: &mut RigidTurn,
+        turn: &mut RigidState,
         torque: &Vector,
         rotors: Option<(Vector, Vector)>,
         around: Option<&dyn Surroundings>,
@@ -136,13 +136,13 @@ impl Rigid {
     /// time after the start (s). Each pass over the stages reduces the error by the factor `contraction`.
     fn step(
         &self,
-        turn: &mut RigidTurn,
+        turn: &mut RigidState,
         torques: &[Vector; 3],
         rotors: Option<&[Vector; 3]>,
         around: Option<(&dyn Surroundings, f64)>,
         (h, contraction): (f64, f64),
     ) {
-        let RigidTurn { attitude, momentum, turned: angle, lost } = turn;
+        let RigidState { attitude, momentum, turned: angle, lost } = turn;
         let mut pushes = torques.map(|torque| momentum.cross(&(self.inverse * *momentum)) + torque);
         let mut rates = [Vector::zeros(); 3];
         let mut turns = [spin(attitude, &(self.inverse * *momentum)); 3];

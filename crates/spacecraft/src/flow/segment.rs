@@ -1,34 +1,34 @@
 //! Motion of the planar body under one input, in closed form, with the bounds that certify crossings.
 
-mod guess;
+mod predicted_crossing;
 
 use nalgebra::DVector;
 
-use super::abreast::Abreast;
-use super::forced::{Forced, ForcedInput, ForcedResponse};
 use super::mode::ModeFlow;
-use crate::body::{Drive, Planar};
+use super::modes_simd::ModesSimd;
+use super::waveform_response::{ActiveWaveform, ForcedResponse, SegmentInput};
+use crate::body::{CommandedQuantity, Planar};
 use crate::guard::Guard;
-use crate::motion::crossing::{Approach, first_root};
-use crate::motion::stretch::{Expansion, REACH};
-use crate::motion::{Phase, Sensed, State};
+use crate::motion::crossing::{BoundedMotion, first_root};
+use crate::motion::polynomial_piece::{REACH, SeriesExpansion};
+use crate::motion::{AngleObservation, AxisState, ModeState};
 use crate::numerics::polynomial::TERMS;
 use crate::time::Span;
-use guess::Guess;
+use predicted_crossing::CrossingPredictor;
 
 /// Motion under one input, from the state in which it began.
 #[derive(Clone, Debug)]
-pub struct Segment {
+pub struct UncoupledSegment {
     mobility: f64,
     /// True if the modes contribute to the hub's angle.
     visible: bool,
-    forced: Option<Forced>,
+    forced: Option<ActiveWaveform>,
     moment: f64,
     angle: f64,
     rate: f64,
     modes: Vec<ModeSegment>,
     /// Modes in groups of lanes, if that is faster.
-    abreast: Option<Abreast>,
+    abreast: Option<ModesSimd>,
     /// Sum of the modes' equilibria; `reach` is the sum of their largest distances from them (rad).
     centre: f64,
     reach: f64,
@@ -37,7 +37,7 @@ pub struct Segment {
     /// Upper bound of |x'''| on the segment (rad/s³).
     jerk: f64,
     /// Predictor of the next trip, if the body allows one.
-    guess: Option<Guess>,
+    guess: Option<CrossingPredictor>,
 }
 
 /// One mode on a segment: its equilibrium, and its deviation from it at departure.
@@ -45,15 +45,15 @@ pub struct Segment {
 struct ModeSegment {
     flow: ModeFlow,
     equilibrium: f64,
-    from: Phase,
+    from: ModeState,
 }
 
-impl Segment {
+impl UncoupledSegment {
     /// Creates the segment of a body, before its departure.
     pub fn new(body: &Planar) -> Self {
         let swing =
-            |mode| ModeSegment { flow: ModeFlow::new(mode), equilibrium: 0.0, from: Phase::default() };
-        let visible = body.drive == Drive::Torque;
+            |mode| ModeSegment { flow: ModeFlow::new(mode), equilibrium: 0.0, from: ModeState::default() };
+        let visible = body.drive == CommandedQuantity::Torque;
         Self {
             mobility: 1.0 / body.commanded_inertia(),
             visible,
@@ -62,18 +62,18 @@ impl Segment {
             angle: 0.0,
             rate: 0.0,
             modes: body.modes.iter().map(swing).collect(),
-            abreast: Abreast::new(&body.modes),
+            abreast: ModesSimd::new(&body.modes),
             centre: 0.0,
             reach: 0.0,
             curvature: 0.0,
             jerk: 0.0,
-            guess: visible.then(|| Guess::new(body)).flatten(),
+            guess: visible.then(|| CrossingPredictor::new(body)).flatten(),
         }
     }
 
     /// Begins the segment anew from a state, under an input. The bounds, and so guards, hold for the constant part
     /// only.
-    pub fn depart(&mut self, from: &State, input: &ForcedInput) {
+    pub fn depart(&mut self, from: &AxisState, input: &SegmentInput) {
         self.moment = input.constant * self.mobility;
         self.forced.clone_from(&input.waveform);
         self.angle = from.rigid_angle;
@@ -86,9 +86,9 @@ impl Segment {
             let equilibrium = swing.flow.excitability * self.moment;
             let displacement = phase.displacement - equilibrium;
             swing.equilibrium = equilibrium;
-            swing.from = Phase { displacement, quadrature: phase.quadrature };
+            swing.from = ModeState { displacement, quadrature: phase.quadrature };
             if let Some(abreast) = &mut self.abreast {
-                abreast.depart(index, swing.from);
+                abreast.set_mode(index, swing.from);
             }
             let distance = f64::sqrt(displacement * displacement + phase.quadrature * phase.quadrature);
             if !self.visible {
@@ -104,13 +104,13 @@ impl Segment {
     /// Writes the state at `h` seconds after departure, and returns the motion at the sensor.
     #[allow(clippy::inline_always, reason = "the search for crossings calls it")]
     #[inline(always)]
-    pub fn at(&self, h: f64, state: &mut State) -> Sensed {
+    pub fn at(&self, h: f64, state: &mut AxisState) -> AngleObservation {
         state.rigid_angle = self.angle + h * (self.rate + 0.5 * self.moment * h);
         state.rigid_rate = self.rate + self.moment * h;
         let mut sensed =
-            Sensed { angle: state.rigid_angle, rate: state.rigid_rate, acceleration: self.moment };
+            AngleObservation { angle: state.rigid_angle, rate: state.rigid_rate, acceleration: self.moment };
         match &self.abreast {
-            Some(abreast) if abreast.reaches(h) => abreast.turn(h, &mut state.modes),
+            Some(abreast) if abreast.is_valid_for(h) => abreast.evaluate(h, &mut state.modes),
             _ => self.turn_each(h, &mut state.modes),
         }
         for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
@@ -128,29 +128,35 @@ impl Segment {
 
     /// Writes the deviations of the modes from their equilibria, one mode after another.
     #[inline]
-    fn turn_each(&self, h: f64, to: &mut [Phase]) {
+    fn turn_each(&self, h: f64, to: &mut [ModeState]) {
         for (swing, phase) in self.modes.iter().zip(to) {
-            let [xx, xy, yx, yy] = swing.flow.turn(h);
-            let Phase { displacement: x, quadrature: y } = swing.from;
-            *phase = Phase { displacement: xx * x + xy * y, quadrature: yx * x + yy * y };
+            let [xx, xy, yx, yy] = swing.flow.evaluate(h);
+            let ModeState { displacement: x, quadrature: y } = swing.from;
+            *phase = ModeState { displacement: xx * x + xy * y, quadrature: yx * x + yy * y };
         }
     }
 
     /// Adds the response to the waveform at `h` seconds after departure. Not inlined, so that the search for crossings,
     /// which has no waveform, stays small.
     #[inline(never)]
-    fn add_forced(&self, forced: &Forced, h: f64, state: &mut State, sensed: &mut Sensed) {
+    fn add_forced(
+        &self,
+        forced: &ActiveWaveform,
+        h: f64,
+        state: &mut AxisState,
+        sensed: &mut AngleObservation,
+    ) {
         let mut show = |push: ForcedResponse| {
             sensed.angle += push.angle;
             sensed.rate += push.rate;
             sensed.acceleration += push.acceleration;
         };
-        let rigid = forced.rigid(h).times(self.mobility);
+        let rigid = forced.rigid(h).scaled(self.mobility);
         state.rigid_angle += rigid.angle;
         state.rigid_rate += rigid.rate;
         show(rigid);
         for (swing, phase) in self.modes.iter().zip(&mut state.modes) {
-            let push = forced.mode(&swing.flow, h).times(self.mobility);
+            let push = forced.mode(&swing.flow, h).scaled(self.mobility);
             phase.displacement += push.angle;
             phase.quadrature += push.rate / swing.flow.frequency;
             if self.visible {
@@ -161,7 +167,7 @@ impl Segment {
 
     /// Expands all coordinates at `h` seconds after departure, and returns the time for which the series are valid (s).
     /// The waveform must have no break until 2 `middle` after departure (s).
-    pub fn expand(&self, h: f64, middle: f64, state: &mut State, into: &mut Expansion) -> f64 {
+    pub fn expand(&self, h: f64, middle: f64, state: &mut AxisState, into: &mut SeriesExpansion) -> f64 {
         self.at(h, state);
         let mut fastest = 0.0_f64;
         if let Some(forced) = &self.forced {
@@ -188,19 +194,19 @@ impl Segment {
     }
 
     /// Returns true if the modes contribute to the hub's angle.
-    pub fn shows_modes(&self) -> bool {
+    pub fn sensor_sees_modes(&self) -> bool {
         self.visible
     }
 
     /// Returns true if the bounds hold, which is the case without a waveform.
-    pub fn knows_bounds(&self) -> bool {
+    pub fn has_bounds(&self) -> bool {
         self.forced.is_none()
     }
 
     /// Returns true if the angle is certain to stay within `band` (rad) of 0 for `span` seconds, because the rigid
     /// parabola plus the full amplitude of all modes does.
     pub fn stays_within(&self, band: f64, span: f64) -> bool {
-        if !self.knows_bounds() {
+        if !self.has_bounds() {
             return false;
         }
         let end = self.angle + span * (self.rate + 0.5 * self.moment * span);
@@ -215,12 +221,12 @@ impl Segment {
 
     /// Returns the motion at the sensor at departure.
     #[inline]
-    pub fn origin(&self) -> Sensed {
-        let mut sensed = Sensed { angle: self.angle, rate: self.rate, acceleration: self.moment };
+    pub fn initial_output(&self) -> AngleObservation {
+        let mut sensed = AngleObservation { angle: self.angle, rate: self.rate, acceleration: self.moment };
         let forced = self.forced.as_ref().map_or(0.0, |forced| forced.at(0.0) * self.mobility);
         sensed.acceleration += forced;
         for swing in self.modes.iter().filter(|_| self.visible) {
-            let Phase { displacement, quadrature } = swing.from;
+            let ModeState { displacement, quadrature } = swing.from;
             swing.flow.add_to(swing.equilibrium, displacement, quadrature, &mut sensed);
             sensed.acceleration += swing.flow.gain * forced;
         }
@@ -229,7 +235,7 @@ impl Segment {
 
     /// Returns a time after departure (s) before which the guard cannot trip: until then the rigid parabola plus the
     /// full amplitude of all modes towards the guard stays short of its level.
-    pub fn earliest(&self, guard: Guard) -> f64 {
+    pub fn earliest_crossing(&self, guard: Guard) -> f64 {
         let towards = guard.side.sign();
         let gap = towards * (guard.level - self.angle - self.centre) - self.reach;
         if gap <= 0.0 {
@@ -245,7 +251,7 @@ impl Segment {
     /// Up to q, J t³/6 is at most (J q/3) t²/2, so that the first root with the acceleration a + J q/3, which is not
     /// after q, is certain too. The lesser of the two accelerations gives the longer stride.
     #[inline]
-    pub fn stride(&self, guard: Guard, now: Sensed) -> f64 {
+    pub fn safe_stride(&self, guard: Guard, now: AngleObservation) -> f64 {
         let towards = guard.side.sign();
         let (gap, speed, acceleration) =
             (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
@@ -256,23 +262,23 @@ impl Segment {
 
     /// Returns true if the guard cannot trip within `time` (s), given the present motion at the sensor.
     #[inline]
-    pub fn is_clear(&self, guard: Guard, now: Sensed, time: f64) -> bool {
+    pub fn has_no_crossing(&self, guard: Guard, now: AngleObservation, time: f64) -> bool {
         let speed = guard.side.sign() * now.rate;
         guard.gap(now.angle) > time * (speed + 0.5 * self.curvature * time)
     }
 
     /// Propagates a small deviation of the state over `h` seconds. Its components are the rigid angle and rate, then
     /// displacement and quadrature of each mode.
-    pub fn carry(&self, h: f64, deviation: &mut [f64]) {
+    pub fn propagate_deviation(&self, h: f64, deviation: &mut [f64]) {
         deviation[0] += h * deviation[1];
         for (swing, pair) in self.modes.iter().zip(deviation[2..].chunks_exact_mut(2)) {
-            let [xx, xy, yx, yy] = swing.flow.turn(h);
+            let [xx, xy, yx, yy] = swing.flow.evaluate(h);
             (pair[0], pair[1]) = (xx * pair[0] + xy * pair[1], yx * pair[0] + yy * pair[1]);
         }
     }
 
-    /// Returns the time derivative of a state on this segment, in the components of [`Segment::carry`].
-    pub fn velocity(&self, state: &State) -> DVector<f64> {
+    /// Returns the time derivative of a state on this segment, in the components of [`UncoupledSegment::carry`].
+    pub fn velocity(&self, state: &AxisState) -> DVector<f64> {
         let mut velocity = vec![state.rigid_rate, self.moment];
         for (swing, phase) in self.modes.iter().zip(&state.modes) {
             let from_rest = phase.displacement - swing.equilibrium;
@@ -282,49 +288,49 @@ impl Segment {
     }
 }
 
-impl Approach for Segment {
+impl BoundedMotion for UncoupledSegment {
     type Guard = Guard;
-    type State = State;
-    type Sensed = Sensed;
+    type State = AxisState;
+    type Observation = AngleObservation;
 
     #[inline]
-    fn begin(&self, _: &mut State) -> Sensed {
-        self.origin()
+    fn initial(&self, _: &mut AxisState) -> AngleObservation {
+        self.initial_output()
     }
 
     #[allow(clippy::inline_always, reason = "the search calls it")]
     #[inline(always)]
-    fn go(&self, h: f64, state: &mut State) -> Sensed {
+    fn evaluate(&self, h: f64, state: &mut AxisState) -> AngleObservation {
         self.at(h, state)
     }
 
     #[inline]
-    fn is_finite(_: &State, sensed: Sensed) -> bool {
+    fn is_finite(_: &AxisState, sensed: AngleObservation) -> bool {
         sensed.angle.is_finite()
     }
 
     #[inline]
-    fn holds(guard: Guard, _: &State, sensed: Sensed) -> bool {
+    fn holds(guard: Guard, _: &AxisState, sensed: AngleObservation) -> bool {
         guard.holds(sensed.angle)
     }
 
     #[inline]
-    fn window(_: &State) -> f64 {
+    fn bounds_valid_for(_: &AxisState) -> f64 {
         f64::INFINITY
     }
 
     #[inline]
-    fn earliest(&self, guard: Guard, _: Span, _: &State) -> f64 {
-        Self::earliest(self, guard)
+    fn earliest_crossing(&self, guard: Guard, _: Span, _: &AxisState) -> f64 {
+        Self::earliest_crossing(self, guard)
     }
 
     #[inline]
-    fn stride(&self, guard: Guard, _: &State, sensed: Sensed) -> f64 {
-        Self::stride(self, guard, sensed)
+    fn safe_stride(&self, guard: Guard, _: &AxisState, sensed: AngleObservation) -> f64 {
+        Self::safe_stride(self, guard, sensed)
     }
 
     #[inline]
-    fn is_clear(&self, guard: Guard, _: &State, sensed: Sensed, time: f64) -> bool {
-        Self::is_clear(self, guard, sensed, time)
+    fn has_no_crossing(&self, guard: Guard, _: &AxisState, sensed: AngleObservation, time: f64) -> bool {
+        Self::has_no_crossing(self, guard, sensed, time)
     }
 }

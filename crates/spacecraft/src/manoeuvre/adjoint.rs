@@ -7,13 +7,13 @@
 use nalgebra::{DMatrix, DVector};
 
 use super::suppression::Zero;
-use super::task::Task;
+use super::task::RestToRestTask;
 use crate::numerics::phasor::Phasor;
 use crate::numerics::phi::{exp, moment};
 use crate::waveform::{Term, TermShape, Waveform};
 
 /// Function Re(exp(pole rho) sum c\[n\] rho^n).
-struct Function {
+struct AdjointFunction {
     pole: Phasor,
     coefficients: Vec<Phasor>,
 }
@@ -21,13 +21,13 @@ struct Function {
 /// Adjoint functions of a task, and the products that its command must have with them.
 pub struct Adjoint {
     time: f64,
-    functions: Vec<Function>,
+    functions: Vec<AdjointFunction>,
 }
 
 impl Adjoint {
     /// Creates the adjoint functions of a rigid body and the given zeros, which are in order of frequency.
     pub fn new(time: f64, zeros: &[Zero]) -> Self {
-        let real = |c: &[f64]| Function {
+        let real = |c: &[f64]| AdjointFunction {
             pole: Phasor::default(),
             coefficients: c.iter().map(|c| Phasor::new(*c, 0.0)).collect(),
         };
@@ -38,7 +38,7 @@ impl Adjoint {
             for unit in [Phasor::new(1.0, 0.0), Phasor::new(0.0, -1.0)] {
                 let mut coefficients = vec![Phasor::default(); times];
                 coefficients.push(unit);
-                functions.push(Function { pole: zero.pole() * time, coefficients });
+                functions.push(AdjointFunction { pole: zero.pole() * time, coefficients });
             }
         }
         Self { time, functions }
@@ -50,16 +50,16 @@ impl Adjoint {
     }
 
     /// Returns the products that the command must have with the functions, over rho from 0 to 1.
-    pub fn products(&self, task: &Task) -> DVector<f64> {
+    pub fn products(&self, task: &RestToRestTask) -> DVector<f64> {
         let mut products = DVector::zeros(self.len());
         products[0] = task.mean();
-        products[1] = task.excess() / (task.time * task.time);
+        products[1] = task.excess_travel() / (task.time * task.time);
         products
     }
 
     /// Returns the Gram matrix: the products of the functions with each other.
     pub fn gram(&self) -> DMatrix<f64> {
-        let product = |a: &Function, b: &Function| {
+        let product = |a: &AdjointFunction, b: &AdjointFunction| {
             let mut sum = 0.0;
             for (n, c) in a.coefficients.iter().enumerate() {
                 for (m, d) in b.coefficients.iter().enumerate() {
@@ -153,7 +153,7 @@ impl Adjoint {
     }
 }
 
-impl Function {
+impl AdjointFunction {
     fn polynomial(&self, rho: f64) -> Phasor {
         self.coefficients.iter().rev().fold(Phasor::default(), |sum, c| sum * rho + c)
     }

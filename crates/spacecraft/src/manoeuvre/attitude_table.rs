@@ -4,15 +4,16 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Pose;
-use crate::attitude::{Vector, turned};
-use crate::document::Fault;
+use super::AttitudeMotion;
+use crate::attitude::{Vector, from_yaw_pitch_roll};
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Time};
 
 /// A row of the table.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct AttitudeAt {
+#[schemars(rename = "AttitudeAt")]
+pub struct AttitudeRow {
     /// Time since the start of the target (s); 0 in the first row.
     pub time: Time,
     /// Roll (rad).
@@ -26,7 +27,7 @@ pub struct AttitudeAt {
     pub yaw: Finite,
 }
 
-impl AttitudeAt {
+impl AttitudeRow {
     fn angles(&self) -> Vector {
         Vector::new(self.roll.get(), self.pitch.get(), self.yaw.get())
     }
@@ -43,25 +44,31 @@ pub struct AttitudeTable {
 
 impl AttitudeTable {
     /// Creates the spline through the rows, at least two whose times increase.
-    pub fn new(rows: &[AttitudeAt]) -> Self {
+    pub fn new(rows: &[AttitudeRow]) -> Self {
         let times: Vec<f64> = rows.iter().map(|row| row.time.get()).collect();
-        let angles: Vec<Vector> = rows.iter().map(AttitudeAt::angles).collect();
+        let angles: Vec<Vector> = rows.iter().map(AttitudeRow::angles).collect();
         let bends = clamped(&times, &angles);
         Self { times, angles, bends }
     }
 
     /// Returns the key and the reason, if the rows make no table.
-    pub fn fault(rows: &[AttitudeAt]) -> Option<Fault> {
+    pub fn validate(rows: &[AttitudeRow]) -> Option<ConfigError> {
         if rows.len() < 2 {
-            return Some(Fault::new("table", format!("must have at least two rows, got {}", rows.len())));
+            return Some(ConfigError::new(
+                "table",
+                format!("must have at least two rows, got {}", rows.len()),
+            ));
         }
         let first = rows[0].time.get();
         if first != 0.0 {
-            return Some(Fault::new("table[0].time", format!("must be 0 of the first row, got {first}")));
+            return Some(ConfigError::new(
+                "table[0].time",
+                format!("must be 0 of the first row, got {first}"),
+            ));
         }
         let late = rows.windows(2).position(|pair| pair[0].time >= pair[1].time)? + 1;
         let why = format!("must be later than the one before, got {}", rows[late].time.get());
-        Some(Fault::new(format!("table[{late}].time"), why))
+        Some(ConfigError::new(format!("table[{late}].time"), why))
     }
 
     /// Returns the duration (s).
@@ -70,8 +77,11 @@ impl AttitudeTable {
     }
 
     /// Returns the final attitude.
-    pub fn to(&self) -> Quaternion<f64> {
-        self.angles.last().map_or_else(|| turned(0.0, 0.0, 0.0), |last| turned(last.x, last.y, last.z))
+    pub fn final_attitude(&self) -> Quaternion<f64> {
+        self.angles.last().map_or_else(
+            || from_yaw_pitch_roll(0.0, 0.0, 0.0),
+            |last| from_yaw_pitch_roll(last.x, last.y, last.z),
+        )
     }
 
     /// Returns an estimate of the largest rate in the table (rad/s), from samples.
@@ -84,9 +94,9 @@ impl AttitudeTable {
     }
 
     /// Returns attitude, rate and acceleration at `t` seconds after the start of the table.
-    pub fn at(&self, t: f64) -> Pose {
+    pub fn at(&self, t: f64) -> AttitudeMotion {
         if t >= self.duration() {
-            return Pose::at_rest(self.to());
+            return AttitudeMotion::at_rest(self.final_attitude());
         }
         let after = self.times.partition_point(|time| *time <= t).clamp(1, self.times.len() - 1);
         let (h, s) = (self.times[after] - self.times[after - 1], t.max(0.0) - self.times[after - 1]);
@@ -100,11 +110,11 @@ impl AttitudeTable {
 }
 
 /// Returns attitude, rate and acceleration from roll, pitch and yaw and their first and second derivatives.
-fn turning(angles: &Vector, rates: &Vector, seconds: &Vector) -> Pose {
+fn turning(angles: &Vector, rates: &Vector, seconds: &Vector) -> AttitudeMotion {
     let ((sr, cr), (sp, cp)) = (libm::sincos(angles.x), libm::sincos(angles.y));
     let (roll, pitch, yaw) = (rates.x, rates.y, rates.z);
-    Pose {
-        attitude: turned(angles.x, angles.y, angles.z),
+    AttitudeMotion {
+        attitude: from_yaw_pitch_roll(angles.x, angles.y, angles.z),
         rate: Vector::new(roll - yaw * sp, pitch * cr + yaw * cp * sr, yaw * cp * cr - pitch * sr),
         acceleration: Vector::new(
             seconds.x - seconds.z * sp - yaw * pitch * cp,
@@ -149,14 +159,14 @@ mod tests {
 
     fn table(rows: &[[f64; 4]]) -> AttitudeTable {
         let finite = |value: f64| Finite::new(value).unwrap();
-        let row = |[time, roll, pitch, yaw]: &[f64; 4]| AttitudeAt {
+        let row = |[time, roll, pitch, yaw]: &[f64; 4]| AttitudeRow {
             time: Time::new(*time).unwrap(),
             roll: finite(*roll),
             pitch: finite(*pitch),
             yaw: finite(*yaw),
         };
-        let rows: Vec<AttitudeAt> = rows.iter().map(row).collect();
-        assert_eq!(AttitudeTable::fault(&rows), None);
+        let rows: Vec<AttitudeRow> = rows.iter().map(row).collect();
+        assert_eq!(AttitudeTable::validate(&rows), None);
         AttitudeTable::new(&rows)
     }
 
@@ -166,11 +176,13 @@ mod tests {
         for t in [0.0, 2.5, 5.0, 9.0] {
             let s: f64 = t / 10.0;
             let pose = table.at(t);
-            assert!((pose.attitude - turned(0.0, 0.4 * s * s * (3.0 - 2.0 * s), 0.0)).norm() < 1e-15);
+            assert!(
+                (pose.attitude - from_yaw_pitch_roll(0.0, 0.4 * s * s * (3.0 - 2.0 * s), 0.0)).norm() < 1e-15
+            );
             assert!((pose.rate.y - 0.04 * 6.0 * s * (1.0 - s)).abs() < 1e-16);
             assert!((pose.acceleration.y - 4e-3 * (6.0 - 12.0 * s)).abs() < 1e-16);
         }
-        assert_eq!(table.at(10.0), Pose::at_rest(turned(0.0, 0.4, 0.0)));
+        assert_eq!(table.at(10.0), AttitudeMotion::at_rest(from_yaw_pitch_roll(0.0, 0.4, 0.0)));
     }
 
     #[test]
@@ -193,12 +205,12 @@ mod tests {
             }
             assert!(now.rate.norm() <= 1.1 * table.fastest());
         }
-        assert!((table.at(7.0).attitude - turned(0.5, 0.3, 0.9)).norm() < 1e-15);
+        assert!((table.at(7.0).attitude - from_yaw_pitch_roll(0.5, 0.3, 0.9)).norm() < 1e-15);
     }
 
     #[test]
     fn rows_that_do_not_fit_are_refused() {
-        let row = |time: f64| AttitudeAt {
+        let row = |time: f64| AttitudeRow {
             time: Time::new(time).unwrap(),
             roll: Finite::ZERO,
             pitch: Finite::ZERO,
@@ -206,7 +218,7 @@ mod tests {
         };
         let fault = |times: &[f64]| {
             let rows: Vec<_> = times.iter().map(|time| row(*time)).collect();
-            AttitudeTable::fault(&rows).unwrap().key
+            AttitudeTable::validate(&rows).unwrap().key
         };
         assert_eq!(
             [fault(&[0.0]), fault(&[1.0, 2.0]), fault(&[0.0, 2.0, 2.0])],

@@ -1,13 +1,13 @@
 //! Bang-bang command: turns a rigid body with the smallest peak, full one way, then full the other.
 
-use super::task::Task;
+use super::task::RestToRestTask;
 use crate::waveform::{Term, TermShape, Waveform};
 
 /// Plans the bang-bang command: A before the switching, -A after it.
 /// || With P the impulse and E the excess travel over that of the mean command, A² T² - 4 E A - P² = 0 and the
 /// switching is at T/2 + P/(2 A); of the two roots the larger has its switching within the time.
-pub fn plan(task: &Task) -> Waveform {
-    let (t, p, e) = (task.time, task.impulse, task.excess());
+pub fn plan(task: &RestToRestTask) -> Waveform {
+    let (t, p, e) = (task.time, task.impulse, task.excess_travel());
     let root = 2.0 * f64::sqrt(e * e + 0.25 * p * p * t * t);
     let sum = if e < 0.0 { 2.0 * e - root } else { 2.0 * e + root };
     let amplitude = sum / (t * t);

@@ -5,16 +5,17 @@ use serde::{Deserialize, Serialize};
 
 use super::series::{self, SeriesCoefficients, SeriesFamily};
 use super::suppression::{self, Suppression, Zero};
-use super::task::Task;
+use super::task::RestToRestTask;
 use super::{bang_bang, minimum_energy, minimum_peak, polynomial};
 use crate::body::Mode;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::waveform::Waveform;
 
 /// The kinds of command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Command {
+#[schemars(rename = "Command")]
+pub enum ManoeuvreCommand {
     /// A series of sines (\[Rotation\], equations (19) to (24)).
     Sine(Suppression),
     /// A series of cosines (\[Rotation\], equations (25) to (30)).
@@ -26,7 +27,7 @@ pub enum Command {
     /// The command with the smallest peak.
     MinimumPeak(MinimumPeak),
     /// A polynomial for the angle.
-    Polynomial(Polynomial),
+    Polynomial(PolynomialCommand),
 }
 
 /// A bang-bang command; it has no parameters.
@@ -46,12 +47,13 @@ pub struct MinimumPeak {
 /// A polynomial for the angle.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Polynomial {
+#[schemars(rename = "Polynomial")]
+pub struct PolynomialCommand {
     /// Degree of the polynomial: 3, 5, 7, 9, 11 or 13.
     pub degree: u32,
 }
 
-impl Command {
+impl ManoeuvreCommand {
     /// Returns the key of the command's table under `[manoeuvre.command]`.
     pub fn kind(&self) -> &'static str {
         match self {
@@ -65,7 +67,7 @@ impl Command {
     }
 
     /// Returns the zeros of the command for a body's modes, or an error in its parameters.
-    pub fn zeros(&self, modes: &[Mode]) -> Result<Vec<Zero>, Fault> {
+    pub fn zeros(&self, modes: &[Mode]) -> Result<Vec<Zero>, ConfigError> {
         let place = format!("command.{}", self.kind());
         match self {
             Self::Sine(own) | Self::Cosine(own) | Self::MinimumEnergy(own) => own.zeros(modes, &place),
@@ -74,7 +76,7 @@ impl Command {
             Self::Polynomial(own) if polynomial::DEGREES.contains(&own.degree) => Ok(Vec::new()),
             Self::Polynomial(own) => {
                 let why = format!("must be 3, 5, 7, 9, 11 or 13, got {}", own.degree);
-                Err(Fault::new(format!("{place}.degree"), why))
+                Err(ConfigError::new(format!("{place}.degree"), why))
             }
         }
     }
@@ -82,9 +84,9 @@ impl Command {
     /// Plans the command that performs a task and has the given zeros; also returns its amplitudes if it is a series.
     pub fn waveform(
         &self,
-        task: &Task,
+        task: &RestToRestTask,
         zeros: &[Zero],
-    ) -> Result<(Waveform, Option<SeriesCoefficients>), Fault> {
+    ) -> Result<(Waveform, Option<SeriesCoefficients>), ConfigError> {
         let series = |family| {
             let (waveform, coefficients) = series::plan(family, task, zeros);
             Ok((waveform, Some(coefficients)))

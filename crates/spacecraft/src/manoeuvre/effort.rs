@@ -1,17 +1,17 @@
 //! Effort of a manoeuvre: peak, root mean square, and integral of the square.
 
 use super::Plan;
-use super::extremum::Peak;
-use super::history::{ModalHistory, torque};
+use super::modal_response::{ModalResponse, torque};
+use super::peak_search::PeakValue;
 use super::plan::fastest;
-use crate::body::{Drive, Planar};
+use crate::body::{CommandedQuantity, Planar};
 use crate::numerics::quadrature::integral;
 
 /// Effort of a command or a torque, in its unit.
 #[derive(Copy, Clone, Debug, PartialEq)]
 pub struct PlanEffort {
     /// Largest absolute value, with its time.
-    pub peak: Peak,
+    pub peak: PeakValue,
     /// Root mean square over the manoeuvre.
     pub rms: f64,
     /// Integral of the square over the manoeuvre.
@@ -25,23 +25,23 @@ impl PlanEffort {
     pub fn of_command(plan: &Plan) -> Self {
         let command = &plan.waveform;
         let panel = 4.0 / command.fastest().max(1e-9);
-        let value = |middle, t| command.on_piece(middle, t);
+        let value = |middle, t| command.value_on_piece(middle, t);
         Self::new(plan, plan.peak(), panel, value)
     }
 
     /// Computes the effort of the torque on the hub (N m).
     pub fn of_torque(plan: &Plan, body: &Planar) -> Self {
         match body.drive {
-            Drive::Torque => Self::of_command(plan),
-            Drive::Motion => {
-                let history = ModalHistory::new(body, &plan.waveform, 1.0);
+            CommandedQuantity::Torque => Self::of_command(plan),
+            CommandedQuantity::Motion => {
+                let history = ModalResponse::new(body, &plan.waveform, 1.0);
                 let panel = (4.0 / fastest(body, &plan.waveform)).max(plan.time / 2e3);
                 Self::new(plan, plan.peak_torque(body), panel, |middle, t| torque(body, &history, middle, t))
             }
         }
     }
 
-    fn new(plan: &Plan, peak: Peak, panel: f64, value: impl Fn(f64, f64) -> f64) -> Self {
+    fn new(plan: &Plan, peak: PeakValue, panel: f64, value: impl Fn(f64, f64) -> f64) -> Self {
         let breaks = plan.waveform.breaks();
         let square = integral(&breaks, panel, |middle, t| value(middle, t) * value(middle, t));
         let initial = breaks.get(1).map_or(0.0, |second| value(0.5 * second, 0.0));

@@ -2,12 +2,12 @@
 
 use super::adjoint::Adjoint;
 use super::suppression::Zero;
-use super::task::Task;
-use crate::document::Fault;
+use super::task::RestToRestTask;
+use crate::document::ConfigError;
 use crate::waveform::Waveform;
 
 /// Plans the command: the sum of adjoint functions that has the task's products with each.
-pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
+pub fn plan(task: &RestToRestTask, zeros: &[Zero]) -> Result<Waveform, ConfigError> {
     let adjoint = Adjoint::new(task.time, zeros);
     match adjoint.least(&adjoint.products(task)) {
         Some(weights) => Ok(adjoint.waveform(&weights)),
@@ -16,7 +16,7 @@ pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
 }
 
 /// Returns the fault of a time that is too short for the zeros.
-pub fn too_short(time: f64) -> Fault {
+pub fn too_short(time: f64) -> ConfigError {
     let why = format!("must be longer for the modes that are to be at rest after it, got {time} s");
-    Fault::new("time", why)
+    ConfigError::new("time", why)
 }

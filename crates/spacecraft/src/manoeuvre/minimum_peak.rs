@@ -11,8 +11,8 @@ use super::adjoint::Adjoint;
 use super::bang_bang::pieces;
 use super::minimum_energy::too_short;
 use super::suppression::Zero;
-use super::task::Task;
-use crate::document::Fault;
+use super::task::RestToRestTask;
+use crate::document::ConfigError;
 use crate::waveform::Waveform;
 
 /// Largest number of Newton steps; some thirty are needed.
@@ -21,8 +21,8 @@ const STEPS: usize = 400;
 const SAMPLES: f64 = 64.0;
 
 /// Plans the command.
-pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
-    let search = Search::new(task, zeros);
+pub fn plan(task: &RestToRestTask, zeros: &[Zero]) -> Result<Waveform, ConfigError> {
+    let search = SwitchingSearch::new(task, zeros);
     let size = search.products.norm();
     if size == 0.0 {
         return Ok(pieces(&[0.0, task.time], 0.0));
@@ -37,7 +37,7 @@ pub fn plan(task: &Task, zeros: &[Zero]) -> Result<Waveform, Fault> {
 }
 
 /// Search for the weights, with the required products scaled to length 1.
-struct Search {
+struct SwitchingSearch {
     adjoint: Adjoint,
     products: DVector<f64>,
     target: DVector<f64>,
@@ -47,14 +47,14 @@ struct Search {
 }
 
 /// Bang-bang function A sign(f): the switchings in rho, in order, and the sign before the first.
-struct Bang {
+struct SwitchingCommand {
     amplitude: f64,
     first: f64,
     switchings: Vec<f64>,
 }
 
-impl Search {
-    fn new(task: &Task, zeros: &[Zero]) -> Self {
+impl SwitchingSearch {
+    fn new(task: &RestToRestTask, zeros: &[Zero]) -> Self {
         let adjoint = Adjoint::new(task.time, zeros);
         let products = adjoint.products(task);
         let periods = adjoint.fastest() / std::f64::consts::TAU;
@@ -68,7 +68,7 @@ impl Search {
         Self { adjoint, products, target, grid, samples }
     }
 
-    fn solve(&self) -> Option<Bang> {
+    fn solve(&self) -> Option<SwitchingCommand> {
         let mut weights = self.adjoint.least(&self.target)?;
         let start = self.bang(&weights);
         weights *= weights.dot(&self.target) / (start.amplitude * start.amplitude);
@@ -102,7 +102,7 @@ impl Search {
     }
 
     /// Returns the bang-bang function of the weights, with S for its amplitude.
-    fn bang(&self, weights: &DVector<f64>) -> Bang {
+    fn bang(&self, weights: &DVector<f64>) -> SwitchingCommand {
         let f = self.samples.tr_mul(weights);
         let at = |rho: f64| self.adjoint.at(rho).zip(weights.iter()).map(|(g, w)| g * w).sum::<f64>();
         let mut switchings = Vec::new();
@@ -124,13 +124,13 @@ impl Search {
             }
         }
         let first = if f[0] > 0.0 { 1.0 } else { -1.0 };
-        let mut bang = Bang { amplitude: 1.0, first, switchings };
+        let mut bang = SwitchingCommand { amplitude: 1.0, first, switchings };
         bang.amplitude = self.products_of(&bang).dot(weights);
         bang
     }
 
     /// Returns h: the products of a bang-bang function of amplitude 1 with the adjoint functions.
-    fn products_of(&self, bang: &Bang) -> DVector<f64> {
+    fn products_of(&self, bang: &SwitchingCommand) -> DVector<f64> {
         let mut h = DVector::zeros(self.adjoint.len());
         let mut sign = bang.first;
         let mut from = vec![0.0; self.adjoint.len()];
@@ -144,16 +144,16 @@ impl Search {
         h
     }
 
-    fn value(&self, weights: &DVector<f64>, bang: &Bang) -> f64 {
+    fn value(&self, weights: &DVector<f64>, bang: &SwitchingCommand) -> f64 {
         0.5 * bang.amplitude * bang.amplitude - weights.dot(&self.target)
     }
 
     /// Returns the gradient: the products minus the required ones.
-    fn gap(&self, bang: &Bang) -> DVector<f64> {
+    fn gap(&self, bang: &SwitchingCommand) -> DVector<f64> {
         self.products_of(bang) * bang.amplitude - &self.target
     }
 
-    fn curvature(&self, weights: &DVector<f64>, bang: &Bang) -> DMatrix<f64> {
+    fn curvature(&self, weights: &DVector<f64>, bang: &SwitchingCommand) -> DMatrix<f64> {
         let h = self.products_of(bang);
         let mut curvature = &h * h.transpose();
         for rho in &bang.switchings {
@@ -166,7 +166,7 @@ impl Search {
     }
 
     /// Corrects amplitude and switchings by the last rounding errors of the weights; `None` if they are not small.
-    fn polished(&self, mut bang: Bang, gradient: &DVector<f64>) -> Option<Bang> {
+    fn polished(&self, mut bang: SwitchingCommand, gradient: &DVector<f64>) -> Option<SwitchingCommand> {
         if gradient.amax() > 1e-8 {
             return None;
         }
@@ -184,7 +184,11 @@ impl Search {
             let step = jacobian.tr_mul(&factor.solve(&gap));
             let mut moved = bang.switchings.clone();
             moved.iter_mut().zip(step.iter().skip(1)).for_each(|(rho, d)| *rho -= d);
-            let next = Bang { amplitude: bang.amplitude - step[0], first: bang.first, switchings: moved };
+            let next = SwitchingCommand {
+                amplitude: bang.amplitude - step[0],
+                first: bang.first,
+                switchings: moved,
+            };
             let ordered = next.switchings.windows(2).all(|pair| pair[0] < pair[1]);
             if !ordered || self.gap(&next).norm() >= gap.norm() {
                 break;

@@ -1,16 +1,17 @@
 //! Manoeuvres: rotations planned ahead, whose command leaves the elastic modes at rest.
 
 mod adjoint;
+mod alternatives;
 mod attitude_table;
 mod bang_bang;
 mod command;
 mod effort;
-mod extremum;
-mod field;
-mod history;
 mod minimum_energy;
 mod minimum_peak;
+mod modal_response;
+mod peak_search;
 mod plan;
+mod planned_slew;
 mod planner;
 mod polynomial;
 mod report;
@@ -21,32 +22,33 @@ mod slew;
 mod suppression;
 mod task;
 mod timing;
-mod turn;
 
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Planar;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Positive};
 use crate::time::Span;
 
-pub use attitude_table::{AttitudeAt, AttitudeTable};
-pub use command::{BangBang, Command, MinimumPeak, Polynomial};
+pub use alternatives::{
+    Alternative, AlternativeOutcome, CommandCost, ComparisonBasis, alternatives, compare,
+};
+pub use attitude_table::{AttitudeRow, AttitudeTable};
+pub use command::{BangBang, ManoeuvreCommand, MinimumPeak, PolynomialCommand};
 pub use effort::PlanEffort;
-pub use extremum::Peak;
-pub use field::{CommandCost, FieldCommon, FieldOutcome, Rival, compare, field};
+pub use peak_search::PeakValue;
 pub use plan::Plan;
-pub use report::{Report, RestTimes};
+pub use planned_slew::PlannedSlew;
+pub use report::{PlanReport, RestTimes};
 pub use residual::FinalResidual;
 pub use series::SeriesCoefficients;
-pub use shaper::{ExtraInsensitive, Impulse, Shaped, Shaper, shaped};
-pub use slew::{Pose, Profile, Slew};
-pub use suppression::{Suppression, Target};
-pub use task::Task;
-pub use turn::RestToRest;
+pub use shaper::{ExtraInsensitive, ShapedModes, Shaper, ShaperImpulse, convolve};
+pub use slew::{AttitudeMotion, Slew, SlewProfile};
+pub use suppression::{SuppressedMode, Suppression};
+pub use task::RestToRestTask;
 
-use planner::Planner;
+use planner::ManoeuvrePlanner;
 
 /// A manoeuvre. The modes of the body are at rest at its start.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -67,7 +69,7 @@ pub struct Manoeuvre {
     #[serde(default)]
     pub end_rate: Finite,
     /// Command that turns the body.
-    pub command: Command,
+    pub command: ManoeuvreCommand,
     /// Shaper with which the command is convolved; it uses part of the duration.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub shaper: Option<Shaper>,
@@ -84,16 +86,16 @@ impl Manoeuvre {
     }
 
     /// Plans the manoeuvre for a body.
-    pub fn plan(&self, body: &Planar) -> Result<Plan, Fault> {
+    pub fn plan(&self, body: &Planar) -> Result<Plan, ConfigError> {
         if let Some(index) = body.modes.iter().position(|mode| mode.damping.get() >= 1.0) {
             let damping = body.modes[index].damping.get();
             let why = format!("needs modes that oscillate, and the damping of mode {index} is {damping}");
-            return Err(Fault::new("command", why));
+            return Err(ConfigError::new("command", why));
         }
-        let planner = Planner::new(self, body)?;
+        let planner = ManoeuvrePlanner::new(self, body)?;
         match (self.time.map(Span::seconds), self.peak_torque.map(Positive::get)) {
-            (None, None) => Err(Fault::new("", "needs a `time`, a `peak_torque` or both")),
-            (None, Some(limit)) => timing::shortest(&planner, limit),
+            (None, None) => Err(ConfigError::new("", "needs a `time`, a `peak_torque` or both")),
+            (None, Some(limit)) => timing::shortest_plan(&planner, limit),
             (Some(time), None) => planner.plan(time),
             (Some(time), Some(limit)) => {
                 let plan = planner.plan(time)?;
@@ -102,13 +104,13 @@ impl Manoeuvre {
                 if peak <= limit * (1.0 + 1e-9) {
                     return Ok(plan);
                 }
-                let takes = match timing::shortest(&planner, limit) {
+                let takes = match timing::shortest_plan(&planner, limit) {
                     Ok(longer) => format!("with {limit} N m it takes {:.6} s", longer.time),
                     Err(_) => format!("with {limit} N m no time is enough"),
                 };
                 let why =
                     format!("must be at least {peak:.6} N m for a time of {time} s, got {limit}; {takes}");
-                Err(Fault::new("peak_torque", why))
+                Err(ConfigError::new("peak_torque", why))
             }
         }
     }

@@ -1,10 +1,10 @@
 //! A planned manoeuvre: the command, and its nominal result.
 
-use super::extremum::{self, Peak};
-use super::history::{ModalHistory, torque};
+use super::modal_response::{ModalResponse, torque};
+use super::peak_search::{self, PeakValue};
 use super::residual;
 use super::series::SeriesCoefficients;
-use crate::body::{Drive, Planar};
+use crate::body::{CommandedQuantity, Planar};
 use crate::waveform::Waveform;
 
 /// Planned manoeuvre of a body whose modes rest at its start.
@@ -33,21 +33,21 @@ impl Plan {
     }
 
     /// Returns the largest absolute value of the command, with its time.
-    pub fn peak(&self) -> Peak {
+    pub fn peak(&self) -> PeakValue {
         let command = &self.waveform;
-        let step = extremum::sampling(command.fastest());
-        extremum::largest(&command.breaks(), step, |middle, t| command.on_piece(middle, t))
+        let step = peak_search::sampling(command.fastest());
+        peak_search::largest(&command.breaks(), step, |middle, t| command.value_on_piece(middle, t))
     }
 
     /// Returns the largest torque on the hub (N m), with its time: that of the command, or if the hub's motion is
     /// commanded, the torque that produces it against the modes (\[Rotation\], equation (17)).
-    pub fn peak_torque(&self, body: &Planar) -> Peak {
+    pub fn peak_torque(&self, body: &Planar) -> PeakValue {
         match body.drive {
-            Drive::Torque => self.peak(),
-            Drive::Motion => {
-                let history = ModalHistory::new(body, &self.waveform, 1.0);
-                let step = extremum::sampling(fastest(body, &self.waveform)).max(self.time / 2e4);
-                extremum::largest(&self.waveform.breaks(), step, |middle, t| {
+            CommandedQuantity::Torque => self.peak(),
+            CommandedQuantity::Motion => {
+                let history = ModalResponse::new(body, &self.waveform, 1.0);
+                let step = peak_search::sampling(fastest(body, &self.waveform)).max(self.time / 2e4);
+                peak_search::largest(&self.waveform.breaks(), step, |middle, t| {
                     torque(body, &history, middle, t)
                 })
             }
@@ -57,7 +57,7 @@ impl Plan {
     /// Returns the torque on the hub (N m) over the manoeuvre: times (s) and values at most `step` seconds apart, with
     /// both limits where it jumps.
     pub fn torque(&self, body: &Planar, step: f64) -> Vec<(f64, f64)> {
-        let history = ModalHistory::new(body, &self.waveform, 1.0);
+        let history = ModalResponse::new(body, &self.waveform, 1.0);
         let mut line = Vec::new();
         for piece in self.waveform.breaks().windows(2) {
             let (from, length) = (piece[0], piece[1] - piece[0]);
@@ -71,8 +71,8 @@ impl Plan {
 
     /// Returns the residual in the hub's angle and in each output, as in a [`FinalResidual`](super::FinalResidual), for
     /// a body with all frequencies multiplied by `factor` and unchanged gains and weights.
-    pub fn left(&self, body: &Planar, factor: f64) -> Vec<f64> {
-        residual::left(self, body, &residual::coordinates(body), factor)
+    pub fn residual_at(&self, body: &Planar, factor: f64) -> Vec<f64> {
+        residual::residual_amplitudes(self, body, &residual::coordinates(body), factor)
     }
 }
 

@@ -1,40 +1,40 @@
 //! Planner of a manoeuvre for a given time.
 
 use super::Manoeuvre;
-use super::command::Command;
+use super::command::ManoeuvreCommand;
 use super::plan::Plan;
-use super::shaper::{Impulse, shaped};
+use super::shaper::{ShaperImpulse, convolve};
 use super::suppression::Zero;
-use super::task::Task;
+use super::task::RestToRestTask;
 use crate::body::Planar;
-use crate::document::Fault;
+use crate::document::ConfigError;
 
 /// Validated manoeuvre of a body, to be planned for any time.
-pub struct Planner<'a> {
+pub struct ManoeuvrePlanner<'a> {
     /// Body that the manoeuvre turns.
     pub body: &'a Planar,
-    command: &'a Command,
+    command: &'a ManoeuvreCommand,
     zeros: Vec<Zero>,
-    impulses: Vec<Impulse>,
+    impulses: Vec<ShaperImpulse>,
     inertia: f64,
     angle: f64,
     start_rate: f64,
     end_rate: f64,
 }
 
-impl<'a> Planner<'a> {
+impl<'a> ManoeuvrePlanner<'a> {
     /// Creates a planner, or returns the fault if the manoeuvre does not fit the body.
-    pub fn new(manoeuvre: &'a Manoeuvre, body: &'a Planar) -> Result<Self, Fault> {
+    pub fn new(manoeuvre: &'a Manoeuvre, body: &'a Planar) -> Result<Self, ConfigError> {
         let (angle, start_rate, end_rate) =
             (manoeuvre.angle.get(), manoeuvre.start_rate.get(), manoeuvre.end_rate.get());
         if angle == 0.0 && start_rate == end_rate {
             let why = "must not be 0 where the rates before and after are the same, got 0";
-            return Err(Fault::new("angle", why));
+            return Err(ConfigError::new("angle", why));
         }
         let zeros = manoeuvre.command.zeros(&body.modes)?;
         let impulses = match &manoeuvre.shaper {
             Some(shaper) => shaper.impulses(&body.modes)?,
-            None => vec![Impulse { delay: 0.0, area: 1.0 }],
+            None => vec![ShaperImpulse { delay: 0.0, area: 1.0 }],
         };
         let inertia = body.commanded_inertia();
         let command = &manoeuvre.command;
@@ -47,21 +47,22 @@ impl<'a> Planner<'a> {
     }
 
     /// Plans the manoeuvre for a time (s).
-    pub fn plan(&self, time: f64) -> Result<Plan, Fault> {
+    pub fn plan(&self, time: f64) -> Result<Plan, ConfigError> {
         let shaper = self.shaper();
         if shaper >= time {
             let why = format!("must be longer than the shaper, which takes {shaper} s, got {time} s");
-            return Err(Fault::new("time", why));
+            return Err(ConfigError::new("time", why));
         }
         let impulse = self.inertia * (self.end_rate - self.start_rate);
         let travel = self.inertia * (self.angle - self.start_rate * time);
         // The rate gained by the command acts for a shorter time after each delayed impulse of the shaper.
         let mean: f64 = self.impulses.iter().map(|impulse| impulse.area * impulse.delay).sum();
-        let task = Task { time: time - shaper, impulse, travel: travel - impulse * (shaper - mean) };
+        let task =
+            RestToRestTask { time: time - shaper, impulse, travel: travel - impulse * (shaper - mean) };
         let (own, coefficients) = self.command.waveform(&task, &self.zeros)?;
         let (waveform, coefficients) = match self.impulses.as_slice() {
             [_] => (own, coefficients),
-            impulses => (shaped(&own, impulses), None),
+            impulses => (convolve(&own, impulses), None),
         };
         let plan = Plan {
             waveform,
@@ -74,7 +75,7 @@ impl<'a> Planner<'a> {
         if plan.waveform.is_finite() {
             return Ok(plan);
         }
-        Err(Fault::new("time", format!("must be one for which the command is finite, got {time} s")))
+        Err(ConfigError::new("time", format!("must be one for which the command is finite, got {time} s")))
     }
 
     /// Returns the time (s) below which no command of the peak torque `peak` (N m) turns the rigid body.

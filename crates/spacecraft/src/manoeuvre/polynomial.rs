@@ -1,6 +1,6 @@
 //! Commands whose angle is a smooth polynomial of odd degree.
 
-use super::task::Task;
+use super::task::RestToRestTask;
 use crate::waveform::{Term, TermShape, Waveform};
 
 /// Degrees that the angle may have.
@@ -12,13 +12,13 @@ pub const DEGREES: [u32; 6] = [3, 5, 7, 9, 11, 13];
 /// u = (x (1 - x))^(m-1) [ (2m-1)!/(m-1)!² P/T + (2m+1)!/m!² m (1 - 2x) E/T² ],
 ///
 /// so that the second to (m-1)th derivatives of the angle vanish at both ends.
-pub fn plan(task: &Task, degree: u32) -> Waveform {
+pub fn plan(task: &RestToRestTask, degree: u32) -> Waveform {
     let m = ((degree - 1) / 2) as usize;
     let t = task.time;
     let factorial = |n: usize| (1..=n).fold(1.0, |product, k| product * k as f64);
     let square = |v: f64| v * v;
     let constant = factorial(2 * m - 1) / square(factorial(m - 1)) * task.impulse / t;
-    let slope = factorial(2 * m + 1) / square(factorial(m)) * m as f64 * task.excess() / (t * t);
+    let slope = factorial(2 * m + 1) / square(factorial(m)) * m as f64 * task.excess_travel() / (t * t);
     // Coefficients of (1 - x)^(m-1) times constant + slope (1 - 2x), shifted by x^(m-1), each power over T.
     let mut coefficients = vec![0.0; 2 * m];
     let mut binomial = 1.0;

@@ -4,12 +4,12 @@ use serde_json::{Value, json};
 
 use super::Plan;
 use super::effort::PlanEffort;
-use super::extremum::{self, Peak};
-use super::history::ModalHistory;
+use super::modal_response::ModalResponse;
+use super::peak_search::{self, PeakValue};
 use super::plan::fastest;
 use super::residual::{FinalResidual, coordinates, residuals};
-use super::timing::{Single, tuned};
-use crate::body::{Drive, Planar};
+use super::timing::{self, SingleHarmonicTime};
+use crate::body::{CommandedQuantity, Planar};
 use crate::waveform::TermShape;
 
 /// Number of modes of the lowest frequencies for which tuned times are reported.
@@ -17,7 +17,7 @@ const TUNED: usize = 3;
 
 /// Results of a plan on its body, exact except for rounding.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Report {
+pub struct PlanReport {
     /// Effort of the command, in its unit.
     pub command: PlanEffort,
     /// Effort of the torque on the hub (N m): equal to `command`, unless the hub's motion is commanded.
@@ -33,7 +33,7 @@ pub struct Report {
     /// Residual in each coordinate.
     pub residuals: Vec<FinalResidual>,
     /// Largest elastic deflection of each coordinate during the manoeuvre, in the same order.
-    pub deflections: Vec<Peak>,
+    pub deflections: Vec<PeakValue>,
     /// Times near the planned one for which a single harmonic leaves a mode at rest.
     pub tuned: Vec<RestTimes>,
 }
@@ -49,15 +49,17 @@ pub struct RestTimes {
     pub cosine: Option<(Option<f64>, f64)>,
 }
 
-impl Report {
+impl PlanReport {
     /// Computes the report of a plan on a body whose frequencies have a relative uncertainty of `band`.
     pub fn new(plan: &Plan, body: &Planar, band: f64) -> Self {
         let command = &plan.waveform;
-        let history = ModalHistory::new(body, command, 1.0);
+        let history = ModalResponse::new(body, command, 1.0);
         let end = history.at(plan.time, plan.time);
-        let sight: [f64; 2] = match body.drive {
-            Drive::Torque => end.iter().fold([0.0; 2], |sum, [x, rate, _]| [sum[0] + x, sum[1] + rate]),
-            Drive::Motion => [0.0; 2],
+        let measurement: [f64; 2] = match body.drive {
+            CommandedQuantity::Torque => {
+                end.iter().fold([0.0; 2], |sum, [x, rate, _]| [sum[0] + x, sum[1] + rate])
+            }
+            CommandedQuantity::Motion => [0.0; 2],
         };
         let inertia = body.commanded_inertia();
         let angle = plan.start_rate * plan.time + command.travel(0.0, plan.time) / inertia;
@@ -67,17 +69,17 @@ impl Report {
             let (w, gain) = (mode.frequency.get(), mode.gain.get().abs());
             if gain == 0.0 { 0.0 } else { 0.5 * body.inertia.get() / gain * (rate * rate + w * w * x * x) }
         });
-        let step = extremum::sampling(fastest(body, command)).max(plan.time / 1e4);
+        let step = peak_search::sampling(fastest(body, command)).max(plan.time / 1e4);
         let deflection = |weights: &[f64]| {
-            extremum::largest(&command.breaks(), step, |middle, t| {
+            peak_search::largest(&command.breaks(), step, |middle, t| {
                 weights.iter().zip(history.at(middle, t)).map(|(weight, [x, _, _])| weight * x).sum()
             })
         };
         Self {
             command: PlanEffort::of_command(plan),
             torque: PlanEffort::of_torque(plan, body),
-            angle_error: angle - plan.angle + sight[0],
-            rate_error: rate - plan.end_rate + sight[1],
+            angle_error: angle - plan.angle + measurement[0],
+            rate_error: rate - plan.end_rate + measurement[1],
             energy: energy.sum(),
             band,
             residuals: residuals(plan, body, band),
@@ -88,7 +90,7 @@ impl Report {
 
     /// Returns the report as one JSON object whose keys end with their units.
     pub fn to_json(&self, plan: &Plan, body: &Planar) -> Value {
-        let motion = body.drive == Drive::Motion;
+        let motion = body.drive == CommandedQuantity::Motion;
         let unit = if motion { "rad_s2" } else { "nm" };
         let mut object = json!({
             "time_s": plan.time,
@@ -165,8 +167,8 @@ fn tuned_times(plan: &Plan, body: &Planar) -> Vec<RestTimes> {
         let w = body.modes[mode].frequency.get();
         RestTimes {
             mode,
-            sine: tuned(Single::Sine, w, plan.time),
-            cosine: rest.then(|| tuned(Single::Cosine, w, plan.time)),
+            sine: timing::tuned_times(SingleHarmonicTime::Sine, w, plan.time),
+            cosine: rest.then(|| timing::tuned_times(SingleHarmonicTime::Cosine, w, plan.time)),
         }
     };
     order.into_iter().map(of).collect()

@@ -1,8 +1,8 @@
 //! Residual vibration after a manoeuvre, as planned and with other frequencies.
 
-use super::history::ModalHistory;
-use super::{Plan, extremum};
-use crate::body::{Drive, Planar};
+use super::modal_response::ModalResponse;
+use super::{Plan, peak_search};
+use crate::body::{CommandedQuantity, Planar};
 
 /// Relative uncertainty of the frequencies for which the residual is always reported.
 pub const NEAR: f64 = 0.05;
@@ -23,21 +23,24 @@ pub struct FinalResidual {
 }
 
 /// Coordinate with its name, its unit, and the weights of the modes' displacements in it.
-pub struct Coordinate {
+pub struct ResidualCoordinate {
     pub name: String,
     pub unit: String,
     pub weights: Vec<f64>,
 }
 
 /// Returns the coordinates of a body: the hub's angle, then its outputs.
-pub fn coordinates(body: &Planar) -> Vec<Coordinate> {
+pub fn coordinates(body: &Planar) -> Vec<ResidualCoordinate> {
     let own = match body.drive {
-        Drive::Torque => 1.0,
-        Drive::Motion => 0.0,
+        CommandedQuantity::Torque => 1.0,
+        CommandedQuantity::Motion => 0.0,
     };
-    let angle =
-        Coordinate { name: "angle".to_owned(), unit: "rad".to_owned(), weights: vec![own; body.modes.len()] };
-    let outputs = body.outputs.iter().map(|output| Coordinate {
+    let angle = ResidualCoordinate {
+        name: "angle".to_owned(),
+        unit: "rad".to_owned(),
+        weights: vec![own; body.modes.len()],
+    };
+    let outputs = body.outputs.iter().map(|output| ResidualCoordinate {
         name: output.name.clone(),
         unit: output.unit.clone(),
         weights: output.modes.iter().map(|weight| weight.get()).collect(),
@@ -47,9 +50,14 @@ pub fn coordinates(body: &Planar) -> Vec<Coordinate> {
 
 /// Returns the sum of the modes' amplitudes in each coordinate after the manoeuvre, with all frequencies times
 /// `factor`.
-pub fn left(plan: &Plan, body: &Planar, coordinates: &[Coordinate], factor: f64) -> Vec<f64> {
-    let amplitudes = ModalHistory::new(body, &plan.waveform, factor).amplitudes(plan.time);
-    let sum = |c: &Coordinate| c.weights.iter().zip(&amplitudes).map(|(w, a)| w.abs() * a).sum();
+pub fn residual_amplitudes(
+    plan: &Plan,
+    body: &Planar,
+    coordinates: &[ResidualCoordinate],
+    factor: f64,
+) -> Vec<f64> {
+    let amplitudes = ModalResponse::new(body, &plan.waveform, factor).amplitudes(plan.time);
+    let sum = |c: &ResidualCoordinate| c.weights.iter().zip(&amplitudes).map(|(w, a)| w.abs() * a).sum();
     coordinates.iter().map(sum).collect()
 }
 
@@ -59,21 +67,21 @@ pub fn left(plan: &Plan, body: &Planar, coordinates: &[Coordinate], factor: f64)
 /// the largest one is found from samples that resolve every peak, and refined to rounding.
 pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<FinalResidual> {
     let coordinates = coordinates(body);
-    let sums = |factor: f64| left(plan, body, &coordinates, factor);
+    let sums = |factor: f64| residual_amplitudes(plan, body, &coordinates, factor);
     let fastest = body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
-    let step = extremum::sampling(fastest * plan.time);
+    let step = peak_search::sampling(fastest * plan.time);
     let worst = |band: f64| -> Vec<f64> {
         let ends = [1.0 - band, 1.0 + band];
-        let each = extremum::largest_of(coordinates.len(), &ends, step, |_, factor| sums(factor));
+        let each = peak_search::largest_of_each(coordinates.len(), &ends, step, |_, factor| sums(factor));
         each.into_iter().map(|peak| peak.value).collect()
     };
     let (nominal, near, worst) = (sums(1.0), worst(NEAR), worst(band));
-    let told = coordinates.into_iter().enumerate().map(|(i, c)| FinalResidual {
+    let described = coordinates.into_iter().enumerate().map(|(i, c)| FinalResidual {
         name: c.name,
         unit: c.unit,
         nominal: nominal[i],
         near: near[i],
         worst: worst[i],
     });
-    told.collect()
+    described.collect()
 }

@@ -20,7 +20,7 @@
 use std::f64::consts::PI;
 
 use super::suppression::Zero;
-use super::task::Task;
+use super::task::RestToRestTask;
 use crate::numerics::phasor::Phasor;
 use crate::waveform::{Term, TermShape, Waveform};
 
@@ -46,12 +46,12 @@ pub enum SeriesFamily {
 }
 
 /// Plans the command, and returns it with its amplitudes.
-pub fn plan(family: SeriesFamily, task: &Task, zeros: &[Zero]) -> (Waveform, SeriesCoefficients) {
+pub fn plan(family: SeriesFamily, task: &RestToRestTask, zeros: &[Zero]) -> (Waveform, SeriesCoefficients) {
     let sigma = 2.0 * PI / task.time;
     let constant = task.mean();
     // With damping the even series is no longer symmetric: it contributes to the travel.
     let lag: f64 = zeros.iter().map(|zero| 2.0 * zero.damping / zero.frequency).sum();
-    let travel = task.excess() - constant * task.time * lag;
+    let travel = task.excess_travel() - constant * task.time * lag;
 
     // Numbers k and phasors c of the harmonics Re(c exp(i kappa t)).
     let count = zeros.len();

@@ -3,9 +3,9 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::suppression::{Zero, index_beyond};
+use super::suppression::{Zero, index_error};
 use crate::body::Mode;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::Fraction;
 use crate::waveform::Waveform;
 
@@ -14,11 +14,11 @@ use crate::waveform::Waveform;
 #[serde(rename_all = "snake_case")]
 pub enum Shaper {
     /// Zero vibration: two impulses for each mode.
-    Zv(Shaped),
+    Zv(ShapedModes),
     /// Zero vibration and derivative: three impulses.
-    Zvd(Shaped),
+    Zvd(ShapedModes),
     /// Zero vibration and two derivatives: four impulses.
-    Zvdd(Shaped),
+    Zvdd(ShapedModes),
     /// Extra insensitive: three impulses that allow a little vibration at the mode's frequency, and stay near it over a wider
     /// band.
     Ei(ExtraInsensitive),
@@ -27,7 +27,8 @@ pub enum Shaper {
 /// The modes that a shaper suppresses.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Shaped {
+#[schemars(rename = "Shaped")]
+pub struct ShapedModes {
     /// Indices of the modes.
     #[serde(default = "first")]
     pub modes: Vec<usize>,
@@ -55,7 +56,7 @@ fn twentieth() -> Fraction {
 
 /// Impulse of a shaper; the areas of a shaper's impulses add up to 1.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Impulse {
+pub struct ShaperImpulse {
     /// Delay of the impulse (s).
     pub delay: f64,
     /// Area of the impulse.
@@ -65,7 +66,7 @@ pub struct Impulse {
 impl Shaper {
     /// Returns the impulses for the shaper's modes of a body: one sequence for each mode, convolved. Those of a
     /// sequence are half a damped period apart.
-    pub fn impulses(&self, modes: &[Mode]) -> Result<Vec<Impulse>, Fault> {
+    pub fn impulses(&self, modes: &[Mode]) -> Result<Vec<ShaperImpulse>, ConfigError> {
         let (name, indices, areas) = match self {
             Self::Zv(shaped) => ("zv", &shaped.modes, vec![1.0, 1.0]),
             Self::Zvd(shaped) => ("zvd", &shaped.modes, vec![1.0, 2.0, 1.0]),
@@ -77,19 +78,21 @@ impl Shaper {
         };
         let key = format!("shaper.{name}.modes");
         if indices.is_empty() {
-            return Err(Fault::new(key, "must hold the index of a mode, got none"));
+            return Err(ConfigError::new(key, "must hold the index of a mode, got none"));
         }
-        let mut impulses = vec![Impulse { delay: 0.0, area: 1.0 }];
+        let mut impulses = vec![ShaperImpulse { delay: 0.0, area: 1.0 }];
         for (place, &index) in indices.iter().enumerate() {
             let Some(mode) = modes.get(index) else {
-                return Err(Fault::new(format!("{key}[{place}]"), index_beyond(index, modes)));
+                return Err(ConfigError::new(format!("{key}[{place}]"), index_error(index, modes)));
             };
-            let own = sequence(&areas, &Zero::of(mode));
-            let later =
-                |a: &Impulse, b: &Impulse| Impulse { delay: a.delay + b.delay, area: a.area * b.area };
+            let own = sequence(&areas, &Zero::at_mode(mode));
+            let later = |a: &ShaperImpulse, b: &ShaperImpulse| ShaperImpulse {
+                delay: a.delay + b.delay,
+                area: a.area * b.area,
+            };
             impulses = impulses.iter().flat_map(|a| own.iter().map(move |b| later(a, b))).collect();
             if impulses.len() > 4096 {
-                return Err(Fault::new(
+                return Err(ConfigError::new(
                     key,
                     format!("must make at most 4096 impulses, got {} modes", indices.len()),
                 ));
@@ -100,14 +103,14 @@ impl Shaper {
 }
 
 /// Returns the impulses for one mode: each later one is reduced by the damping of the elapsed time.
-fn sequence(areas: &[f64], mode: &Zero) -> Vec<Impulse> {
+fn sequence(areas: &[f64], mode: &Zero) -> Vec<ShaperImpulse> {
     let pole = mode.pole();
     let half = std::f64::consts::PI / pole.im;
     let decay = libm::exp(pole.re * half);
     let mut shrink = 1.0;
     let mut sequence = Vec::new();
     for (index, area) in areas.iter().enumerate() {
-        sequence.push(Impulse { delay: index as f64 * half, area: area * shrink });
+        sequence.push(ShaperImpulse { delay: index as f64 * half, area: area * shrink });
         shrink *= decay;
     }
     let sum: f64 = sequence.iter().map(|impulse| impulse.area).sum();
@@ -118,7 +121,7 @@ fn sequence(areas: &[f64], mode: &Zero) -> Vec<Impulse> {
 }
 
 /// Returns a command convolved with impulses.
-pub fn shaped(command: &Waveform, impulses: &[Impulse]) -> Waveform {
+pub fn convolve(command: &Waveform, impulses: &[ShaperImpulse]) -> Waveform {
     let terms = impulses.iter().flat_map(|impulse| command.shifted(impulse.delay, impulse.area).terms);
     Waveform { terms: terms.collect() }
 }

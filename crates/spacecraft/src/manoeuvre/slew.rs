@@ -5,13 +5,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Vector, rotation};
-use crate::environment::into;
+use crate::environment::to_body;
 use crate::waveform::{Term, TermShape, Waveform};
 
 /// How the rate of a slew rises to its limit and falls.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Profile {
+#[schemars(rename = "Profile")]
+pub enum SlewProfile {
     /// Constant acceleration: the shortest slew.
     #[default]
     Trapezoid,
@@ -21,7 +22,7 @@ pub enum Profile {
 
 /// Attitude, rate and acceleration of a reference motion at an instant.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Pose {
+pub struct AttitudeMotion {
     /// Attitude as a unit quaternion.
     pub attitude: Quaternion<f64>,
     /// Angular rate in the axes of that attitude (rad/s).
@@ -30,7 +31,7 @@ pub struct Pose {
     pub acceleration: Vector,
 }
 
-impl Pose {
+impl AttitudeMotion {
     /// Returns the motion at rest in an attitude.
     pub fn at_rest(attitude: Quaternion<f64>) -> Self {
         Self { attitude, rate: Vector::zeros(), acceleration: Vector::zeros() }
@@ -38,8 +39,8 @@ impl Pose {
 
     /// Composes this motion, which is relative to moving axes, with the motion of those axes.
     #[must_use]
-    pub fn within(&self, axes: &Self) -> Self {
-        let [carried, pushed] = [axes.rate, axes.acceleration].map(|of| into(&self.attitude, &of));
+    pub fn compose(&self, axes: &Self) -> Self {
+        let [carried, pushed] = [axes.rate, axes.acceleration].map(|of| to_body(&self.attitude, &of));
         Self {
             attitude: axes.attitude * self.attitude,
             rate: carried + self.rate,
@@ -48,7 +49,7 @@ impl Pose {
     }
 
     /// Rate and acceleration in the axes of a body that is beyond it by this rotation vector (rad).
-    pub fn seen_from(&self, beyond: &Vector) -> [Vector; 2] {
+    pub fn in_body_axes(&self, beyond: &Vector) -> [Vector; 2] {
         let turn = rotation(beyond);
         let turned = |vector: &Vector| -> Vector {
             (turn.conjugate() * Quaternion::from_imag(*vector) * turn).vector().into_owned()
@@ -65,7 +66,7 @@ pub struct Slew {
     /// Rotation axis, with the same components in both attitudes; `angle` is the angle about it, at most pi (rad).
     axis: Vector,
     angle: f64,
-    profile: Profile,
+    profile: SlewProfile,
     /// Largest acceleration of this slew (rad/s²); `rate` is its largest rate (rad/s).
     acceleration: f64,
     rate: f64,
@@ -90,11 +91,11 @@ impl Slew {
         [from, to]: [Quaternion<f64>; 2],
         acceleration: f64,
         rate_limit: f64,
-        profile: Profile,
+        profile: SlewProfile,
     ) -> Self {
         let (axis, angle) = eigenaxis(&from, &to);
         // Mean of the acceleration while the rate rises.
-        let mean = if profile == Profile::Versine { 0.5 * acceleration } else { acceleration };
+        let mean = if profile == SlewProfile::Versine { 0.5 * acceleration } else { acceleration };
         let rate = rate_limit.min(f64::sqrt(angle * mean));
         let rise = rate / mean;
         let coast = if rate > 0.0 { (angle / rate - rise).max(0.0) } else { 0.0 };
@@ -102,13 +103,13 @@ impl Slew {
     }
 
     /// Returns a slew of zero duration to an attitude.
-    pub fn at_once(to: Quaternion<f64>) -> Self {
+    pub fn instantaneous(to: Quaternion<f64>) -> Self {
         Self {
             from: to,
             to,
             axis: Vector::x(),
             angle: 0.0,
-            profile: Profile::Trapezoid,
+            profile: SlewProfile::Trapezoid,
             acceleration: 0.0,
             rate: 0.0,
             rise: 0.0,
@@ -122,8 +123,8 @@ impl Slew {
             let (to, most) = (from + self.rise, sign * self.acceleration);
             let term = |shape| Term { from, to, shape };
             match self.profile {
-                Profile::Trapezoid => vec![term(TermShape::Polynomial(vec![most]))],
-                Profile::Versine => {
+                SlewProfile::Trapezoid => vec![term(TermShape::Polynomial(vec![most]))],
+                SlewProfile::Versine => {
                     let frequency = 2.0 * std::f64::consts::PI / self.rise;
                     let falling = TermShape::Harmonic { frequency, cosine: -0.5 * most, sine: 0.0 };
                     vec![term(TermShape::Polynomial(vec![0.5 * most])), term(falling)]
@@ -137,7 +138,7 @@ impl Slew {
     }
 
     /// Returns the final attitude.
-    pub fn to(&self) -> Quaternion<f64> {
+    pub fn final_attitude(&self) -> Quaternion<f64> {
         self.to
     }
 
@@ -147,12 +148,12 @@ impl Slew {
     }
 
     /// Returns attitude, rate and acceleration at `t` seconds after the start of the slew.
-    pub fn at(&self, t: f64) -> Pose {
+    pub fn at(&self, t: f64) -> AttitudeMotion {
         if t >= self.duration() {
-            return Pose::at_rest(self.to);
+            return AttitudeMotion::at_rest(self.to);
         }
         let [angle, rate, acceleration] = self.along(t.max(0.0));
-        Pose {
+        AttitudeMotion {
             attitude: self.from * rotation(&(self.axis * angle)),
             rate: self.axis * rate,
             acceleration: self.axis * acceleration,
@@ -175,8 +176,8 @@ impl Slew {
     fn rising(&self, t: f64) -> [f64; 3] {
         let most = self.acceleration;
         match self.profile {
-            Profile::Trapezoid => [0.5 * most * t * t, most * t, most],
-            Profile::Versine => {
+            SlewProfile::Trapezoid => [0.5 * most * t * t, most * t, most],
+            SlewProfile::Versine => {
                 let w = 2.0 * std::f64::consts::PI / self.rise;
                 let (sin, half) = (libm::sin(w * t), libm::sin(0.5 * w * t));
                 let versine = 2.0 * half * half;
@@ -200,7 +201,7 @@ mod tests {
         rotation(&(Vector::new(1.0, 2.0, 2.0) * (by / 3.0)))
     }
 
-    fn slew(angle: f64, rate: f64, profile: Profile) -> Slew {
+    fn slew(angle: f64, rate: f64, profile: SlewProfile) -> Slew {
         let from = rotation(&Vector::new(0.3, -0.2, 0.5));
         Slew::new([from, from * turned(angle)], 2e-4, rate, profile)
     }
@@ -208,11 +209,11 @@ mod tests {
     #[test]
     fn sixty_degrees_take_as_long_as_by_hand() {
         // Expected duration: 2 r/a + (A - r²/a)/r.
-        let slew = slew(SIXTY, 8e-3, Profile::Trapezoid);
+        let slew = slew(SIXTY, 8e-3, SlewProfile::Trapezoid);
         assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-12, "{}", slew.duration());
         // Expected angle: a t²/2 while the rate rises, and symmetric at the end.
         let from = rotation(&Vector::zeros());
-        let plain = Slew::new([from, turned(SIXTY)], 2e-4, 8e-3, Profile::Trapezoid);
+        let plain = Slew::new([from, turned(SIXTY)], 2e-4, 8e-3, SlewProfile::Trapezoid);
         let at = |t: f64| plain.at(t).attitude;
         assert!((at(10.0) - turned(0.01)).norm() < 1e-15);
         assert!((at(60.0) - turned(0.16 + 8e-3 * 20.0)).norm() < 1e-15);
@@ -223,10 +224,10 @@ mod tests {
 
     #[test]
     fn a_short_turn_does_not_reach_the_rate() {
-        for profile in [Profile::Trapezoid, Profile::Versine] {
+        for profile in [SlewProfile::Trapezoid, SlewProfile::Versine] {
             for rate in [8e-3, f64::INFINITY] {
                 let slew = slew(0.1, rate, profile);
-                let mean = if profile == Profile::Versine { 1e-4 } else { 2e-4 };
+                let mean = if profile == SlewProfile::Versine { 1e-4 } else { 2e-4 };
                 assert!((slew.duration() - 2.0 * f64::sqrt(0.1 / mean)).abs() < 1e-12);
             }
         }
@@ -234,7 +235,7 @@ mod tests {
 
     #[test]
     fn rate_and_acceleration_are_derivatives() {
-        for profile in [Profile::Trapezoid, Profile::Versine] {
+        for profile in [SlewProfile::Trapezoid, SlewProfile::Versine] {
             for (angle, rate) in [(SIXTY, 8e-3), (-0.1, 8e-3), (3.1, 0.02)] {
                 let slew = slew(angle, rate, profile);
                 let h = 1e-3;
@@ -259,12 +260,13 @@ mod tests {
 
     #[test]
     fn no_turn_takes_no_time_and_the_way_is_the_shorter() {
-        let nowhere = slew(0.0, 8e-3, Profile::Versine);
+        let nowhere = slew(0.0, 8e-3, SlewProfile::Versine);
         assert_eq!(nowhere.duration(), 0.0);
         assert!(nowhere.at(0.0).attitude.norm().is_finite() && nowhere.at(0.0).acceleration.norm() == 0.0);
         // A rotation by 300 degrees is one by 60 the other way, whichever sign the quaternion has.
         for sign in [1.0, -1.0] {
-            let slew = Slew::new([turned(0.0), turned(5.0 * SIXTY) * sign], 2e-4, 8e-3, Profile::Trapezoid);
+            let slew =
+                Slew::new([turned(0.0), turned(5.0 * SIXTY) * sign], 2e-4, 8e-3, SlewProfile::Trapezoid);
             assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-11, "{}", slew.duration());
             assert!(slew.at(1.0).rate.x < 0.0);
         }

@@ -4,7 +4,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Mode;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::numerics::phasor::Phasor;
 use crate::quantity::Finite;
 
@@ -20,13 +20,14 @@ pub struct Suppression {
     pub suppress: usize,
     /// Further zeros.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
-    pub zeros: Vec<Target>,
+    pub zeros: Vec<SuppressedMode>,
 }
 
 /// A zero of the command's spectrum, at a mode or near it.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Target {
+#[schemars(rename = "Target")]
+pub struct SuppressedMode {
     /// Index of the mode.
     pub mode: usize,
     /// Shift of the zero from the mode's frequency, relative to that frequency.
@@ -58,14 +59,14 @@ impl Zero {
     }
 
     /// Returns the zero at a mode.
-    pub fn of(mode: &Mode) -> Self {
+    pub fn at_mode(mode: &Mode) -> Self {
         Self { frequency: mode.frequency.get(), damping: mode.damping.get() }
     }
 }
 
 impl Suppression {
     /// Returns the zeros, by frequency. `place` is the key of the table, for faults.
-    pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Fault> {
+    pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, ConfigError> {
         let mut zeros = lowest(self.suppress, modes, place)?;
         let beside: usize = self.zeros.iter().map(|target| target.times as usize).sum();
         if zeros.len() + beside > MOST {
@@ -73,20 +74,20 @@ impl Suppression {
                 "must make at most {MOST} zeros together with `suppress`, got {}",
                 zeros.len() + beside
             );
-            return Err(Fault::new(format!("{place}.zeros"), why));
+            return Err(ConfigError::new(format!("{place}.zeros"), why));
         }
         for (index, target) in self.zeros.iter().enumerate() {
             let key = |name: &str| format!("{place}.zeros[{index}].{name}");
             let Some(mode) = modes.get(target.mode) else {
-                return Err(Fault::new(key("mode"), index_beyond(target.mode, modes)));
+                return Err(ConfigError::new(key("mode"), index_error(target.mode, modes)));
             };
             let factor = 1.0 + target.shift.get();
             if factor <= 0.0 {
                 let why = format!("must be above -1, for a frequency above 0, got {}", target.shift.get());
-                return Err(Fault::new(key("shift"), why));
+                return Err(ConfigError::new(key("shift"), why));
             }
             if target.times == 0 {
-                return Err(Fault::new(key("times"), "must be 1 or more, got 0"));
+                return Err(ConfigError::new(key("times"), "must be 1 or more, got 0"));
             }
             let zero = Zero { frequency: factor * mode.frequency.get(), damping: mode.damping.get() };
             zeros.extend(std::iter::repeat_n(zero, target.times as usize));
@@ -98,23 +99,23 @@ impl Suppression {
 
 /// Returns the zeros at the `count` modes of the lowest frequencies. `place` is the key of the table that has the
 /// number.
-pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Fault> {
+pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, ConfigError> {
     let key = || format!("{place}.suppress");
     if count > modes.len() {
         let why = format!("must be at most the number of the body's modes, {}, got {count}", modes.len());
-        return Err(Fault::new(key(), why));
+        return Err(ConfigError::new(key(), why));
     }
     if count > MOST {
-        return Err(Fault::new(key(), format!("must be at most {MOST}, got {count}")));
+        return Err(ConfigError::new(key(), format!("must be at most {MOST}, got {count}")));
     }
-    let mut zeros: Vec<Zero> = modes.iter().map(Zero::of).collect();
+    let mut zeros: Vec<Zero> = modes.iter().map(Zero::at_mode).collect();
     zeros.sort_by(|a, b| a.frequency.total_cmp(&b.frequency));
     zeros.truncate(count);
     Ok(zeros)
 }
 
 /// Returns the message about an index that belongs to no mode.
-pub fn index_beyond(index: usize, modes: &[Mode]) -> String {
+pub fn index_error(index: usize, modes: &[Mode]) -> String {
     match modes.len() {
         0 => format!("must be the index of a mode, and the body has none, got {index}"),
         count => format!("must be the index of a mode, 0 to {}, got {index}", count - 1),

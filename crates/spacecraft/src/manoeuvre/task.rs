@@ -2,7 +2,7 @@
 
 /// Change of the rigid body's motion that a command must produce, from 0 to its time.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Task {
+pub struct RestToRestTask {
     /// Duration of the command (s).
     pub time: f64,
     /// Integral of the command: inertia times the gained rate.
@@ -11,7 +11,7 @@ pub struct Task {
     pub travel: f64,
 }
 
-impl Task {
+impl RestToRestTask {
     /// Returns the mean of the command, A0 = J (Omega_T - Omega_0)/T (\[Rotation\], equations (22) and (28); (22) has
     /// the sign of the difference wrong).
     pub fn mean(&self) -> f64 {
@@ -19,7 +19,7 @@ impl Task {
     }
 
     /// Returns the excess travel over that of the mean command: J (theta_T - (Omega_0 + Omega_T) T/2).
-    pub fn excess(&self) -> f64 {
+    pub fn excess_travel(&self) -> f64 {
         self.travel - 0.5 * self.impulse * self.time
     }
 }

@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 
 use super::plan::Plan;
-use super::planner::Planner;
-use crate::document::Fault;
+use super::planner::ManoeuvrePlanner;
+use crate::document::ConfigError;
 use crate::quantity;
 
 /// Factor by which the search increases the time until the peak is low enough.
@@ -15,16 +15,16 @@ const STRIDES: usize = 480;
 const MOST_PERIODS: f64 = 2e4;
 
 /// Plans the shortest manoeuvre whose peak torque does not exceed `limit` (N m).
-pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Fault> {
+pub fn shortest_plan(planner: &ManoeuvrePlanner, limit: f64) -> Result<Plan, ConfigError> {
     let bound = planner.rigid_bound(limit);
     let mut low = match planner.body.drive {
-        crate::body::Drive::Torque => bound,
+        crate::body::CommandedQuantity::Torque => bound,
         // Flexible modes can make the hub's torque less than that of the rigid body.
-        crate::body::Drive::Motion => 0.5 * bound,
+        crate::body::CommandedQuantity::Motion => 0.5 * bound,
     }
     .max(planner.shaper() * (1.0 + 1e-9));
     // The bound may be the time itself, so its rounding is tolerated.
-    let peak = |time: f64| -> Result<f64, Fault> {
+    let peak = |time: f64| -> Result<f64, ConfigError> {
         let plan = planner.plan(time)?;
         Ok(plan.peak_torque(planner.body).value / limit - 1.0)
     };
@@ -35,7 +35,7 @@ pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Fault> {
     let fastest = planner.body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
     let periods = low * fastest / TAU;
     if periods > MOST_PERIODS {
-        return Err(Fault::new(
+        return Err(ConfigError::new(
             "peak_torque",
             format!(
                 "must be enough for a command that lasts at most {MOST_PERIODS:e} periods of the fastest mode, got {} N m, with \
@@ -59,8 +59,8 @@ pub fn shortest(planner: &Planner, limit: f64) -> Result<Plan, Fault> {
     Err(impossible(limit))
 }
 
-fn impossible(limit: f64) -> Fault {
-    Fault::new("peak_torque", format!("must be enough for the command in some time, got {limit} N m"))
+fn impossible(limit: f64) -> ConfigError {
+    ConfigError::new("peak_torque", format!("must be enough for the command in some time, got {limit} N m"))
 }
 
 /// Finds the point at which a function falls through zero: a point at which it is not positive, within a relative
@@ -90,7 +90,7 @@ fn crossing(f: impl Fn(f64) -> f64, mut low: (f64, f64), mut high: (f64, f64)) -
 
 /// Family of a single-harmonic command that can leave a mode at rest.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-pub enum Single {
+pub enum SingleHarmonicTime {
     /// Single sine: w T = 2 pi psi, psi >= 2.
     Sine,
     /// Single cosine: w T = (2 psi + 1) pi, psi >= 1; it needs the same rate before and after.
@@ -99,12 +99,12 @@ pub enum Single {
 
 /// Returns the times nearest to `time` (s), below and above it, for which a single harmonic leaves an undamped mode of
 /// this frequency (rad/s) at rest; there may be none below.
-pub fn tuned(single: Single, frequency: f64, time: f64) -> (Option<f64>, f64) {
+pub fn tuned_times(single: SingleHarmonicTime, frequency: f64, time: f64) -> (Option<f64>, f64) {
     let half = std::f64::consts::PI / frequency;
     // The values of w T/pi are 4, 6, 8, ... or 3, 5, 7, ...
     let (first, step) = match single {
-        Single::Sine => (4.0, 2.0),
-        Single::Cosine => (3.0, 2.0),
+        SingleHarmonicTime::Sine => (4.0, 2.0),
+        SingleHarmonicTime::Cosine => (3.0, 2.0),
     };
     let below = first + step * libm::floor((time / half - first) / step);
     if below < first { (None, half * first) } else { (Some(half * below), half * (below + step)) }

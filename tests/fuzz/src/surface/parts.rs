@@ -4,7 +4,7 @@ use std::io;
 use std::path::Path;
 
 use flexsc_core::Scenario;
-use flexsc_core::campaign::{Campaign, Manifest, PointDesign, Work};
+use flexsc_core::campaign::{Campaign, Design, Manifest, RowMaker};
 use flexsc_core::metrics::Selection;
 use flexsc_core::random::fnv1a_of;
 
@@ -33,10 +33,10 @@ const DIGITS: usize = 16;
 /// The files of a whole campaign; the part is the last one.
 pub fn seeds() -> io::Result<Vec<(String, Vec<u8>)>> {
     let scenario = Scenario::parse("s.toml", SCENARIO).map_err(io::Error::other)?;
-    let campaign = Campaign::of(scenario, "s.toml", PointDesign::default()).map_err(io::Error::other)?;
+    let campaign = Campaign::from_design(scenario, "s.toml", Design::default()).map_err(io::Error::other)?;
     let manifest = Manifest::new(&campaign, 0..RUNS, &Selection::ALL).map_err(io::Error::other)?;
     let text = manifest.to_toml();
-    let work = Work::of(manifest, Path::new("manifest.toml")).map_err(io::Error::other)?;
+    let work = RowMaker::from_manifest(manifest, Path::new("manifest.toml")).map_err(io::Error::other)?;
     let (name, part) = work.part(0..RUNS, 1, ()).map_err(io::Error::other)?;
     Ok(vec![
         ("s.toml".to_owned(), SCENARIO.into()),

@@ -4,15 +4,15 @@ use flexsc_core::count::counted;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::super::readable;
-use super::table::{Key, Metric, Runs};
+use super::table::{CampaignKey, CampaignRuns, MetricColumn};
 
 /// Largest number of values that have a marker each.
 const MARKS: usize = 100;
 
-pub fn figure(runs: &Runs, metrics: &[&Metric], key: &Key) -> Figure {
+pub fn figure(runs: &CampaignRuns, metrics: &[&MetricColumn], key: &CampaignKey) -> Figure {
     let mut order: Vec<usize> = (0..key.values.len()).collect();
     order.sort_by(|a, b| key.values[*a].total_cmp(&key.values[*b]));
-    let panel = |(index, metric): (usize, &&Metric)| {
+    let panel = |(index, metric): (usize, &&MetricColumn)| {
         let (name, unit) = metric.label();
         let line: Vec<Point> = order.iter().map(|run| (key.values[*run], metric.values[*run])).collect();
         let ends = order.first().map_or(0.0, |run| key.values[*run])

@@ -6,14 +6,14 @@ use flexsc_core::statistics::quantile;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice};
 
 use super::super::readable;
-use super::table::{Metric, Runs};
+use super::table::{CampaignRuns, MetricColumn};
 
 /// Least and largest number of bars of a histogram.
 const BARS: [f64; 2] = [5.0, 60.0];
 /// Least height of the axis of a histogram (runs).
 const LOWEST: usize = 5;
 
-pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
+pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
     let sorted = metric.sorted();
     let (name, unit) = metric.label();
     let bars = bars(&sorted);
@@ -62,7 +62,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
 }
 
 /// Returns the title: the metric, and the number of runs.
-fn title(runs: &Runs, name: &str, count: usize) -> String {
+fn title(runs: &CampaignRuns, name: &str, count: usize) -> String {
     let without = runs.numbers.len() - count;
     let without = if without > 0 { format!(", {without} without") } else { String::new() };
     format!("{}: {name} ({}{without})", readable(&runs.name), counted(count, "run"))

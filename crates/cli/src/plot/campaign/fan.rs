@@ -11,19 +11,19 @@ use flexsc_core::statistics::quantile;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 use rayon::prelude::*;
 
-use super::super::motion::Motion;
+use super::super::motion::MotionData;
 use super::super::readable;
-use super::super::spatial::Cycles;
-use super::super::story::Story;
+use super::super::run_events::RunEvents;
+use super::super::spatial::CycleData;
 use super::super::time;
-use crate::failure::Failure;
+use crate::error::CliError;
 use crate::{progress, say};
 
 /// Number of evenly spaced instants at which quantiles are computed.
 const INSTANTS: usize = 801;
 
 /// Signal of a run over time.
-struct Signal {
+struct SignalFan {
     name: String,
     unit: &'static str,
     line: Vec<Point>,
@@ -40,7 +40,7 @@ pub fn logs(
     directory: &Path,
     files: &[String],
     all_needed: bool,
-) -> Result<BTreeMap<String, Vec<PathBuf>>, Failure> {
+) -> Result<BTreeMap<String, Vec<PathBuf>>, CliError> {
     let paths = files.iter().filter(|file| Path::new(file).extension().is_some_and(|e| e == "mcap"));
     let paths: Vec<PathBuf> = paths.map(|file| directory.join(file)).collect();
     let name = |path: &PathBuf| {
@@ -61,12 +61,12 @@ pub fn logs(
 
 /// # Errors
 /// An invalid log, or a run that cannot be repeated.
-pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
-    let first = Story::read(&Log::open(&paths[0])?, &paths[0])?;
+pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, CliError> {
+    let first = RunEvents::read(&Log::open(&paths[0])?, &paths[0])?;
     let end = first.scenario.duration.seconds();
     let instants: Vec<f64> = (0..INSTANTS).map(|i| end * i as f64 / (INSTANTS - 1) as f64).collect();
     let bar = progress::bar(paths.len() as u64, "logs");
-    let sampled = |path: &PathBuf| -> Result<Vec<Sampled>, Failure> {
+    let sampled = |path: &PathBuf| -> Result<Vec<Sampled>, CliError> {
         let signals = signals(path)?;
         bar.inc(1);
         Ok(signals
@@ -115,13 +115,13 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, Failure> {
 }
 
 /// Returns the signals of a run that are shown.
-fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
+fn signals(path: &Path) -> Result<Vec<SignalFan>, CliError> {
     let log = Log::open(path)?;
-    let story = Story::read(&log, path)?;
-    let signal = |name: &str, unit, line, held| Signal { name: name.to_owned(), unit, line, held };
+    let story = RunEvents::read(&log, path)?;
+    let signal = |name: &str, unit, line, held| SignalFan { name: name.to_owned(), unit, line, held };
     let mut signals = Vec::new();
     if story.scenario.axis_count() == 3 {
-        let cycles = Cycles::read(&story, &log, path)?;
+        let cycles = CycleData::read(&story, &log, path)?;
         let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         signals.push(signal("pointing error", "rad", cycles.over_time(|c| length(c.error_rad)), false));
         signals.push(signal("elastic energy", "J", cycles.over_time(|c| c.elastic_energy_j), false));
@@ -148,15 +148,15 @@ fn signals(path: &Path) -> Result<Vec<Signal>, Failure> {
 }
 
 /// Returns the tuned parameter, and the objective if it is not the envelope.
-fn of_adaptation(story: &Story) -> Vec<Signal> {
-    let signal = |name: String, unit, line| Signal { name, unit, line, held: true };
+fn of_adaptation(story: &RunEvents) -> Vec<SignalFan> {
+    let signal = |name: String, unit, line| SignalFan { name, unit, line, held: true };
     let mut signals = Vec::new();
     let Some(adaptation) = &story.scenario.adaptation else { return signals };
     let windows = story.objective.iter().flat_map(|of| [(of.from, of.value), (of.to, of.value)]);
     if !story.objective.is_empty() {
         let objective = adaptation.objective();
         let unit = objective.unit(story.scenario.torque_unit());
-        signals.push(signal(objective.word().replace('_', " "), unit, windows.collect()));
+        signals.push(signal(objective.key().replace('_', " "), unit, windows.collect()));
     }
     let steps = story.steps.iter().map(|step| (step.time, step.gain));
     let gains = [(0.0, story.start.1)].into_iter().chain(steps).chain([last(story)]);
@@ -165,14 +165,14 @@ fn of_adaptation(story: &Story) -> Vec<Signal> {
 }
 
 /// Returns the gain at the end.
-fn last(story: &Story) -> Point {
+fn last(story: &RunEvents) -> Point {
     (story.end, story.steps.last().map_or(story.start.1, |step| step.gain))
 }
 
-fn of_rotation(story: &Story, motion: &Motion) -> Vec<Signal> {
+fn of_rotation(story: &RunEvents, motion: &MotionData) -> Vec<SignalFan> {
     let over_time = |values: &mut dyn Iterator<Item = f64>| motion.time.iter().copied().zip(values).collect();
     let mut beyond = motion.angle.iter().zip(&motion.goal).map(|(angle, goal)| angle - goal);
-    let mut signals = vec![Signal {
+    let mut signals = vec![SignalFan {
         name: "angle error".to_owned(),
         unit: "rad",
         line: over_time(&mut beyond),
@@ -180,17 +180,17 @@ fn of_rotation(story: &Story, motion: &Motion) -> Vec<Signal> {
     }];
     if let (Some(output), Some(values)) = (story.scenario.model.outputs().last(), motion.outputs.last()) {
         let (name, unit) = flexsc_figure::name_and_unit(&output.name, &output.unit);
-        signals.push(Signal { name, unit, line: over_time(&mut values.iter().copied()), held: false });
+        signals.push(SignalFan { name, unit, line: over_time(&mut values.iter().copied()), held: false });
     }
     if !motion.estimates.is_empty() {
         let error = motion.estimates.iter().map(|e| (e.time, e.read_frequency - e.true_frequency));
         let name = "frequency error".to_owned();
-        signals.push(Signal { name, unit: "rad/s", line: error.collect(), held: true });
+        signals.push(SignalFan { name, unit: "rad/s", line: error.collect(), held: true });
     }
     signals
 }
 
-impl Signal {
+impl SignalFan {
     /// Returns the values at increasing instants; NaN outside the signal.
     fn at(&self, instants: &[f64]) -> Vec<f64> {
         let mut values = Vec::with_capacity(instants.len());
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn signals_are_read_at_instants() {
         let line = vec![(1.0, 10.0), (2.0, 20.0), (4.0, 0.0)];
-        let signal = |held| Signal { name: String::new(), unit: "", line: line.clone(), held };
+        let signal = |held| SignalFan { name: String::new(), unit: "", line: line.clone(), held };
         let instants = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0];
         let texts = |held| signal(held).at(&instants).iter().map(f64::to_string).collect::<Vec<_>>();
         assert_eq!(texts(false), ["NaN", "10", "15", "20", "10", "0", "NaN"]);

@@ -13,52 +13,52 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::Path;
 
-use flexsc_core::campaign::{ColumnCells, Work};
+use flexsc_core::campaign::{ColumnCells, RowMaker};
 use flexsc_figure::{Figure, Named};
 
 use super::Args;
-use super::what::{What, chosen};
+use super::figure_kind::{FigureKind, select};
 use crate::campaign::MAIN;
-use crate::drawing::Target;
-use crate::failure::Failure;
+use crate::error::CliError;
+use crate::figure_files::FigureTarget;
 use crate::{print, say};
-use table::{Metric, Runs};
+use table::{CampaignRuns, MetricColumn};
 
 /// Largest number of metrics that are drawn if none is named.
 const MOST: usize = 4;
 /// Number of worst runs that are listed for each metric.
 const WORST: usize = 3;
 
-pub fn run(args: &Args) -> Result<(), Failure> {
+pub fn run(args: &Args) -> Result<(), CliError> {
     let directory = args.path.as_path();
-    let target = Target::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
+    let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
     let files = files(directory)?;
     let mut tables = table::read(directory, &files)?;
     tables.extend(parts::read(directory, &files, &args.metric)?);
-    let fans = if args.what.is_empty() || args.what.contains(&What::Fan) {
+    let fans = if args.what.is_empty() || args.what.contains(&FigureKind::Fan) {
         fan::logs(directory, &files, tables.is_empty() || !args.what.is_empty())?
     } else {
         BTreeMap::new()
     };
     if tables.is_empty() && fans.is_empty() {
-        return Err(Failure::Arguments(format!(
+        return Err(CliError::Arguments(format!(
             "{}: no campaign, neither parts nor a table `runs.csv`, and not several logs of one scenario\n\n\
              hint: `flexsc simulate SCENARIO --runs 1000 -o {}` makes one",
             directory.display(),
             directory.display()
         )));
     }
-    let mut there: Vec<What> = tables.iter().flat_map(drawable).collect();
-    there.extend((!fans.is_empty()).then_some(What::Fan));
-    let all = chosen(&args.what, &there).map_err(|(missing, there)| {
+    let mut there: Vec<FigureKind> = tables.iter().flat_map(drawable).collect();
+    there.extend((!fans.is_empty()).then_some(FigureKind::Fan));
+    let all = select(&args.what, &there).map_err(|(missing, there)| {
         let path = directory.display();
-        Failure::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
+        CliError::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
     })?;
     let mut figures = Vec::new();
     for runs in &tables {
         let metrics = metrics(&args.metric, &args.path, runs)?;
         let natural = natural(runs);
-        let wanted = |what: &&What| !args.what.is_empty() || natural.contains(what);
+        let wanted = |what: &&FigureKind| !args.what.is_empty() || natural.contains(what);
         for what in drawable(runs).iter().filter(|what| all.contains(what)).filter(wanted) {
             figures.extend(drawn(*what, runs, &metrics));
         }
@@ -78,7 +78,7 @@ pub fn run(args: &Args) -> Result<(), Failure> {
         figures.push((format!("{name}-fan"), fan::figure(name, paths)?));
     }
     if figures.is_empty() {
-        return Err(Failure::Arguments(format!(
+        return Err(CliError::Arguments(format!(
             "{}: no metric varies from run to run\n\nhint: --metric NAME draws one anyway",
             directory.display()
         )));
@@ -88,28 +88,32 @@ pub fn run(args: &Args) -> Result<(), Failure> {
 
 /// Returns figures of a campaign from its columns: of one kind, or the default ones.
 pub fn of_columns(
-    work: &Work,
+    work: &RowMaker,
     column: &dyn Fn(&str) -> Option<ColumnCells>,
-    kind: Option<What>,
+    kind: Option<FigureKind>,
     metric: &[String],
-) -> Result<Vec<Named>, Failure> {
+) -> Result<Vec<Named>, CliError> {
     let path = Path::new(&work.campaign.scenario().name);
     let read = |names: &[&str]| Ok(names.iter().map(|name| column(name)).collect());
-    of_runs(&parts::of(work, read, path, metric)?, kind.as_slice(), metric, path)
+    of_runs(&parts::campaign_runs(work, read, path, metric)?, kind.as_slice(), metric, path)
 }
 
 /// Returns the figures of the campaigns in a directory, and of its logs.
-pub fn of_directory(directory: &Path, kinds: &[What], metric: &[String]) -> Result<Vec<Named>, Failure> {
+pub fn of_directory(
+    directory: &Path,
+    kinds: &[FigureKind],
+    metric: &[String],
+) -> Result<Vec<Named>, CliError> {
     let files = files(directory)?;
     let mut tables = table::read(directory, &files)?;
     tables.extend(parts::read(directory, &files, metric)?);
     let mut figures = Vec::new();
-    if kinds.is_empty() || kinds.iter().any(|kind| *kind != What::Fan) {
+    if kinds.is_empty() || kinds.iter().any(|kind| *kind != FigureKind::Fan) {
         for runs in &tables {
             figures.extend(of_runs(runs, kinds, metric, directory)?);
         }
     }
-    if kinds.is_empty() || kinds.contains(&What::Fan) {
+    if kinds.is_empty() || kinds.contains(&FigureKind::Fan) {
         for (name, paths) in fan::logs(directory, &files, false)? {
             figures.push((format!("{name}-fan"), fan::figure(&name, &paths)?));
         }
@@ -117,12 +121,17 @@ pub fn of_directory(directory: &Path, kinds: &[What], metric: &[String]) -> Resu
     Ok(figures)
 }
 
-fn of_runs(runs: &Runs, kinds: &[What], metric: &[String], path: &Path) -> Result<Vec<Named>, Failure> {
+fn of_runs(
+    runs: &CampaignRuns,
+    kinds: &[FigureKind],
+    metric: &[String],
+    path: &Path,
+) -> Result<Vec<Named>, CliError> {
     let (metrics, natural, all) = (metrics(metric, path, runs)?, natural(runs), drawable(runs));
     let kinds = if kinds.is_empty() { &natural } else { kinds };
     if let Some(missing) = kinds.iter().find(|kind| !all.contains(kind)) {
         let names: Vec<_> = all.iter().map(|what| what.name()).collect();
-        return Err(Failure::Arguments(format!(
+        return Err(CliError::Arguments(format!(
             "{}: there is no figure `{}` for it\n\nhint: it has {}",
             path.display(),
             missing.name(),
@@ -133,8 +142,8 @@ fn of_runs(runs: &Runs, kinds: &[What], metric: &[String], path: &Path) -> Resul
 }
 
 /// Returns the sorted names of the files in a directory.
-fn files(directory: &Path) -> Result<Vec<String>, Failure> {
-    let unread = |error: std::io::Error| Failure::Arguments(format!("{}: {error}", directory.display()));
+fn files(directory: &Path) -> Result<Vec<String>, CliError> {
+    let unread = |error: std::io::Error| CliError::Arguments(format!("{}: {error}", directory.display()));
     let entries =
         std::fs::read_dir(directory).map_err(unread)?.collect::<Result<Vec<_>, _>>().map_err(unread)?;
     let mut names: Vec<String> =
@@ -144,13 +153,13 @@ fn files(directory: &Path) -> Result<Vec<String>, Failure> {
 }
 
 /// Returns the kinds of figures that a table has data for.
-fn drawable(runs: &Runs) -> Vec<What> {
+fn drawable(runs: &CampaignRuns) -> Vec<FigureKind> {
     let swept = runs.swept().len();
     [
-        (What::Curve, swept == 1),
-        (What::Region, swept == 2),
-        (What::Distribution, true),
-        (What::Scatter, !scatter::keys(runs).is_empty()),
+        (FigureKind::Curve, swept == 1),
+        (FigureKind::Region, swept == 2),
+        (FigureKind::Distribution, true),
+        (FigureKind::Scatter, !scatter::keys(runs).is_empty()),
     ]
     .into_iter()
     .filter_map(|(what, is)| is.then_some(what))
@@ -158,23 +167,28 @@ fn drawable(runs: &Runs) -> Vec<What> {
 }
 
 /// Returns the kinds of figures that are drawn if none is named.
-fn natural(runs: &Runs) -> Vec<What> {
+fn natural(runs: &CampaignRuns) -> Vec<FigureKind> {
     let wanted = match runs.swept().len() {
-        1 => vec![What::Curve],
-        2 => vec![What::Region],
-        _ => vec![What::Distribution, What::Scatter],
+        1 => vec![FigureKind::Curve],
+        2 => vec![FigureKind::Region],
+        _ => vec![FigureKind::Distribution, FigureKind::Scatter],
     };
     let drawable = drawable(runs);
     wanted.into_iter().filter(|what| drawable.contains(what)).collect()
 }
 
 /// Returns the named metrics, or else the main ones that vary.
-fn metrics<'a>(asked: &[String], path: &Path, runs: &'a Runs) -> Result<Vec<&'a Metric>, Failure> {
+fn metrics<'a>(
+    asked: &[String],
+    path: &Path,
+    runs: &'a CampaignRuns,
+) -> Result<Vec<&'a MetricColumn>, CliError> {
     let named = |name: &str| runs.metrics.iter().find(|metric| metric.meaning.name == name);
     if asked.is_empty() {
         // A metric that only repeats a key is left out.
-        let tells =
-            |metric: &&Metric| metric.varies() && runs.keys.iter().all(|key| key.values != metric.values);
+        let tells = |metric: &&MetricColumn| {
+            metric.varies() && runs.keys.iter().all(|key| key.values != metric.values)
+        };
         // A required metric comes first.
         let required = runs.requirement().map(|(name, _)| name);
         let others = MAIN.into_iter().filter(|name| Some(*name) != required);
@@ -187,7 +201,7 @@ fn metrics<'a>(asked: &[String], path: &Path, runs: &'a Runs) -> Result<Vec<&'a 
         named(name).ok_or_else(|| {
             let names: Vec<_> = runs.metrics.iter().map(|metric| metric.meaning.name).collect();
             let (path, names) = (path.display(), names.join(", "));
-            Failure::Arguments(format!(
+            CliError::Arguments(format!(
                 "{path}: there is no metric `{name}` that is a number\n\nhint: it has {names}"
             ))
         })
@@ -196,16 +210,16 @@ fn metrics<'a>(asked: &[String], path: &Path, runs: &'a Runs) -> Result<Vec<&'a 
 }
 
 /// Returns the figures of a kind, with their names.
-fn drawn(what: What, runs: &Runs, metrics: &[&Metric]) -> Vec<(String, Figure)> {
-    let name = |metric: &Metric| format!("{}-{}-{}", runs.name, what.name(), metric.meaning.name);
-    let each = |figure: &dyn Fn(&Metric) -> Option<Figure>| {
+fn drawn(what: FigureKind, runs: &CampaignRuns, metrics: &[&MetricColumn]) -> Vec<(String, Figure)> {
+    let name = |metric: &MetricColumn| format!("{}-{}-{}", runs.name, what.name(), metric.meaning.name);
+    let each = |figure: &dyn Fn(&MetricColumn) -> Option<Figure>| {
         metrics.iter().filter_map(|metric| Some((name(metric), figure(metric)?))).collect()
     };
     match what {
-        What::Distribution => each(&|metric| Some(distribution::figure(runs, metric))),
-        What::Scatter => each(&|metric| Some(scatter::figure(runs, metric))),
-        What::Region => each(&|metric| region::figure(runs, metric)),
-        What::Curve => {
+        FigureKind::Distribution => each(&|metric| Some(distribution::figure(runs, metric))),
+        FigureKind::Scatter => each(&|metric| Some(scatter::figure(runs, metric))),
+        FigureKind::Region => each(&|metric| region::figure(runs, metric)),
+        FigureKind::Curve => {
             let key = runs.swept().into_iter().next().filter(|_| !metrics.is_empty());
             let curve = key.map(|key| curve::figure(runs, metrics, key));
             curve.map(|figure| (format!("{}-{}", runs.name, what.name()), figure)).into_iter().collect()

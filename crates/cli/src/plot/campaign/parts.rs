@@ -2,45 +2,53 @@
 
 use std::path::{Path, PathBuf};
 
-use flexsc_core::campaign::{ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, Work};
+use flexsc_core::campaign::{ColumnCells, ColumnHeading, ColumnKind, Directory, ERROR, RUN, RowMaker};
 use flexsc_core::metrics::{self, goal};
 
-use super::table::{Key, Metric, Runs, Source, Texts};
-use crate::campaign::{MAIN, parts};
-use crate::failure::Failure;
+use super::table::{CampaignKey, CampaignRuns, MetricColumn, ScenarioSource, TextCells};
+use crate::campaign::{MAIN, part_files};
+use crate::error::CliError;
 
 /// Largest number of values in memory; beyond it only the main and the named metrics are read.
 const HELD: usize = 40_000_000;
 
 /// Reads the campaign of a directory, and those of its subdirectories.
-pub fn read(directory: &Path, files: &[String], named: &[String]) -> Result<Vec<Runs>, Failure> {
+pub fn read(directory: &Path, files: &[String], named: &[String]) -> Result<Vec<CampaignRuns>, CliError> {
     let within = files.iter().map(|file| directory.join(file));
-    let all: Vec<PathBuf> =
-        [directory.to_owned()].into_iter().chain(within).filter(|path| Directory::is_one(path)).collect();
+    let all: Vec<PathBuf> = [directory.to_owned()]
+        .into_iter()
+        .chain(within)
+        .filter(|path| Directory::is_campaign_directory(path))
+        .collect();
     all.iter().map(|path| runs(path, named)).collect()
 }
 
-fn runs(path: &Path, named: &[String]) -> Result<Runs, Failure> {
-    let directory = Directory::open(path).map_err(parts::failure)?;
-    of(directory.work(), |names| directory.columns(names).map_err(parts::failure), path, named)
+fn runs(path: &Path, named: &[String]) -> Result<CampaignRuns, CliError> {
+    let directory = Directory::open(path).map_err(part_files::failure)?;
+    campaign_runs(
+        directory.work(),
+        |names| directory.columns(names).map_err(part_files::failure),
+        path,
+        named,
+    )
 }
 
 /// Returns the runs of a campaign, whose columns are read by their names; `path` is the campaign's directory.
-pub fn of(
-    work: &Work,
-    read: impl Fn(&[&str]) -> Result<Vec<Option<ColumnCells>>, Failure>,
+pub fn campaign_runs(
+    work: &RowMaker,
+    read: impl Fn(&[&str]) -> Result<Vec<Option<ColumnCells>>, CliError>,
     path: &Path,
     named: &[String],
-) -> Result<Runs, Failure> {
+) -> Result<CampaignRuns, CliError> {
     let (campaign, scenario) = (&work.campaign, work.campaign.scenario());
     let mut about = read(&[RUN, ERROR])?.into_iter();
     let (Some(Some(ColumnCells::Integers(numbers))), Some(Some(ColumnCells::Words(errors)))) =
         (about.next(), about.next())
     else {
-        return Err(Failure::Arguments(format!("{}: has no runs", path.display())));
+        return Err(CliError::Arguments(format!("{}: has no runs", path.display())));
     };
     if numbers.is_empty() {
-        return Err(Failure::Arguments(format!("{}: contains no runs yet", path.display())));
+        return Err(CliError::Arguments(format!("{}: contains no runs yet", path.display())));
     }
     let keys: Vec<&str> = campaign.keys().collect();
     let is_number = |field: &&ColumnHeading| match field.kind {
@@ -61,25 +69,25 @@ pub fn of(
         keys.iter().copied().chain(fields.iter().map(|(field, _)| field.name.as_str())).collect();
     let mut columns = read(&names)?.into_iter().map(|column| {
         let texts = match &column {
-            Some(ColumnCells::Integers(_)) => Texts::Integers,
-            Some(ColumnCells::Words(_)) => Texts::Goals,
-            _ => Texts::Numbers,
+            Some(ColumnCells::Integers(_)) => TextCells::Integers,
+            Some(ColumnCells::Words(_)) => TextCells::Goals,
+            _ => TextCells::Numbers,
         };
         (texts, column.map_or_else(Vec::new, |column| column.numbers()))
     });
     let varied = campaign.design().keys();
-    let key = |(name, (texts, values)): (&&str, (Texts, Vec<f64>))| Key {
+    let key = |(name, (texts, values)): (&&str, (TextCells, Vec<f64>))| CampaignKey {
         name: (*name).to_owned(),
         texts,
         values,
         swept: varied.contains(name),
     };
     let keys = keys.iter().zip(columns.by_ref()).map(key).collect();
-    let metric = |((_, meaning), (texts, values))| Metric { meaning, texts, values };
+    let metric = |((_, meaning), (texts, values))| MetricColumn { meaning, texts, values };
     let metrics = fields.into_iter().zip(columns).map(metric).collect();
-    Ok(Runs {
+    Ok(CampaignRuns {
         name: scenario.name.clone(),
-        scenario: Some((scenario.clone(), Source::Directory(path.to_owned()))),
+        scenario: Some((scenario.clone(), ScenarioSource::Directory(path.to_owned()))),
         numbers: numbers.into_iter().map(|number| number.unwrap_or_default().cast_unsigned()).collect(),
         keys,
         metrics,

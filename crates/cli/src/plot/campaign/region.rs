@@ -5,7 +5,7 @@ use flexsc_figure::palette::viridis;
 use flexsc_figure::{Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::super::readable;
-use super::table::{Metric, Runs};
+use super::table::{CampaignRuns, MetricColumn};
 
 /// Number of shades.
 const SHADES: usize = 48;
@@ -17,13 +17,13 @@ const SEAM: f64 = 0.02;
 const FAR: f64 = 50.0;
 
 /// Returns the map; `None` if the values of the two keys do not form a grid.
-pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
+pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Option<Figure> {
     let swept = runs.swept();
     let [first, second] = swept[..] else { return None };
     let (columns, rows) = (distinct(&first.values), distinct(&second.values));
     let (name, unit) = metric.label();
     let sorted = metric.sorted();
-    let classes = Classes::of(&sorted, &name, unit);
+    let classes = ColourClasses::from_values(&sorted, &name, unit);
     let mut cells = vec![None; columns.len() * rows.len()];
     for ((x, y), value) in first.values.iter().zip(&second.values).zip(&metric.values) {
         let (i, j) = (place(&columns, *x)?, place(&rows, *y)?);
@@ -65,15 +65,15 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Option<Figure> {
 }
 
 /// Scale of the shades, and the axis with the unit of the values.
-struct Classes {
+struct ColourClasses {
     axis: FigureAxis,
     /// Least and largest value, or their logarithms.
     ends: [f64; 2],
     by_ratio: bool,
 }
 
-impl Classes {
-    fn of(sorted: &[f64], name: &str, unit: &'static str) -> Self {
+impl ColourClasses {
+    fn from_values(sorted: &[f64], name: &str, unit: &'static str) -> Self {
         let (low, high) = (sorted.first().copied().unwrap_or(0.0), sorted.last().copied().unwrap_or(0.0));
         let by_ratio = low > 0.0 && high / low > FAR;
         let ends = if by_ratio { [low.log10(), high.log10()] } else { [low, high] };

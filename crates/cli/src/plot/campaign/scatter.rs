@@ -4,27 +4,27 @@
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::super::readable;
-use super::table::{Key, Metric, Runs};
+use super::table::{CampaignKey, CampaignRuns, MetricColumn};
 
 /// Largest number of keys with a panel each.
 const PANELS: usize = 4;
 
-pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
+pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
     let (name, unit) = metric.label();
     let required = runs.required(metric);
-    let mut keys: Vec<(f64, &Key)> =
+    let mut keys: Vec<(f64, &CampaignKey)> =
         keys(runs).into_iter().map(|key| (correlation(&key.values, &metric.values), key)).collect();
     let strength = |r: f64| if r.is_nan() { 0.0 } else { r.abs() };
     keys.sort_by(|a, b| strength(b.0).total_cmp(&strength(a.0)));
     let more = keys.len().saturating_sub(PANELS);
-    let panel = |(r, key): (f64, &Key)| {
+    let panel = |(r, key): (f64, &CampaignKey)| {
         let points: Vec<Point> = key.values.iter().copied().zip(metric.values.iter().copied()).collect();
         let x = FigureAxis::around(&runs.label_of(key), "", key.values.iter().copied());
         let limit = required.as_ref().map(|(most, _)| *most);
         let y = FigureAxis::around(&name, unit, metric.values.iter().copied().chain(limit));
-        let told =
+        let reported =
             if r.is_nan() { String::new() } else { format!("rank correlation {r:+.2}").replace('-', "−") };
-        let mut layers = vec![Layer::new(&told, colour::BLUE, LayerShape::Dot, points)];
+        let mut layers = vec![Layer::new(&reported, colour::BLUE, LayerShape::Dot, points)];
         layers.extend(required.as_ref().map(|(most, told)| {
             let line = vec![(x.range.start, *most), (x.range.end, *most)];
             Layer::new(told, colour::BLACK, LayerShape::Line(1.6), line)
@@ -38,7 +38,7 @@ pub fn figure(runs: &Runs, metric: &Metric) -> Figure {
 }
 
 /// Returns the keys of the figure: the swept ones, else the drawn ones.
-pub fn keys(runs: &Runs) -> Vec<&Key> {
+pub fn keys(runs: &CampaignRuns) -> Vec<&CampaignKey> {
     let swept = runs.swept();
     if swept.is_empty() { runs.drawn() } else { swept }
 }

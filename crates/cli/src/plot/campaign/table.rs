@@ -4,30 +4,30 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::metrics::{self, Meaning};
-use flexsc_core::whole;
+use flexsc_core::atomic_file;
+use flexsc_core::metrics::{self, MetricDescription};
 
 use crate::campaign::SCENARIO;
-use crate::failure::Failure;
+use crate::error::CliError;
 
 /// Runs of a campaign, in the order of their numbers.
-pub struct Runs {
+pub struct CampaignRuns {
     /// Name of the scenario, or else of the directory.
     pub name: String,
     /// Scenario of the runs and its origin; `None` for tables of versions that did not keep the scenario.
-    pub scenario: Option<(Scenario, Source)>,
+    pub scenario: Option<(Scenario, ScenarioSource)>,
     /// Numbers of the runs.
     pub numbers: Vec<u64>,
     /// Keys that vary.
-    pub keys: Vec<Key>,
+    pub keys: Vec<CampaignKey>,
     /// Metrics with numerical values.
-    pub metrics: Vec<Metric>,
+    pub metrics: Vec<MetricColumn>,
     /// Error of each run; empty if the run succeeded.
     pub errors: Vec<String>,
 }
 
 /// Origin of the scenario of a campaign.
-pub enum Source {
+pub enum ScenarioSource {
     /// File beside the campaign's tables.
     File(PathBuf),
     /// Directory of the campaign's parts.
@@ -35,7 +35,7 @@ pub enum Source {
 }
 
 /// Source of the cells' texts in a column.
-pub enum Texts {
+pub enum TextCells {
     /// Texts of a table.
     Cells(Vec<String>),
     /// Integers, formatted from the values.
@@ -46,9 +46,9 @@ pub enum Texts {
     Goals,
 }
 
-impl Texts {
+impl TextCells {
     /// Returns the text of a cell with this value; empty without a value.
-    fn of(&self, index: usize, value: f64) -> String {
+    fn formatted(&self, index: usize, value: f64) -> String {
         match self {
             Self::Cells(cells) => cells[index].clone(),
             Self::Goals if value > 0.0 => "met".to_owned(),
@@ -61,39 +61,39 @@ impl Texts {
 }
 
 /// Key that varies.
-pub struct Key {
+pub struct CampaignKey {
     pub name: String,
     /// Values of the key as TOML, and as numbers.
-    pub texts: Texts,
+    pub texts: TextCells,
     pub values: Vec<f64>,
     /// True if a sweep varies the key; otherwise it is drawn.
     pub swept: bool,
 }
 
 /// Metric of the runs.
-pub struct Metric {
-    pub meaning: &'static Meaning,
+pub struct MetricColumn {
+    pub meaning: &'static MetricDescription,
     /// Values of the metric as in the table, and as numbers; NaN for a run without a value.
-    pub texts: Texts,
+    pub texts: TextCells,
     pub values: Vec<f64>,
 }
 
 /// Cells of a row by their columns.
-type Row = BTreeMap<String, String>;
+type TextRow = BTreeMap<String, String>;
 
 /// Columns of a table, and rows by the number of their run, each with its file.
 #[derive(Default)]
-struct Rows {
+struct TextTable {
     header: Vec<String>,
-    rows: BTreeMap<u64, (Row, PathBuf)>,
+    rows: BTreeMap<u64, (TextRow, PathBuf)>,
 }
 
 /// Reads the campaigns of a directory by their names.
 ///
 /// # Errors
 /// A table that cannot be read or is not of a campaign, or parts that contradict each other.
-pub fn read(directory: &Path, files: &[String]) -> Result<Vec<Runs>, Failure> {
-    let mut tables: BTreeMap<String, Rows> = BTreeMap::new();
+pub fn read(directory: &Path, files: &[String]) -> Result<Vec<CampaignRuns>, CliError> {
+    let mut tables: BTreeMap<String, TextTable> = BTreeMap::new();
     for file in files {
         if let Some(prefix) = prefix(file) {
             tables.entry(prefix).or_default().read(&directory.join(file))?;
@@ -116,14 +116,15 @@ fn prefix(file: &str) -> Option<String> {
     (before.is_empty() || before.ends_with('-')).then(|| before.to_owned())
 }
 
-fn refused(path: &Path, why: &str) -> Failure {
-    Failure::Arguments(format!("{}: {why}", path.display()))
+fn refused(path: &Path, why: &str) -> CliError {
+    CliError::Arguments(format!("{}: {why}", path.display()))
 }
 
-impl Rows {
-    fn read(&mut self, path: &Path) -> Result<(), Failure> {
+impl TextTable {
+    fn read(&mut self, path: &Path) -> Result<(), CliError> {
         let wrong = |error: csv::Error| refused(path, &format!("is not the table of a campaign: {error}"));
-        let mut reader = csv::Reader::from_reader(whole::open(path).map_err(|error| wrong(error.into()))?);
+        let mut reader =
+            csv::Reader::from_reader(atomic_file::open(path).map_err(|error| wrong(error.into()))?);
         let header: Vec<String> = reader.headers().map_err(wrong)?.iter().map(str::to_owned).collect();
         if header.first().map(String::as_str) != Some("run")
             || header.last().map(String::as_str) != Some("error")
@@ -143,7 +144,7 @@ impl Rows {
         for record in reader.records() {
             let record = record.map_err(wrong)?;
             let line = record.position().map_or(0, csv::Position::line);
-            let row: Row = header.iter().cloned().zip(record.iter().map(str::to_owned)).collect();
+            let row: TextRow = header.iter().cloned().zip(record.iter().map(str::to_owned)).collect();
             let Ok(number) = record[0].parse() else {
                 let why = format!("line {line}: `run` must be the number of a run, got `{}`", &record[0]);
                 return Err(refused(path, &why));
@@ -159,12 +160,13 @@ impl Rows {
         Ok(())
     }
 
-    fn into_runs(self, directory: &Path, prefix: &str) -> Result<Runs, Failure> {
+    fn into_runs(self, directory: &Path, prefix: &str) -> Result<CampaignRuns, CliError> {
         if self.rows.is_empty() {
             return Err(refused(&directory.join(format!("{prefix}runs.csv")), "contains no runs"));
         }
         let path = directory.join(format!("{prefix}{SCENARIO}"));
-        let scenario = if path.is_file() { Some((Scenario::load(&path)?, Source::File(path))) } else { None };
+        let scenario =
+            if path.is_file() { Some((Scenario::load(&path)?, ScenarioSource::File(path))) } else { None };
         let absolute = std::path::absolute(directory).unwrap_or_default();
         let folder = absolute.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let name = match (&scenario, prefix.strip_suffix('-')) {
@@ -188,16 +190,28 @@ impl Rows {
                 // Words and lists are not numbers.
                 let goal = metrics::goal::NAMES.contains(&meaning.name);
                 if goal || texts.iter().zip(&values).all(|(text, value)| text.is_empty() || !value.is_nan()) {
-                    all.push(Metric { meaning, texts: Texts::Cells(texts), values });
+                    all.push(MetricColumn { meaning, texts: TextCells::Cells(texts), values });
                 }
             } else {
                 let drawn = scenario.as_ref().map(|(scenario, _)| scenario.uncertain.contains_key(header));
                 let swept = !drawn.unwrap_or_else(|| !values.is_sorted());
-                keys.push(Key { name: header.clone(), texts: Texts::Cells(texts), values, swept });
+                keys.push(CampaignKey {
+                    name: header.clone(),
+                    texts: TextCells::Cells(texts),
+                    values,
+                    swept,
+                });
             }
         }
         let errors = column("error");
-        Ok(Runs { name, scenario, numbers: self.rows.into_keys().collect(), keys, metrics: all, errors })
+        Ok(CampaignRuns {
+            name,
+            scenario,
+            numbers: self.rows.into_keys().collect(),
+            keys,
+            metrics: all,
+            errors,
+        })
     }
 }
 
@@ -206,9 +220,9 @@ fn is_about(column: &str) -> bool {
     ["run", "seed", "error"].contains(&column)
 }
 
-impl Runs {
+impl CampaignRuns {
     /// Returns the keys that a sweep varies.
-    pub fn swept(&self) -> Vec<&Key> {
+    pub fn swept(&self) -> Vec<&CampaignKey> {
         self.keys.iter().filter(|key| key.swept).collect()
     }
 
@@ -221,7 +235,7 @@ impl Runs {
 
     /// Returns the largest allowed value of a metric, and its legend: the fraction of the runs with a value that meet
     /// it.
-    pub fn required(&self, metric: &Metric) -> Option<(f64, String)> {
+    pub fn required(&self, metric: &MetricColumn) -> Option<(f64, String)> {
         let (_, most) = self.requirement().filter(|(name, _)| *name == metric.meaning.name)?;
         let sorted = metric.sorted();
         let met = sorted.iter().filter(|value| **value <= most).count();
@@ -230,28 +244,28 @@ impl Runs {
     }
 
     /// Returns the label of an axis along a key: its name and its unit.
-    pub fn label_of(&self, key: &Key) -> String {
+    pub fn label_of(&self, key: &CampaignKey) -> String {
         let unit = self.scenario.as_ref().and_then(|(scenario, _)| scenario.unit_of(&key.name));
         unit.map_or_else(|| key.name.clone(), |unit| format!("{} ({unit})", key.name))
     }
 
     /// Returns the keys that are drawn.
-    pub fn drawn(&self) -> Vec<&Key> {
+    pub fn drawn(&self) -> Vec<&CampaignKey> {
         self.keys.iter().filter(|key| !key.swept).collect()
     }
 }
 
-impl Key {
+impl CampaignKey {
     /// Returns the key's value in a run, as TOML.
     pub fn text(&self, index: usize) -> String {
-        self.texts.of(index, self.values[index])
+        self.texts.formatted(index, self.values[index])
     }
 }
 
-impl Metric {
+impl MetricColumn {
     /// Returns the metric's value in a run as text; empty without a value.
     pub fn text(&self, index: usize) -> String {
-        self.texts.of(index, self.values[index])
+        self.texts.formatted(index, self.values[index])
     }
 
     /// Returns the metric's existing values, sorted.

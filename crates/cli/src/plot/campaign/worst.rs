@@ -7,7 +7,7 @@ use flexsc_core::count::counted;
 use flexsc_core::metrics::goal;
 use serde_json::json;
 
-use super::table::{Metric, Runs, Source};
+use super::table::{CampaignRuns, MetricColumn, ScenarioSource};
 use crate::number::short;
 
 /// Metrics whose larger values are better.
@@ -19,7 +19,7 @@ const ONE: [&str; 2] = ["nees_mean", "nis_mean"];
 const NEVER: [&str; 3] = ["settling_time_s", "energy_below_10pct_at_s", "energy_below_1pct_at_s"];
 
 /// Returns a measure of how bad a value is; `None` if the metric is neutral or has no value.
-fn badness(metric: &Metric, index: usize) -> Option<f64> {
+fn badness(metric: &MetricColumn, index: usize) -> Option<f64> {
     let (name, value) = (metric.meaning.name, metric.values[index]);
     let neutral = ["gain_", "cycle_", "pushes_"].iter().any(|start| name.starts_with(start));
     let bad = match name {
@@ -35,7 +35,7 @@ fn badness(metric: &Metric, index: usize) -> Option<f64> {
 }
 
 /// Bad run that is worth repeating.
-struct Worst<'a> {
+struct WorstRun<'a> {
     /// Name of the metric, or `error`.
     what: &'a str,
     run: u64,
@@ -44,19 +44,24 @@ struct Worst<'a> {
     command: Option<String>,
 }
 
-fn worst<'a>(runs: &'a Runs, directory: &Path, metrics: &[&'a Metric], most: usize) -> Vec<Worst<'a>> {
+fn worst<'a>(
+    runs: &'a CampaignRuns,
+    directory: &Path,
+    metrics: &[&'a MetricColumn],
+    most: usize,
+) -> Vec<WorstRun<'a>> {
     let ran = |index: &usize| runs.errors[*index].is_empty();
-    let told = |what, index: usize, value| {
+    let reported = |what, index: usize, value| {
         let command = runs.scenario.as_ref().map(|(_, source)| match source {
-            Source::File(path) => command(runs, directory, path, index),
-            Source::Directory(path) => command_from(path, runs.numbers[index]),
+            ScenarioSource::File(path) => command(runs, directory, path, index),
+            ScenarioSource::Directory(path) => command_from(path, runs.numbers[index]),
         });
-        Worst { what, run: runs.numbers[index], value, command }
+        WorstRun { what, run: runs.numbers[index], value, command }
     };
     let all = 0..runs.numbers.len();
     let failed = all.clone().filter(|index| !ran(index)).take(most);
-    let mut worst: Vec<Worst<'a>> =
-        failed.map(|index| told("error", index, runs.errors[index].clone())).collect();
+    let mut worst: Vec<WorstRun<'a>> =
+        failed.map(|index| reported("error", index, runs.errors[index].clone())).collect();
     for metric in metrics {
         let bad = all.clone().filter(ran).filter_map(|index| Some((badness(metric, index)?, index)));
         let mut bad: Vec<(f64, usize)> = bad.collect();
@@ -64,14 +69,14 @@ fn worst<'a>(runs: &'a Runs, directory: &Path, metrics: &[&'a Metric], most: usi
         for (_, index) in bad.into_iter().take(most) {
             let text = metric.text(index);
             let value = if text.is_empty() { "never".to_owned() } else { text };
-            worst.push(told(metric.meaning.name, index, value));
+            worst.push(reported(metric.meaning.name, index, value));
         }
     }
     worst
 }
 
 /// Returns the command that repeats a run, with its log and a table of its own.
-fn command(runs: &Runs, directory: &Path, scenario: &Path, index: usize) -> String {
+fn command(runs: &CampaignRuns, directory: &Path, scenario: &Path, index: usize) -> String {
     let number = runs.numbers[index];
     let mut command = format!("flexsc simulate {}", quoted(&scenario.display().to_string()));
     for key in runs.swept() {
@@ -105,7 +110,7 @@ fn quoted(word: &str) -> String {
 }
 
 /// Returns the table for people.
-pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) -> String {
+pub fn table(runs: &CampaignRuns, directory: &Path, metrics: &[&MetricColumn], most: usize) -> String {
     let worst = worst(runs, directory, metrics, most);
     if worst.is_empty() {
         return String::new();
@@ -131,8 +136,8 @@ pub fn table(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) ->
 }
 
 /// Returns a JSON line for each of the worst runs.
-pub fn lines(runs: &Runs, directory: &Path, metrics: &[&Metric], most: usize) -> String {
-    let line = |found: Worst<'_>| {
+pub fn lines(runs: &CampaignRuns, directory: &Path, metrics: &[&MetricColumn], most: usize) -> String {
+    let line = |found: WorstRun<'_>| {
         // Numbers have the digits of the table.
         let value = found.value.parse::<f64>().map_or_else(|_| json!(found.value), |value| json!(value));
         let worst = json!({

@@ -1,26 +1,26 @@
 //! Design of the observer of each axis: true modes, initial values and inputs.
 
-use super::{Adaptive, Form, Merged, Tracker, bounds, merged};
+use super::{Adaptive, MergedTracker, ObserverForm, Tracker, bounds, merge};
 use crate::attitude::AXES;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Frequency};
 
 /// Design of the observers of all axes, from the scenario and its body.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObserverDesign {
     /// Form and settings of the observers.
-    pub form: Form,
+    pub form: ObserverForm,
     /// Design of each axis.
-    pub axes: Vec<AxisObserver>,
+    pub axes: Vec<AxisObserverDesign>,
     /// Period of the samples (s).
     pub period: f64,
 }
 
 /// Design of the observer of one axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct AxisObserver {
+pub struct AxisObserverDesign {
     /// True modes, by frequency.
-    pub modes: Vec<Merged>,
+    pub modes: Vec<MergedTracker>,
     /// Initial values of the observer.
     pub start: Vec<Tracker>,
     /// Axes whose groups of jets are the observer's inputs, in the order of the inputs.
@@ -33,7 +33,7 @@ pub struct AxisObserver {
 
 /// Data of a body whose rates are measured: modes, measurement and actuation.
 #[derive(Clone, Debug, PartialEq)]
-pub struct MeasuredRates {
+pub struct RateMeasurement {
     /// Natural frequencies of the modes.
     pub frequencies: Vec<Frequency>,
     /// Rotation per unit of each mode at the rate sensor, for each axis.
@@ -57,8 +57,8 @@ impl ObserverDesign {
     /// Creates the design for sampled rates with the period `period` (s).
     ///
     /// # Errors
-    /// A `Fault` with a key within the estimator and the reason.
-    pub fn of(spec: &Adaptive, measured: &MeasuredRates, period: f64) -> Result<Self, Fault> {
+    /// A `ConfigError` with a key within the estimator and the reason.
+    pub fn new(spec: &Adaptive, measured: &RateMeasurement, period: f64) -> Result<Self, ConfigError> {
         if let Some(fault) = spec.inconsistency() {
             return Err(fault);
         }
@@ -66,28 +66,28 @@ impl ObserverDesign {
         if axes == 1 && spec.trackers.is_some() {
             let why =
                 "apply only to three axes: for a body with one angle, `count` is the number of tracked modes";
-            return Err(Fault::new("trackers", why));
+            return Err(ConfigError::new("trackers", why));
         }
-        let form = spec.working_form();
-        let axis = |axis: usize| AxisObserver::of(spec, &form, axis, measured, period);
-        let axes: Vec<AxisObserver> = (0..axes).map(axis).collect::<Result<_, _>>()?;
+        let form = spec.effective_form();
+        let axis = |axis: usize| AxisObserverDesign::new(spec, &form, axis, measured, period);
+        let axes: Vec<AxisObserverDesign> = (0..axes).map(axis).collect::<Result<_, _>>()?;
         if axes.iter().all(|design| design.start.is_empty()) {
-            return Err(Fault::new("", "must have a mode to track, and the gyro sees none"));
+            return Err(ConfigError::new("", "must have a mode to track, and the gyro sees none"));
         }
         Ok(Self { form, axes, period })
     }
 }
 
-impl AxisObserver {
-    fn of(
+impl AxisObserverDesign {
+    fn new(
         spec: &Adaptive,
-        form: &Form,
+        form: &ObserverForm,
         axis: usize,
-        measured: &MeasuredRates,
+        measured: &RateMeasurement,
         period: f64,
-    ) -> Result<Self, Fault> {
-        let MeasuredRates { frequencies, seen, inputs: sources } = measured;
-        let inputs = if spec.crosses() { (0..sources.len()).collect() } else { vec![axis] };
+    ) -> Result<Self, ConfigError> {
+        let RateMeasurement { frequencies, seen, inputs: sources } = measured;
+        let inputs = if spec.uses_cross_axis() { (0..sources.len()).collect() } else { vec![axis] };
         let influence = |input: usize, mode: usize| {
             let source = &sources[input];
             seen[axis][mode] * source.forces[mode] / source.acceleration
@@ -103,7 +103,7 @@ impl AxisObserver {
             (0..frequencies.len()).filter(sampled).filter(|mode| influence(axis, *mode) != 0.0).collect();
         let own: Vec<Tracker> =
             there.iter().map(|mode| tracker(frequencies[*mode], vec![influence(axis, *mode)])).collect();
-        let mut all = merged(&own, spec.merge.get());
+        let mut all = merge(&own, spec.merge.get());
         for one in &mut all {
             for mode in &mut one.modes {
                 *mode = there[*mode];
@@ -117,21 +117,22 @@ impl AxisObserver {
         let designed: Vec<Tracker> =
             given.map_or_else(|| modes.iter().map(|mode| mode.tracker.clone()).collect(), <[_]>::to_vec);
         let start = started(spec, form, axis, &designed, inputs.len(), period)?;
-        let turn = |input: &usize| if spec.crosses() { sources[*input].turning[axis] } else { 1.0 };
+        let turn = |input: &usize| if spec.uses_cross_axis() { sources[*input].turning[axis] } else { 1.0 };
         let rigid = inputs.iter().map(turn).collect();
         Ok(Self { modes, start, rigid, inputs, seen: seen[axis].clone() })
     }
 
     /// Returns the index of the axis' own jets among the inputs.
-    pub fn own(&self, axis: usize) -> usize {
+    pub fn own_axis_input(&self, axis: usize) -> usize {
         self.inputs.iter().position(|input| *input == axis).unwrap_or(0)
     }
 }
 
 /// Returns the `count` modes that a long burn of an input excites most, by frequency: a step a of the elastic
 /// acceleration causes an elastic rate of a/w.
-fn strongest(all: &[Merged], input: usize, count: usize) -> Vec<Merged> {
-    let strength = |mode: &Merged| mode.tracker.influence[input].get().abs() / mode.tracker.frequency.get();
+fn strongest(all: &[MergedTracker], input: usize, count: usize) -> Vec<MergedTracker> {
+    let strength =
+        |mode: &MergedTracker| mode.tracker.influence[input].get().abs() / mode.tracker.frequency.get();
     let mut modes = all.to_vec();
     modes.sort_by(|a, b| strength(b).total_cmp(&strength(a)));
     modes.truncate(count);
@@ -140,11 +141,11 @@ fn strongest(all: &[Merged], input: usize, count: usize) -> Vec<Merged> {
 }
 
 /// Returns the mode nearest to each tracker; the tracker without modes if there is none.
-fn nearest(all: &[Merged], trackers: &[Tracker]) -> Vec<Merged> {
+fn nearest(all: &[MergedTracker], trackers: &[Tracker]) -> Vec<MergedTracker> {
     let of = |tracker: &Tracker| {
-        let far = |mode: &&Merged| (mode.tracker.frequency.get() - tracker.frequency.get()).abs();
+        let far = |mode: &&MergedTracker| (mode.tracker.frequency.get() - tracker.frequency.get()).abs();
         let found = all.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
-        found.cloned().unwrap_or_else(|| Merged { tracker: tracker.clone(), modes: Vec::new() })
+        found.cloned().unwrap_or_else(|| MergedTracker { tracker: tracker.clone(), modes: Vec::new() })
     };
     trackers.iter().map(of).collect()
 }
@@ -152,28 +153,28 @@ fn nearest(all: &[Merged], trackers: &[Tracker]) -> Vec<Merged> {
 /// Returns the trackers with the initial errors of the scenario, limited to the bounds of the design.
 fn started(
     spec: &Adaptive,
-    form: &Form,
+    form: &ObserverForm,
     axis: usize,
     designed: &[Tracker],
     inputs: usize,
     period: f64,
-) -> Result<Vec<Tracker>, Fault> {
+) -> Result<Vec<Tracker>, ConfigError> {
     if designed.is_empty() {
         return Ok(Vec::new());
     }
-    let of_axis = |Fault { key, why }: Fault| {
-        Fault::new(key.replacen("trackers", &format!("trackers.{}", AXES[axis]), 1), why)
+    let of_axis = |ConfigError { key, why }: ConfigError| {
+        ConfigError::new(key.replacen("trackers", &format!("trackers.{}", AXES[axis]), 1), why)
     };
     let (wrong, reach) = match form {
-        Form::Gradient(of) => (of.inconsistency(designed, inputs, period), of.reach),
-        Form::Recurrence(_) if designed.len() > 1 => {
+        ObserverForm::Gradient(of) => (of.inconsistency(designed, inputs, period), of.reach),
+        ObserverForm::Recurrence(_) if designed.len() > 1 => {
             let why = format!("must be one mode in the form `recurrence`, got {}", designed.len());
-            return Err(of_axis(Fault::new("trackers", why)));
+            return Err(of_axis(ConfigError::new("trackers", why)));
         }
-        Form::Recurrence(of) => (of.inconsistency(&designed[0], period), of.reach),
+        ObserverForm::Recurrence(of) => (of.inconsistency(&designed[0], period), of.reach),
     };
     if let Some(fault) = wrong {
-        let kind = if matches!(form, Form::Gradient(_)) { "gradient" } else { "recurrence" };
+        let kind = if matches!(form, ObserverForm::Gradient(_)) { "gradient" } else { "recurrence" };
         let own = !fault.key.starts_with("trackers");
         return Err(if own { fault.within(&format!("form.{kind}")) } else { of_axis(fault) });
     }
@@ -203,7 +204,7 @@ mod tests {
 
     #[test]
     fn the_modes_that_a_long_burn_excites_most_are_followed() {
-        let mode = |index: usize, frequency: f64, influence: f64| Merged {
+        let mode = |index: usize, frequency: f64, influence: f64| MergedTracker {
             tracker: Tracker {
                 frequency: Frequency::new(frequency).expect("a frequency"),
                 influence: vec![Finite::new(influence).expect("an influence")],

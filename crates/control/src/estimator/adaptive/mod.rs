@@ -5,37 +5,37 @@
 //! observer runs. Two forms exist: the recurrence of \[Timakov14\] (pages 41 to 46) and a recursive gradient with exact
 //! pulses.
 
-mod at_work;
-mod axes;
-mod channel;
+mod axis_observer;
 mod design;
 mod gradient;
+mod observers_state;
 mod oscillator;
 mod recurrence;
 mod residual;
+mod spec;
 #[cfg(test)]
 mod tests;
 mod tracker;
 
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{NonNegative, Positive};
 
 pub use crate::actuator::Pulse;
-pub use at_work::Observers;
-pub use axes::{Adaptive, Form, Given};
-pub use channel::Channel;
-pub use design::{ActuatorInput, AxisObserver, MeasuredRates, ObserverDesign};
+pub use axis_observer::AxisObserver;
+pub use design::{ActuatorInput, AxisObserverDesign, ObserverDesign, RateMeasurement};
 pub use gradient::{Gradient, GradientObserver};
-pub use oscillator::{ModelOscillator, ModelPhase};
-pub use recurrence::{Recurrence, RecurrenceObserver, Weights};
+pub use observers_state::ObserverSet;
+pub use oscillator::{ModeVector, OscillatorModel};
+pub use recurrence::{Recurrence, RecurrenceObserver, RecurrenceWeights};
 pub use residual::MovingResidual;
-pub use tracker::{Merged, Tracker, bounds, merged};
+pub use spec::{Adaptive, GivenModes, ObserverForm};
+pub use tracker::{MergedTracker, Tracker, bounds, merge};
 
 /// Observer's estimate of a mode.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ModeEstimate {
     /// Elastic rate g of the mode in the channel, and s, which lags it by a quarter of a period (rad/s).
-    pub phase: ModelPhase,
+    pub phase: ModeVector,
     /// Natural frequency (rad/s).
     pub frequency: f64,
     /// Influence of each input (dimensionless).
@@ -63,8 +63,8 @@ fn inconsistency(
     trackers: &[Tracker],
     inputs: usize,
     period: f64,
-) -> Option<Fault> {
-    let at = |key: &str, why: String| Some(Fault::new(key, why));
+) -> Option<ConfigError> {
+    let at = |key: &str, why: String| Some(ConfigError::new(key, why));
     let (damping, reach) = (damping.get(), reach.get());
     if damping >= 1.0 {
         return at("damping", format!("must be below 1, got {damping}"));
@@ -81,7 +81,7 @@ fn inconsistency(
 }
 
 /// Run-time observer of one axis: at each sample `update`, then `advance` over the cycle that follows.
-pub trait Observer {
+pub trait AdaptiveObserver {
     /// Updates the estimates with the measured rate (rad/s). A value that is not finite, or unrealistic, is dropped.
     fn update(&mut self, measured: f64);
 

@@ -4,20 +4,20 @@
 //! K = [[-2 zeta w, -w], [w, 0]] (\[Timakov14\], equation (2); the closed forms are ours).
 
 /// State vector: the modal rate p, and s = w q, which lags p by a quarter of a period, in the same unit.
-pub type ModelPhase = [f64; 2];
+pub type ModeVector = [f64; 2];
 
 /// Oscillator that models one mode.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct ModelOscillator {
+pub struct OscillatorModel {
     /// Natural frequency w (rad/s).
     pub frequency: f64,
     /// Damping ratio zeta, below 1.
     pub damping: f64,
 }
 
-impl ModelOscillator {
+impl OscillatorModel {
     /// Returns the transition exp(K t) over `time` (s), row by row.
-    pub fn transition(&self, time: f64) -> [ModelPhase; 2] {
+    pub fn transition(&self, time: f64) -> [ModeVector; 2] {
         let zeta = self.damping;
         let root = f64::sqrt((1.0 - zeta) * (1.0 + zeta));
         let turn = self.frequency * time;
@@ -27,12 +27,12 @@ impl ModelOscillator {
     }
 
     /// Returns the state after a transition over `time` (s), and its derivative with respect to ln w.
-    pub fn turned(
+    pub fn propagate(
         &self,
-        transition: &[ModelPhase; 2],
+        transition: &[ModeVector; 2],
         time: f64,
-        phase: ModelPhase,
-    ) -> (ModelPhase, ModelPhase) {
+        phase: ModeVector,
+    ) -> (ModeVector, ModeVector) {
         let at = times(transition, phase);
         let turn = self.frequency * time;
         (at, [turn * (-2.0 * self.damping * at[0] - at[1]), turn * at[0]])
@@ -40,13 +40,13 @@ impl ModelOscillator {
 
     /// Returns the state after a pulse of unit acceleration that began and ended this long ago (s), and its derivative
     /// with respect to ln w. A negative time lies in the future: only the past part of the pulse counts.
-    pub fn pulse(&self, began: f64, ended: f64) -> (ModelPhase, ModelPhase) {
+    pub fn pulse_response(&self, began: f64, ended: f64) -> (ModeVector, ModeVector) {
         let (whole, rest) = (self.step(began.max(0.0)), self.step(ended.max(0.0)));
         (minus(whole.0, rest.0), minus(whole.1, rest.1))
     }
 
     /// Returns the state after a unit acceleration over `time` (s), and its derivative with respect to ln w.
-    fn step(&self, time: f64) -> (ModelPhase, ModelPhase) {
+    fn step(&self, time: f64) -> (ModeVector, ModeVector) {
         if time == 0.0 {
             return ([0.0; 2], [0.0; 2]);
         }
@@ -57,11 +57,11 @@ impl ModelOscillator {
 }
 
 /// Returns the product of a matrix (rows) and a vector.
-fn times(matrix: &[ModelPhase; 2], v: ModelPhase) -> ModelPhase {
+fn times(matrix: &[ModeVector; 2], v: ModeVector) -> ModeVector {
     [matrix[0][0] * v[0] + matrix[0][1] * v[1], matrix[1][0] * v[0] + matrix[1][1] * v[1]]
 }
 
-fn minus(a: ModelPhase, b: ModelPhase) -> ModelPhase {
+fn minus(a: ModeVector, b: ModeVector) -> ModeVector {
     [a[0] - b[0], a[1] - b[1]]
 }
 
@@ -69,7 +69,7 @@ fn minus(a: ModelPhase, b: ModelPhase) -> ModelPhase {
 mod tests {
     use super::*;
 
-    const MODE: ModelOscillator = ModelOscillator { frequency: 0.4 * std::f64::consts::PI, damping: 0.005 };
+    const MODE: OscillatorModel = OscillatorModel { frequency: 0.4 * std::f64::consts::PI, damping: 0.005 };
 
     #[track_caller]
     fn close(value: f64, exact: f64, within: f64) {
@@ -82,7 +82,7 @@ mod tests {
         for (value, exact) in [(a, 0.966_125_66), (b, -0.248_377_64), (c, 0.248_377_64), (d, 0.968_609_44)] {
             close(value, exact, 1e-8);
         }
-        let ((whole, slope), (short, _)) = (MODE.pulse(0.2, 0.0), MODE.pulse(0.2, 0.15));
+        let ((whole, slope), (short, _)) = (MODE.pulse_response(0.2, 0.0), MODE.pulse_response(0.2, 0.15));
         for (value, exact) in [
             (whole[0], 0.197_652_64),
             (whole[1], 0.024_979_82),
@@ -98,15 +98,15 @@ mod tests {
     #[test]
     fn slopes_are_those_of_finite_differences() {
         let h = 1e-5;
-        let off = |factor: f64| ModelOscillator { frequency: MODE.frequency * libm::exp(factor * h), ..MODE };
+        let off = |factor: f64| OscillatorModel { frequency: MODE.frequency * libm::exp(factor * h), ..MODE };
         let phase = [0.3, -0.7];
-        let turned = |of: ModelOscillator| of.turned(&of.transition(0.2), 0.2, phase).0;
-        let (_, slope) = MODE.turned(&MODE.transition(0.2), 0.2, phase);
-        let pulse = MODE.pulse(0.17, 0.04).1;
+        let turned = |of: OscillatorModel| of.propagate(&of.transition(0.2), 0.2, phase).0;
+        let (_, slope) = MODE.propagate(&MODE.transition(0.2), 0.2, phase);
+        let pulse = MODE.pulse_response(0.17, 0.04).1;
         for axis in 0..2 {
             let turn = (turned(off(1.0))[axis] - turned(off(-1.0))[axis]) / (2.0 * h);
             close(slope[axis], turn, 1e-9);
-            let pushed = |of: ModelOscillator| of.pulse(0.17, 0.04).0[axis];
+            let pushed = |of: OscillatorModel| of.pulse_response(0.17, 0.04).0[axis];
             let push = (pushed(off(1.0)) - pushed(off(-1.0))) / (2.0 * h);
             close(pulse[axis], push, 1e-9);
         }
@@ -114,8 +114,8 @@ mod tests {
 
     #[test]
     fn a_pulse_to_come_does_nothing() {
-        assert_eq!(MODE.pulse(-0.1, -0.3).0, [0.0, 0.0]);
+        assert_eq!(MODE.pulse_response(-0.1, -0.3).0, [0.0, 0.0]);
         // Of a pulse in progress, only the past part counts.
-        assert_eq!(MODE.pulse(0.1, -0.1), MODE.pulse(0.1, 0.0));
+        assert_eq!(MODE.pulse_response(0.1, -0.1), MODE.pulse_response(0.1, 0.0));
     }
 }

@@ -15,7 +15,7 @@ pub struct MovingResidual {
 impl MovingResidual {
     /// Updates the means with the innovation (rad/s) of a sample, `None` if it was dropped, and the elastic rate
     /// (rad/s).
-    pub(super) fn take(&mut self, innovation: Option<f64>, elastic: f64) {
+    pub(super) fn update(&mut self, innovation: Option<f64>, elastic: f64) {
         // Without a measurement, the estimate may be wrong by its full value.
         let innovation = innovation.unwrap_or(elastic);
         self.innovation += WEIGHT * (innovation * innovation - self.innovation);
@@ -24,7 +24,7 @@ impl MovingResidual {
 
     /// Returns true if laws may act on the elastic rate: in mean square, the innovations are below a share of it, or
     /// below a floor (rad/s).
-    pub fn is_small(&self, share: f64, floor: f64) -> bool {
+    pub fn is_below(&self, share: f64, floor: f64) -> bool {
         self.innovation < share * self.elastic + floor * floor
     }
 }

@@ -38,14 +38,14 @@ fn burst(cycle: usize) -> Vec<Pulse> {
 
 /// Returns the measured rate at each sample under the bursts, without noise.
 fn measured() -> Vec<f64> {
-    let of = ModelOscillator { frequency: MODE.0, damping: 0.005 };
+    let of = OscillatorModel { frequency: MODE.0, damping: 0.005 };
     let (mut rate, mut phase) = (0.0, [0.0; 2]);
     let sample = |cycle| {
         let y = rate + MODE.1 * phase[0];
-        phase = of.turned(&of.transition(CYCLE), CYCLE, phase).0;
+        phase = of.propagate(&of.transition(CYCLE), CYCLE, phase).0;
         for Pulse { acceleration, duration, .. } in burst(cycle) {
             rate += acceleration * duration;
-            let push = of.pulse(CYCLE, CYCLE - duration).0;
+            let push = of.pulse_response(CYCLE, CYCLE - duration).0;
             phase = [0, 1].map(|axis| phase[axis] + acceleration * push[axis]);
         }
         y
@@ -70,7 +70,7 @@ fn recurred() -> Vec<f64> {
 }
 
 /// Returns frequency (Hz) and influence after some samples.
-fn identified(observer: &mut dyn Observer, measured: &[f64], at: &[usize]) -> Vec<(f64, f64)> {
+fn identified(observer: &mut dyn AdaptiveObserver, measured: &[f64], at: &[usize]) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     for (cycle, y) in measured.iter().enumerate() {
         observer.update(*y);
@@ -180,10 +180,10 @@ fn gradient_tells_two_modes_and_two_inputs_apart() {
         }
         observer.advance(&pulses);
         for (phase, (hertz, influence)) in phases.iter_mut().zip(truths) {
-            let of = ModelOscillator { frequency: 2.0 * PI * hertz, damping: 0.005 };
-            *phase = of.turned(&of.transition(CYCLE), CYCLE, *phase).0;
+            let of = OscillatorModel { frequency: 2.0 * PI * hertz, damping: 0.005 };
+            *phase = of.propagate(&of.transition(CYCLE), CYCLE, *phase).0;
             for Pulse { input, acceleration, start, duration } in &pulses {
-                let push = of.pulse(CYCLE - start, CYCLE - start - duration).0;
+                let push = of.pulse_response(CYCLE - start, CYCLE - start - duration).0;
                 *phase = [0, 1].map(|axis| phase[axis] + influence[*input] * acceleration * push[axis]);
             }
         }
@@ -222,7 +222,7 @@ fn predictions_are_what_comes() {
         let mut observer = gradient(0.2, 2.0);
         let mut short = recurrence(0.2, 2.0);
         for (cycle, y) in y.iter().enumerate().take(72) {
-            for observer in [&mut observer as &mut dyn Observer, &mut short] {
+            for observer in [&mut observer as &mut dyn AdaptiveObserver, &mut short] {
                 observer.update(*y);
                 observer.advance(&burst(cycle));
             }
@@ -287,7 +287,7 @@ fn nonsense_is_never_passed_on() {
         ("resonant", |sample| libm::sin(0.25 * sample as f64)),
     ];
     for (name, y) in nonsense {
-        for observer in [&mut gradient(0.3, 1.2) as &mut dyn Observer, &mut recurrence(0.3, 1.2)] {
+        for observer in [&mut gradient(0.3, 1.2) as &mut dyn AdaptiveObserver, &mut recurrence(0.3, 1.2)] {
             for cycle in 0..3000 {
                 observer.update(y(cycle));
                 let mut pulses = burst(cycle);
@@ -316,7 +316,7 @@ fn nonsense_is_never_passed_on() {
     for (cycle, y) in measured().into_iter().enumerate() {
         observer.update(if cycle < 1200 { y } else { f64::NAN });
         observer.advance(&burst(cycle));
-        let trusted = observer.residual().is_small(0.1, 3e-6);
+        let trusted = observer.residual().is_below(0.1, 3e-6);
         assert!(!(100..1200).contains(&cycle) || trusted, "{cycle}: {:?}", observer.residual());
         assert!(cycle < 1210 || !trusted, "{cycle}: {:?}", observer.residual());
     }

@@ -4,7 +4,7 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Frequency};
 
 /// Fraction of the Nyquist frequency up to which a frequency can be distinguished from its alias.
@@ -32,7 +32,7 @@ impl Tracker {
     }
 
     /// Returns both trackers merged: mean frequency weighted by strength, sum of influences.
-    fn merged(&self, other: &Self) -> Self {
+    fn merge(&self, other: &Self) -> Self {
         let (a, b) = (self.strength(), other.strength());
         let (a, b) = if a + b > 0.0 { (a / (a + b), b / (a + b)) } else { (0.5, 0.5) };
         let mean = a * self.frequency.get() + b * other.frequency.get();
@@ -47,7 +47,7 @@ impl Tracker {
 
 /// Tracker and the modes that it represents.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Merged {
+pub struct MergedTracker {
     /// Tracker of the merged modes.
     pub tracker: Tracker,
     /// Indices of the modes.
@@ -56,24 +56,24 @@ pub struct Merged {
 
 /// Returns the trackers of a channel's modes, by frequency. Two whose relative difference is below `merge`, such as
 /// 0.08, cannot be distinguished and are merged, the closest first. Bounds are dropped.
-pub fn merged(modes: &[Tracker], merge: f64) -> Vec<Merged> {
-    let alone = |(index, mode): (usize, &Tracker)| Merged {
+pub fn merge(modes: &[Tracker], merge: f64) -> Vec<MergedTracker> {
+    let alone = |(index, mode): (usize, &Tracker)| MergedTracker {
         tracker: Tracker { bounds: None, ..mode.clone() },
         modes: vec![index],
     };
-    let mut merged: Vec<Merged> = modes.iter().enumerate().map(alone).collect();
+    let mut merged: Vec<MergedTracker> = modes.iter().enumerate().map(alone).collect();
     merged.sort_by(|a, b| a.tracker.frequency.get().total_cmp(&b.tracker.frequency.get()));
     while let Some(index) = nearest(&merged, merge) {
         let above = merged.remove(index + 1);
         let below = &mut merged[index];
-        below.tracker = below.tracker.merged(&above.tracker);
+        below.tracker = below.tracker.merge(&above.tracker);
         below.modes.extend(above.modes);
     }
     merged
 }
 
 /// Returns the index of the first tracker of the closest pair within a ratio.
-fn nearest(merged: &[Merged], merge: f64) -> Option<usize> {
+fn nearest(merged: &[MergedTracker], merge: f64) -> Option<usize> {
     let at = |index: usize| merged[index].tracker.frequency.get();
     let ratio = |index: usize| at(index + 1) / at(index) - 1.0;
     let pairs = (0..merged.len().saturating_sub(1)).filter(|&index| ratio(index) < merge);
@@ -107,14 +107,14 @@ pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
 
 /// Checks the trackers against the number of inputs, the sampling period (s) and each other; returns the first
 /// inconsistent key and the reason.
-pub fn inconsistency(trackers: &[Tracker], reach: f64, inputs: usize, period: f64) -> Option<Fault> {
+pub fn inconsistency(trackers: &[Tracker], reach: f64, inputs: usize, period: f64) -> Option<ConfigError> {
     if trackers.is_empty() {
-        return Some(Fault::new("trackers", "must have at least one mode to track, got none"));
+        return Some(ConfigError::new("trackers", "must have at least one mode to track, got none"));
     }
     let nyquist = std::f64::consts::PI / period;
     let bounds = bounds(trackers, reach, period);
     for (index, (tracker, [low, high])) in trackers.iter().zip(&bounds).enumerate() {
-        let at = |key: &str, why: String| Some(Fault::new(format!("trackers[{index}].{key}"), why));
+        let at = |key: &str, why: String| Some(ConfigError::new(format!("trackers[{index}].{key}"), why));
         let (frequency, found) = (tracker.frequency.get(), tracker.influence.len());
         if found != inputs {
             return at("influence", format!("must be one number for each of {inputs} inputs, got {found}"));
@@ -180,8 +180,8 @@ mod tests {
             tracker(0.65, -0.2),
             tracker(0.9, 0.1),
         ];
-        let trackers = |merge: f64| -> Vec<Tracker> {
-            merged(&modes, merge).into_iter().map(|merged| merged.tracker).collect()
+        let trackers = |ratio: f64| -> Vec<Tracker> {
+            merge(&modes, ratio).into_iter().map(|merged| merged.tracker).collect()
         };
         let found = trackers(0.08);
         let found_at = |tracker: &Tracker| tracker.frequency.get() / (2.0 * PI);
@@ -207,7 +207,7 @@ mod tests {
             ..tracker(at, 1.0)
         };
         let wrong = |trackers: &[Tracker], inputs| {
-            let Fault { key, why } =
+            let ConfigError { key, why } =
                 Gradient::default().inconsistency(trackers, inputs, CYCLE).expect("wrong");
             format!("{key} {why}")
         };

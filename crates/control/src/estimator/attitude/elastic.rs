@@ -12,8 +12,8 @@ use serde::{Deserialize, Serialize};
 use crate::attitude::Vector;
 use crate::body::Spatial;
 use crate::count::counted;
-use crate::document::Fault;
-use crate::estimator::Feeds;
+use crate::document::ConfigError;
+use crate::estimator::EstimateOutputs;
 use crate::quantity::{NonNegative, Positive};
 
 /// Elastic modes as states of the filter.
@@ -45,7 +45,7 @@ pub struct ElasticStates {
     pub rate: Option<Positive>,
     /// Estimates that the law reads: the rigid angle and rate, or those of the hub; default: rigid.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub feeds: Option<Feeds>,
+    pub feeds: Option<EstimateOutputs>,
 }
 
 fn one() -> Positive {
@@ -58,7 +58,7 @@ fn displacement() -> Positive {
 
 /// Mode in the filter's model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct KnownMode {
+pub struct FilterMode {
     /// Natural frequency at the start (rad/s).
     pub frequency: f64,
     /// True natural frequency of the body (rad/s).
@@ -77,7 +77,7 @@ pub struct KnownMode {
 
 /// Parameters of the frequency identification.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Identified {
+pub struct FrequencyIdentification {
     /// Standard deviation of the logarithm of each frequency at the start.
     pub deviation: f64,
     /// Random walk of the logarithm of each frequency (1/sqrt(s)).
@@ -86,13 +86,13 @@ pub struct Identified {
 
 /// Modes in the filter's model.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct KnownModes {
+pub struct FilterModes {
     /// Parameters of each mode.
-    pub each: Vec<KnownMode>,
+    pub each: Vec<FilterMode>,
     /// Random walk of each modal rate due to random forces (m sqrt(kg)/s^1.5).
     pub noise: f64,
     /// Parameters of the frequency identification, if the filter identifies frequencies.
-    pub identified: Option<Identified>,
+    pub identified: Option<FrequencyIdentification>,
     /// Inertia about each axis (kg m²), by which a reduced moment (rad/s²) becomes a torque.
     pub inertia: Vector,
     /// True if the law reads the rigid angle and rate, without the modes.
@@ -109,31 +109,34 @@ impl ElasticStates {
     /// index in `at`; torques act on the hub, the first point of the body.
     ///
     /// # Errors
-    /// A `Fault` with the key and the reason.
-    pub fn known(&self, body: &Spatial, at: &[String], gyro: usize) -> Result<KnownModes, Fault> {
+    /// A `ConfigError` with the key and the reason.
+    pub fn known(&self, body: &Spatial, at: &[String], gyro: usize) -> Result<FilterModes, ConfigError> {
         if self.modes.is_empty() {
-            return Err(Fault::new("modes", "must name at least one mode"));
+            return Err(ConfigError::new("modes", "must name at least one mode"));
         }
         for (index, mode) in self.modes.iter().enumerate() {
             if *mode >= body.modes.len() {
                 let why = format!("must be below {}, the number of modes, got {mode}", body.modes.len());
-                return Err(Fault::new(format!("modes[{index}]"), why));
+                return Err(ConfigError::new(format!("modes[{index}]"), why));
             }
             if self.modes[..index].contains(mode) {
-                return Err(Fault::new(format!("modes[{index}]"), format!("names mode {mode} again")));
+                return Err(ConfigError::new(format!("modes[{index}]"), format!("names mode {mode} again")));
             }
         }
         let given = self.frequencies.as_ref().map_or(self.modes.len(), Vec::len);
         if given != self.modes.len() {
             let why = format!("must be one for each of {}, got {given}", counted(self.modes.len(), "mode"));
-            return Err(Fault::new("frequencies", why));
+            return Err(ConfigError::new("frequencies", why));
         }
         if self.frequency_walk.is_some() && self.frequency_deviation.is_none() {
             let why = "is of frequencies that are identified: needs `frequency_deviation`";
-            return Err(Fault::new("frequency_walk", why));
+            return Err(ConfigError::new("frequency_walk", why));
         }
-        if self.feeds == Some(Feeds::Modes) {
-            return Err(Fault::new("feeds", "must be `rigid` or `hub`: the attitude is never as measured"));
+        if self.feeds == Some(EstimateOutputs::Modes) {
+            return Err(ConfigError::new(
+                "feeds",
+                "must be `rigid` or `hub`: the attitude is never as measured",
+            ));
         }
         let hub = body.shapes(body.points.first().map_or("", |point| &point.name));
         let mounts: Vec<_> = at.iter().map(|point| body.shapes(point)).collect();
@@ -143,7 +146,7 @@ impl ElasticStates {
             let frequency = self.frequencies.as_ref().map_or(own.frequency.get(), |given| given[index].get());
             let frequency = frequency * self.factor.get();
             let displacement = self.displacement.get();
-            KnownMode {
+            FilterMode {
                 frequency,
                 true_frequency: own.frequency.get(),
                 damping: own.damping.get(),
@@ -153,24 +156,24 @@ impl ElasticStates {
                 initial: [displacement, self.rate.map_or(displacement, |rate| rate.get() / frequency)],
             }
         };
-        let tensor: Matrix3<f64> = body.tensor();
-        Ok(KnownModes {
+        let tensor: Matrix3<f64> = body.inertia_tensor();
+        Ok(FilterModes {
             each: self.modes.iter().enumerate().map(known).collect(),
             noise: self.noise.get(),
-            identified: self.frequency_deviation.map(|deviation| Identified {
+            identified: self.frequency_deviation.map(|deviation| FrequencyIdentification {
                 deviation: deviation.get(),
                 walk: self.frequency_walk.map_or(0.0, NonNegative::get),
             }),
             inertia: tensor.diagonal(),
-            rigid: self.feeds != Some(Feeds::Hub),
+            rigid: self.feeds != Some(EstimateOutputs::Hub),
         })
     }
 }
 
-impl KnownModes {
+impl FilterModes {
     /// Returns the rotation, or its rate, of a place whose rotation per unit of a mode is `of`, for these displacements
     /// or rates.
-    pub fn turned(&self, of: impl Fn(&KnownMode) -> Vector, by: impl Iterator<Item = f64>) -> Vector {
+    pub fn rotation_at(&self, of: impl Fn(&FilterMode) -> Vector, by: impl Iterator<Item = f64>) -> Vector {
         self.each.iter().zip(by).fold(Vector::zeros(), |sum, (mode, by)| sum + of(mode) * by)
     }
 }

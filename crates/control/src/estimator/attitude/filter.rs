@@ -11,14 +11,14 @@ use nalgebra::{
     Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
 };
 
-use super::carried::Carried;
-use super::measurement::{AttitudeMeasurement, GyroNoise, across};
-use super::swinging::{SwingInnovation, Swinging};
+use super::covariance_propagation::CovariancePropagation;
+use super::elastic_states::{ElasticFilterStates, ElasticInnovation};
+use super::measurement::{AttitudeMeasurement, GyroNoise, perpendicular_pair};
 use crate::attitude::{Vector, rotation, rotation_vector};
-use crate::environment::into;
-use crate::lanes::Four;
+use crate::environment::to_body;
+use crate::lanes::SimdWidth4;
 use crate::numerics::stumpff::stumpff;
-use crate::sensor::VectorSight;
+use crate::sensor::VectorMeasurement;
 
 /// State of the attitude filter at one instant.
 #[derive(Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ pub struct AttitudeFilterState {
     pub covariance: Matrix6<f64>,
     /// Elastic modes that the filter estimates too: they hold the full covariance, of which `covariance` is the leading
     /// block.
-    pub swinging: Option<Box<Swinging>>,
+    pub swinging: Option<Box<ElasticFilterStates>>,
 }
 
 /// Innovation of a measured attitude or vector.
@@ -61,7 +61,7 @@ impl AttitudeFilterState {
         self.attitude = unit(self.attitude * rotation(&turn));
         let phis = stumpff(turn.norm_squared());
         let covariance = &mut self.covariance;
-        Four::best().run(Carried {
+        SimdWidth4::best().run(CovariancePropagation {
             covariance,
             turn,
             phis,
@@ -72,7 +72,7 @@ impl AttitudeFilterState {
     }
 
     /// Propagates the filter and its modes over `seconds`, under torques (N m), each with its duration (s).
-    pub fn predict_under(
+    pub fn predict_with_torques(
         &mut self,
         reading: &Vector,
         seconds: f64,
@@ -80,16 +80,16 @@ impl AttitudeFilterState {
         torques: &[(f64, Vector)],
     ) {
         let Some(mut swinging) = self.swinging.take() else { return self.predict(reading, seconds, noise) };
-        let mount = swinging.swing(seconds, torques);
+        let mount = swinging.propagate(seconds, torques);
         let turn = (reading - self.bias) * seconds - mount;
-        swinging.spread(&turn, seconds, noise);
+        swinging.propagate_covariance(&turn, seconds, noise);
         self.attitude = unit(self.attitude * rotation(&turn));
-        self.covariance = swinging.first();
+        self.covariance = swinging.attitude_block();
         self.swinging = Some(swinging);
     }
 
     /// Corrects the filter by a measurement of a sensor whose mount is rotated by the modes.
-    pub fn correct_at(
+    pub fn correct_at_mount(
         &mut self,
         sensor: usize,
         measured: &AttitudeMeasurement,
@@ -97,18 +97,20 @@ impl AttitudeFilterState {
     ) -> Option<Correction> {
         let mut swinging = self.swinging.take()?;
         let noise = DMatrix::from_fn(3, 3, |row, column| noise[(row, column)]);
-        let told = match measured {
+        let reported = match measured {
             AttitudeMeasurement::Attitude(attitude) => {
                 swinging.correct(&self.attitude, attitude, &noise, sensor)
             }
-            AttitudeMeasurement::Vector(sight) => swinging.correct_by(&self.attitude, sight, &noise, sensor),
+            AttitudeMeasurement::Vector(sight) => {
+                swinging.correct_vector(&self.attitude, sight, &noise, sensor)
+            }
         };
-        self.covariance = swinging.first();
+        self.covariance = swinging.attitude_block();
         self.swinging = Some(swinging);
-        let (innovation, SwingInnovation { error: [angle, bias], nis }) = told?;
+        let (innovation, ElasticInnovation { error: [angle, bias], nis }) = reported?;
         self.attitude = unit(self.attitude * rotation(&angle));
         self.bias += bias;
-        Some(Correction { innovation, nis, numbers: measured.numbers() })
+        Some(Correction { innovation, nis, numbers: measured.dimension() })
     }
 
     /// Corrects the filter by a measured attitude whose error has the covariance `noise` in body axes (rad²). Returns
@@ -126,11 +128,11 @@ impl AttitudeFilterState {
     }
 
     /// Corrects the filter by a measured vector whose error has the covariance `noise` in body axes.
-    pub fn correct_by(&mut self, sight: &VectorSight, noise: &Matrix3<f64>) -> Option<Correction> {
-        let expected = into(&self.attitude, &sight.inertial);
+    pub fn correct_vector(&mut self, sight: &VectorMeasurement, noise: &Matrix3<f64>) -> Option<Correction> {
+        let expected = to_body(&self.attitude, &sight.inertial);
         let (off, moved) = (sight.vector - expected, expected.cross_matrix());
         let nis = if sight.is_direction {
-            let across = across(&expected);
+            let across = perpendicular_pair(&expected);
             self.update(&(across * moved), &(across * off), &(across * noise * across.transpose()))? * 1.5
         } else {
             self.update(&moved, &off, noise)?
@@ -141,7 +143,7 @@ impl AttitudeFilterState {
 
     /// Corrects the filter with a constant gain on the measured angle relative to the attitude. The covariance becomes
     /// that of the errors which this gain leaves.
-    pub fn correct_with(
+    pub fn correct_with_gain(
         &mut self,
         measured: &AttitudeMeasurement,
         noise: &Matrix3<f64>,
@@ -152,20 +154,20 @@ impl AttitudeFilterState {
                 (rotation_vector(&self.attitude, attitude), Matrix3::identity(), *gain)
             }
             AttitudeMeasurement::Vector(sight) => {
-                let expected = into(&self.attitude, &sight.inertial);
+                let expected = to_body(&self.attitude, &sight.inertial);
                 let to_angle = expected.cross_matrix() / -expected.norm_squared();
                 (sight.vector - expected, expected.cross_matrix(), gain * to_angle)
             }
         };
         let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
         let spread = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?;
-        let numbers = measured.numbers();
+        let numbers = measured.dimension();
         let nis = 3.0 / numbers as f64 * off.dot(&spread.solve(&off));
         let error = gain * off;
         let innovation = match measured {
             AttitudeMeasurement::Attitude(_) => off,
             AttitudeMeasurement::Vector(sight) => {
-                let expected = into(&self.attitude, &sight.inertial);
+                let expected = to_body(&self.attitude, &sight.inertial);
                 off.cross(&expected) / expected.norm_squared()
             }
         };

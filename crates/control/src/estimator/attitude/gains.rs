@@ -13,7 +13,8 @@ use crate::quantity::Positive;
 /// How the gains are computed.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Form {
+#[schemars(rename = "Form")]
+pub enum GainMethod {
     /// From the covariance, at each measurement.
     #[default]
     Extended,
@@ -62,7 +63,7 @@ fn steady(noise: &GyroNoise, period: f64, deviation: f64) -> [f64; 2] {
     [1.0 - 1.0 / (z * z), -su / (z * period)]
 }
 
-impl Form {
+impl GainMethod {
     /// Returns the constant gain from a measured angle relative to the estimate, in body axes, to attitude and bias;
     /// `None` of the extended filter. `period` (s) is that of corrections, `covariance` (rad²) that of their errors.
     pub fn gain(&self, noise: &GyroNoise, period: f64, covariance: &Matrix3<f64>) -> Option<Matrix6x3<f64>> {
@@ -112,7 +113,7 @@ mod tests {
         }
         let before = filter.covariance.fixed_columns::<3>(0).into_owned();
         let sum = before.fixed_rows::<3>(0) + covariance;
-        let found = Form::Steady.gain(&noise, period, &covariance).unwrap();
+        let found = GainMethod::Steady.gain(&noise, period, &covariance).unwrap();
         for axis in 0..3 {
             for (row, size) in [(axis, 1.0_f64), (axis + 3, 1e-3)] {
                 let exact = before[(row, axis)] / sum[(axis, axis)];

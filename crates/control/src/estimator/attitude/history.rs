@@ -15,7 +15,7 @@ use crate::time::{Instant, Span};
 
 /// Measurement that corrects the filter.
 #[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Fix {
+pub struct DelayedMeasurement {
     /// Time of the exposure.
     pub exposed: Instant,
     /// Measured attitude or vector.
@@ -28,15 +28,15 @@ pub struct Fix {
     pub sensor: usize,
 }
 
-impl Fix {
+impl DelayedMeasurement {
     fn correct(&self, filter: &mut AttitudeFilterState) -> Option<Correction> {
         if filter.swinging.is_some() {
-            return filter.correct_at(self.sensor, &self.measured, &self.noise);
+            return filter.correct_at_mount(self.sensor, &self.measured, &self.noise);
         }
         match (&self.measured, &self.gain) {
             (AttitudeMeasurement::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
-            (AttitudeMeasurement::Vector(sight), None) => filter.correct_by(sight, &self.noise),
-            (measured, Some(gain)) => filter.correct_with(measured, &self.noise, gain),
+            (AttitudeMeasurement::Vector(sight), None) => filter.correct_vector(sight, &self.noise),
+            (measured, Some(gain)) => filter.correct_with_gain(measured, &self.noise, gain),
         }
     }
 }
@@ -44,23 +44,23 @@ impl Fix {
 /// Filter and its recent past.
 #[derive(Clone, Debug)]
 pub struct FilterHistory {
-    between: Between,
+    between: Propagation,
     /// Largest delay of a measurement.
     reach: Span,
-    entries: VecDeque<Entry>,
+    entries: VecDeque<HistoryEntry>,
     /// Measurements whose exposure no gyro reading covers yet.
-    early: Vec<Fix>,
+    early: Vec<DelayedMeasurement>,
 }
 
 /// Inputs of the propagation between entries.
 #[derive(Clone, Debug)]
-struct Between {
+struct Propagation {
     noise: GyroNoise,
     /// Torques on the modes (N m), each with the time from which on it acts.
     torques: VecDeque<(Instant, Vector)>,
 }
 
-impl Between {
+impl Propagation {
     /// Returns the torques (N m) between two instants, each with its duration (s).
     fn pushed(&self, from: Instant, to: Instant) -> Vec<(f64, Vector)> {
         let mut pieces = Vec::new();
@@ -84,7 +84,7 @@ impl Between {
     fn carry(&self, filter: &mut AttitudeFilterState, reading: &Vector, [from, to]: [Instant; 2]) {
         let seconds = to.since(from).seconds();
         if filter.swinging.is_some() {
-            filter.predict_under(reading, seconds, &self.noise, &self.pushed(from, to));
+            filter.predict_with_torques(reading, seconds, &self.noise, &self.pushed(from, to));
         } else {
             filter.predict(reading, seconds, &self.noise);
         }
@@ -92,19 +92,19 @@ impl Between {
 }
 
 #[derive(Clone, Debug)]
-struct Entry {
+struct HistoryEntry {
     at: Instant,
     /// Gyro reading of the interval that ends at this entry (rad/s).
     reading: Vector,
-    fixes: Vec<Fix>,
+    fixes: Vec<DelayedMeasurement>,
     filter: AttitudeFilterState,
 }
 
 impl FilterHistory {
     /// Creates the history of a filter at its first instant; `reach` is the largest delay of a measurement.
     pub fn new(at: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
-        let entry = Entry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
-        let between = Between { noise, torques: VecDeque::new() };
+        let entry = HistoryEntry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
+        let between = Propagation { noise, torques: VecDeque::new() };
         Self { between, reach, entries: VecDeque::from([entry]), early: Vec::new() }
     }
 
@@ -120,7 +120,7 @@ impl FilterHistory {
     }
 
     /// Sets the torque on the modes (N m) from `now` on.
-    pub fn push(&mut self, now: Instant, torque: Vector) {
+    pub fn set_torque(&mut self, now: Instant, torque: Vector) {
         let torques = &mut self.between.torques;
         if torques.back().is_some_and(|(from, _)| *from == now) {
             torques.pop_back();
@@ -134,31 +134,31 @@ impl FilterHistory {
 
     /// Adds the gyro reading (rad/s) of the interval that ends at `now`. Returns the corrections by measurements that
     /// waited for it.
-    pub fn read(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
+    pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
         let last = &self.entries[self.entries.len() - 1];
         if now <= last.at {
             return Vec::new();
         }
         // The entry's own filter is propagated in place: filters are large.
         let (from, filter) = (last.at, last.filter.clone());
-        self.entries.push_back(Entry { at: now, reading, fixes: Vec::new(), filter });
+        self.entries.push_back(HistoryEntry { at: now, reading, fixes: Vec::new(), filter });
         if let Some(entry) = self.entries.back_mut() {
             self.between.carry(&mut entry.filter, &reading, [from, now]);
         }
-        let mut told = Vec::new();
+        let mut reported = Vec::new();
         if !self.early.is_empty() {
             let waiting = std::mem::take(&mut self.early);
-            told.extend(waiting.into_iter().filter_map(|fix| self.fix(fix)));
+            reported.extend(waiting.into_iter().filter_map(|fix| self.add_measurement(fix)));
         }
         // The last older entry stays: the interval with the oldest exposure still accepted begins there.
         while self.entries.get(1).is_some_and(|second| second.at + self.reach <= now) {
             self.entries.pop_front();
         }
-        told
+        reported
     }
 
     /// Adds a measurement, delayed or not; returns `None` if it is older than the history, or waits for a gyro reading.
-    pub fn fix(&mut self, fix: Fix) -> Option<Correction> {
+    pub fn add_measurement(&mut self, fix: DelayedMeasurement) -> Option<Correction> {
         let Some(index) = self.entries.iter().position(|entry| fix.exposed <= entry.at) else {
             self.early.push(fix);
             return None;
@@ -169,7 +169,7 @@ impl FilterHistory {
             let (reading, from) = (self.entries[index].reading, &self.entries[before]);
             let mut filter = from.filter.clone();
             self.between.carry(&mut filter, &reading, [from.at, fix.exposed]);
-            self.entries.insert(index, Entry { at: fix.exposed, reading, fixes: Vec::new(), filter });
+            self.entries.insert(index, HistoryEntry { at: fix.exposed, reading, fixes: Vec::new(), filter });
         }
         let entry = &mut self.entries[index];
         let correction = fix.correct(&mut entry.filter)?;
@@ -184,7 +184,7 @@ impl FilterHistory {
         for index in from..entries.len() {
             let (before, after) = entries.split_at_mut(index);
             let ([.., last], [entry, ..]) = (before, after) else { return };
-            let Entry { at, reading, fixes, filter } = entry;
+            let HistoryEntry { at, reading, fixes, filter } = entry;
             filter.clone_from(&last.filter);
             self.between.carry(filter, reading, [last.at, *at]);
             for fix in &*fixes {

@@ -3,7 +3,7 @@
 use nalgebra::{Quaternion, SMatrix};
 
 use crate::attitude::Vector;
-use crate::sensor::VectorSight;
+use crate::sensor::VectorMeasurement;
 
 /// Gyro noise in the filter's model, the same about each axis.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
@@ -20,18 +20,18 @@ pub enum AttitudeMeasurement {
     /// Measured attitude.
     Attitude(Quaternion<f64>),
     /// Measured vector.
-    Vector(VectorSight),
+    Vector(VectorMeasurement),
 }
 
 impl AttitudeMeasurement {
     /// Returns the number of components: 2 of a direction, else 3.
-    pub fn numbers(&self) -> u64 {
-        if matches!(self, Self::Vector(VectorSight { is_direction: true, .. })) { 2 } else { 3 }
+    pub fn dimension(&self) -> u64 {
+        if matches!(self, Self::Vector(VectorMeasurement { is_direction: true, .. })) { 2 } else { 3 }
     }
 }
 
 /// Returns two unit vectors perpendicular to `v` and to each other, as rows.
-pub fn across(v: &Vector) -> SMatrix<f64, 2, 3> {
+pub fn perpendicular_pair(v: &Vector) -> SMatrix<f64, 2, 3> {
     let first = v.cross(&Vector::ith(v.iamin(), 1.0)).normalize();
     let second = v.cross(&first).normalize();
     SMatrix::from_rows(&[first.transpose(), second.transpose()])

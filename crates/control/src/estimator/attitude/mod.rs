@@ -1,22 +1,22 @@
 //! Attitude and gyro bias, by a multiplicative extended Kalman filter that accepts delayed measurements.
 
-mod at_work;
-mod carried;
+mod covariance_propagation;
 mod elastic;
+mod elastic_states;
 mod filter;
+mod filter_state;
 mod gains;
 mod history;
 mod measurement;
 mod spec;
-mod swinging;
 #[cfg(test)]
 mod tests;
 
-pub use at_work::Tracking;
-pub use elastic::{ElasticStates, Identified, KnownMode, KnownModes};
+pub use elastic::{ElasticStates, FilterMode, FilterModes, FrequencyIdentification};
+pub use elastic_states::ElasticFilterStates;
 pub use filter::{AttitudeFilterState, Correction};
-pub use gains::{Complementary, Form};
-pub use history::{FilterHistory, Fix};
+pub use filter_state::AttitudeFilterRun;
+pub use gains::{Complementary, GainMethod};
+pub use history::{DelayedMeasurement, FilterHistory};
 pub use measurement::{AttitudeMeasurement, GyroNoise};
-pub use spec::{AttitudeFilter, AttitudeSetting, Initial, Role};
-pub use swinging::Swinging;
+pub use spec::{AttitudeFilter, AttitudeInitialDeviations, FilterSetup, SensorRole};

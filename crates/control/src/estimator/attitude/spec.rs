@@ -6,13 +6,13 @@ use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{ElasticStates, Form, GyroNoise, KnownModes};
+use super::{ElasticStates, FilterModes, GainMethod, GyroNoise};
 use crate::attitude::Vector;
 use crate::body::Spatial;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::estimator::kalman::Prior;
 use crate::quantity::{NonNegative, Positive};
-use crate::sensor::{Gyro, Sensor};
+use crate::sensor::{Gyro, SensorKind};
 use crate::time::Span;
 
 /// Estimates the attitude and the gyro bias of a body with three axes.
@@ -21,7 +21,7 @@ use crate::time::Span;
 pub struct AttitudeFilter {
     /// How the gains are computed.
     #[serde(default)]
-    pub form: Form,
+    pub form: GainMethod,
     /// Angle random walk of the gyro (rad/sqrt(s)), the same about each axis; default: the largest of the gyro's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub angle_random_walk: Option<Positive>,
@@ -39,7 +39,7 @@ pub struct AttitudeFilter {
     pub sun_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
-    pub initial: Initial,
+    pub initial: AttitudeInitialDeviations,
     /// Initial estimate of attitude and bias.
     #[serde(default)]
     pub prior: Prior,
@@ -57,14 +57,15 @@ pub struct AttitudeFilter {
 /// Standard deviations of an attitude filter's estimate at the start, the same about each axis.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Initial {
+#[schemars(rename = "Initial")]
+pub struct AttitudeInitialDeviations {
     /// Standard deviation of the attitude (rad).
     pub angle: Positive,
     /// Standard deviation of the bias (rad/s).
     pub bias: Positive,
 }
 
-impl Default for Initial {
+impl Default for AttitudeInitialDeviations {
     /// Returns deviations of 1 mrad, and of 2 degrees per hour.
     fn default() -> Self {
         let positive = |value: f64| Positive::new(value).unwrap_or(Positive::ONE);
@@ -74,7 +75,7 @@ impl Default for Initial {
 
 /// Role of a sensor in the filter.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Role {
+pub enum SensorRole {
     /// The gyro, whose rates propagate the attitude.
     Gyro {
         /// Latency of a reading.
@@ -95,9 +96,9 @@ pub enum Role {
 
 /// Setup of a filter for the sensors of a scenario.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub struct AttitudeSetting {
+pub struct FilterSetup {
     /// Role of each sensor, in the order of the scenario.
-    pub roles: Vec<Role>,
+    pub roles: Vec<SensorRole>,
     /// Noise of the gyro.
     pub noise: GyroNoise,
     /// Bias of the gyro at the start (rad/s).
@@ -105,62 +106,64 @@ pub struct AttitudeSetting {
     /// Largest delay of a measurement.
     pub reach: Span,
     /// Elastic modes that the filter estimates, if any.
-    pub modes: Option<Arc<KnownModes>>,
+    pub modes: Option<Arc<FilterModes>>,
 }
 
 /// Body, points at which its sensors are mounted, and true if jets drive it.
-pub type Mounted<'a> = (&'a Spatial, &'a [String], bool);
+pub type SensorMounts<'a> = (&'a Spatial, &'a [String], bool);
 
 impl AttitudeFilter {
     /// Returns the setup for these sensors, with the law's period `cycle` and the sensors' mounts, if there are any.
     ///
     /// # Errors
-    /// A `Fault` with the key and the reason if the sensors do not suit the filter.
-    pub fn setting(
+    /// A `ConfigError` with the key and the reason if the sensors do not suit the filter.
+    pub fn setup(
         &self,
-        sensors: &[Sensor],
+        sensors: &[SensorKind],
         cycle: Option<Span>,
-        mounted: Option<Mounted<'_>>,
-    ) -> Result<AttitudeSetting, Fault> {
+        mounted: Option<SensorMounts<'_>>,
+    ) -> Result<FilterSetup, ConfigError> {
         let gyro = sensors.iter().enumerate().find_map(|(index, sensor)| match sensor {
-            Sensor::Gyro(gyro) => Some((index, gyro)),
+            SensorKind::Gyro(gyro) => Some((index, gyro)),
             _ => None,
         });
         let Some((read, gyro)) = gyro else {
-            return Err(Fault::new(
+            return Err(ConfigError::new(
                 "",
                 "propagates the attitude with the rates of a `gyro`, and there is none",
             ));
         };
         let Some(period) = gyro.period.or(cycle) else {
-            return Err(Fault::new("", "needs a gyro with a `period`"));
+            return Err(ConfigError::new("", "needs a gyro with a `period`"));
         };
         let gyro_noise = self.gyro_noise(gyro, period.seconds())?;
-        let role = |(index, sensor): (usize, &Sensor)| match self.measured(sensor) {
+        let role = |(index, sensor): (usize, &SensorKind)| match self.measured(sensor) {
             Some((latency, noise)) => {
                 let (noise, every) = (noise?, sensor.period(cycle).unwrap_or(period));
                 let gain = self.form.gain(&gyro_noise, every.seconds(), &noise);
-                Ok(Role::Corrects { latency, noise, gain: gain.map(Box::new) })
+                Ok(SensorRole::Corrects { latency, noise, gain: gain.map(Box::new) })
             }
-            None if index == read => Ok(Role::Gyro { latency: gyro.latency() }),
-            None => Ok(Role::None),
+            None if index == read => Ok(SensorRole::Gyro { latency: gyro.latency() }),
+            None => Ok(SensorRole::None),
         };
-        let roles = sensors.iter().enumerate().map(role).collect::<Result<Vec<_>, Fault>>()?;
-        let late =
-            |role: &Role| if let Role::Corrects { latency, .. } = role { Some(*latency) } else { None };
+        let roles = sensors.iter().enumerate().map(role).collect::<Result<Vec<_>, ConfigError>>()?;
+        let late = |role: &SensorRole| {
+            if let SensorRole::Corrects { latency, .. } = role { Some(*latency) } else { None }
+        };
         let Some(latest) = roles.iter().filter_map(late).max() else {
             let why = "corrects its attitude by that of a `star_tracker` or a `sampled` sensor, or by the vectors of a \
                        `magnetometer` or a `sun_sensor`, and there is none";
-            return Err(Fault::new("", why));
+            return Err(ConfigError::new("", why));
         };
-        let correct = roles.iter().filter(|role| matches!(role, Role::Corrects { .. })).count();
-        if self.form == Form::Steady && (correct > 1 || sensors.iter().any(Sensor::is_of_a_vector)) {
+        let correct = roles.iter().filter(|role| matches!(role, SensorRole::Corrects { .. })).count();
+        if self.form == GainMethod::Steady && (correct > 1 || sensors.iter().any(SensorKind::measures_vector))
+        {
             let why = "needs one attitude sensor and no vector sensors to have a steady state: use `extended` or `complementary`";
-            return Err(Fault::new("form", why));
+            return Err(ConfigError::new("form", why));
         }
         let bias = Vector::from_fn(|axis, _| gyro.bias.about(axis).get());
         let modes = self.modes(gyro, read, mounted)?.map(Arc::new);
-        Ok(AttitudeSetting { roles, noise: gyro_noise, bias, reach: latest + period, modes })
+        Ok(FilterSetup { roles, noise: gyro_noise, bias, reach: latest + period, modes })
     }
 
     /// Returns the model of the modes that the filter estimates of a body with sensors at these points.
@@ -168,11 +171,11 @@ impl AttitudeFilter {
         &self,
         gyro: &Gyro,
         read: usize,
-        mounted: Option<Mounted<'_>>,
-    ) -> Result<Option<KnownModes>, Fault> {
+        mounted: Option<SensorMounts<'_>>,
+    ) -> Result<Option<FilterModes>, ConfigError> {
         let Some(elastic) = &self.elastic else { return Ok(None) };
-        let refused = |key: &str, why: &str| Err(Fault::new(key, why));
-        if self.form != Form::Extended {
+        let refused = |key: &str, why: &str| Err(ConfigError::new(key, why));
+        if self.form != GainMethod::Extended {
             return refused("elastic", "needs `form = \"extended\"`: constant gains cannot estimate modes");
         }
         if !gyro.integrates() {
@@ -189,7 +192,7 @@ impl AttitudeFilter {
     }
 
     /// Returns latency and error covariance of a sensor of the attitude or of a vector; `None` of another sensor.
-    fn measured(&self, sensor: &Sensor) -> Option<(Span, Result<Matrix3<f64>, Fault>)> {
+    fn measured(&self, sensor: &SensorKind) -> Option<(Span, Result<Matrix3<f64>, ConfigError>)> {
         let given = self.attitude_noise.map(|noise| noise.map(Positive::get));
         let known = |own: [f64; 3]| {
             let noise = given.unwrap_or(own);
@@ -197,36 +200,36 @@ impl AttitudeFilter {
             if noise.iter().all(|noise| *noise > 0.0) {
                 Ok(noise)
             } else {
-                Err(Fault::new("attitude_noise", why))
+                Err(ConfigError::new("attitude_noise", why))
             }
         };
         match sensor {
-            Sensor::StarTracker(tracker) => {
+            SensorKind::StarTracker(tracker) => {
                 let noise = known(tracker.noise.map(NonNegative::get));
                 Some((tracker.latency(), noise.map(|noise| tracker.covariance(noise))))
             }
-            Sensor::Sampled(sampled) => {
+            SensorKind::Sampled(sampled) => {
                 let squares = |noise: [f64; 3]| Vector::from(noise.map(|noise| noise * noise));
                 let noise = known([sampled.angle_noise(); 3]);
                 Some((Span::ZERO, noise.map(|noise| Matrix3::from_diagonal(&squares(noise)))))
             }
-            Sensor::Magnetometer(magnetometer) => {
+            SensorKind::Magnetometer(magnetometer) => {
                 let noise = vector(self.field_noise, magnetometer.covariance(), "field_noise");
                 Some((magnetometer.latency(), noise))
             }
-            Sensor::SunSensor(sensor) => {
+            SensorKind::SunSensor(sensor) => {
                 Some((sensor.latency(), vector(self.sun_noise, sensor.covariance(), "sun_noise")))
             }
-            Sensor::Continuous
-            | Sensor::Gyro(_)
-            | Sensor::Tachometer(_)
-            | Sensor::Accelerometer(_)
-            | Sensor::Own(_) => None,
+            SensorKind::Continuous
+            | SensorKind::Gyro(_)
+            | SensorKind::Tachometer(_)
+            | SensorKind::Accelerometer(_)
+            | SensorKind::Own(_) => None,
         }
     }
 
     /// Returns the gyro's noise; white noise of sampled rates is converted to an angle random walk.
-    fn gyro_noise(&self, gyro: &Gyro, period: f64) -> Result<GyroNoise, Fault> {
+    fn gyro_noise(&self, gyro: &Gyro, period: f64) -> Result<GyroNoise, ConfigError> {
         let largest = |of: &dyn Fn(usize) -> f64| (0..3).map(of).fold(0.0, f64::max);
         let own = if gyro.integrates() {
             largest(&|axis| gyro.angle_random_walk.about(axis).get())
@@ -236,9 +239,9 @@ impl AttitudeFilter {
         let angle_random_walk = self.angle_random_walk.map_or(own, Positive::get);
         if angle_random_walk <= 0.0 {
             let why = "must be given where the gyro has no noise about any axis";
-            return Err(Fault::new("angle_random_walk", why));
+            return Err(ConfigError::new("angle_random_walk", why));
         }
-        let walk = largest(&|axis| gyro.walk(axis));
+        let walk = largest(&|axis| gyro.bias_random_walk(axis));
         Ok(GyroNoise {
             angle_random_walk,
             rate_random_walk: self.rate_random_walk.map_or(walk, NonNegative::get),
@@ -247,12 +250,12 @@ impl AttitudeFilter {
 }
 
 /// Returns the covariance of a vector sensor, with the standard deviation `given` along each axis, or its `own`.
-fn vector(given: Option<Positive>, own: Matrix3<f64>, key: &str) -> Result<Matrix3<f64>, Fault> {
+fn vector(given: Option<Positive>, own: Matrix3<f64>, key: &str) -> Result<Matrix3<f64>, ConfigError> {
     let noise = given.map_or(own, |given| Matrix3::from_diagonal_element(given.get() * given.get()));
     let why = "must be given where the sensor has no noise along an axis";
     if noise.diagonal().iter().all(|variance| *variance > 0.0) {
         Ok(noise)
     } else {
-        Err(Fault::new(key, why))
+        Err(ConfigError::new(key, why))
     }
 }

@@ -3,10 +3,10 @@
 use nalgebra::{Matrix3, Quaternion};
 
 use super::filter::{AttitudeFilterState, Correction};
-use super::history::{FilterHistory, Fix};
+use super::history::{DelayedMeasurement, FilterHistory};
 use super::measurement::{AttitudeMeasurement, GyroNoise};
 use crate::attitude::Vector;
-use crate::sensor::VectorSight;
+use crate::sensor::VectorMeasurement;
 use crate::time::{Instant, Span};
 
 /// Gyro readings, measured attitudes and truth of a made-up run; a filter in forty digits with the covariance of Van Loan,
@@ -47,8 +47,8 @@ fn at(k: usize) -> Instant {
     Instant::START + Span::from_seconds(0.25 * k as f64)
 }
 
-fn fix(read: &[Vec<f64>], k: usize) -> Fix {
-    Fix {
+fn fix(read: &[Vec<f64>], k: usize) -> DelayedMeasurement {
+    DelayedMeasurement {
         exposed: at(k),
         measured: AttitudeMeasurement::Attitude(quaternion(&read[k][5..9])),
         noise: tracker(),
@@ -64,9 +64,9 @@ fn replay(late: usize) -> (Vec<FilterHistory>, Vec<Correction>) {
     let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(0.5));
     let (mut states, mut told) = (vec![history.clone()], Vec::new());
     for k in 1..read.len() {
-        history.read(at(k), Vector::from_column_slice(&read[k][2..5]));
+        history.add_gyro(at(k), Vector::from_column_slice(&read[k][2..5]));
         if k > late && (k - late).is_multiple_of(4) {
-            told.push(history.fix(fix(&read, k - late)).unwrap());
+            told.push(history.add_measurement(fix(&read, k - late)).unwrap());
         }
         states.push(history.clone());
     }
@@ -111,12 +111,12 @@ fn whatever_is_late_comes_to_the_same() {
     let build = |order: [usize; 2]| {
         let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(1.0));
         for row in &read[1..6] {
-            history.read(at(row[0] as usize), Vector::from_column_slice(&row[2..5]));
+            history.add_gyro(at(row[0] as usize), Vector::from_column_slice(&row[2..5]));
         }
-        let between = Fix { exposed: at(2) + Span::from_seconds(0.1), ..fix(&read, 4) };
+        let between = DelayedMeasurement { exposed: at(2) + Span::from_seconds(0.1), ..fix(&read, 4) };
         let fixes = [between, fix(&read, 4)];
         for index in order {
-            assert!(history.fix(fixes[index]).is_some());
+            assert!(history.add_measurement(fixes[index]).is_some());
         }
         history
     };
@@ -130,11 +130,11 @@ fn a_measurement_waits_for_its_reading_and_not_for_ever() {
     let read = rows(READ);
     let reading = |k: usize| Vector::from_column_slice(&read[k][2..5]);
     let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(0.5));
-    assert!(history.fix(fix(&read, 4)).is_none());
+    assert!(history.add_measurement(fix(&read, 4)).is_none());
     for k in 1..12 {
-        assert_eq!(history.read(at(k), reading(k)).len(), usize::from(k == 4));
+        assert_eq!(history.add_gyro(at(k), reading(k)).len(), usize::from(k == 4));
     }
-    assert!(history.fix(fix(&read, 8)).is_none(), "0.75 s late");
+    assert!(history.add_measurement(fix(&read, 8)).is_none(), "0.75 s late");
 }
 
 /// Checks that a vector measured with small noise corrects like an attitude whose noise about the vector is infinite.
@@ -145,14 +145,15 @@ fn a_vector_corrects_across_itself_alone() {
     let begins =
         AttitudeFilterState::new(truth * crate::attitude::rotation(&off), Vector::zeros(), [1e-3, 1e-5]);
     let inertial = Vector::new(2.0, -1.0, 0.5) * 1e-5;
-    let body = crate::environment::into(&truth, &inertial);
+    let body = crate::environment::to_body(&truth, &inertial);
     let (deviation, along) = (1e-8, body.normalize());
     for is_direction in [false, true] {
         let scale = if is_direction { body.norm() } else { 1.0 };
-        let sight = VectorSight { vector: body / scale, inertial: inertial / scale, is_direction };
+        let vector_measurement =
+            VectorMeasurement { vector: body / scale, inertial: inertial / scale, is_direction };
         let noise = Matrix3::from_diagonal_element(deviation * deviation / (scale * scale));
         let mut filter = begins.clone();
-        let correction = filter.correct_by(&sight, &noise).unwrap();
+        let correction = filter.correct_vector(&vector_measurement, &noise).unwrap();
         // Remaining attitude error perpendicular to the vector, and its variance; along the vector there is no
         // information.
         let [left, _] = filter.error(&truth, &Vector::zeros());

@@ -1,17 +1,17 @@
 //! Run-time state of the Kalman filters: a normal distribution, predicted over each period and updated by each sample.
 
-mod beside;
-mod lent;
+mod lane_step;
+mod lanes;
 mod modes;
 
 use nalgebra::{DMatrix, DVector};
 
 use super::lock::Lock;
-use super::model::Model;
+use super::model::FilterModel;
 use super::{Ranking, sigma};
-use crate::belief::Dominant;
+use crate::state_estimate::DominantMode;
 
-pub use beside::Filters;
+pub use lanes::FilterLanes;
 
 /// Standard deviations of an innovation above which a measurement is rejected.
 const FARTHEST: f64 = 1e6;
@@ -29,9 +29,9 @@ pub enum Prediction {
 
 /// Parameters of a filter.
 #[derive(Clone, Debug)]
-pub struct Tuning {
+pub struct FilterParameters {
     /// Model of the body.
-    pub model: Model,
+    pub model: FilterModel,
     /// Prediction method.
     pub prediction: Prediction,
     /// Period of the samples (s).
@@ -59,7 +59,7 @@ pub struct Tuning {
 /// Kalman filter of the motion about one axis.
 #[derive(Clone, Debug)]
 pub struct KalmanFilter {
-    tuning: Tuning,
+    tuning: FilterParameters,
     mean: DVector<f64>,
     covariance: DMatrix<f64>,
     noise: DMatrix<f64>,
@@ -75,9 +75,9 @@ pub struct KalmanFilter {
     gated: bool,
     /// Time for which the filter has been gated (s).
     gated_for: f64,
-    trusted: Dominant,
+    trusted: DominantMode,
     /// Results of a step in a batch, where the covariance is kept.
-    beside: lent::LentStep,
+    beside: lane_step::LaneStep,
 }
 
 /// Innovation of a sample.
@@ -91,7 +91,7 @@ pub struct Innovation {
 
 impl KalmanFilter {
     /// Creates a filter before its first sample.
-    pub fn new(tuning: Tuning) -> Self {
+    pub fn new(tuning: FilterParameters) -> Self {
         let order = tuning.model.order();
         let covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
         let mut filter = Self {
@@ -106,24 +106,24 @@ impl KalmanFilter {
             mode: 0,
             gated: false,
             gated_for: 0.0,
-            trusted: Dominant::default(),
-            beside: lent::LentStep::default(),
+            trusted: DominantMode::default(),
+            beside: lane_step::LaneStep::default(),
             tuning,
         };
         let input = DVector::from_fn(order, |i, _| filter.tuning.model.input(i));
         filter.noise.ger(filter.tuning.moment_noise * filter.tuning.period, &input, &input, 0.0);
-        for at in (filter.tuning.model.motion()..order).step_by(2) {
+        for at in (filter.tuning.model.motion_states()..order).step_by(2) {
             for (offset, density) in filter.tuning.ratio_noise.iter().enumerate() {
                 filter.noise[(at + offset, at + offset)] = density * filter.tuning.period;
             }
         }
-        filter.mode = filter.most_excitable();
+        filter.mode = filter.most_excitable_mode();
         filter.trusted.frequency = filter.tuning.model.frequency(filter.mode, filter.mean.as_slice());
         filter
     }
 
     /// Returns the filter's parameters.
-    pub(super) fn tuning(&self) -> &Tuning {
+    pub(super) fn tuning(&self) -> &FilterParameters {
         &self.tuning
     }
 
@@ -148,7 +148,7 @@ impl KalmanFilter {
     }
 
     /// Returns the filter's model of the body.
-    pub fn model(&self) -> &Model {
+    pub fn model(&self) -> &FilterModel {
         &self.tuning.model
     }
 
@@ -163,7 +163,7 @@ impl KalmanFilter {
     }
 
     /// Returns true if the filter has lost lock: its innovations are improbable, or it cannot be propagated.
-    pub fn is_lost(&self) -> bool {
+    pub fn lock_lost(&self) -> bool {
         self.broken || self.lock.is_lost()
     }
 
@@ -174,7 +174,7 @@ impl KalmanFilter {
 
     /// Returns frequency and displacement of the dominant mode for the law. While the filter is gated, the frequency is
     /// held; without lock, it is the last one and the displacement is 0, so that the law does not act on it.
-    pub fn dominant(&self) -> Dominant {
+    pub fn dominant(&self) -> DominantMode {
         self.trusted
     }
 
@@ -204,7 +204,7 @@ impl KalmanFilter {
         };
         *covariance += &*noise;
         if *gated {
-            for at in model.motion()..model.order() {
+            for at in model.motion_states()..model.order() {
                 covariance[(at, at)] -= noise[(at, at)];
             }
         }
@@ -224,7 +224,7 @@ impl KalmanFilter {
     pub fn update(&mut self, measured: Option<(f64, f64)>) -> Innovation {
         self.keep();
         let gated = self.is_still();
-        let innovation = measured.map_or(0.0, |(angle, _)| angle - self.seen(0));
+        let innovation = measured.map_or(0.0, |(angle, _)| angle - self.observed(0));
         let mut nis = measured.and_then(|(angle, rate)| {
             let nis = self.learn(0, angle, self.tuning.angle_noise, gated)?;
             let Some(noise) = self.tuning.rate_noise else { return Some(nis) };
@@ -240,7 +240,7 @@ impl KalmanFilter {
     /// Completes an update: gate, lock, bounds and dominant mode. Returns true if the ratios' rates were set to 0.
     fn settle(&mut self, gated: bool, innovation: f64, nis: Option<f64>) -> (Innovation, bool) {
         let rests = self.rest(gated);
-        self.lock.take(nis.map(|nis| (nis, innovation)));
+        self.lock.update(nis.map(|nis| (nis, innovation)));
         self.hold_ratios();
         self.choose_mode();
         self.trust();
@@ -258,15 +258,15 @@ impl KalmanFilter {
     }
 
     /// Returns the sum of every other component: of the angles from 0 on, of the rates from 1 on.
-    fn seen(&self, first: usize) -> f64 {
-        (first..self.tuning.model.motion()).step_by(2).map(|i| self.mean[i]).sum()
+    fn observed(&self, first: usize) -> f64 {
+        (first..self.tuning.model.motion_states()).step_by(2).map(|i| self.mean[i]).sum()
     }
 
     /// Updates by a scalar measurement, the sum of every other component. Returns its normalised innovation squared, if
     /// valid.
     fn learn(&mut self, first: usize, measured: f64, noise: f64, gated: bool) -> Option<f64> {
-        let (order, motion) = (self.tuning.model.order(), self.tuning.model.motion());
-        let innovation = measured - self.seen(first);
+        let (order, motion) = (self.tuning.model.order(), self.tuning.model.motion_states());
+        let innovation = measured - self.observed(first);
         let mut seen = DVector::zeros(order);
         for i in (first..motion).step_by(2) {
             seen += self.covariance.column(i);
@@ -303,7 +303,7 @@ impl KalmanFilter {
     }
 
     fn is_still(&self) -> bool {
-        self.tuning.model.order() > self.tuning.model.motion()
+        self.tuning.model.order() > self.tuning.model.motion_states()
             && self.amplitude(self.mode).0 < self.tuning.gate
     }
 
@@ -318,7 +318,7 @@ impl KalmanFilter {
         let whole = std::f64::consts::TAU / model.frequency(self.mode, self.mean.as_slice());
         let rests = before < whole && self.gated_for >= whole;
         if rests {
-            for rate in (model.motion() + 1..model.order()).step_by(2) {
+            for rate in (model.motion_states() + 1..model.order()).step_by(2) {
                 self.covariance[(rate, rate)] += self.mean[rate] * self.mean[rate];
                 self.mean[rate] = 0.0;
             }
@@ -330,7 +330,7 @@ impl KalmanFilter {
     fn hold_ratios(&mut self) {
         let [low, high] = self.tuning.bounds;
         let model = &self.tuning.model;
-        for at in (model.motion()..model.order()).step_by(2) {
+        for at in (model.motion_states()..model.order()).step_by(2) {
             if !(low..=high).contains(&self.mean[at]) {
                 self.mean[at] = self.mean[at].clamp(low, high);
                 self.mean[at + 1] = 0.0;
@@ -339,7 +339,7 @@ impl KalmanFilter {
         }
     }
 
-    fn most_excitable(&self) -> usize {
+    fn most_excitable_mode(&self) -> usize {
         let value = |mode| self.tuning.model.excitability(mode, self.mean.as_slice()).abs();
         (1..self.tuning.model.modes())
             .fold(0, |best, mode| if value(mode) > value(best) { mode } else { best })
@@ -347,7 +347,7 @@ impl KalmanFilter {
 
     fn choose_mode(&mut self) {
         match self.tuning.ranking {
-            Ranking::Excitability => self.mode = self.most_excitable(),
+            Ranking::Excitability => self.mode = self.most_excitable_mode(),
             Ranking::Amplitude => {
                 let (mine, sd) = self.amplitude(self.mode);
                 let clear = |mode: &usize| {
@@ -362,7 +362,7 @@ impl KalmanFilter {
     }
 
     fn trust(&mut self) {
-        if self.is_lost() {
+        if self.lock_lost() {
             (self.trusted.displacement, self.trusted.rate) = (0.0, 0.0);
             return;
         }

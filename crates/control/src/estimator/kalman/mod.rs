@@ -7,7 +7,7 @@ mod filter;
 mod lock;
 mod model;
 mod sigma;
-mod steady;
+mod steady_state;
 #[cfg(test)]
 mod tests;
 
@@ -15,15 +15,15 @@ use nalgebra::DVector;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::Feeds;
+use super::EstimateOutputs;
 use crate::body::{Mode, Planar};
-use crate::flow::Coupled;
+use crate::flow::CoupledMatrices;
 use crate::quantity::{NonNegative, Positive};
 use crate::random::Stream;
 
-pub use filter::{Filters, Innovation, KalmanFilter, Prediction, Tuning};
-pub use model::Model;
-pub use steady::Steady;
+pub use filter::{FilterLanes, FilterParameters, Innovation, KalmanFilter, Prediction};
+pub use model::FilterModel;
+pub use steady_state::SteadyStateFilter;
 
 /// A linear Kalman filter: natural frequencies are known and constant.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -40,7 +40,7 @@ pub struct Kalman {
     pub angle_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
-    pub initial: Initial,
+    pub initial: FilterInitialDeviations,
     /// Initial state estimate of the filter.
     #[serde(default)]
     pub prior: Prior,
@@ -54,7 +54,7 @@ pub struct Kalman {
     /// rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By default, `modes` for a law that reads
     /// the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub feeds: Option<Feeds>,
+    pub feeds: Option<EstimateOutputs>,
     /// Whether the filter runs for assessment only: the law does not read it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub watch_only: bool,
@@ -75,7 +75,7 @@ pub struct FrequencyTracking {
     pub angle_noise: Option<Positive>,
     /// Standard deviations of the estimate at the start.
     #[serde(default)]
-    pub initial: Initial,
+    pub initial: FilterInitialDeviations,
     /// Initial state estimate of the filter.
     #[serde(default)]
     pub prior: Prior,
@@ -89,7 +89,7 @@ pub struct FrequencyTracking {
     /// rate of the hub, elastic part included; `rigid` for the rigid angle and rate. By default, `modes` for a law that reads
     /// the dominant mode, else `hub`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub feeds: Option<Feeds>,
+    pub feeds: Option<EstimateOutputs>,
     /// Whether the filter runs for assessment only: the law does not read it.
     #[serde(default, skip_serializing_if = "is_false")]
     pub watch_only: bool,
@@ -125,7 +125,8 @@ pub struct FrequencyTracking {
 /// Standard deviations of a filter's estimate at the start.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields, default)]
-pub struct Initial {
+#[schemars(rename = "Initial")]
+pub struct FilterInitialDeviations {
     /// Standard deviation of the rigid angle (rad).
     pub angle: NonNegative,
     /// Standard deviation of the rigid rate (rad/s).
@@ -178,7 +179,7 @@ impl Ratios {
 
 /// Data of a scenario that a filter is built from.
 #[derive(Clone, Debug)]
-pub struct KalmanSetting<'a> {
+pub struct FilterContext<'a> {
     /// Single-axis model of the body.
     pub body: &'a Planar,
     /// Back-EMF of the wheel per unit of inertia (1/s); true if it opposes the total rate, not the rigid one.
@@ -193,14 +194,14 @@ pub struct KalmanSetting<'a> {
 
 impl Kalman {
     /// Creates the filter for a setting; `draws` supplies a drawn prior.
-    pub fn filter(&self, setting: &KalmanSetting<'_>, draws: &mut Stream) -> KalmanFilter {
+    pub fn filter(&self, setting: &FilterContext<'_>, draws: &mut Stream) -> KalmanFilter {
         let body = believed(setting.body, self.modes.as_deref());
         let ones = vec![1.0; body.modes.len()];
-        let (transition, push) =
-            Coupled::new(&body, setting.back_emf.0, setting.back_emf.1, &ones).discrete(setting.period);
-        let model = Model::new(&body.modes, 0, setting.back_emf, 1, [1.0; 2]);
+        let (transition, push) = CoupledMatrices::new(&body, setting.back_emf.0, setting.back_emf.1, &ones)
+            .discrete(setting.period);
+        let model = FilterModel::new(&body.modes, 0, setting.back_emf, 1, [1.0; 2]);
         let (mean, spread) = start(setting.body, &model, self.initial, &[], self.prior, draws);
-        KalmanFilter::new(Tuning {
+        KalmanFilter::new(FilterParameters {
             model,
             prediction: Prediction::Linear(transition, push),
             period: setting.period,
@@ -221,19 +222,19 @@ impl FrequencyTracking {
     /// Creates the filter for a setting, extended or unscented by `prediction`; `draws` supplies a drawn prior.
     pub fn filter(
         &self,
-        setting: &KalmanSetting<'_>,
+        setting: &FilterContext<'_>,
         prediction: Prediction,
         draws: &mut Stream,
     ) -> KalmanFilter {
         let body = believed(setting.body, self.modes.as_deref());
         let bounds = self.bounds.map(Positive::get);
         let ratios = self.ratios.count(body.modes.len());
-        let model = Model::new(&body.modes, ratios, setting.back_emf, self.substeps.get(), bounds);
+        let model = FilterModel::new(&body.modes, ratios, setting.back_emf, self.substeps.get(), bounds);
         let ratio = [self.ratio.get(), self.ratio_sd.get(), self.ratio_rate_sd.get()];
         let (mean, spread) =
             start(setting.body, &model, self.initial, &vec![ratio; ratios], self.prior, draws);
         let angle_noise = self.angle_noise.map_or(setting.angle_noise, Positive::get);
-        let mut filter = Tuning {
+        let mut filter = FilterParameters {
             model,
             prediction,
             period: setting.period,
@@ -248,7 +249,7 @@ impl FrequencyTracking {
             ranking: self.dominant,
         };
         for index in 0..ratios {
-            let at = filter.model.motion() + 2 * index;
+            let at = filter.model.motion_states() + 2 * index;
             filter.mean[at] = filter.mean[at].clamp(bounds[0], bounds[1]);
         }
         KalmanFilter::new(filter)
@@ -264,14 +265,14 @@ fn believed(body: &Planar, modes: Option<&[Mode]>) -> Planar {
 /// rate.
 fn start(
     body: &Planar,
-    model: &Model,
-    initial: Initial,
+    model: &FilterModel,
+    initial: FilterInitialDeviations,
     ratios: &[[f64; 3]],
     prior: Prior,
     draws: &mut Stream,
 ) -> (DVector<f64>, DVector<f64>) {
     let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
-    let motion = body.start().to_vector(&frequencies);
+    let motion = body.initial_state().to_vector(&frequencies);
     let excitability = |mode: usize| body.modes[mode].excitability().abs();
     let largest = (0..body.modes.len()).map(excitability).fold(0.0, f64::max);
     let mut mean: Vec<f64> = motion.iter().copied().collect();
@@ -287,7 +288,7 @@ fn start(
     if prior == Prior::Drawn {
         // The rate of a ratio is unknown: its mean stays 0.
         for (index, (mean, sd)) in mean.iter_mut().zip(&spread).enumerate() {
-            if index < model.motion() || (index - model.motion()).is_multiple_of(2) {
+            if index < model.motion_states() || (index - model.motion_states()).is_multiple_of(2) {
                 *mean += sd * draws.normal();
             }
         }
@@ -301,7 +302,7 @@ impl Default for FrequencyTracking {
             modes: None,
             moment_noise: moment_noise(),
             angle_noise: None,
-            initial: Initial::default(),
+            initial: FilterInitialDeviations::default(),
             prior: Prior::default(),
             dominant: Ranking::default(),
             assess: None,
@@ -320,7 +321,7 @@ impl Default for FrequencyTracking {
     }
 }
 
-impl Default for Initial {
+impl Default for FilterInitialDeviations {
     fn default() -> Self {
         let known = |sd| NonNegative::new(sd).unwrap_or_default();
         Self { angle: known(1e-4), rate: known(1e-4), displacement: known(2e-3), mode_rate: known(6e-4) }

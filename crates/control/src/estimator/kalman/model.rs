@@ -11,8 +11,8 @@ use crate::flow::ModeFlow;
 
 /// Model of the body in a Kalman filter.
 #[derive(Clone, Debug)]
-pub struct Model {
-    pub(super) modes: Vec<ModeModel>,
+pub struct FilterModel {
+    pub(super) modes: Vec<KalmanMode>,
     /// Number of ratios in the state: none, one for all modes, or one for each.
     ratios: usize,
     /// Back-EMF a (1/s); true if it opposes the total rate, not the rigid one.
@@ -23,7 +23,7 @@ pub struct Model {
 }
 
 #[derive(Clone, Debug)]
-pub(super) struct ModeModel {
+pub(super) struct KalmanMode {
     pub(super) flow: ModeFlow,
     pub(super) frequency: f64,
     pub(super) gain: f64,
@@ -31,14 +31,14 @@ pub(super) struct ModeModel {
 }
 
 /// Free flow of one mode over a substep: x+ = a x + b x' + shift[0], x'+ = c x + d x' + shift[1].
-struct Turn {
+struct ModeTransition {
     matrix: [f64; 4],
     shift: [f64; 2],
     /// Derivative of (x+, x'+) with respect to the ratio.
     slope: [f64; 2],
 }
 
-impl Model {
+impl FilterModel {
     /// Creates the model of a body with these modes. `back_emf` (1/s) opposes the total rate if true, else the rigid
     /// rate alone.
     pub fn new(
@@ -48,7 +48,7 @@ impl Model {
         substeps: u32,
         bounds: [f64; 2],
     ) -> Self {
-        let swing = |mode: &Mode| ModeModel {
+        let swing = |mode: &Mode| KalmanMode {
             flow: ModeFlow::new(mode),
             frequency: mode.frequency.get(),
             gain: mode.gain.get(),
@@ -58,19 +58,19 @@ impl Model {
     }
 
     /// Returns the number of motion states: rigid angle and rate, and two for each mode.
-    pub fn motion(&self) -> usize {
+    pub fn motion_states(&self) -> usize {
         2 + 2 * self.modes.len()
     }
 
     /// Returns the number of states.
     pub fn order(&self) -> usize {
-        self.motion() + 2 * self.ratios
+        self.motion_states() + 2 * self.ratios
     }
 
     /// Returns the index of a mode's ratio in the state; `None` if the frequencies are constant.
     pub fn ratio_of(&self, mode: usize) -> Option<usize> {
         let index = if self.ratios == 1 { 0 } else { mode };
-        (index < self.ratios).then(|| self.motion() + 2 * index)
+        (index < self.ratios).then(|| self.motion_states() + 2 * index)
     }
 
     /// Returns the ratio of a mode in a state.
@@ -99,7 +99,7 @@ impl Model {
     pub fn input(&self, component: usize) -> f64 {
         match component {
             1 => 1.0,
-            odd if odd % 2 == 1 && odd < self.motion() => self.modes[odd / 2 - 1].gain,
+            odd if odd % 2 == 1 && odd < self.motion_states() => self.modes[odd / 2 - 1].gain,
             _ => 0.0,
         }
     }
@@ -118,7 +118,7 @@ impl Model {
                 self.coast(step, middle, moment, state, tangent.as_deref_mut());
             }
         }
-        for at in (self.motion()..self.order()).step_by(2) {
+        for at in (self.motion_states()..self.order()).step_by(2) {
             state[at] += h * state[at + 1];
             if let Some(tangent) = tangent.as_deref_mut() {
                 add_column(tangent, at, at + 1, h);
@@ -162,20 +162,20 @@ impl Model {
     }
 
     /// Returns the number of modes whose rates the back-EMF opposes.
-    pub(super) fn felt(&self) -> usize {
+    pub(super) fn set_back_emf_modes(&self) -> usize {
         if self.back_emf.1 { self.modes.len() } else { 0 }
     }
 
     /// Returns the factor of the total rate that back-EMF subtracts from the rigid rate in `h` (s).
-    pub(super) fn taken(&self, h: f64) -> f64 {
+    pub(super) fn back_emf_fraction(&self, h: f64) -> f64 {
         let a = self.back_emf.0;
-        let s = 1.0 + self.modes[..self.felt()].iter().map(|swing| swing.gain).sum::<f64>();
+        let s = 1.0 + self.modes[..self.set_back_emf_modes()].iter().map(|swing| swing.gain).sum::<f64>();
         if s == 0.0 { a * h } else { -libm::expm1(-a * h * s) / s }
     }
 
     /// Applies back-EMF alone: z' = -a g c z, of rank one, with the exponential z - g (1 - exp(-a s h))/s c z, s = c g.
     fn brake(&self, h: f64, state: &mut [f64], tangent: Option<&mut DMatrix<f64>>) {
-        let (felt, part) = (self.felt(), self.taken(h));
+        let (felt, part) = (self.set_back_emf_modes(), self.back_emf_fraction(h));
         let rate = (0..=felt).map(|i| state[1 + 2 * i]).sum::<f64>();
         state[1] -= part * rate;
         for (index, swing) in self.modes.iter().enumerate() {
@@ -194,15 +194,18 @@ impl Model {
     }
 }
 
-impl ModeModel {
-    fn turn(&self, h: f64, ratio: f64, moment: f64, (x, v): (f64, f64), with_slope: bool) -> Turn {
+impl KalmanMode {
+    fn turn(&self, h: f64, ratio: f64, moment: f64, (x, v): (f64, f64), with_slope: bool) -> ModeTransition {
         // The flow in (x, x'/w) depends on w h alone, so a different frequency is equivalent to a different time.
         let [a, b, c, d] = self.flow.transition(ratio * h);
         let w = ratio * self.frequency;
         let (b, c) = (b / w, c * w);
         let centre = self.gain * moment / (w * w);
-        let mut turn =
-            Turn { matrix: [a, b, c, d], shift: [centre * (1.0 - a), -centre * c], slope: [0.0; 2] };
+        let mut turn = ModeTransition {
+            matrix: [a, b, c, d],
+            shift: [centre * (1.0 - a), -centre * c],
+            slope: [0.0; 2],
+        };
         if with_slope {
             // With the generator A and E = diag(0, 1): dR/dw = (h A R + E R - R E)/w, and the equilibrium scales with
             // 1/w².
@@ -240,7 +243,7 @@ fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) 
 mod tests {
     use super::*;
     use crate::body::Planar;
-    use crate::flow::Coupled;
+    use crate::flow::CoupledMatrices;
 
     const WIDE: [f64; 2] = [0.1, 3.0];
 
@@ -256,7 +259,8 @@ mod tests {
 
     /// Returns the exact motion at a constant ratio, by the matrix exponential.
     fn exact(back_emf: (f64, bool), ratio: f64, moment: f64, h: f64) -> Vec<f64> {
-        let (transition, push) = Coupled::new(&body(), back_emf.0, back_emf.1, &[ratio; 4]).discrete(h);
+        let (transition, push) =
+            CoupledMatrices::new(&body(), back_emf.0, back_emf.1, &[ratio; 4]).discrete(h);
         (transition * nalgebra::DVector::from_row_slice(&STATE) + push * moment).as_slice().to_vec()
     }
 
@@ -267,7 +271,7 @@ mod tests {
         h: f64,
         substeps: u32,
     ) -> (Vec<f64>, DMatrix<f64>) {
-        let model = Model::new(&body().modes, 1, back_emf, substeps, WIDE);
+        let model = FilterModel::new(&body().modes, 1, back_emf, substeps, WIDE);
         let mut state = STATE.to_vec();
         state.extend([ratio, 0.0]);
         let mut tangent = DMatrix::identity(12, 12);
@@ -281,7 +285,7 @@ mod tests {
         for (value, exact) in state.iter().zip(exact((0.0, true), 0.7, 3e-5, 0.3)) {
             assert!((value - exact).abs() < 1e-15, "{value} {exact}");
         }
-        let (transition, _) = Coupled::new(&body(), 0.0, true, &[0.7; 4]).discrete(0.3);
+        let (transition, _) = CoupledMatrices::new(&body(), 0.0, true, &[0.7; 4]).discrete(0.3);
         assert!((tangent.view((0, 0), (10, 10)) - transition).amax() < 1e-14);
     }
 
@@ -289,7 +293,7 @@ mod tests {
     fn splitting_is_of_second_order() {
         for total in [true, false] {
             let error = |substeps| {
-                let (transition, _) = Coupled::new(&body(), 0.05, total, &[0.7; 4]).discrete(0.3);
+                let (transition, _) = CoupledMatrices::new(&body(), 0.05, total, &[0.7; 4]).discrete(0.3);
                 (split((0.05, total), 0.7, 3e-5, 0.3, substeps).1.view((0, 0), (10, 10)) - transition).amax()
             };
             let (coarse, fine) = (error(8), error(16));
@@ -311,7 +315,7 @@ mod tests {
     #[test]
     fn derivative_by_the_rate_is_that_of_the_flow_itself() {
         for ratios in [1, 4] {
-            let model = Model::new(&body().modes, ratios, (1e-3, true), 3, WIDE);
+            let model = FilterModel::new(&body().modes, ratios, (1e-3, true), 3, WIDE);
             let mut start = STATE.to_vec();
             (0..ratios).for_each(|_| start.extend([0.7, -3e-3]));
             let order = model.order();

@@ -14,15 +14,16 @@ fn filter(estimator: &str, rate_noise: Option<f64>) -> KalmanFilter {
 
 /// Returns a filter with a prior drawn with its own seed.
 fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> KalmanFilter {
-    use crate::estimator::Estimator;
+    use crate::estimator::EstimatorKind;
     let body = &from_text(BODY).unwrap_or_else(|error| panic!("{error}"));
-    let estimator: Estimator = from_text(&format!("[{estimator}")).unwrap_or_else(|error| panic!("{error}"));
-    let setting = KalmanSetting { body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };
+    let estimator: EstimatorKind =
+        from_text(&format!("[{estimator}")).unwrap_or_else(|error| panic!("{error}"));
+    let setting = FilterContext { body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };
     let draws = &mut Seed { scenario: scenario_seed, run: 0 }.stream("prior");
     match &estimator {
-        Estimator::Kalman(spec) => spec.filter(&setting, draws),
-        Estimator::ExtendedKalman(spec) => spec.filter(&setting, Prediction::Extended, draws),
-        Estimator::UnscentedKalman(spec) => spec.filter(&setting, Prediction::Unscented, draws),
+        EstimatorKind::Kalman(spec) => spec.filter(&setting, draws),
+        EstimatorKind::ExtendedKalman(spec) => spec.filter(&setting, Prediction::Extended, draws),
+        EstimatorKind::UnscentedKalman(spec) => spec.filter(&setting, Prediction::Unscented, draws),
         other => panic!("{other:?}"),
     }
 }
@@ -115,22 +116,25 @@ fn nonsense_is_never_passed_on() {
                 let mut filter = filter(kind, rate_noise);
                 for sample in 0..400 {
                     filter.predict(if sample == 9 { f64::NAN } else { course(sample).0 });
-                    let told = filter.update(Some((angle(sample), angle(sample + 1))));
-                    assert!(told.nis.is_none_or(f64::is_finite), "{kind} {name} {sample}");
-                    let (belief, mode) = (filter.dominant(), filter.mode());
+                    let reported = filter.update(Some((angle(sample), angle(sample + 1))));
+                    assert!(reported.nis.is_none_or(f64::is_finite), "{kind} {name} {sample}");
+                    let (state_estimate, mode) = (filter.dominant(), filter.mode());
                     let numbers = [
-                        belief.displacement,
-                        belief.frequency,
+                        state_estimate.displacement,
+                        state_estimate.frequency,
                         filter.amplitude(mode).0,
                         filter.frequency(mode).1,
                     ];
                     let all = numbers.iter().chain(filter.mean()).chain(filter.covariance());
                     assert!(all.into_iter().all(|n| n.is_finite()), "{kind} {name} {sample}: {numbers:?}");
                 }
-                let (lost, belief) = (filter.is_lost(), filter.dominant());
+                let (lost, state_estimate) = (filter.lock_lost(), filter.dominant());
                 assert!(lost || name == "now and then", "{kind} {name} {rate_noise:?}");
-                assert!(!lost || belief.displacement == 0.0, "{kind} {name}");
-                assert!((0.03..=0.9).contains(&belief.frequency), "{kind} {name}: {belief:?}");
+                assert!(!lost || state_estimate.displacement == 0.0, "{kind} {name}");
+                assert!(
+                    (0.03..=0.9).contains(&state_estimate.frequency),
+                    "{kind} {name}: {state_estimate:?}"
+                );
             }
         }
     }
@@ -151,7 +155,7 @@ fn a_sensor_that_sticks_is_no_body_of_other_frequencies() {
                         filter.predict(course(sample).0);
                         filter.update(Some((angle(sample), 0.0)));
                     }
-                    filter.is_lost()
+                    filter.lock_lost()
                 });
                 assert_eq!(lost.count(), 40, "{kind} {spec} {name}");
             }
@@ -178,7 +182,7 @@ fn a_body_is_followed_again_after_a_silence() {
                 let silent = (100..160).contains(&sample);
                 filter.update((!silent).then(|| (angle + 1e-5 * noise.normal(), 0.0)));
                 if let Some(place) = [159, 260, 399].iter().position(|at| *at == sample) {
-                    lost[place] += u32::from(filter.is_lost());
+                    lost[place] += u32::from(filter.lock_lost());
                 }
             }
         }

@@ -25,7 +25,7 @@ pub struct Convergence {
 
 /// Edge of a region of convergence at one weight W2.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
-pub struct Edge {
+pub struct RegionEdge {
     /// Weight W2.
     pub elastic: f64,
     /// Range of the weight W3 in which the observer converges; none if it converges with no W3.
@@ -92,9 +92,10 @@ impl Convergence {
 
     /// Returns the region of convergence in the plane of W2 and W3 for `kappa` (figure 2 of the paper): its edges at
     /// the given W2 (`elastic`).
-    pub fn region(&self, kappa: f64, elastic: &[f64]) -> Vec<Edge> {
+    pub fn region(&self, kappa: f64, elastic: &[f64]) -> Vec<RegionEdge> {
         let [w1, _, w3] = self.weights;
-        let at = |&w2: &f64| Edge { elastic: w2, next: Self { weights: [w1, w2, w3], ..*self }.edge(kappa) };
+        let at =
+            |&w2: &f64| RegionEdge { elastic: w2, next: Self { weights: [w1, w2, w3], ..*self }.edge(kappa) };
         elastic.iter().map(at).collect()
     }
 

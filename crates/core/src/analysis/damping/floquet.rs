@@ -21,7 +21,7 @@ const SWEEPS: usize = 10_000;
 
 /// Gains of the identification with which the observer converges.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
-pub struct Margin {
+pub struct GainMargin {
     /// Largest gain kappa up to which the observer converges.
     pub gain_max: f64,
     /// Gain with which the observer converges fastest.
@@ -52,7 +52,7 @@ impl Convergence {
     }
 
     /// Returns the gains with which the observer converges; `None` if it does not with the least gain that is tried.
-    pub fn margin(&self) -> Option<Margin> {
+    pub fn margin(&self) -> Option<GainMargin> {
         let [least, greatest, ratio] = GAINS;
         let radius = |gain: f64| self.spectral_radius(gain);
         let (mut low, mut best) = (least, (least, radius(least)));
@@ -81,7 +81,7 @@ impl Convergence {
             if radius(left) < radius(right) { to = right } else { from = left }
         }
         let gain_best = 0.5 * (from + to);
-        Some(Margin { gain_max: low, gain_best, spectral_radius: radius(gain_best) })
+        Some(GainMargin { gain_max: low, gain_best, spectral_radius: radius(gain_best) })
     }
 
     /// Returns the number of cycles after which the phase returns, or returns most nearly.

@@ -5,9 +5,9 @@
 //! also analyses the convergence of this adaptive observer.
 
 mod convergence;
-mod decay;
 mod excitation;
 mod floquet;
+mod relay_decay;
 
 use serde::Serialize;
 
@@ -15,10 +15,10 @@ use crate::actuator::PulseTiming;
 use crate::numerics::delay_margin::delay_margin;
 use crate::quantity::shortest;
 
-pub use convergence::{Convergence, Edge};
-pub use decay::Decay;
+pub use convergence::{Convergence, RegionEdge};
 pub use excitation::{Excitation, persistence};
-pub use floquet::Margin;
+pub use floquet::GainMargin;
+pub use relay_decay::Decay;
 
 /// No mode turns further (rad) from a sample to its push.
 const FARTHEST: f64 = 1e5;

@@ -30,7 +30,7 @@ pub struct ClosedLoop {
 
 impl ClosedLoop {
     /// Returns a loop of `order` states whose matrices are zero.
-    pub(super) fn resting(order: usize) -> Self {
+    pub(super) fn zero(order: usize) -> Self {
         Self {
             free: DMatrix::zeros(order, order),
             forced: DVector::zeros(order),
@@ -50,21 +50,21 @@ impl ClosedLoop {
     /// Returns the angle at the first `count` samples (rad), the start first.
     pub fn angles(&self, count: usize) -> Vec<f64> {
         let mut angles = Vec::with_capacity(count);
-        self.each_angle(count, |angle| angles.push(angle));
+        self.for_each_angle(count, |angle| angles.push(angle));
         angles
     }
 
-    /// Calls `tell` with the angle at each of the first `count` samples (rad), the start first.
-    pub fn each_angle(&self, count: usize, tell: impl FnMut(f64)) {
+    /// Calls `report` with the angle at each of the first `count` samples (rad), the start first.
+    pub fn for_each_angle(&self, count: usize, report: impl FnMut(f64)) {
         match &self.shape {
-            None => self.each_linear(count, tell),
-            Some(shape) => self.each_shaped(shape, count, tell),
+            None => self.for_each_linear_block(count, report),
+            Some(shape) => self.for_each_sample(shape, count, report),
         }
     }
 
-    /// Calls `tell` with the angles of a linear loop. A block of samples and the state after it are one product with a
+    /// Calls `report` with the angles of a linear loop. A block of samples and the state after it are one product with a
     /// matrix: the angles are c s, c M s, c M² s, ..., and the state is M^32 s.
-    fn each_linear(&self, count: usize, mut tell: impl FnMut(f64)) {
+    fn for_each_linear_block(&self, count: usize, mut report: impl FnMut(f64)) {
         let matrix = self.matrix();
         let order = matrix.nrows();
         let mut rows = DMatrix::zeros(BLOCK, order);
@@ -81,26 +81,26 @@ impl ClosedLoop {
             power.mul_to(&power, &mut square);
             std::mem::swap(&mut power, &mut square);
         }
-        let stacked = Panels::new(&[&rows, &power]);
+        let stacked = PackedMatrix::new(&[&rows, &power]);
         let mut state = self.start.as_slice().to_vec();
         let mut out = vec![0.0; stacked.rows()];
         let mut left = count;
         while left > 0 {
             stacked.apply(&state, &mut out);
-            let told = left.min(BLOCK);
-            out[..told].iter().for_each(|angle| tell(*angle));
+            let reported = left.min(BLOCK);
+            out[..reported].iter().for_each(|angle| report(*angle));
             state.copy_from_slice(&out[BLOCK..BLOCK + order]);
-            left -= told;
+            left -= reported;
         }
     }
 }
 
 /// Matrix in panels of rows; the rows of a panel are adjacent in memory, column after column.
-pub(super) struct Panels {
+pub(super) struct PackedMatrix {
     panels: Vec<Vec<[f64; LANES]>>,
 }
 
-impl Panels {
+impl PackedMatrix {
     /// Packs matrices of the same number of columns, one below the other.
     pub(super) fn new(parts: &[&DMatrix<f64>]) -> Self {
         let columns = parts.first().map_or(0, |part| part.ncols());

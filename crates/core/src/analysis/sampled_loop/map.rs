@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{DiscreteBody, Loop, Scaling, SettlingWindow};
+use super::{DiscretePlant, SampledLoop, Scaling, SettlingWindow};
 
 /// Cell of the map.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
@@ -24,7 +24,7 @@ pub struct MapCell {
 /// within it the periods (s). Rows are computed on the threads of the current rayon pool. A delay of the loop scales
 /// with the period, so that a delay of one sample stays one.
 pub fn map(
-    of: &Loop,
+    of: &SampledLoop,
     frequencies: &[f64],
     periods: &[f64],
     scaling: Scaling,
@@ -36,7 +36,7 @@ pub fn map(
         let mut changed = of.clone();
         let cell = |period: &f64| {
             (changed.period, changed.delay) = (*period, of.delay / of.period * period);
-            let closed = DiscreteBody::new(&changed, &ratios).closed(gain(*frequency));
+            let closed = DiscretePlant::new(&changed, &ratios).closed(gain(*frequency));
             let settling = closed.settle(window);
             MapCell {
                 frequency_rad_s: *frequency,

@@ -5,30 +5,30 @@
 //! reduced moment is m = b u - a x' with b > 0: the papers print k'_u with the sign that feeds back positively.
 
 mod closed;
-mod held;
+mod discrete_plant;
+mod from_scenario;
+mod gain_region;
 mod map;
-mod region;
-mod robust;
+mod nonlinear_command;
+mod robust_gain;
 mod settling;
-mod shaped;
 mod spectrum;
-mod study;
 
 use crate::actuator::Wheel;
 use crate::body::{Mode, Planar};
 use crate::law::Differentiation;
 
 pub use closed::ClosedLoop;
-pub use held::DiscreteBody;
+pub use discrete_plant::DiscretePlant;
+pub use gain_region::{GainRegion, Gains, Scaling, midpoints, region, regions};
 pub use map::{MapCell, map};
-pub use region::{Gains, Region, Scaling, midpoints, region, regions};
-pub use robust::{Doubt, Robust, RobustGoal, RobustSearch, robust};
+pub use robust_gain::{ModelUncertainty, RobustGain, RobustGoal, RobustSearch, optimize};
 pub use settling::{Settling, SettlingWindow};
-pub use spectrum::Slowest;
+pub use spectrum::SlowestMode;
 
 /// Body under a sampled PD law, with or without a wheel.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Loop {
+pub struct SampledLoop {
     /// Body with its natural frequencies, which each point of an analysis multiplies by ratios.
     pub body: Planar,
     /// Back-EMF a, k'_omega of the papers (1/s); 0 without a wheel.
@@ -64,16 +64,16 @@ pub struct CommandPath {
 
 impl CommandPath {
     /// Returns the command that is executed.
-    pub fn of(&self, command: f64) -> f64 {
+    pub fn execute(&self, command: f64) -> f64 {
         let command = command.clamp(-self.limit, self.limit);
-        self.wheel.as_ref().map_or(command, |wheel| wheel.shaped(command))
+        self.wheel.as_ref().map_or(command, |wheel| wheel.execute_command(command))
     }
 }
 
-impl Loop {
+impl SampledLoop {
     /// Returns the index of the mode with the greatest static response to a moment, |k|/w²: the papers' criterion of
     /// dominance.
-    pub fn dominant_of(modes: &[Mode]) -> usize {
+    pub fn dominant_mode(modes: &[Mode]) -> usize {
         let pull = |mode: &Mode| mode.excitability().abs();
         (1..modes.len()).fold(0, |best, i| if pull(&modes[i]) > pull(&modes[best]) { i } else { best })
     }

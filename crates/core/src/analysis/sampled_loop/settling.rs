@@ -42,7 +42,7 @@ impl ClosedLoop {
         let SettlingWindow { band, .. } = window;
         let (mut index, mut outside) = (0_usize, None);
         let (mut weighted, mut before, mut entry) = (0.0, 0.0_f64, 0.0);
-        self.each_angle(count, |angle| {
+        self.for_each_angle(count, |angle| {
             let size = angle.abs();
             weighted += index as f64 * size;
             // NaN is outside the band.

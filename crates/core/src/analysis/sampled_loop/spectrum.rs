@@ -13,7 +13,7 @@ const SQUARINGS: u32 = 40;
 
 /// Slowest motion of a loop: a pair of eigenvalues, or a real one.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
-pub struct Slowest {
+pub struct SlowestMode {
     /// Absolute value of the eigenvalue: the decay factor of the motion per sample.
     pub radius: f64,
     /// Angle of the eigenvalue: the rotation of the motion per sample (rad).
@@ -44,7 +44,7 @@ impl ClosedLoop {
     }
 
     /// Returns the slowest motion, and the time at which it alone has settled within `band` (rad).
-    pub fn slowest(&self, band: f64) -> Option<Slowest> {
+    pub fn slowest(&self, band: f64) -> Option<SlowestMode> {
         let values = self.eigenvalues()?;
         let mut value = *values.first()?;
         for other in values {
@@ -70,7 +70,7 @@ impl ClosedLoop {
         } else {
             (radius < 1.0).then(|| -libm::log(amplitude / band) / libm::log(radius) * self.period)
         };
-        Some(Slowest {
+        Some(SlowestMode {
             radius,
             turn_rad: libm::atan2(value.im, value.re),
             amplitude_rad: amplitude,

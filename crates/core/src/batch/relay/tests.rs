@@ -2,9 +2,9 @@
 
 use std::path::Path;
 
-use super::Side;
+use super::RelayBatch;
 use crate::Scenario;
-use crate::batch::{Batch, Job};
+use crate::batch::{BatchJob, BatchKernel};
 use crate::campaign::{Campaign, CampaignRun};
 use crate::lanes::Processor;
 use crate::metrics::Selection;
@@ -30,15 +30,15 @@ fn alone(number: u64, scenario: &Scenario) -> String {
 }
 
 fn compare(scenarios: &[Scenario], least: usize) {
-    let jobs: Vec<Job<'_>> = scenarios
+    let jobs: Vec<BatchJob<'_>> = scenarios
         .iter()
         .zip(7..)
-        .map(|(scenario, number)| Job { number, scenario, selection: &Selection::ALL })
+        .map(|(scenario, number)| BatchJob { number, scenario, selection: &Selection::ALL })
         .collect();
-    assert!(scenarios.iter().all(|scenario| Side.takes(scenario)));
+    assert!(scenarios.iter().all(|scenario| RelayBatch.accepts(scenario)));
     let expected: Vec<String> = jobs.iter().map(|job| alone(job.number, job.scenario)).collect();
     for processor in Processor::all() {
-        let found = Side.simulate(processor, &jobs);
+        let found = RelayBatch.simulate(processor, &jobs);
         let whole = found.iter().flatten().count();
         assert!(whole >= least, "{}: {whole} of {}", processor.name(), jobs.len());
         for (index, (found, expected)) in found.iter().zip(&expected).enumerate() {

@@ -1,31 +1,31 @@
 //! Kalman filters of the runs of a batch: samples are read ahead, and the matrix work is done for all lanes at once.
 
-use super::Run;
-use crate::estimator::kalman::{Filters, KalmanFilter};
-use crate::lanes::Real;
-use crate::metrics::Gather;
+use super::BatchedRun;
+use crate::estimator::kalman::{FilterLanes, KalmanFilter};
+use crate::lanes::LaneFloat;
+use crate::metrics::MetricsCollector;
 
 /// Returns true if all runs have filters, or none has.
-pub fn agree(runs: &mut [Run]) -> bool {
+pub fn same_kind(runs: &mut [BatchedRun]) -> bool {
     let count = runs.len();
     [0, count].contains(&all(runs).len())
 }
 
 /// Creates the filters that are processed in lanes; `None` for filters of another kind, which are updated run by run.
-pub fn of<R: Real>(kind: R, runs: &mut [Run]) -> Option<Filters<R>> {
-    Filters::new(kind, &mut all(runs))
+pub fn from_runs<R: LaneFloat>(kind: R, runs: &mut [BatchedRun]) -> Option<FilterLanes<R>> {
+    FilterLanes::new(kind, &mut all(runs))
 }
 
-fn all(runs: &mut [Run]) -> Vec<&mut KalmanFilter> {
+fn all(runs: &mut [BatchedRun]) -> Vec<&mut KalmanFilter> {
     runs.iter_mut().filter_map(|run| run.simulation.filter()).map(|(filter, _)| filter).collect()
 }
 
 /// Processes the samples that are due. A run whose filter cannot be processed in the batch continues alone.
 #[inline(always)]
-pub fn sample<R: Real>(
-    filters: &mut Filters<R>,
-    runs: &mut [Run],
-    gathers: &[Gather],
+pub fn process_samples<R: LaneFloat>(
+    filters: &mut FilterLanes<R>,
+    runs: &mut [BatchedRun],
+    gathers: &[MetricsCollector],
     due: &[bool; 16],
     kind: R,
 ) {
@@ -36,11 +36,11 @@ pub fn sample<R: Real>(
         if !run.goes_on {
             continue;
         }
-        if !(due[lane] && run.simulation.samples()) {
+        if !(due[lane] && run.simulation.sample_is_due()) {
             others = true;
             continue;
         }
-        let angle = run.simulation.read_ahead().ok().flatten();
+        let angle = run.simulation.read_sample_ahead().ok().flatten();
         let moment = run.simulation.filter().and_then(|(_, moment)| moment);
         if let Some(of) = angle.zip(moment).filter(|(_, moment)| moment.is_finite()) {
             (measured[lane], moments[lane]) = of;
@@ -54,28 +54,28 @@ pub fn sample<R: Real>(
     }
     let before = others.then(|| filters.covariances());
     let mut each = all(runs);
-    filters.take_means(&each);
+    filters.load_means(&each);
     filters.predict(&each, kind.load(&moments));
-    let predicted = filters.are_sound();
-    filters.give_means(&mut each, &takes);
+    let predicted = filters.are_valid();
+    filters.store_means(&mut each, &takes);
     let mut still = [0.0; 16];
     for (lane, filter) in each.iter().enumerate() {
-        still[lane] = f64::from(u8::from(takes[lane] && filter.moves_too_little()));
+        still[lane] = f64::from(u8::from(takes[lane] && filter.is_below_gate()));
     }
-    let zero = kind.of(0.0);
-    let [innovation, nis] = filters.learn(kind.load(&measured), zero.lt(kind.load(&still)));
-    let sound = predicted & filters.are_sound() & zero.le(nis) & nis.le(kind.of(KalmanFilter::FARTHEST));
-    filters.give_means(&mut each, &takes);
+    let zero = kind.splat(0.0);
+    let [innovation, nis] = filters.update(kind.load(&measured), zero.lt(kind.load(&still)));
+    let sound = predicted & filters.are_valid() & zero.le(nis) & nis.le(kind.splat(KalmanFilter::FARTHEST));
+    filters.store_means(&mut each, &takes);
     if let Some(before) = before {
         filters.restore(&before, zero.lt(kind.load(&flags)));
     }
-    let sound = R::select(sound, kind.of(1.0), zero);
+    let sound = R::select(sound, kind.splat(1.0), zero);
     for (lane, filter) in each.iter_mut().enumerate() {
         if takes[lane] && sound.lane(lane) > 0.0 {
-            filters.settle(lane, filter, still[lane] > 0.0, innovation.lane(lane), nis.lane(lane));
+            filters.apply(lane, filter, still[lane] > 0.0, innovation.lane(lane), nis.lane(lane));
         }
     }
-    filters.take_means(&each);
+    filters.load_means(&each);
     let mut truths = vec![[0.0; 16]; filters.count()];
     let mut judged = false;
     for (lane, run) in runs.iter_mut().enumerate() {
@@ -84,7 +84,7 @@ pub fn sample<R: Real>(
         }
         if sound.lane(lane) == 0.0 {
             run.goes_on = false;
-        } else if gathers[lane].assesses(run.simulation.now().seconds()) {
+        } else if gathers[lane].is_assessed(run.simulation.now().seconds()) {
             judged = true;
             for (truth, value) in truths.iter_mut().zip(run.simulation.true_state()) {
                 truth[lane] = value;
@@ -98,7 +98,7 @@ pub fn sample<R: Real>(
         }
         let nees = filters.nees(&truth);
         for (lane, filter) in all(runs).into_iter().enumerate() {
-            filter.assess_beside(nees.lane(lane));
+            filter.set_lane_error(nees.lane(lane));
         }
     }
 }

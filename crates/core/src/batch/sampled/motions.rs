@@ -1,10 +1,10 @@
 //! Motions of bodies in lanes, from the start of one segment to the next: with drifting or with constant frequencies.
 
-use super::Run;
+use super::BatchedRun;
 use crate::body::SERIES;
-use crate::flow::{Constant, Coupled, Ratio, Springs};
-use crate::lanes::Real;
-use crate::motion::stretch::REACH;
+use crate::flow::{CoupledMatrices, DriftingEquations, RatioSeries, TransitionFlow};
+use crate::lanes::LaneFloat;
+use crate::motion::polynomial_piece::REACH;
 use crate::numerics::polynomial::TERMS;
 
 /// Number of sets of transitions that are kept, the newest last.
@@ -13,25 +13,25 @@ const KEPT: usize = 8;
 /// Motions in lanes as Taylor series of all coordinates, ordered by terms. The first two terms are the state at the
 /// segment's start.
 #[derive(Debug)]
-pub struct Motions<R> {
+pub struct LaneMotions<R> {
     /// Number of coordinates of each body.
     pub count: usize,
     /// Coefficients of the Taylor series.
     pub series: Vec<R>,
-    flow: Flow<R>,
+    flow: LaneFlow<R>,
 }
 
 #[derive(Debug)]
-enum Flow<R> {
+enum LaneFlow<R> {
     /// Springs, with the frequency ratios of each run and of all lanes.
-    Drifting(Springs<R>, Vec<Vec<Ratio<f64>>>, Vec<Ratio<R>>),
-    Constant(Box<Flat<R>>),
+    Drifting(DriftingEquations<R>, Vec<Vec<RatioSeries<f64>>>, Vec<RatioSeries<R>>),
+    Constant(Box<LinearFlows<R>>),
 }
 
 /// Linear systems z' = A z + g m.
 #[derive(Debug)]
-struct Flat<R> {
-    systems: Vec<Coupled>,
+struct LinearFlows<R> {
+    systems: Vec<CoupledMatrices>,
     /// Matrix A row by row, with the columns of each row that are not 0 in all lanes, and the vector g.
     matrix: Vec<R>,
     columns: Vec<Vec<usize>>,
@@ -45,14 +45,14 @@ struct Flat<R> {
     kept: Vec<([f64; 16], Vec<R>, Vec<R>)>,
 }
 
-impl<R: Real> Motions<R> {
+impl<R: LaneFloat> LaneMotions<R> {
     /// Creates the motions of bodies at their start; `None` for bodies that differ in structure.
-    pub fn new(kind: R, runs: &[Run]) -> Option<Self> {
+    pub fn new(kind: R, runs: &[BatchedRun]) -> Option<Self> {
         let count = runs.first()?.motion.start().len() / 2;
         if runs.iter().any(|run| run.motion.start().len() != 2 * count) {
             return None;
         }
-        let beside = |of: &dyn Fn(&Run) -> f64| {
+        let beside = |of: &dyn Fn(&BatchedRun) -> f64| {
             let mut each = [0.0; 16];
             for lane in 0..R::LANES {
                 each[lane] = of(&runs[lane.min(runs.len() - 1)]);
@@ -63,19 +63,19 @@ impl<R: Real> Motions<R> {
         let constant: Vec<_> = runs.iter().filter_map(|run| run.motion.constant()).collect();
         let flow = if drifting.len() == runs.len() {
             let ratios = drifting[0].ratios();
-            let springs: Vec<_> = drifting.iter().map(|motion| motion.springs()).collect();
-            let springs = Springs::beside(kind, &springs)?;
+            let springs: Vec<_> = drifting.iter().map(|motion| motion.equations()).collect();
+            let springs = DriftingEquations::for_lanes(kind, &springs)?;
             if drifting.iter().any(|motion| motion.ratios() != ratios) {
                 return None;
             }
-            let alone = vec![vec![Ratio::new(0.0); ratios]; runs.len()];
-            Flow::Drifting(springs, alone, vec![Ratio::new(kind); ratios])
+            let alone = vec![vec![RatioSeries::new(0.0); ratios]; runs.len()];
+            LaneFlow::Drifting(springs, alone, vec![RatioSeries::new(kind); ratios])
         } else if constant.len() == runs.len() {
-            Flow::Constant(Box::new(Flat::new(kind, &constant)))
+            LaneFlow::Constant(Box::new(LinearFlows::new(kind, &constant)))
         } else {
             return None;
         };
-        let mut series = vec![kind.of(0.0); TERMS * count];
+        let mut series = vec![kind.splat(0.0); TERMS * count];
         for index in 0..2 * count {
             series[index] = beside(&|run| run.motion.start()[index]);
         }
@@ -84,57 +84,57 @@ impl<R: Real> Motions<R> {
 
     /// Computes the series of all motions from their first two terms.
     #[inline(always)]
-    pub fn fill(&mut self, runs: &[Run], kind: R) {
+    pub fn expand(&mut self, runs: &[BatchedRun], kind: R) {
         let mut moments = [0.0; 16];
         for (lane, run) in runs.iter().enumerate() {
             moments[lane] = run.moment;
         }
         let moment = kind.load(&moments);
         match &mut self.flow {
-            Flow::Drifting(springs, alone, beside) => {
+            LaneFlow::Drifting(springs, alone, beside) => {
                 for (run, ratios) in runs.iter().zip(alone.iter_mut()) {
                     if let Some(motion) = run.motion.drifting() {
                         motion.expand_ratios(run.departed.seconds(), ratios);
                     }
                 }
                 for (index, ratio) in beside.iter_mut().enumerate() {
-                    ratio.put(alone, index);
+                    ratio.set_lane(alone, index);
                 }
-                springs.fill(beside, moment, &mut self.series[..SERIES * self.count]);
+                springs.expand(beside, moment, &mut self.series[..SERIES * self.count]);
             }
-            Flow::Constant(flat) => flat.fill(moment, &mut self.series),
+            LaneFlow::Constant(flat) => flat.expand(moment, &mut self.series),
         }
     }
 
     /// Returns the lanes in which a motion over `h` (s) needs a single expansion.
     #[inline(always)]
-    pub fn reach(&self, h: R) -> R::Mask {
+    pub fn radius(&self, h: R) -> R::Mask {
         match &self.flow {
-            Flow::Drifting(springs, ..) => springs.surely_reach(&self.series, h),
-            Flow::Constant(flat) => h.le(flat.reach),
+            LaneFlow::Drifting(springs, ..) => springs.certainly_converges_to(&self.series, h),
+            LaneFlow::Constant(flat) => h.le(flat.reach),
         }
     }
 
     /// Computes the angles of all coordinates, and their rates, `spans` (s) after the start of the segment.
     #[inline(always)]
-    pub fn go(&mut self, spans: &[f64; 16], h: R, here: &mut [R]) {
+    pub fn evaluate(&mut self, spans: &[f64; 16], h: R, here: &mut [R]) {
         let (angles, rates) = here.split_at_mut(self.count);
         match &mut self.flow {
-            Flow::Drifting(springs, ..) => {
+            LaneFlow::Drifting(springs, ..) => {
                 for index in 0..self.count {
                     let [angle, rate, _] = springs.at(&self.series, index, h);
                     (angles[index], rates[index]) = (angle, rate);
                 }
             }
-            Flow::Constant(flat) => flat.go(spans, angles, rates),
+            LaneFlow::Constant(flat) => flat.evaluate(spans, angles, rates),
         }
     }
 }
 
-impl<R: Real> Flat<R> {
-    fn new(kind: R, all: &[&Constant]) -> Self {
+impl<R: LaneFloat> LinearFlows<R> {
+    fn new(kind: R, all: &[&TransitionFlow]) -> Self {
         let order = all[0].system().input.len();
-        let beside = |of: &dyn Fn(&Constant) -> f64| {
+        let beside = |of: &dyn Fn(&TransitionFlow) -> f64| {
             let mut each = [0.0; 16];
             for lane in 0..R::LANES {
                 each[lane] = of(all[lane.min(all.len() - 1)]);
@@ -145,7 +145,7 @@ impl<R: Real> Flat<R> {
         let filled =
             |row: usize, column: usize| all.iter().any(|motion| motion.system().system[(row, column)] != 0.0);
         let columns = |row: usize| (0..order).filter(|column| filled(row, *column)).collect();
-        let zero = kind.of(0.0);
+        let zero = kind.splat(0.0);
         Self {
             systems: all.iter().map(|motion| motion.system().clone()).collect(),
             matrix: entries.map(|at| beside(&|motion| motion.system().system[at])).collect(),
@@ -160,7 +160,7 @@ impl<R: Real> Flat<R> {
     }
 
     #[inline(always)]
-    fn fill(&mut self, moment: R, series: &mut [R]) {
+    fn expand(&mut self, moment: R, series: &mut [R]) {
         self.moment = moment;
         let (order, count) = (self.from.len(), self.from.len() / 2);
         for index in 0..count {
@@ -169,9 +169,9 @@ impl<R: Real> Flat<R> {
         let [before, after] = &mut self.room;
         before.copy_from_slice(&self.from);
         for n in 1..TERMS {
-            let divisor = moment.of(n as f64);
+            let divisor = moment.splat(n as f64);
             for row in 0..order {
-                let mut sum = moment.of(0.0);
+                let mut sum = moment.splat(0.0);
                 for (place, column) in self.columns[row].iter().enumerate() {
                     let part = self.matrix[row * order + column] * before[*column];
                     sum = if place == 0 { part } else { sum + part };
@@ -189,7 +189,7 @@ impl<R: Real> Flat<R> {
     }
 
     #[inline(always)]
-    fn go(&mut self, spans: &[f64; 16], angles: &mut [R], rates: &mut [R]) {
+    fn evaluate(&mut self, spans: &[f64; 16], angles: &mut [R], rates: &mut [R]) {
         let order = self.from.len();
         let known = self.kept.iter().position(|(kept, ..)| kept == spans);
         let at = known.unwrap_or_else(|| self.keep(spans));

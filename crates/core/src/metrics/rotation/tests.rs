@@ -3,7 +3,7 @@
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::*;
-use crate::motion::stretch::Linear;
+use crate::motion::polynomial_piece::LinearExpansion;
 
 /// Metrics of a stretch: largest and smallest value, integral, ITAE, time outside a band, zeros.
 struct Arc {
@@ -16,21 +16,21 @@ struct Arc {
 
 fn arc(system: &DMatrix<f64>, push: DVector<f64>, z: &[f64], output: &[f64], end: f64, band: f64) -> Arc {
     let fastest = system.row_iter().map(|row| row.iter().map(|a| a.abs()).sum::<f64>()).fold(0.0, f64::max);
-    let mut linear = Linear::new(system, push, &DVector::from_column_slice(z), fastest);
+    let mut linear = LinearExpansion::new(system, push, &DVector::from_column_slice(z), fastest);
     let output = RowDVector::from_row_slice(output);
-    let mut verdict = Verdict::new(0.0, band);
+    let mut verdict = GoalMetrics::new(0.0, band);
     let (mut range, mut sums, mut zeros, mut h) = (Range::EMPTY, (0.0, 0.0), Vec::new(), 0.0);
     while h < end {
         let length = linear.expand(h).min(end - h);
         let series = std::array::from_fn(|n| output.iter().zip(linear.series()).map(|(c, z)| c * z[n]).sum());
-        let y = Polynomial::of(&series, length);
+        let y = Polynomial::from_series(&series, length);
         range.widen(&y);
         y.roots(0.0, &mut zeros);
-        verdict.see(h, length, &y);
+        verdict.observe(h, length, &y);
         sums = (sums.0 + length * y.integrals(0.0, 1.0)[0], sums.1 + integral(&y, h, length));
         h = if length < end - h { h + length } else { end };
     }
-    let [_, _, (_, Value::Number(outside))] = verdict.finish(end) else { panic!("a time outside") };
+    let [_, _, (_, MetricValue::Number(outside))] = verdict.finish(end) else { panic!("a time outside") };
     Arc { range, integral: sums.0, itae: sums.1, outside, zeros: zeros.len() }
 }
 

@@ -1,174 +1,170 @@
 //! Plant: model, motion and true state of the body, with one axis in closed form where there is one, or with three
 //! axes.
 
-mod lent;
-mod planar;
-mod spatial;
-mod two_way;
+mod coupled;
+mod external_motion;
+mod one_axis;
+mod three_axis;
 
 use std::borrow::Cow;
 
 use super::SimulationError;
-use crate::body::Axes;
-use crate::environment::SkySight;
-use crate::estimator::Monitor;
+use crate::body::BodyAxes;
+use crate::environment::EnvironmentObservation;
+use crate::estimator::WindowedEnvelope;
 use crate::guard::Guard;
-use crate::motion::State;
-use crate::motion::turning::SlippedRotor;
+use crate::motion::AxisState;
+use crate::motion::three_axis::RotorObservation;
 use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
 use crate::sensor::{Orientation, Truth};
 use crate::time::{Instant, Span};
 use crate::wrench::Wrench;
 
-pub use planar::{Exerted, PlanarPlant};
-pub use spatial::SpatialPlant;
-pub use two_way::Mount;
+pub use coupled::AccelerometerMount;
+pub use one_axis::{AppliedTorque, OneAxisPlant};
+pub use three_axis::ThreeAxisPlant;
 
 /// True state before the first evaluation.
-const UNSEEN: Truth = Truth {
+const INITIAL_TRUTH: Truth = Truth {
     orientation: Orientation::Angle(0.0),
     elastic: [0.0; 3],
     rate: [0.0; 3],
     rigid: [0.0; 3],
     turned: [0.0; 3],
-    sky: SkySight { field: None, sun: None },
+    sky: EnvironmentObservation { field: None, sun: None },
 };
 
 /// Moving body.
 #[derive(Clone, Debug)]
 pub enum Plant {
     /// One-axis body.
-    Planar(Box<PlanarPlant>),
+    OneAxis(Box<OneAxisPlant>),
     /// Three-axis body.
-    Spatial(Box<SpatialPlant>),
+    ThreeAxis(Box<ThreeAxisPlant>),
 }
 
 impl Plant {
     /// Creates the plant of a scenario at the start, without loads.
     pub fn new(scenario: &Scenario) -> Self {
         match scenario.model.axes() {
-            Axes::One(body) => Self::Planar(Box::new(PlanarPlant::new(scenario, body))),
-            Axes::Three(body) => {
-                let plant = SpatialPlant::new(body, scenario.model.flexible(), &scenario.study);
-                Self::Spatial(Box::new(plant.drifting(body, scenario.drift.as_ref())))
+            BodyAxes::One(body) => Self::OneAxis(Box::new(OneAxisPlant::new(scenario, body))),
+            BodyAxes::Three(body) => {
+                let plant = ThreeAxisPlant::new(body, scenario.model.flexible(), &scenario.study);
+                Self::ThreeAxis(Box::new(plant.drifting(body, scenario.drift.as_ref())))
             }
         }
     }
 
     /// Integrates motions without a closed form up to `now`, unless the record fails; returns the earlier instant at
     /// which it stopped because a wheel stuck or let go.
-    pub fn approach(
-        &mut self,
-        now: Instant,
-        record: &mut dyn Record,
-    ) -> Result<Option<Instant>, RecordError> {
+    pub fn advance(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError> {
         match self {
-            Self::Planar(plant) => plant.approach(now, record).map(|()| None),
-            Self::Spatial(plant) => plant.approach(now, record),
+            Self::OneAxis(plant) => plant.approach(now, record).map(|()| None),
+            Self::ThreeAxis(plant) => plant.approach(now, record),
         }
     }
 
     /// Returns the states of the wheels in bearings at the current instant.
-    pub fn borne(&self) -> Vec<SlippedRotor> {
-        if let Self::Spatial(plant) = self { plant.borne() } else { Vec::new() }
+    pub fn wheel_bearings(&self) -> Vec<RotorObservation> {
+        if let Self::ThreeAxis(plant) = self { plant.wheel_bearings() } else { Vec::new() }
     }
 
     /// Advances the body to `now`, evaluates the true state, and returns it.
     #[inline]
-    pub fn view(&mut self, now: Instant) -> Result<&Truth, SimulationError> {
+    pub fn evaluate(&mut self, now: Instant) -> Result<&Truth, SimulationError> {
         let truth = match self {
-            Self::Planar(plant) => plant.measurable(now),
-            Self::Spatial(plant) => plant.measurable(),
+            Self::OneAxis(plant) => plant.evaluate(now),
+            Self::ThreeAxis(plant) => plant.measurable(),
         };
         truth.ok_or(SimulationError::NonFinite { at: now })
     }
 
     /// Returns the true state of the last evaluation.
     #[inline]
-    pub fn viewed(&self) -> &Truth {
+    pub fn truth(&self) -> &Truth {
         match self {
-            Self::Planar(plant) => plant.viewed(),
-            Self::Spatial(plant) => plant.viewed(),
+            Self::OneAxis(plant) => plant.viewed(),
+            Self::ThreeAxis(plant) => plant.viewed(),
         }
     }
 
     /// Returns the true state of the last evaluation at the mounting point of a sensor.
-    pub fn at_sensor(&self, sensor: usize) -> Cow<'_, Truth> {
+    pub fn truth_at_sensor(&self, sensor: usize) -> Cow<'_, Truth> {
         match self {
-            Self::Spatial(plant) if sensor > 0 => Cow::Owned(plant.at_sensor(sensor)),
-            _ => Cow::Borrowed(self.viewed()),
+            Self::ThreeAxis(plant) if sensor > 0 => Cow::Owned(plant.at_sensor(sensor)),
+            _ => Cow::Borrowed(self.truth()),
         }
     }
 
     /// Returns an upper bound on the frequencies in a three-axis motion at the current instant (rad/s); 0 for one axis.
-    pub fn fastest(&self) -> f64 {
-        if let Self::Spatial(plant) = self { plant.fastest() } else { 0.0 }
+    pub fn fastest_frequency(&self) -> f64 {
+        if let Self::ThreeAxis(plant) = self { plant.fastest() } else { 0.0 }
     }
 
     /// Begins a motion segment at the current instant, under the loads from now on.
-    pub fn depart(&mut self, wrench: &Wrench) {
+    pub fn begin_segment(&mut self, wrench: &Wrench) {
         match self {
-            Self::Planar(plant) => plant.depart(wrench),
-            Self::Spatial(plant) => plant.depart(wrench),
+            Self::OneAxis(plant) => plant.depart(wrench),
+            Self::ThreeAxis(plant) => plant.depart(wrench),
         }
     }
 
     /// Returns the instant and index of the first guard crossing within `horizon`; `None` also for motions without a
     /// closed form.
     #[inline]
-    pub fn trip(
+    pub fn crossing(
         &mut self,
         guards: &[Guard],
         horizon: Span,
         record: &mut dyn Record,
     ) -> Result<Option<(Instant, usize)>, RecordError> {
         match self {
-            Self::Planar(plant) => plant.trip(guards, horizon, record),
-            Self::Spatial(_) => Ok(None),
+            Self::OneAxis(plant) => plant.trip(guards, horizon, record),
+            Self::ThreeAxis(_) => Ok(None),
         }
     }
 
     /// Records the one-axis motion of the segment that ends at `now`, piece by piece, if the record wants it.
-    pub fn tell_course(
+    pub fn record_pieces(
         &self,
         now: Instant,
-        exerted: &Exerted,
+        exerted: &AppliedTorque,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        let Self::Planar(plant) = self else { return Ok(()) };
-        plant.tell_course(now, exerted, record)
+        let Self::OneAxis(plant) = self else { return Ok(()) };
+        plant.record_pieces(now, exerted, record)
     }
 
     /// Returns the modal state for the monitor of the envelope: that of one axis, or the rotations of the first sensor
     /// by the modes of three axes.
-    pub fn swings(&self) -> Cow<'_, State> {
+    pub fn modal_state(&self) -> Cow<'_, AxisState> {
         match self {
-            Self::Planar(plant) => Cow::Borrowed(plant.state()),
-            Self::Spatial(plant) => Cow::Owned(plant.swings()),
+            Self::OneAxis(plant) => Cow::Borrowed(plant.state()),
+            Self::ThreeAxis(plant) => Cow::Owned(plant.swings()),
         }
     }
 
     /// Updates the monitor of the envelope with what excites the modes from now on: a torque (N m) on those of one
     /// axis, the commanded wrench on those of three axes.
-    pub fn push_monitor(
+    pub fn update_monitor(
         &self,
-        monitor: &mut Monitor,
+        monitor: &mut WindowedEnvelope,
         now: Instant,
         torque: f64,
         commanded: impl FnOnce() -> Wrench,
     ) {
         match self {
-            Self::Planar(plant) => monitor.command(now, plant.state(), torque),
-            Self::Spatial(plant) => monitor.push(now, &plant.swings(), &plant.modal_forces(&commanded())),
+            Self::OneAxis(plant) => monitor.command(now, plant.state(), torque),
+            Self::ThreeAxis(plant) => monitor.push(now, &plant.swings(), &plant.modal_forces(&commanded())),
         }
     }
 
     /// Returns the motion about an axis as if that axis were alone; for three axes, with angles counted from `target`.
-    pub fn about(&self, axis: usize, target: &Orientation) -> Cow<'_, State> {
+    pub fn about_axis(&self, axis: usize, target: &Orientation) -> Cow<'_, AxisState> {
         match self {
-            Self::Planar(plant) => Cow::Borrowed(plant.state()),
-            Self::Spatial(plant) => Cow::Owned(plant.about(axis, target)),
+            Self::OneAxis(plant) => Cow::Borrowed(plant.state()),
+            Self::ThreeAxis(plant) => Cow::Owned(plant.about(axis, target)),
         }
     }
 }

@@ -7,7 +7,7 @@ use std::io::BufRead;
 
 use super::tables::{ParticipationTable, of_factors};
 use super::text::{Lines, TextLine};
-use super::{FileResults, Natural, lowest};
+use super::{FileResults, NaturalFrequency, lowest};
 
 /// Table to which the current lines belong.
 #[derive(Copy, Clone, PartialEq, Eq)]
@@ -25,11 +25,11 @@ enum At {
 /// The error, with its line.
 pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
     let mut at = At::Elsewhere;
-    let mut natural: Vec<Natural> = Vec::new();
+    let mut natural: Vec<NaturalFrequency> = Vec::new();
     let mut factors = ParticipationTable::new("participation factors");
     let mut masses = ParticipationTable::new("effective modal masses");
     let mut mass = None;
-    let mut lines = Lines::of(text);
+    let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
         if line.is_row() {
             match at {
@@ -76,7 +76,7 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
     Ok(FileResults { modes: of_factors(&natural, &factors, &masses, 1.0)?, mass })
 }
 
-fn eigenvalue(line: &TextLine, last: Option<&Natural>) -> Result<Natural, String> {
+fn eigenvalue(line: &TextLine, last: Option<&NaturalFrequency>) -> Result<NaturalFrequency, String> {
     let fields = line.fields(["MODE NO", "EIGENVALUE", "RAD/TIME", "CYCLES/TIME", "IMAGINARY PART"])?;
     let (number, mode, imaginary) = (line.number, fields.whole(0)?, fields.real(4)?);
     if last.is_some_and(|last| last.mode >= mode) {
@@ -88,7 +88,7 @@ fn eigenvalue(line: &TextLine, last: Option<&Natural>) -> Result<Natural, String
         ));
     }
     // Shapes are mass-normalised.
-    let natural = Natural { line: number, mode, frequency: fields.real(2)?, generalised_mass: 1.0 };
+    let natural = NaturalFrequency { line: number, mode, frequency: fields.real(2)?, generalised_mass: 1.0 };
     natural.checked(fields.real(1)?, fields.real(3)?)
 }
 

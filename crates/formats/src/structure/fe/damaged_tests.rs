@@ -74,7 +74,7 @@ fn a_changed_line_is_refused_or_read() {
     let results = ["bars.F06", "feet.F06", "bars-msc.f06", "panel.dat", "boom.dat", "bars.flex"];
     let with_decks = ["elements/s3.frd", "elements/b31r.frd", "elements/c3d4.frd"];
     for name in results.iter().chain(&with_decks) {
-        let format = ResultFormat::of(Path::new(name)).expect("a format");
+        let format = ResultFormat::from_path(Path::new(name)).expect("a format");
         let whole = lines(name);
         let deck = name.strip_suffix(".frd").map_or_else(Vec::new, |stem| lines(&format!("{stem}.inp")));
         for text in damaged(&whole) {
@@ -93,7 +93,7 @@ fn a_changed_line_is_refused_or_read() {
 #[test]
 fn what_is_given_twice_is_refused_with_its_line() {
     let [frd, deck] = ["elements/s3.frd", "elements/s3.inp"].map(lines);
-    let told = |format: ResultFormat, text: &[String], deck: &[String]| {
+    let reported = |format: ResultFormat, text: &[String], deck: &[String]| {
         parse(format, text, deck).expect_err("wrong")
     };
     let again = |lines: &[String], beginning: &str| {
@@ -109,7 +109,7 @@ fn what_is_given_twice_is_refused_with_its_line() {
     ];
     for (beginning, why) in cases {
         let (text, line) = again(&frd, beginning);
-        let error = told(ResultFormat::Frd, &text, &deck);
+        let error = reported(ResultFormat::Frd, &text, &deck);
         assert!(error.contains(why) && error.contains("line "), "{error}");
         assert!(error.contains(&format!("line {line}: ")) || why.contains("6 nodes"), "{error}");
     }
@@ -118,7 +118,8 @@ fn what_is_given_twice_is_refused_with_its_line() {
     let mut text = frd.clone();
     drop(text.splice(element..element, frd[element..element + 2].to_vec()));
     assert!(
-        told(ResultFormat::Frd, &text, &deck).contains("must have each element once, got element 2 again")
+        reported(ResultFormat::Frd, &text, &deck)
+            .contains("must have each element once, got element 2 again")
     );
     let nodes = frd.iter().position(|line| line.starts_with("    2C")).expect("nodes");
     let mut text = frd.clone();
@@ -127,11 +128,11 @@ fn what_is_given_twice_is_refused_with_its_line() {
         text.splice(end..end, [frd[nodes].clone(), frd[nodes + 1].replace(" 11 ", " 99 "), " -3".to_owned()]),
     );
     assert!(
-        told(ResultFormat::Frd, &text, &deck)
+        reported(ResultFormat::Frd, &text, &deck)
             .contains("must have its nodes before elements and displacements")
     );
     let (twice, line) = again(&deck, "3, 2, 5, 6");
-    let error = told(ResultFormat::Frd, &frd, &twice);
+    let error = reported(ResultFormat::Frd, &frd, &twice);
     assert!(
         error.contains(&format!("the deck: line {line}: must have each element once, got element 3 again")),
         "{error}"
@@ -140,7 +141,7 @@ fn what_is_given_twice_is_refused_with_its_line() {
     let mut flex = lines("bars.flex");
     let row = flex.iter().position(|line| line.starts_with("1 1 ")).expect("a row");
     flex[row] = flex[row - 1].clone();
-    let error = told(ResultFormat::Flex, &flex, &[]);
+    let error = reported(ResultFormat::Flex, &flex, &[]);
     assert!(
         error.contains(&format!("line {}: must have each element of its section once", row + 1)),
         "{error}"

@@ -102,7 +102,7 @@ enum Member {
 /// The error, with its line.
 pub fn read(text: impl BufRead) -> Result<Deck, String> {
     let (mut reader, mut at) = (Reader::default(), At::Elsewhere);
-    let mut lines = Lines::of(text);
+    let mut lines = Lines::new(text);
     let mut keyword = String::new();
     while let Some(line) = lines.next()? {
         let text = line.text.trim();

@@ -32,10 +32,10 @@ pub enum MassRule {
 }
 
 /// Quadrature point of an element: natural coordinates, and weight.
-type Point = ([f64; 3], f64);
+type QuadraturePoint = ([f64; 3], f64);
 
 /// Shape functions of a kind of element: each is a sum of monomials.
-pub struct Functions {
+pub struct ShapeFunctions {
     kind: ElementKind,
     monomials: Vec<[i32; 3]>,
     /// Coefficients of the monomials, one column for each function.
@@ -52,7 +52,7 @@ pub struct Values {
 
 impl ElementKind {
     /// Returns the kind with a number of the format.
-    pub const fn of(number: usize) -> Option<Self> {
+    pub const fn from_number(number: usize) -> Option<Self> {
         Some(match number {
             1 => Self::Brick8,
             2 => Self::Wedge6,
@@ -121,7 +121,7 @@ impl ElementKind {
     }
 
     /// Returns the quadrature points of the mass, with their weights.
-    pub fn points(self, rule: MassRule) -> Vec<Point> {
+    pub fn points(self, rule: MassRule) -> Vec<QuadraturePoint> {
         let line = |count: usize| -> &[(f64, f64)] {
             match count {
                 1 => &[(0.0, 2.0)],
@@ -176,9 +176,9 @@ impl ElementKind {
     }
 }
 
-impl Functions {
+impl ShapeFunctions {
     /// Creates the shape functions of a kind of element.
-    pub fn of(kind: ElementKind) -> Self {
+    pub fn for_kind(kind: ElementKind) -> Self {
         let (nodes, monomials) = (kind.nodes(), kind.monomials());
         let count = kind.count();
         let at_nodes = DMatrix::from_fn(count, count, |node, power| monomial(monomials[power], nodes[node]));
@@ -221,7 +221,7 @@ fn monomial(powers: [i32; 3], at: [f64; 3]) -> f64 {
 
 impl Values {
     /// Interpolates vectors given at the nodes.
-    pub fn of(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Vector3<f64> {
+    pub fn interpolate(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Vector3<f64> {
         self.functions.iter().zip(nodes).map(|(function, at)| at * *function).sum()
     }
 

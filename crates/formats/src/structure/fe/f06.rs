@@ -8,7 +8,7 @@ use std::io::BufRead;
 use super::mystran::Reactions;
 use super::tables::{ParticipationTable, of_factors, of_masses};
 use super::text::{Lines, TextLine, real};
-use super::{FileResults, Natural, lowest};
+use super::{FileResults, NaturalFrequency, lowest};
 
 const ASK: &str = "ask for `MEFFMASS(ALL) = YES`, in MYSTRAN for `MPFACTOR = ALL`";
 const NO_EIGENVALUES: &str =
@@ -31,7 +31,7 @@ enum At {
 #[derive(Default)]
 struct Eigenvalues {
     remark: Remark,
-    rows: Vec<Natural>,
+    rows: Vec<NaturalFrequency>,
 }
 
 /// Position of an eigenvalue table relative to the augmentation by residual vectors.
@@ -77,7 +77,7 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
         reactions: Reactions::default(),
         mass: None,
     };
-    let mut lines = Lines::of(text);
+    let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
         reader.take(&line)?;
     }
@@ -147,7 +147,7 @@ impl Reader {
             "GENERALIZED MASS",
             "GENERALIZED STIFFNESS",
         ])?;
-        let natural = Natural {
+        let natural = NaturalFrequency {
             line: line.number,
             mode: fields.whole(0)?,
             frequency: fields.real(3)?,
@@ -208,7 +208,7 @@ impl Reader {
     }
 
     /// Returns the modes of the eigenvalue table: of the one augmented by residual vectors, if there is such a table.
-    fn chosen(&mut self) -> Result<Vec<Natural>, String> {
+    fn chosen(&mut self) -> Result<Vec<NaturalFrequency>, String> {
         let mut tables = std::mem::take(&mut self.eigenvalues);
         if tables.iter().any(|table| table.remark == Remark::After) {
             tables.retain(|table| table.remark == Remark::After);

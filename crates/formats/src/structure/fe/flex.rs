@@ -10,8 +10,8 @@ use nalgebra::DMatrix;
 use super::text::{Lines, TextLine};
 use super::{FileMode, FileResults, kept};
 use crate::structure::eigen;
+use crate::structure::eigen_reduced::EigenError;
 use crate::structure::mode_table::MOST_MODES;
-use crate::structure::reduced::Unsolved;
 
 /// Relative tolerance between angular and linear integrals.
 const AGREEMENT: f64 = 1e-4;
@@ -22,7 +22,7 @@ const MODAL: f64 = 0.1;
 
 /// Contents of a section.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
-enum Holds {
+enum SectionKind {
     Mass,
     Stiffness,
     Damping,
@@ -36,7 +36,7 @@ enum Holds {
 
 /// Section that is being read.
 struct Section {
-    holds: Holds,
+    holds: SectionKind,
     /// Number of elements stated in the section.
     count: Option<usize>,
     taken: usize,
@@ -52,7 +52,7 @@ struct Reader {
     damping: DMatrix<f64>,
     /// Integrals of phi, r x phi and r phi' (row by row) for each mode.
     integrals: DMatrix<f64>,
-    complete: Vec<Holds>,
+    complete: Vec<SectionKind>,
 }
 
 /// Reads the modes of a file.
@@ -60,7 +60,7 @@ struct Reader {
 /// # Errors
 /// The error, with its line.
 pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
-    let mut lines = Lines::of(text);
+    let mut lines = Lines::new(text);
     let first = lines.next()?.map(|line| line.squeezed()).unwrap_or_default();
     if !first.contains("Flex") {
         return Err("line 1: must be the heading of a flexible body of 42".to_owned());
@@ -94,13 +94,13 @@ fn values(line: &TextLine) -> TextLine {
     TextLine { number: line.number, text, ended: line.ended }
 }
 
-impl Holds {
+impl SectionKind {
     /// Returns true if the section has one row for each mode; other sections state their number of elements.
     const fn is_full(self) -> bool {
         matches!(self, Self::Pf | Self::Hf)
     }
 
-    fn of(heading: &str) -> Option<Self> {
+    fn from_heading(heading: &str) -> Option<Self> {
         let known = [
             ("MassMatrix", Self::Mass),
             ("StiffnessMatrix", Self::Stiffness),
@@ -118,8 +118,8 @@ impl Reader {
         let squeezed = line.squeezed();
         if squeezed.starts_with('*') || squeezed.starts_with("[EOF]") {
             self.close(&format!("before line {}", line.number))?;
-            let count = |holds: Holds| if holds.is_full() { Some(self.modes) } else { None };
-            self.section = Holds::of(&squeezed).map(|holds| Section {
+            let count = |holds: SectionKind| if holds.is_full() { Some(self.modes) } else { None };
+            self.section = SectionKind::from_heading(&squeezed).map(|holds| Section {
                 holds,
                 count: count(holds),
                 taken: 0,
@@ -144,13 +144,13 @@ impl Reader {
         self.element(&line, holds, row)
     }
 
-    fn element(&mut self, line: &TextLine, holds: Holds, row: usize) -> Result<(), String> {
+    fn element(&mut self, line: &TextLine, holds: SectionKind, row: usize) -> Result<(), String> {
         let within = |index: usize, size: usize, name: &str| {
             let found = format!("line {}: `{name}` must be 0 to {}, got {index}", line.number, size - 1);
             if index < size { Ok(index) } else { Err(found) }
         };
         match holds {
-            Holds::Mass | Holds::Stiffness | Holds::Damping => {
+            SectionKind::Mass | SectionKind::Stiffness | SectionKind::Damping => {
                 let fields = line.fields(["Row", "Col", "Value"])?;
                 let place = (
                     within(fields.whole(0)?, self.modes, "Row")?,
@@ -158,20 +158,20 @@ impl Reader {
                 );
                 self.is_new(line, [place.0, place.1, 0])?;
                 let matrix = match holds {
-                    Holds::Mass => &mut self.mass,
-                    Holds::Stiffness => &mut self.stiffness,
+                    SectionKind::Mass => &mut self.mass,
+                    SectionKind::Stiffness => &mut self.stiffness,
                     _ => &mut self.damping,
                 };
                 matrix[place] = fields.real(2)?;
             }
-            Holds::Pf | Holds::Hf => {
+            SectionKind::Pf | SectionKind::Hf => {
                 let fields = line.fields(["x", "y", "z"])?;
-                let from = if holds == Holds::Pf { 0 } else { 3 };
+                let from = if holds == SectionKind::Pf { 0 } else { 3 };
                 for axis in 0..3 {
                     self.integrals[(row, from + axis)] = fields.real(axis)?;
                 }
             }
-            Holds::L => {
+            SectionKind::L => {
                 let fields = line.fields(["i", "j", "Mode", "Value"])?;
                 let (i, j) = (within(fields.whole(0)?, 3, "i")?, within(fields.whole(1)?, 3, "j")?);
                 let mode = within(fields.whole(2)?, self.modes, "Mode")?;
@@ -201,7 +201,7 @@ impl Reader {
         if self.complete.contains(&holds) {
             return Err(format!("must have its section {holds:?} once, and another ends {place}"));
         }
-        if holds == Holds::Mass && count == 0 {
+        if holds == SectionKind::Mass && count == 0 {
             return Err(format!("must have a mass matrix, got no elements {place}"));
         }
         self.complete.push(holds);
@@ -209,7 +209,14 @@ impl Reader {
     }
 
     fn results(self, keep: Option<usize>) -> Result<FileResults, String> {
-        let needed = [Holds::Mass, Holds::Stiffness, Holds::Damping, Holds::Pf, Holds::Hf, Holds::L];
+        let needed = [
+            SectionKind::Mass,
+            SectionKind::Stiffness,
+            SectionKind::Damping,
+            SectionKind::Pf,
+            SectionKind::Hf,
+            SectionKind::L,
+        ];
         if let Some(holds) = needed.iter().find(|holds| !self.complete.contains(holds)) {
             return Err(format!("must have a section {holds:?}: is the file cut?"));
         }
@@ -289,16 +296,16 @@ fn is_modal(damping: &DMatrix<f64>) -> bool {
     damping.amax() > 0.0 && !(0..order).any(|i| (0..i).any(|j| coupled(i, j)))
 }
 
-fn unsolved(why: Unsolved) -> String {
+fn unsolved(why: EigenError) -> String {
     match why {
-        Unsolved::Mass => "must have a positive definite mass matrix".to_owned(),
-        Unsolved::Stiffness => {
+        EigenError::Mass => "must have a positive definite mass matrix".to_owned(),
+        EigenError::Stiffness => {
             "must have a positive definite stiffness matrix: are its modes clamped?".to_owned()
         }
-        Unsolved::Range => crate::structure::TOO_FAR_APART.to_owned(),
+        EigenError::Range => crate::structure::TOO_FAR_APART.to_owned(),
         #[cfg(not(feature = "matrices"))]
-        Unsolved::LeftOut => {
-            let (most, why) = (eigen::SMALL, crate::structure::left_out::LEFT_OUT);
+        EigenError::LeftOut => {
+            let (most, why) = (eigen::SMALL, crate::structure::unavailable::LEFT_OUT);
             format!("has coupled modes: more than {most} {why}")
         }
     }

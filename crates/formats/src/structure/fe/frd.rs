@@ -9,7 +9,7 @@ use std::ops::Range;
 
 use nalgebra::Vector3;
 
-use super::Natural;
+use super::NaturalFrequency;
 use super::element::ElementKind;
 use super::text::{Lines, TextLine};
 
@@ -36,7 +36,7 @@ pub struct Element {
 #[derive(Debug)]
 pub struct NodalMode {
     /// Natural frequency of the mode.
-    pub natural: Natural,
+    pub natural: NaturalFrequency,
     /// Displacements, in the order of positions.
     pub displacements: Vec<Vector3<f64>>,
 }
@@ -82,7 +82,7 @@ struct Head {
 /// The error, with its line.
 pub fn read(text: impl BufRead) -> Result<Frd, String> {
     let (mut frd, mut at, mut head, mut ended) = (Frd::default(), At::Elsewhere, Head::default(), false);
-    let mut lines = Lines::of(text);
+    let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
         let start = line.text.get(..line.text.len().min(6)).unwrap_or_default();
         match start.trim_end() {
@@ -170,8 +170,12 @@ impl Frd {
         if self.positions.is_empty() || self.elements.is_empty() {
             return Err(format!("line {}: must follow nodes and elements", line.number));
         }
-        let natural =
-            Natural { line: number, mode, frequency: f64::sqrt(eigenvalue.max(0.0)), generalised_mass };
+        let natural = NaturalFrequency {
+            line: number,
+            mode,
+            frequency: f64::sqrt(eigenvalue.max(0.0)),
+            generalised_mass,
+        };
         let natural = natural.checked(eigenvalue, cycles)?;
         self.shapes.push(NodalMode { natural, displacements: Vec::with_capacity(self.positions.len()) });
         Ok(At::Displacements)
@@ -216,7 +220,7 @@ impl Frd {
             }
             At::Elements => {
                 let code = line.column(13..18, "type")?.whole()?;
-                let kind = ElementKind::of(code).ok_or_else(|| {
+                let kind = ElementKind::from_number(code).ok_or_else(|| {
                     let why = match code {
                         7..=12 => ": write `*NODE FILE, OUTPUT=3D`, which has the solids that shells and beams become",
                         _ => "",

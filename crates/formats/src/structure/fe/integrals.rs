@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 use nalgebra::{DMatrix, Matrix3, Vector3};
 
 use super::deck::{Deck, PointMass};
-use super::element::{ElementKind, Functions, MassRule, Values};
+use super::element::{ElementKind, MassRule, ShapeFunctions, Values};
 use super::frd::{Element, Frd};
 use super::{FileMode, FileResults, StructurePoint, lowest, tables::ParticipationTable};
 
@@ -51,8 +51,10 @@ pub fn modes(
         sums.add_point(mass, &frd, deck, &mut rules, &shapes)?;
     }
     sums.are_normalised()?;
-    let places =
-        points.iter().map(|point| Found::of(point, &frd, &mut rules)).collect::<Result<Vec<_>, _>>()?;
+    let places = points
+        .iter()
+        .map(|point| Found::for_point(point, &frd, &mut rules))
+        .collect::<Result<Vec<_>, _>>()?;
     let modes = natural.iter().zip(&shapes).map(|(natural, shape)| {
         let scale = 1.0 / f64::sqrt(natural.generalised_mass);
         let (mut translation, mut moments) = (Vector3::zeros(), Matrix3::zeros());
@@ -77,17 +79,17 @@ pub fn modes(
 /// Cache of shape functions and quadrature points.
 #[derive(Default)]
 struct Rules {
-    functions: BTreeMap<ElementKind, Functions>,
+    functions: BTreeMap<ElementKind, ShapeFunctions>,
     points: BTreeMap<(ElementKind, MassRule), Vec<(Values, f64)>>,
 }
 
 impl Rules {
-    fn functions(&mut self, kind: ElementKind) -> &Functions {
-        self.functions.entry(kind).or_insert_with(|| Functions::of(kind))
+    fn functions(&mut self, kind: ElementKind) -> &ShapeFunctions {
+        self.functions.entry(kind).or_insert_with(|| ShapeFunctions::for_kind(kind))
     }
 
     fn points(&mut self, kind: ElementKind, rule: MassRule) -> &[(Values, f64)] {
-        let functions = self.functions.entry(kind).or_insert_with(|| Functions::of(kind));
+        let functions = self.functions.entry(kind).or_insert_with(|| ShapeFunctions::for_kind(kind));
         self.points.entry((kind, rule)).or_insert_with(|| {
             kind.points(rule).into_iter().map(|(at, weight)| (functions.at(at), weight)).collect()
         })
@@ -144,7 +146,7 @@ impl Sums {
                     "line {line}: element {number} must not be turned inside out: are its nodes in order?"
                 ));
             }
-            self.add_mass(density * volume, &values.of(positions()), values, &element.nodes, shapes);
+            self.add_mass(density * volume, &values.interpolate(positions()), values, &element.nodes, shapes);
         }
         Ok(())
     }
@@ -163,7 +165,7 @@ impl Sums {
             self.moments[*node] += position * (mass * function);
         }
         let moved: Vec<_> =
-            shapes.iter().map(|shape| values.of(nodes.iter().map(|node| shape[*node]))).collect();
+            shapes.iter().map(|shape| values.interpolate(nodes.iter().map(|node| shape[*node]))).collect();
         for (i, one) in moved.iter().enumerate() {
             for (j, other) in moved.iter().enumerate().take(i + 1) {
                 self.products[(i, j)] += mass * one.dot(other);
@@ -192,7 +194,7 @@ impl Sums {
             .ok_or_else(|| format!("line {line} of the deck: must have a node of the deck, got {node}"))?;
         let wrong = |why| format!("line {line} of the deck: {why}");
         let place = StructurePoint { name: format!("node {node}"), at: position.into() };
-        let found = Found::of(&place, frd, rules).map_err(wrong)?;
+        let found = Found::for_point(&place, frd, rules).map_err(wrong)?;
         let part = point.mass / found.within.len() as f64;
         for within in &found.within {
             let Element { kind, nodes, .. } = &frd.elements[within.element];
@@ -259,7 +261,7 @@ impl Within {
 }
 
 impl Found {
-    fn of(point: &StructurePoint, frd: &Frd, rules: &mut Rules) -> Result<Self, String> {
+    fn for_point(point: &StructurePoint, frd: &Frd, rules: &mut Rules) -> Result<Self, String> {
         let at = Vector3::from(point.at);
         let mut within = Vec::new();
         for (index, element) in frd.elements.iter().enumerate() {
@@ -290,7 +292,7 @@ impl Found {
         let part = scale / self.within.len() as f64;
         for Within { element, values, directions, .. } in &self.within {
             let nodes = || frd.elements[*element].nodes.iter().map(|node| shape[*node]);
-            moved += values.of(nodes()) * part;
+            moved += values.interpolate(nodes()) * part;
             let slopes = values.slopes(nodes());
             let (mut matrix, mut side) = (Matrix3::zeros(), Vector3::zeros());
             for axis in 0..3 {
@@ -307,7 +309,7 @@ impl Found {
 
 /// Finds the natural coordinates of a position in an element by Newton's method; `None` if it is outside.
 fn locate(
-    functions: &Functions,
+    functions: &ShapeFunctions,
     (index, element): (usize, &Element),
     frd: &Frd,
     at: &Vector3<f64>,
@@ -317,7 +319,7 @@ fn locate(
     for _ in 0..20 {
         let values = functions.at(natural.into());
         let directions = values.slopes(positions());
-        let step = directions.try_inverse()? * (at - values.of(positions()));
+        let step = directions.try_inverse()? * (at - values.interpolate(positions()));
         if step.amax() < 1e-12 {
             let inside = functions.kind().outside(&natural) < INSIDE;
             return inside.then_some(Within { element: index, natural, values, directions });

@@ -83,7 +83,7 @@ pub struct FileResults {
 
 impl ResultFormat {
     /// Returns the format of a file by its extension.
-    pub fn of(path: &Path) -> Option<Self> {
+    pub fn from_path(path: &Path) -> Option<Self> {
         match path.extension()?.to_ascii_lowercase().to_str()? {
             "f06" => Some(Self::F06),
             "dat" => Some(Self::CalculiX),
@@ -116,8 +116,9 @@ impl ResultFormat {
             Self::Frd => {
                 // CalculiX gives results the name of their deck.
                 let beside = path.with_extension("inp");
-                let told = |why: String| format!("the deck {}: {why}", beside.display());
-                let deck = deck::read(open_text_up_to(&beside, LONGEST).map_err(told)?).map_err(told)?;
+                let reported = |why: String| format!("the deck {}: {why}", beside.display());
+                let deck =
+                    deck::read(open_text_up_to(&beside, LONGEST).map_err(reported)?).map_err(reported)?;
                 integrals::modes(frd::read(text)?, &deck, keep, points)
             }
         }
@@ -126,7 +127,7 @@ impl ResultFormat {
 
 /// Natural frequency in a file's table of eigenvalues.
 #[derive(Clone, Debug)]
-struct Natural {
+struct NaturalFrequency {
     line: usize,
     mode: usize,
     /// Natural frequency (rad/s).
@@ -134,7 +135,7 @@ struct Natural {
     generalised_mass: f64,
 }
 
-impl Natural {
+impl NaturalFrequency {
     /// Returns the mode with the given participations.
     fn with(&self, [a, b, c, d, e, f]: [f64; 6]) -> FileMode {
         let (translation, rotation) = ([a, b, c], [d, e, f]);
@@ -173,10 +174,10 @@ impl Natural {
 
 /// Returns the modes with the lowest frequencies, increasing; checks that other tables name only modes of this list.
 fn lowest(
-    mut natural: Vec<Natural>,
+    mut natural: Vec<NaturalFrequency>,
     tables: [&ParticipationTable; 2],
     keep: Option<usize>,
-) -> Result<Vec<Natural>, String> {
+) -> Result<Vec<NaturalFrequency>, String> {
     if let Some(pair) = natural.windows(2).find(|pair| pair[1].mode != pair[0].mode + 1) {
         let (line, expected, found) = (pair[1].line, pair[0].mode + 1, pair[1].mode);
         return Err(format!("line {line}: must be mode {expected}, got mode {found}"));

@@ -6,7 +6,7 @@
 use std::collections::BTreeMap;
 
 use super::text::TextLine;
-use super::{FileMode, Natural};
+use super::{FileMode, NaturalFrequency};
 
 /// Ratio of a grid's force or moment to the largest one above which the grid counts as clamped.
 const CLAMPED: f64 = 1e-6;
@@ -34,7 +34,7 @@ impl Reactions {
     ///
     /// # Errors
     /// No forces, several grids, or other forces.
-    pub fn confirm(&self, natural: &[Natural], modes: &[FileMode]) -> Result<(), String> {
+    pub fn confirm(&self, natural: &[NaturalFrequency], modes: &[FileMode]) -> Result<(), String> {
         let mut grids: BTreeMap<usize, [f64; 2]> = BTreeMap::new();
         for (natural, mode) in natural.iter().zip(modes) {
             let Some(rows) = self.modes.get(&natural.mode) else {

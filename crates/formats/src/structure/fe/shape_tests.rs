@@ -26,7 +26,7 @@ fn read(frd: &str, deck: &str, points: &[StructurePoint]) -> Result<FileResults,
 
 fn file(name: &str, points: &[StructurePoint]) -> FileResults {
     let path = golden(name);
-    ResultFormat::of(&path).expect("a format").read(&path, None, points).expect("modes")
+    ResultFormat::from_path(&path).expect("a format").read(&path, None, points).expect("modes")
 }
 
 fn tip(at: [f64; 3]) -> StructurePoint {
@@ -82,7 +82,7 @@ fn points_move_as_the_structure_at_their_place() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_field() {
+fn errors_name_line_and_field() {
     let (frd, deck) = (text("boom.frd"), text("boom.inp"));
     let beam = |from: &str, to: &str| {
         let deck = text("beam.inp");

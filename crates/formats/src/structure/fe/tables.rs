@@ -3,7 +3,7 @@
 use std::ops::{Range, RangeInclusive};
 
 use super::text::{Fields, TextLine};
-use super::{FileMode, Natural};
+use super::{FileMode, NaturalFrequency};
 
 /// Largest number of rows of a table of modes.
 const MOST_ROWS: usize = 20_000;
@@ -105,7 +105,7 @@ impl ParticipationTable {
     }
 
     /// Returns the row of a mode, whose frequencies must agree.
-    fn of(&self, natural: &Natural) -> Result<&ParticipationRow, String> {
+    fn find(&self, natural: &NaturalFrequency) -> Result<&ParticipationRow, String> {
         let mode = natural.mode;
         let row = self.rows.iter().find(|row| row.mode == mode).ok_or_else(|| {
             format!(
@@ -133,7 +133,7 @@ impl ParticipationTable {
 /// # Errors
 /// Modes without factors, and tables that contradict each other.
 pub fn of_factors(
-    natural: &[Natural],
+    natural: &[NaturalFrequency],
     factors: &ParticipationTable,
     masses: &ParticipationTable,
     sign: f64,
@@ -141,9 +141,9 @@ pub fn of_factors(
     natural
         .iter()
         .map(|natural| {
-            let row = factors.of(natural)?;
+            let row = factors.find(natural)?;
             if !masses.is_empty() {
-                let effective = masses.of(natural)?;
+                let effective = masses.find(natural)?;
                 agree(natural, row, effective)?;
             }
             let scale = sign * f64::sqrt(natural.generalised_mass);
@@ -158,7 +158,7 @@ pub fn of_factors(
 /// # Errors
 /// A mode with two directions, with what to ask the solver for.
 pub fn of_masses(
-    natural: &[Natural],
+    natural: &[NaturalFrequency],
     masses: &ParticipationTable,
     ask: &str,
 ) -> Result<Vec<FileMode>, String> {
@@ -173,7 +173,7 @@ pub fn of_masses(
     natural
         .iter()
         .map(|natural| {
-            let row = masses.of(natural)?;
+            let row = masses.find(natural)?;
             let mut parts = row.parts;
             for (index, part) in parts.iter_mut().enumerate() {
                 if part.abs() <= NOTHING * if index < 3 { translation } else { rotation } {
@@ -193,7 +193,11 @@ pub fn of_masses(
 }
 
 /// Checks that effective masses are the squares of the factors times the generalised mass.
-fn agree(natural: &Natural, factors: &ParticipationRow, masses: &ParticipationRow) -> Result<(), String> {
+fn agree(
+    natural: &NaturalFrequency,
+    factors: &ParticipationRow,
+    masses: &ParticipationRow,
+) -> Result<(), String> {
     const NAMES: [&str; 6] = ["T1", "T2", "T3", "R1", "R2", "R3"];
     for kind in [0..3, 3..6] {
         let most = masses.parts[kind.clone()].iter().fold(0.0, |most: f64, part| most.max(part.abs()));

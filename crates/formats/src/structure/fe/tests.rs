@@ -27,7 +27,7 @@ fn parse(format: ResultFormat, text: &[u8], keep: Option<usize>) -> Result<FileR
 
 fn file(name: &str) -> FileResults {
     let path = golden(name);
-    ResultFormat::of(&path).expect("a format").read(&path, None, &[]).expect("modes")
+    ResultFormat::from_path(&path).expect("a format").read(&path, None, &[]).expect("modes")
 }
 
 /// Returns the modes of a structure from an independent computation: frequency, t, r, r phi'.
@@ -177,53 +177,53 @@ fn numbers_are_read_as_fortran_prints_them() {
 }
 
 #[test]
-fn what_is_wrong_is_told_with_its_line_and_field() {
-    let told = |name: &str, from: &str, to: &str| {
+fn errors_name_line_and_field() {
+    let reported = |name: &str, from: &str, to: &str| {
         let text = String::from_utf8(bytes(name)).expect("text");
         assert!(text.contains(from), "{name}: {from}");
-        let format = ResultFormat::of(Path::new(name)).expect("a format");
+        let format = ResultFormat::from_path(Path::new(name)).expect("a format");
         parse(format, text.replacen(from, to, 1).as_bytes(), None).expect_err("wrong")
     };
     let cases = [
         (
-            told("bars-msc.f06", "6.227923E+00        9", "************        9"),
+            reported("bars-msc.f06", "6.227923E+00        9", "************        9"),
             "`RADIANS` must be a finite number, got `**",
         ),
         (
-            told("bars-msc.f06", "6.227923E+00        9", "6.228923E+00        9"),
+            reported("bars-msc.f06", "6.227923E+00        9", "6.228923E+00        9"),
             "mode 1 must have one frequency",
         ),
         (
-            told("bars-msc.f06", "3.878703E+01        6", "-3.87870E+01        6"),
+            reported("bars-msc.f06", "3.878703E+01        6", "-3.87870E+01        6"),
             "eigenvalue of mode 1 must be positive",
         ),
         (
-            told("bars-msc.f06", "       10        10   ", "       11        10   "),
+            reported("bars-msc.f06", "       10        10   ", "       11        10   "),
             "must be mode 10, got mode 11",
         ),
-        (told("bars-msc.f06", "2.848100E+00", "2.948100E+00"), "`T2` must be the generalised mass times"),
-        (told("bars-msc.f06", "R E A L   E I G E N V A L U E S", "-"), "must have a table `R E A L"),
+        (reported("bars-msc.f06", "2.848100E+00", "2.948100E+00"), "`T2` must be the generalised mass times"),
+        (reported("bars-msc.f06", "R E A L   E I G E N V A L U E S", "-"), "must have a table `R E A L"),
         (
-            told("bars-msc.f06", "MODAL PARTICIPATION FACTORS", "-"),
+            reported("bars-msc.f06", "MODAL PARTICIPATION FACTORS", "-"),
             "line 156: must have participation factors",
         ),
-        (told("bars-msc.f06", "0\n", "0 *** USER FATAL MESSAGE 9050\n"), "the run failed"),
-        (told("bars.F06", "2.815070E-02 -2.8", "-2.81507E-02 -2.8"), "from its factor T1"),
-        (told("bars.F06", "S P C   F O R C E S", "-"), "SPCFORCES = ALL"),
-        (told("feet.F06", "CLAMPED", "CLAMPED"), "clamp one grid at the root"),
-        (told("panel.dat", "0.4817442E+01", "0.4817452E+01 NaN"), "line 8: must have 5 fields"),
+        (reported("bars-msc.f06", "0\n", "0 *** USER FATAL MESSAGE 9050\n"), "the run failed"),
+        (reported("bars.F06", "2.815070E-02 -2.8", "-2.81507E-02 -2.8"), "from its factor T1"),
+        (reported("bars.F06", "S P C   F O R C E S", "-"), "SPCFORCES = ALL"),
+        (reported("feet.F06", "CLAMPED", "CLAMPED"), "clamp one grid at the root"),
+        (reported("panel.dat", "0.4817442E+01", "0.4817452E+01 NaN"), "line 8: must have 5 fields"),
         (
-            told("panel.dat", "0.2061183E+02", "0.2061183E+0x"),
+            reported("panel.dat", "0.2061183E+02", "0.2061183E+0x"),
             "line 23: `Y-ROTATION` must be a finite number",
         ),
-        (told("panel.dat", "P A R T", "P A R"), "P A R T I C I P A T I O N"),
-        (told("bars.flex", "3 3 3.565450e+02", "3 4 3.565450e+02"), "`Col` must be 0 to 3, got 4"),
-        (told("bars.flex", "3 3 3.565450e+02", "3 3 -3.56545e+02"), "positive definite stiffness"),
+        (reported("panel.dat", "P A R T", "P A R"), "P A R T I C I P A T I O N"),
+        (reported("bars.flex", "3 3 3.565450e+02", "3 4 3.565450e+02"), "`Col` must be 0 to 3, got 4"),
+        (reported("bars.flex", "3 3 3.565450e+02", "3 3 -3.56545e+02"), "positive definite stiffness"),
         (
-            told("bars.flex", "3 3 3.565450e+02", "! 3"),
+            reported("bars.flex", "3 3 3.565450e+02", "! 3"),
             "must have 4 elements in its section Stiffness, got 3",
         ),
-        (told("bars.flex", "2 1 3  1.0", "2 1 3  1.5"), "must have the same rotation of mode 3"),
+        (reported("bars.flex", "2 1 3  1.0", "2 1 3  1.5"), "must have the same rotation of mode 3"),
     ];
     for (error, why) in cases {
         assert!(error.contains(why), "{error}");
@@ -279,7 +279,7 @@ fn damaged_files_are_refused_or_read_and_never_crash() {
     let mut draws = Draws(7);
     for name in ["bars.F06", "feet.F06", "bars-msc.f06", "pages-nx.f06", "panel.dat", "bars.flex", "boom.frd"]
     {
-        let format = ResultFormat::of(Path::new(name)).expect("a format");
+        let format = ResultFormat::from_path(Path::new(name)).expect("a format");
         let whole = bytes(name);
         let sound = parse(format, &whole, None).ok();
         for _ in 0..200 {

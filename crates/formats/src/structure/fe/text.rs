@@ -26,7 +26,7 @@ pub struct Lines<R> {
 
 impl<R: BufRead> Lines<R> {
     /// Creates a reader of the lines of a text.
-    pub fn of(text: R) -> Self {
+    pub fn new(text: R) -> Self {
         Self { text, number: 0, bytes: Vec::new() }
     }
 
@@ -82,7 +82,7 @@ impl TextLine {
 }
 
 /// Text in fixed columns of a line.
-pub struct Column<'a> {
+pub struct TextColumn<'a> {
     number: usize,
     name: &'static str,
     word: &'a str,
@@ -93,16 +93,16 @@ impl TextLine {
     ///
     /// # Errors
     /// A line that ends before the columns.
-    pub fn column(&self, columns: Range<usize>, name: &'static str) -> Result<Column<'_>, String> {
+    pub fn column(&self, columns: Range<usize>, name: &'static str) -> Result<TextColumn<'_>, String> {
         let number = self.number;
         let word = self.text.get(columns.clone()).filter(|_| self.ended).ok_or_else(|| {
             format!("line {number}: must have `{name}` in columns {} to {}", columns.start + 1, columns.end)
         })?;
-        Ok(Column { number, name, word: word.trim() })
+        Ok(TextColumn { number, name, word: word.trim() })
     }
 }
 
-impl Column<'_> {
+impl TextColumn<'_> {
     /// Parses the text as a number.
     ///
     /// # Errors

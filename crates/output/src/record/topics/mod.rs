@@ -7,7 +7,7 @@ mod three_axes;
 use super::foxglove::{self, LogLevel, Plumes};
 use super::row::{Topic, TopicRow};
 use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
-use crate::label::Labels;
+use crate::enum_label::LoggedEnum;
 
 pub use one_angle::{
     Adaptation, Arrival, Attitude, Command, Decision, Envelope, Estimate, GoalMotion, Law, ModeEnvelope,
@@ -79,6 +79,6 @@ pub fn label_of(identifier: &str) -> String {
     ];
     let others = [&Phase::LABELS, &Trigger::LABELS, &Sliding::LABELS, &Decision::LABELS, &LogLevel::LABELS];
     let mut labels = others.iter().chain(&states).flat_map(|of| of.values);
-    let label = labels.find(|label| Labels::identifier(label) == identifier);
+    let label = labels.find(|label| LoggedEnum::identifier(label) == identifier);
     label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())
 }

@@ -1,6 +1,6 @@
 //! Topics of one-axis bodies, of laws and of adaptation.
 
-use crate::label::labels;
+use crate::enum_label::labels;
 use crate::record::row::{label_cells, rows};
 use crate::record::states::{Gate, Lock, Phase, Use};
 use crate::time::Instant;

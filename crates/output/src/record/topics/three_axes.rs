@@ -1,7 +1,7 @@
 //! Topics of three-axis bodies.
 
-use crate::label::labels;
-use crate::motion::turning::Slip;
+use crate::enum_label::labels;
+use crate::motion::three_axis::SlipDirection;
 use crate::record::row::{label_cells, rows};
 use crate::record::states::{Latch, Light, Trust, Use, Watch};
 use crate::record::topics::one_angle::{Estimate, Torque};
@@ -20,12 +20,12 @@ labels! {
 
 label_cells!(Sliding);
 
-impl From<Slip> for Sliding {
-    fn from(slip: Slip) -> Self {
+impl From<SlipDirection> for Sliding {
+    fn from(slip: SlipDirection) -> Self {
         match slip {
-            Slip::Backward => Self::Backward,
-            Slip::Stuck => Self::Stuck,
-            Slip::Forward => Self::Forward,
+            SlipDirection::Backward => Self::Backward,
+            SlipDirection::Stuck => Self::Stuck,
+            SlipDirection::Forward => Self::Forward,
         }
     }
 }

@@ -6,18 +6,18 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::clamped::{ClampedMode, rotation_of};
-use super::drive::Drive;
-use super::hinge::{Hinge, Swung};
+use super::axes_orientation::AxesOrientation;
+use super::clamped::{ClampedMode, antisymmetric_part};
+use super::drive::AppendageDrive;
+use super::fe_results::Units;
+use super::hinge::{Hinge, HingedBody};
 use super::mass::MassProperties;
-use super::results::Units;
 use super::thermal::Thermal;
-use super::turned::Turned;
 use crate::attitude::{Vector, tensor, vector};
-use crate::body::Damping;
+use crate::body::DampingRatios;
 use crate::body::spatial::NamedPoint;
-use crate::document::Fault;
-use crate::motion::turning::{DrivenPanel, PanelMode};
+use crate::document::ConfigError;
+use crate::motion::three_axis::{ArticulatedPanel, PanelMode};
 use crate::quantity::{Finite, Positive};
 use crate::structure::mode_table::ModeTable;
 
@@ -39,18 +39,18 @@ pub struct Appendage {
     #[serde(default)]
     pub at: [Finite; 3],
     /// Rotation of its axes relative to those of the body.
-    #[serde(default, skip_serializing_if = "Turned::is_none")]
-    pub turned: Turned,
+    #[serde(default, skip_serializing_if = "AxesOrientation::is_identity")]
+    pub turned: AxesOrientation,
     /// Drive that turns it about an axis through its root during a run; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub drive: Option<Drive>,
+    pub drive: Option<AppendageDrive>,
     /// Hinge at its root, on which it swings as a rigid body at any angle, in place of `modes`; default: none.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hinge: Option<Hinge>,
     /// For a thin plate in the plane of its own x and y: the axis along which it extends; the first moments then follow
     /// from the participations in rotation.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub plate: Option<Plate>,
+    pub plate: Option<PlateAxis>,
     /// Named points of the appendage, measured from its root in its own axes.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub points: Vec<NamedPoint>,
@@ -60,7 +60,7 @@ pub struct Appendage {
     pub modes: ModeTable<ClampedMode>,
     /// Damping ratios of modes read from finite-element results.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub damping: Option<Damping>,
+    pub damping: Option<DampingRatios>,
     /// Number of modes to keep from finite-element results, lowest frequencies first; default: all.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub keep: Option<usize>,
@@ -75,7 +75,8 @@ pub struct Appendage {
 /// Axis along which a plate extends, in its own axes.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Plate {
+#[schemars(rename = "Plate")]
+pub enum PlateAxis {
     /// Along x.
     X,
     /// Along y.
@@ -92,7 +93,7 @@ impl Appendage {
     /// body's.
     pub(super) fn axes(&self, angle: f64) -> Matrix3<f64> {
         let turned = self.turned.matrix();
-        self.drive.as_ref().map_or(turned, |drive| turned * drive.turn(angle))
+        self.drive.as_ref().map_or(turned, |drive| turned * drive.rotation(angle))
     }
 
     /// Returns the clamped modes: those of the table, or the single mode of the hinge.
@@ -102,8 +103,8 @@ impl Appendage {
     }
 
     /// Returns the appendage as a rigid body on its hinge.
-    fn swung(&self) -> Swung<'_> {
-        Swung {
+    fn swung(&self) -> HingedBody<'_> {
+        HingedBody {
             mass: self.mass.get(),
             centre: vector(&self.centre),
             inertia: tensor(&self.inertia),
@@ -115,7 +116,7 @@ impl Appendage {
     ///
     /// # Errors
     /// The faulty key, and the reason.
-    pub(super) fn check_hinge(&self) -> Result<(), Fault> {
+    pub(super) fn check_hinge(&self) -> Result<(), ConfigError> {
         let Some(hinge) = &self.hinge else { return Ok(()) };
         let others = [
             ("drive", self.drive.is_some()),
@@ -125,20 +126,20 @@ impl Appendage {
         ];
         if let Some((key, _)) = others.into_iter().find(|(_, there)| *there) {
             let why = "must be left out: an appendage with a `hinge` is rigid, and swings on the hinge alone";
-            return Err(Fault::new(key, why));
+            return Err(ConfigError::new(key, why));
         }
         hinge.check(&self.swung()).map_err(|fault| fault.within("hinge"))
     }
 
     /// Returns the appendage as a panel of the integrator; its drive, if it has one, gets the index `drives`.
-    pub(super) fn panel(&self, drives: usize) -> DrivenPanel {
+    pub(super) fn for_integrator(&self, drives: usize) -> ArticulatedPanel {
         let mode = |mode: &ClampedMode| PanelMode {
             frequency: mode.frequency.get(),
             damping: mode.damping.get(),
             translation: self.translation(mode),
             moments: self.moments(mode),
         };
-        DrivenPanel {
+        ArticulatedPanel {
             mass: self.mass.get(),
             root: vector(&self.at),
             axes: self.turned.matrix(),
@@ -146,7 +147,7 @@ impl Appendage {
             inertia: tensor(&self.inertia),
             modes: self.clamped_modes().iter().map(mode).collect(),
             drive: self.drive.as_ref().map(|drive| (drive.axis(), drives)),
-            hinge: self.hinge.as_ref().map(|hinge| hinge.of_motion(&self.swung())),
+            hinge: self.hinge.as_ref().map(|hinge| hinge.for_integrator(&self.swung())),
         }
     }
 
@@ -161,7 +162,7 @@ impl Appendage {
     }
 
     /// Returns true if the complete first moments of a mode are known, and not only their antisymmetric part.
-    pub(super) fn knows_moments(&self, mode: &ClampedMode) -> bool {
+    pub(super) fn has_moments(&self, mode: &ClampedMode) -> bool {
         mode.moments.is_some() || self.plate.is_some() || self.is_point()
     }
 
@@ -170,7 +171,7 @@ impl Appendage {
     pub fn participations(&self) -> Vec<(Vector, Vector)> {
         self.clamped_modes()
             .iter()
-            .map(|mode| (self.translation(mode), rotation_of(&self.moments(mode))))
+            .map(|mode| (self.translation(mode), antisymmetric_part(&self.moments(mode))))
             .collect()
     }
 
@@ -190,8 +191,8 @@ impl Appendage {
         let r = mode.rotation.as_ref().map_or_else(Vector::zeros, vector);
         match self.plate {
             // Bending and torsion are unambiguous; in plane, points are assumed to move across the length.
-            Some(Plate::Y) => Matrix3::new(0.0, 0.0, -r.y, -r.z, 0.0, r.x, 0.0, 0.0, 0.0),
-            Some(Plate::X) => Matrix3::new(0.0, r.z, -r.y, 0.0, 0.0, r.x, 0.0, 0.0, 0.0),
+            Some(PlateAxis::Y) => Matrix3::new(0.0, 0.0, -r.y, -r.z, 0.0, r.x, 0.0, 0.0, 0.0),
+            Some(PlateAxis::X) => Matrix3::new(0.0, r.z, -r.y, 0.0, 0.0, r.x, 0.0, 0.0, 0.0),
             // The symmetric part is unknown: it is set to zero.
             None => -0.5 * r.cross_matrix(),
         }

@@ -6,24 +6,24 @@ use std::sync::Arc;
 use nalgebra::{Matrix3, Matrix3xX};
 
 use super::appendage::Appendage;
-use super::check;
-use super::clamped::rotation_of;
-use super::damping::FreeDamping;
+use super::clamped::antisymmetric_part;
+use super::free_damping::FreeModeDamping;
 use super::mass::MassProperties;
 use super::spacecraft::Spacecraft;
 use super::thermal;
-use super::{Craft, HubRotor};
+use super::validation;
+use super::{AssembledSpacecraft, HubRotor};
 use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
-use crate::body::spatial::{NamedPoint, SpatialMode};
-use crate::document::Fault;
-use crate::motion::turning::{ClampedModes, DrivenSpacecraft, Flexible, Free, FreeMode};
+use crate::body::spatial::{NamedPoint, ThreeAxisMode};
+use crate::document::ConfigError;
+use crate::motion::three_axis::{ArticulatedBody, ClampedModes, FlexibleBody, FreeMode, FreeModes};
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
 
 /// Clamped mode as a part of the spacecraft.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Part {
+pub struct ClampedModeInBody {
     /// Natural frequency with the root held (rad/s).
     pub frequency: f64,
     /// Damping ratio with the root held.
@@ -39,17 +39,17 @@ pub struct Part {
 }
 
 /// Appendage with the matrix that transforms vectors from its axes to the body's.
-type Turned<'a> = (&'a Appendage, Matrix3<f64>);
+type OrientedAppendage<'a> = (&'a Appendage, Matrix3<f64>);
 
 /// Point of the structure: its position in the body, and the shapes of the clamped modes there.
-struct Place<'a> {
+struct BodyPoint<'a> {
     point: &'a NamedPoint,
     at: Vector,
     /// Displacement and rotation per unit of each clamped mode, relative to the hub.
     shapes: Vec<(Vector, Vector)>,
 }
 
-impl Craft {
+impl AssembledSpacecraft {
     /// Assembles a spacecraft with the drives at `angles` (rad), one for each appendage (ignored for those without a
     /// drive).
     ///
@@ -60,13 +60,13 @@ impl Craft {
         appendages: &[Appendage],
         angles: &[f64],
         rotors: &[HubRotor],
-    ) -> Result<Self, Fault> {
-        check::check(spacecraft, appendages)?;
+    ) -> Result<Self, ConfigError> {
+        validation::validate(spacecraft, appendages)?;
         let turned: Vec<_> = appendages.iter().zip(angles).map(|(of, angle)| (of, of.axes(*angle))).collect();
         let bodies = turned.iter().map(|(appendage, axes)| appendage.mass_properties(axes));
         let bodies: Vec<_> = std::iter::once(spacecraft.mass_properties()).chain(bodies).collect();
-        let whole = MassProperties::together(&bodies);
-        let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::spinning).sum();
+        let whole = MassProperties::sum(&bodies);
+        let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
         let parts = parts(&turned, &whole.centre);
         for (index, appendage) in appendages.iter().enumerate() {
             let thermal = appendage.thermal.as_ref();
@@ -79,14 +79,15 @@ impl Craft {
             inertia: whole.inertia - spinning,
             frequencies: parts.iter().map(|part| part.frequency).collect(),
             translations: columns(&parts, |part| part.translation),
-            rotations: columns(&parts, |part| rotation_of(&part.moments)),
+            rotations: columns(&parts, |part| antisymmetric_part(&part.moments)),
         };
         let left = held.residual_inertia().unwrap_or_else(Matrix3::zeros);
-        check::hub_keeps(&left, &held.inertia)?;
-        let unsolved = || Fault::new("spacecraft.inertia", "leaves the free modes without a mass matrix");
-        let free = held.free().ok_or_else(unsolved)?;
+        validation::validate_hub_inertia(&left, &held.inertia)?;
+        let unsolved =
+            || ConfigError::new("spacecraft.inertia", "leaves the free modes without a mass matrix");
+        let free = held.free_modes().ok_or_else(unsolved)?;
         let ratios: Vec<f64> = parts.iter().map(|part| part.damping).collect();
-        let damping = FreeDamping::new(&free, &held.frequencies, &ratios);
+        let damping = FreeModeDamping::new(&free, &held.frequencies, &ratios);
         let hub_points = spacecraft.hub_points();
         let places = places(&hub_points, &turned, parts.len());
         Ok(Self {
@@ -98,10 +99,10 @@ impl Craft {
                 modes: modes(appendages, &held, &free, &damping, &places, &whole.centre)?.into(),
                 disturbance: None,
             },
-            flexible: Flexible {
+            flexible: FlexibleBody {
                 inertia: held.inertia,
                 modes: coupled(&parts, &free, &damping),
-                damping: damping.whole(spacecraft.whole_damping),
+                damping: damping.full_matrix(spacecraft.whole_damping),
             },
             driven: driven(spacecraft, appendages, &spinning),
             mass: whole.mass,
@@ -118,25 +119,25 @@ fn driven(
     spacecraft: &Spacecraft,
     appendages: &[Appendage],
     spinning: &Matrix3<f64>,
-) -> Option<Arc<DrivenSpacecraft>> {
+) -> Option<Arc<ArticulatedBody>> {
     let hub = spacecraft.mass_properties();
     let mut driven =
-        DrivenSpacecraft { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
+        ArticulatedBody { hub: (hub.mass, hub.centre, hub.inertia - spinning), panels: Vec::new() };
     for appendage in appendages {
         let drives = driven.drives();
-        driven.panels.push(appendage.panel(drives));
+        driven.panels.push(appendage.for_integrator(drives));
     }
-    driven.turns().then(|| Arc::new(driven))
+    driven.is_articulated().then(|| Arc::new(driven))
 }
 
 impl HubRotor {
     /// Returns the rotor's inertia tensor about its axis alone (kg m²), in the body's axes.
-    pub fn spinning(&self) -> Matrix3<f64> {
+    pub fn axial_inertia(&self) -> Matrix3<f64> {
         self.spin_inertia * self.axis * self.axis.transpose()
     }
 }
 
-impl Part {
+impl ClampedModeInBody {
     /// Returns the change of the inertia tensor per unit of the mode (sqrt(kg) m): 2 tr(N) 1 - N - N'.
     fn stretching(&self) -> Matrix3<f64> {
         let n = &self.moments;
@@ -146,18 +147,18 @@ impl Part {
 
 /// Returns the clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C
 /// t)'.
-fn parts(appendages: &[Turned<'_>], centre: &Vector) -> Vec<Part> {
-    let of = |(appendage, axes): &Turned<'_>| -> Vec<Part> {
+fn parts(appendages: &[OrientedAppendage<'_>], centre: &Vector) -> Vec<ClampedModeInBody> {
+    let of = |(appendage, axes): &OrientedAppendage<'_>| -> Vec<ClampedModeInBody> {
         let from_centre = vector(&appendage.at) - centre;
         let mode = |mode: &super::ClampedMode| {
             let translation = axes * appendage.translation(mode);
             let own = axes * appendage.moments(mode) * axes.transpose();
-            Part {
+            ClampedModeInBody {
                 frequency: mode.frequency.get(),
                 damping: mode.damping.get(),
                 translation,
                 moments: own + from_centre * translation.transpose(),
-                knows_moments: appendage.knows_moments(mode),
+                knows_moments: appendage.has_moments(mode),
                 is_hinge: appendage.hinge.is_some(),
             }
         };
@@ -166,16 +167,20 @@ fn parts(appendages: &[Turned<'_>], centre: &Vector) -> Vec<Part> {
     appendages.iter().flat_map(of).collect()
 }
 
-fn columns(parts: &[Part], of: impl Fn(&Part) -> Vector) -> Matrix3xX<f64> {
+fn columns(parts: &[ClampedModeInBody], of: impl Fn(&ClampedModeInBody) -> Vector) -> Matrix3xX<f64> {
     let columns: Vec<Vector> = parts.iter().map(of).collect();
     Matrix3xX::from_fn(columns.len(), |row, column| columns[column][row])
 }
 
 /// Returns all points, those of the hub first.
-fn places<'a>(hub: &'a [NamedPoint], appendages: &[Turned<'a>], modes: usize) -> Vec<Place<'a>> {
+fn places<'a>(
+    hub: &'a [NamedPoint],
+    appendages: &[OrientedAppendage<'a>],
+    modes: usize,
+) -> Vec<BodyPoint<'a>> {
     let rigid = || vec![(Vector::zeros(), Vector::zeros()); modes];
     let mut places: Vec<_> =
-        hub.iter().map(|point| Place { point, at: vector(&point.position), shapes: rigid() }).collect();
+        hub.iter().map(|point| BodyPoint { point, at: vector(&point.position), shapes: rigid() }).collect();
     let mut first = 0;
     for (appendage, axes) in appendages {
         let clamped = appendage.clamped_modes();
@@ -186,15 +191,15 @@ fn places<'a>(hub: &'a [NamedPoint], appendages: &[Turned<'a>], modes: usize) ->
                 shapes[first + index] = (axes * vector(&shape.translation), axes * vector(&shape.rotation));
             }
             let at = vector(&appendage.at) + axes * vector(&point.position);
-            places.push(Place { point, at, shapes });
+            places.push(BodyPoint { point, at, shapes });
         }
         first += clamped.len();
     }
     places
 }
 
-fn points(places: &[Place], centre: &Vector) -> Result<Vec<NamedPoint>, Fault> {
-    let point = |place: &Place| {
+fn points(places: &[BodyPoint], centre: &Vector) -> Result<Vec<NamedPoint>, ConfigError> {
+    let point = |place: &BodyPoint| {
         Ok(NamedPoint { name: place.point.name.clone(), position: three(&(place.at - centre))? })
     };
     places.iter().map(point).collect()
@@ -204,11 +209,11 @@ fn points(places: &[Place], centre: &Vector) -> Result<Vec<NamedPoint>, Fault> {
 fn modes(
     appendages: &[Appendage],
     held: &ClampedModes,
-    free: &Free,
-    damping: &FreeDamping,
-    places: &[Place],
+    free: &FreeModes,
+    damping: &FreeModeDamping,
+    places: &[BodyPoint],
     centre: &Vector,
-) -> Result<Vec<SpatialMode>, Fault> {
+) -> Result<Vec<ThreeAxisMode>, ConfigError> {
     let clamped: Vec<_> =
         appendages.iter().flat_map(|appendage| appendage.clamped_modes().into_owned()).collect();
     let displacements: Vec<f64> = clamped.iter().map(|mode| mode.displacement.get()).collect();
@@ -217,21 +222,21 @@ fn modes(
     let mode = |(index, frequency): (usize, &f64)| {
         let shapes =
             places.iter().map(|place| Ok((place.point.name.clone(), place.shape(free, index, centre)?)));
-        Ok(SpatialMode {
-            frequency: Frequency::new(*frequency).ok_or_else(|| too_fast(*frequency))?,
+        Ok(ThreeAxisMode {
+            frequency: Frequency::new(*frequency).ok_or_else(|| exceeds_rate_limit(*frequency))?,
             damping: NonNegative::new(damping.ratios[index].max(0.0)).ok_or_else(out_of_range)?,
             displacement: finite(displacements[index])?,
             rate: finite(rates[index])?,
-            shapes: shapes.collect::<Result<BTreeMap<_, _>, Fault>>()?,
+            shapes: shapes.collect::<Result<BTreeMap<_, _>, ConfigError>>()?,
         })
     };
     free.frequencies.iter().enumerate().map(mode).collect()
 }
 
-impl Place<'_> {
+impl BodyPoint<'_> {
     /// Returns the displacement u + phi x (p - c) + F Y and the rotation phi + R Y of the point in a free mode that
     /// consists of the clamped modes Y.
-    fn shape(&self, free: &Free, mode: usize, centre: &Vector) -> Result<Shape, Fault> {
+    fn shape(&self, free: &FreeModes, mode: usize, centre: &Vector) -> Result<Shape, ConfigError> {
         let rotation = free.rotation(mode);
         let hub = (free.translation(mode) + rotation.cross(&(self.at - centre)), rotation);
         let column = free.shapes.column(mode);
@@ -242,7 +247,7 @@ impl Place<'_> {
     }
 }
 
-fn coupled(parts: &[Part], free: &Free, damping: &FreeDamping) -> Vec<FreeMode> {
+fn coupled(parts: &[ClampedModeInBody], free: &FreeModes, damping: &FreeModeDamping) -> Vec<FreeMode> {
     let mode = |(index, frequency): (usize, &f64)| {
         let column = free.shapes.column(index);
         FreeMode {
@@ -255,29 +260,29 @@ fn coupled(parts: &[Part], free: &Free, damping: &FreeDamping) -> Vec<FreeMode> 
     free.frequencies.iter().enumerate().map(mode).collect()
 }
 
-fn too_fast(frequency: f64) -> Fault {
+fn exceeds_rate_limit(frequency: f64) -> ConfigError {
     let why = format!(
         "must leave the hub inertia of its own: with the hub free a mode has {frequency:e} rad/s, and {} to {} rad/s are \
          computed",
         Frequency::SMALLEST,
         Frequency::LARGEST
     );
-    Fault::new("spacecraft.inertia", why)
+    ConfigError::new("spacecraft.inertia", why)
 }
 
-fn out_of_range() -> Fault {
-    Fault::new("spacecraft", "has numbers whose products leave the range of double precision")
+fn out_of_range() -> ConfigError {
+    ConfigError::new("spacecraft", "has numbers whose products leave the range of double precision")
 }
 
-fn finite(value: f64) -> Result<Finite, Fault> {
+fn finite(value: f64) -> Result<Finite, ConfigError> {
     Finite::new(value).ok_or_else(out_of_range)
 }
 
-fn three(of: &Vector) -> Result<[Finite; 3], Fault> {
+fn three(of: &Vector) -> Result<[Finite; 3], ConfigError> {
     Ok([finite(of.x)?, finite(of.y)?, finite(of.z)?])
 }
 
-fn rows(of: &Matrix3<f64>) -> Result<[[Finite; 3]; 3], Fault> {
+fn rows(of: &Matrix3<f64>) -> Result<[[Finite; 3]; 3], ConfigError> {
     let row = |row: usize| three(&of.row(row).transpose());
     Ok([row(0)?, row(1)?, row(2)?])
 }

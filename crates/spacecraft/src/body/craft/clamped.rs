@@ -60,7 +60,7 @@ impl ClampedMode {
 }
 
 /// Returns the integral of r x phi dm, which is the antisymmetric part of the first moments, the integral of r phi' dm.
-pub fn rotation_of(moments: &Matrix3<f64>) -> Vector {
+pub fn antisymmetric_part(moments: &Matrix3<f64>) -> Vector {
     let n = moments;
     Vector::new(n[(1, 2)] - n[(2, 1)], n[(2, 0)] - n[(0, 2)], n[(0, 1)] - n[(1, 0)])
 }
@@ -68,10 +68,10 @@ pub fn rotation_of(moments: &Matrix3<f64>) -> Vector {
 impl ModeRow for ClampedMode {
     const LIST: &'static str = "ClampedModes";
     const FILES: &'static str = ".csv, .f06, .frd, .dat or .flex";
-    const OWN: &'static [&'static str] =
+    const EXTRA_COLUMNS: &'static [&'static str] =
         &["tx", "ty", "tz", "rx", "ry", "rz", "nxx", "nxy", "nxz", "nyx", "nyy", "nyz", "nzx", "nzy", "nzz"];
 
-    fn of(frequency: Frequency) -> Self {
+    fn from_frequency(frequency: Frequency) -> Self {
         Self {
             frequency,
             damping: NonNegative::default(),
@@ -94,7 +94,7 @@ impl ModeRow for ClampedMode {
         }
     }
 
-    fn set_own(&mut self, column: usize, value: Finite) {
+    fn set_extra(&mut self, column: usize, value: Finite) {
         match column {
             0..3 => self.translation[column] = value,
             3..6 => self.rotation.get_or_insert_default()[column - 3] = value,

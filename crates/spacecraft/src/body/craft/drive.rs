@@ -5,13 +5,14 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Vector, vector};
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Positive};
 
 /// A drive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Drive {
+#[schemars(rename = "Drive")]
+pub struct AppendageDrive {
     /// Axis through the root, in the axes of the appendage, of any nonzero length.
     pub about: [Finite; 3],
     /// Angle at the start (rad); at 0 the appendage has the orientation given by `turned`.
@@ -34,7 +35,7 @@ pub struct Drive {
     pub table: Vec<DrivePoint>,
     /// Object that the drive tracks.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub track: Option<Track>,
+    pub track: Option<TrackedObject>,
     /// Direction that is turned to the Sun, in the axes of the appendage, perpendicular to the drive's axis; default: z.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub normal: Option<[Finite; 3]>,
@@ -53,30 +54,31 @@ pub struct DrivePoint {
 /// Object that a drive tracks.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-pub enum Track {
+#[schemars(rename = "Track")]
+pub enum TrackedObject {
     /// The Sun, as seen from a spacecraft that points exactly at its target.
     Sun,
 }
 
 /// Piece of a drive's profile: start time (s), with angle (rad), rate (rad/s) and constant acceleration (rad/s²) there.
-pub type Piece = [f64; 4];
+pub type DrivePiece = [f64; 4];
 
 /// Largest angle of a drive at the start (rad).
 const MOST_ANGLE: f64 = 100.0;
 
-impl Drive {
+impl AppendageDrive {
     /// Returns the unit vector along the drive's axis, in the axes of the appendage.
     pub fn axis(&self) -> Vector {
         vector(&self.about).normalize()
     }
 
     /// Returns the direction to turn to the Sun, a unit vector in the axes of the appendage.
-    pub fn facing(&self) -> Vector {
+    pub fn sun_facing(&self) -> Vector {
         self.normal.as_ref().map_or_else(Vector::z, |normal| vector(normal).normalize())
     }
 
     /// Returns the rotation by an angle (rad) about the drive's axis.
-    pub fn turn(&self, angle: f64) -> Matrix3<f64> {
+    pub fn rotation(&self, angle: f64) -> Matrix3<f64> {
         let axis = self.axis();
         let (sin, cos) = libm::sincos(angle);
         (1.0 - cos) * axis * axis.transpose() + cos * Matrix3::identity() + sin * axis.cross_matrix()
@@ -86,20 +88,23 @@ impl Drive {
     ///
     /// # Errors
     /// A key within the drive, and the reason.
-    pub fn check(&self) -> Result<(), Fault> {
+    pub fn validate(&self) -> Result<(), ConfigError> {
         let length = vector(&self.about).norm();
         if !(1e-6..=1e6).contains(&length) {
-            return Err(Fault::new("about", format!("must have a length of 1e-6 to 1e6, got {length}")));
+            return Err(ConfigError::new(
+                "about",
+                format!("must have a length of 1e-6 to 1e6, got {length}"),
+            ));
         }
         if self.angle.get().abs() > MOST_ANGLE {
             let why =
                 format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {}", self.angle.get());
-            return Err(Fault::new("angle", why));
+            return Err(ConfigError::new("angle", why));
         }
         let ways = [self.rate.is_some(), !self.table.is_empty(), self.track.is_some()];
         if ways.iter().filter(|given| **given).count() != 1 {
             let why = "needs exactly one of `rate`, `table` and `track`";
-            return Err(Fault::new("", why));
+            return Err(ConfigError::new("", why));
         }
         let beside = [
             ("angle", self.angle.get() != 0.0, self.rate.is_some()),
@@ -114,36 +119,39 @@ impl Drive {
                 "acceleration" => "`rate` or `table`",
                 _ => "`rate`",
             };
-            return Err(Fault::new(key, format!("needs {with}")));
+            return Err(ConfigError::new(key, format!("needs {with}")));
         }
         if let Some(normal) = &self.normal {
             let normal = vector(normal);
             let across = normal.norm() > 1e-6 && normal.normalize().dot(&self.axis()).abs() < 1e-6;
             if !across {
-                return Err(Fault::new(
+                return Err(ConfigError::new(
                     "normal",
                     "must be perpendicular to `about`: the drive cannot change its component along `about`",
                 ));
             }
         } else if self.track.is_some() && self.axis().z.abs() > 1e-6 {
-            return Err(Fault::new("normal", "must be given if the drive's axis is not perpendicular to z"));
+            return Err(ConfigError::new(
+                "normal",
+                "must be given if the drive's axis is not perpendicular to z",
+            ));
         }
         self.fits_in_time()
     }
 
     /// Checks that each change of the rate begins after the previous one has ended.
-    fn fits_in_time(&self) -> Result<(), Fault> {
+    fn fits_in_time(&self) -> Result<(), ConfigError> {
         for (index, pair) in self.table.windows(2).enumerate() {
             let [before, after] = [pair[0].time.get(), pair[1].time.get()];
             if after <= before {
                 let why = format!("must be after the time before, {before}, got {after}");
-                return Err(Fault::new(format!("table[{}].time", index + 1), why));
+                return Err(ConfigError::new(format!("table[{}].time", index + 1), why));
             }
         }
         if self.table.len() == 1 {
-            return Err(Fault::new("table", "must have at least two points"));
+            return Err(ConfigError::new("table", "must have at least two points"));
         }
-        let pieces = self.pieces();
+        let pieces = self.profile();
         if let Some(pair) = pieces.windows(2).find(|pair| pair[1][0] < pair[0][0]) {
             let why = format!(
                 "is too small: the change of the rate that begins at {:.3} s has not ended when the next begins, at {:.3} s",
@@ -151,18 +159,18 @@ impl Drive {
                 pair[1][0].max(pair[0][0])
             );
             let key = if self.acceleration.is_some() { "acceleration" } else { "until" };
-            return Err(Fault::new(key, why));
+            return Err(ConfigError::new(key, why));
         }
         if pieces.first().is_some_and(|first| first[0] < 0.0) {
             let why = "is too small: the rate would have to change before the start";
-            return Err(Fault::new("acceleration", why));
+            return Err(ConfigError::new("acceleration", why));
         }
         Ok(())
     }
 
     /// Returns the profile of a drive that tracks no object; before the first piece the drive rests at that piece's
     /// angle.
-    pub fn pieces(&self) -> Vec<Piece> {
+    pub fn profile(&self) -> Vec<DrivePiece> {
         // Each change of the rate: its time (s) and the new rate (rad/s).
         let changes: Vec<[f64; 2]> = if let Some(rate) = self.rate {
             let from = self.from.map_or(0.0, NonNegative::get);
@@ -179,7 +187,7 @@ impl Drive {
         };
         let start = self.table.first().map_or(self.angle.get(), |first| first.angle.get());
         // A drive that turns from the start on has turned before too.
-        let mut now: Piece = [0.0, start, 0.0, 0.0];
+        let mut now: DrivePiece = [0.0, start, 0.0, 0.0];
         let mut pieces = Vec::new();
         for (index, [time, rate]) in changes.into_iter().enumerate() {
             let change = rate - now[2];
@@ -207,15 +215,15 @@ impl Drive {
 mod tests {
     use super::*;
 
-    fn drive(text: &str) -> Drive {
+    fn drive(text: &str) -> AppendageDrive {
         toml::from_str(&format!("about = [0, 2, 0]\n{text}")).unwrap()
     }
 
     #[test]
     fn rates_begin_and_end_along_a_trapezium() {
-        let pieces = drive("rate = 0.02\nfrom = 10\nuntil = 40\nacceleration = 0.002\nangle = 0.1").pieces();
-        let near = |a: &Piece, b: Piece| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15);
-        let expected: [Piece; 4] = [
+        let pieces = drive("rate = 0.02\nfrom = 10\nuntil = 40\nacceleration = 0.002\nangle = 0.1").profile();
+        let near = |a: &DrivePiece, b: DrivePiece| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-15);
+        let expected: [DrivePiece; 4] = [
             [10.0, 0.1, 0.0, 0.002],
             [20.0, 0.2, 0.02, 0.0],
             [40.0, 0.6, 0.02, -0.002],
@@ -228,10 +236,10 @@ mod tests {
     fn tables_are_met_and_their_corners_rounded() {
         let table =
             "table = [{ time = 10, angle = 0 }, { time = 20, angle = 0.1 }, { time = 40, angle = 0 }]";
-        let sharp = drive(table).pieces();
+        let sharp = drive(table).profile();
         assert_eq!(sharp.iter().map(|piece| piece[0]).collect::<Vec<_>>(), [10.0, 20.0, 40.0]);
         assert!((sharp[2][1]).abs() < 1e-16 && sharp[2][2] == 0.0);
-        let round = drive(&format!("{table}\nacceleration = 0.005")).pieces();
+        let round = drive(&format!("{table}\nacceleration = 0.005")).profile();
         // Half of the change of 0.01 rad/s is before 10 s, and after the last corner the angle is that of the table.
         assert_eq!(round[0], [9.0, 0.0, 0.0, 0.005]);
         let last = round.last().unwrap();
@@ -254,9 +262,9 @@ mod tests {
                 "acceleration",
             ),
         ] {
-            let fault = drive(text).check().expect_err(text);
+            let fault = drive(text).validate().expect_err(text);
             assert_eq!(fault.key, key, "{text}: {fault}");
         }
-        assert_eq!(drive("track = \"sun\"").check(), Ok(()));
+        assert_eq!(drive("track = \"sun\"").validate(), Ok(()));
     }
 }

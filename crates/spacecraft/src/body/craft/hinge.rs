@@ -7,8 +7,8 @@ use serde::{Deserialize, Serialize};
 use super::clamped::ClampedMode;
 use crate::attitude::{Vector, vector};
 use crate::body::spatial::NamedPoint;
-use crate::document::Fault;
-use crate::motion::turning;
+use crate::document::ConfigError;
+use crate::motion::three_axis;
 use crate::quantity::{Finite, Frequency, NonNegative, Positive};
 use crate::structure::Shape;
 
@@ -38,7 +38,7 @@ const MOST_ANGLE: f64 = 3.2;
 const LEAST: f64 = 1e-9;
 
 /// Rigid body that swings on a hinge, in the axes of the appendage.
-pub(super) struct Swung<'a> {
+pub(super) struct HingedBody<'a> {
     /// Mass (kg).
     pub mass: f64,
     /// Centre of mass from the root (m).
@@ -56,13 +56,13 @@ impl Hinge {
     }
 
     /// Returns the hinge in the integrator's form.
-    pub(super) fn of_motion(&self, swung: &Swung<'_>) -> turning::Hinge {
-        turning::Hinge { about: self.axis(), inertia: swung.about(&self.axis()) }
+    pub(super) fn for_integrator(&self, swung: &HingedBody<'_>) -> three_axis::HingeGeometry {
+        three_axis::HingeGeometry { about: self.axis(), inertia: swung.about(&self.axis()) }
     }
 
     /// Returns the mode of the hinge, in which the appendage turns as a whole, by 1/sqrt(I) per unit; `None` if its
     /// frequency is out of range.
-    pub(super) fn mode(&self, swung: &Swung<'_>) -> Option<ClampedMode> {
+    pub(super) fn mode(&self, swung: &HingedBody<'_>) -> Option<ClampedMode> {
         let (axis, centre, own) = (self.axis(), swung.centre, &swung.inertia);
         let inertia = swung.about(&axis);
         let unit = f64::sqrt(inertia);
@@ -92,15 +92,18 @@ impl Hinge {
     ///
     /// # Errors
     /// A key within the hinge, and the reason.
-    pub(super) fn check(&self, swung: &Swung<'_>) -> Result<(), Fault> {
+    pub(super) fn check(&self, swung: &HingedBody<'_>) -> Result<(), ConfigError> {
         let length = vector(&self.about).norm();
         if !(1e-6..=1e6).contains(&length) {
-            return Err(Fault::new("about", format!("must have a length of 1e-6 to 1e6, got {length}")));
+            return Err(ConfigError::new(
+                "about",
+                format!("must have a length of 1e-6 to 1e6, got {length}"),
+            ));
         }
         let angle = self.angle.get();
         if angle.abs() > MOST_ANGLE {
             let why = format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {angle}");
-            return Err(Fault::new("angle", why));
+            return Err(ConfigError::new("angle", why));
         }
         let inertia = swung.about(&self.axis());
         let whole = 0.5 * swung.inertia.trace() + swung.mass * swung.centre.norm_squared();
@@ -109,7 +112,7 @@ impl Hinge {
                 "must be an axis about which the appendage has inertia, got one of {inertia} kg m²: give it an `inertia`, or its \
                  `centre`"
             );
-            return Err(Fault::new("about", why));
+            return Err(ConfigError::new("about", why));
         }
         if self.mode(swung).is_none() {
             let why = format!(
@@ -118,13 +121,13 @@ impl Hinge {
                 Frequency::LARGEST,
                 f64::sqrt(self.stiffness.get() / inertia)
             );
-            return Err(Fault::new("stiffness", why));
+            return Err(ConfigError::new("stiffness", why));
         }
         Ok(())
     }
 }
 
-impl Swung<'_> {
+impl HingedBody<'_> {
     /// Returns the moment of inertia about an axis through the root (kg m²).
     fn about(&self, axis: &Vector) -> f64 {
         axis.dot(&(self.inertia * axis)) + self.mass * axis.cross(&self.centre).norm_squared()

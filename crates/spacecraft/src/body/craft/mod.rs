@@ -5,36 +5,36 @@
 
 mod appendage;
 mod assembly;
-mod check;
+mod axes_orientation;
 mod clamped;
-mod damping;
 mod drive;
+mod fe_results;
+mod free_damping;
 mod hinge;
-mod limit;
 mod mass;
-mod moving;
-mod results;
+mod rate_limit;
 mod spacecraft;
 mod thermal;
-mod turned;
+mod translation;
+mod validation;
 
 use std::sync::Arc;
 
 use crate::attitude::Vector;
 use crate::body::Spatial;
-use crate::motion::turning::{DrivenSpacecraft, Flexible};
+use crate::motion::three_axis::{ArticulatedBody, FlexibleBody};
 
-pub use appendage::{Appendage, Plate};
-pub use assembly::Part;
+pub use appendage::{Appendage, PlateAxis};
+pub use assembly::ClampedModeInBody;
+pub use axes_orientation::{AxesOrientation, AxisRotation};
 pub use clamped::ClampedMode;
-pub use drive::{Drive, DrivePoint, Piece, Track};
+pub use drive::{AppendageDrive, DrivePiece, DrivePoint, TrackedObject};
+pub use fe_results::Units;
 pub use hinge::Hinge;
-pub use limit::Limit;
-pub use moving::Moving;
-pub use results::Units;
+pub use rate_limit::RateLimit;
 pub use spacecraft::Spacecraft;
 pub use thermal::{Bending, Thermal};
-pub use turned::{Turn, Turned};
+pub use translation::Translation;
 
 /// Rotor of the hub that turns freely about its axis.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -47,22 +47,22 @@ pub struct HubRotor {
 
 /// Spacecraft assembled from hub and appendages.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Craft {
+pub struct AssembledSpacecraft {
     /// Rigid body and free modes, without the action of the modes on the rotation. Positions are from the total centre
     /// of mass.
     pub spatial: Spatial,
     /// Two-way coupling of rotation and modes.
-    pub flexible: Flexible,
+    pub flexible: FlexibleBody,
     /// Total mass (kg).
     pub mass: f64,
     /// Total centre of mass, from the point O (m).
     pub centre: Vector,
     /// Clamped modes in the body's axes, appendage by appendage.
-    pub parts: Vec<Part>,
+    pub parts: Vec<ClampedModeInBody>,
     /// Thermal bending of the appendages.
     pub bendings: Vec<Bending>,
     /// Off-diagonal damping of the free modes, the largest |Dq_ij| W/|W_i² - W_j²|.
     pub damping_coupling: f64,
     /// Hub and appendages with drives and hinges for the integrator; `None` if there are neither.
-    pub driven: Option<Arc<DrivenSpacecraft>>,
+    pub driven: Option<Arc<ArticulatedBody>>,
 }

@@ -6,7 +6,7 @@ use serde::{Deserialize, Serialize};
 
 use super::Appendage;
 use crate::count::counted;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Positive};
 
 /// Thermal bending.
@@ -30,10 +30,10 @@ pub struct Bending {
 
 impl Thermal {
     /// Returns the key and the reason, if there is not one deflection for each mode.
-    pub(super) fn fault(&self, modes: usize) -> Option<Fault> {
+    pub(super) fn fault(&self, modes: usize) -> Option<ConfigError> {
         let given = self.deflection.len();
         (given != modes).then(|| {
-            Fault::new(
+            ConfigError::new(
                 "thermal.deflection",
                 format!("must be one for each of {}, got {given}", counted(modes, "mode")),
             )

@@ -11,7 +11,8 @@ use crate::quantity::{Finite, Positive};
 /// A torque in the body's axes: constant + amplitude sin(2 pi t/period + phase) about each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Periodic {
+#[schemars(rename = "Periodic")]
+pub struct PeriodicTorque {
     /// Constant part (N m).
     #[serde(default)]
     pub constant: [Finite; 3],
@@ -30,7 +31,7 @@ fn orbit() -> Positive {
     Positive::new(5560.0).unwrap_or(Positive::ONE)
 }
 
-impl Periodic {
+impl PeriodicTorque {
     /// Returns the torque at a time since the start (N m).
     pub fn at(&self, t: f64) -> Vector {
         let turns = TAU * t / self.period.get();

@@ -16,12 +16,12 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::attitude::{Attitude, Vector, asymmetry, tensor, vector};
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::Shape;
 
-pub use disturbance::Periodic;
-pub use modes::SpatialModes;
+pub use disturbance::PeriodicTorque;
+pub use modes::ThreeAxisModes;
 
 /// A spatial body: three axes and elastic modes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -40,10 +40,10 @@ pub struct Spatial {
     pub points: Vec<NamedPoint>,
     /// Elastic modes: a table, or the path of a CSV file.
     #[serde(default)]
-    pub modes: SpatialModes,
+    pub modes: ThreeAxisModes,
     /// Torque of the environment; none by default.
     #[serde(default, skip_serializing_if = "Option::is_none")]
-    pub disturbance: Option<Periodic>,
+    pub disturbance: Option<PeriodicTorque>,
 }
 
 /// A point of the structure.
@@ -60,7 +60,8 @@ pub struct NamedPoint {
 /// A mass-normalised elastic mode.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct SpatialMode {
+#[schemars(rename = "SpatialMode")]
+pub struct ThreeAxisMode {
     /// Natural frequency w (rad/s).
     pub frequency: Frequency,
     /// Damping ratio zeta: 0 undamped, 1 critical.
@@ -79,7 +80,7 @@ pub struct SpatialMode {
 
 impl Spatial {
     /// Returns the inertia tensor (kg m²).
-    pub fn tensor(&self) -> Matrix3<f64> {
+    pub fn inertia_tensor(&self) -> Matrix3<f64> {
         tensor(&self.inertia)
     }
 
@@ -96,7 +97,7 @@ impl Spatial {
 
     /// Returns the translation (1/sqrt(kg)) and rotation (rad/(m sqrt(kg))) of each mode at a point.
     pub fn shapes(&self, point: &str) -> Vec<(Vector, Vector)> {
-        let of = |mode: &SpatialMode| {
+        let of = |mode: &ThreeAxisMode| {
             let shape = mode.shapes.get(point).copied().unwrap_or_default();
             (vector(&shape.translation), vector(&shape.rotation))
         };
@@ -105,7 +106,7 @@ impl Spatial {
 
     /// Returns the displacement per unit of each mode of the place at an offset (m) from a point, in hub axes that turn
     /// with the first point (1/sqrt(kg)).
-    pub fn shifts(&self, point: &str, offset: &Vector) -> Vec<Vector> {
+    pub fn displacements(&self, point: &str, offset: &Vector) -> Vec<Vector> {
         let first = self.points.first().map_or("", |point| &point.name);
         let at = self.point(point).unwrap_or_default();
         let shift = |((shift, rotation), (_, hub)): (&(Vector, Vector), &(Vector, Vector))| {
@@ -118,9 +119,9 @@ impl Spatial {
     ///
     /// # Errors
     /// A key within the body, and the reason.
-    pub fn check(&self) -> Result<(), Fault> {
-        let refused = |key: &str, why: String| Err(Fault::new(key, why));
-        let tensor = self.tensor();
+    pub fn check(&self) -> Result<(), ConfigError> {
+        let refused = |key: &str, why: String| Err(ConfigError::new(key, why));
+        let tensor = self.inertia_tensor();
         if let Some(why) = asymmetry(&tensor) {
             return refused("inertia", why);
         }

@@ -2,19 +2,19 @@
 
 use std::collections::BTreeMap;
 
-use super::SpatialMode;
+use super::ThreeAxisMode;
 use crate::quantity::{Finite, Frequency, NonNegative};
 use crate::structure::mode_table::{ModeCommon, ModeRow, ModeTable};
 
 /// Modes of a spatial body, which dereference to a slice; those of a file once it is read.
-pub type SpatialModes = ModeTable<SpatialMode>;
+pub type ThreeAxisModes = ModeTable<ThreeAxisMode>;
 
-impl ModeRow for SpatialMode {
+impl ModeRow for ThreeAxisMode {
     const LIST: &'static str = "SpatialModes";
     const FILES: &'static str = ".csv";
-    const OWN: &'static [&'static str] = &[];
+    const EXTRA_COLUMNS: &'static [&'static str] = &[];
 
-    fn of(frequency: Frequency) -> Self {
+    fn from_frequency(frequency: Frequency) -> Self {
         Self {
             frequency,
             damping: NonNegative::default(),
@@ -33,5 +33,5 @@ impl ModeRow for SpatialMode {
         }
     }
 
-    fn set_own(&mut self, _column: usize, _value: Finite) {}
+    fn set_extra(&mut self, _column: usize, _value: Finite) {}
 }

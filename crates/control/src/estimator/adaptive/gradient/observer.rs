@@ -1,9 +1,9 @@
 //! Run-time state of the gradient observer.
 
-use super::super::oscillator::{ModelOscillator, ModelPhase};
+use super::super::oscillator::{ModeVector, OscillatorModel};
 use super::super::residual::MovingResidual;
 use super::super::tracker::{self, Tracker};
-use super::super::{ModeEstimate, Observer, Pulse};
+use super::super::{AdaptiveObserver, ModeEstimate, Pulse};
 use super::Gradient;
 use super::parameter::{ChannelState, Parameter};
 use crate::quantity::Fraction;
@@ -89,8 +89,8 @@ impl GradientObserver {
         self.parameters.iter().map(|parameter| parameter.slope.measured()).collect()
     }
 
-    fn oscillator(&self, mode: usize) -> ModelOscillator {
-        ModelOscillator { frequency: self.frequencies[mode], damping: self.damping }
+    fn oscillator(&self, mode: usize) -> OscillatorModel {
+        OscillatorModel { frequency: self.frequencies[mode], damping: self.damping }
     }
 
     /// Returns the index of the first influence on a mode.
@@ -100,7 +100,7 @@ impl GradientObserver {
 
     fn sound<'a>(&self, pulses: &'a [Pulse]) -> impl Iterator<Item = &'a Pulse> + use<'a> {
         let inputs = self.rigid.len();
-        pulses.iter().filter(move |pulse| pulse.input < inputs && pulse.is_sound())
+        pulses.iter().filter(move |pulse| pulse.input < inputs && pulse.is_valid())
     }
 
     /// Propagates one mode and its derivatives over a cycle.
@@ -108,14 +108,14 @@ impl GradientObserver {
         let of = self.oscillator(mode);
         let (period, first) = (self.period, self.influences(mode));
         let transition = of.transition(period);
-        let (mut phase, mut by_frequency) = of.turned(&transition, period, self.motion.phases[mode]);
+        let (mut phase, mut by_frequency) = of.propagate(&transition, period, self.motion.phases[mode]);
         for parameter in &mut self.parameters {
             let slope = &mut parameter.slope.phases[mode];
-            *slope = of.turned(&transition, period, *slope).0;
+            *slope = of.propagate(&transition, period, *slope).0;
         }
         for pulse in self.sound(pulses) {
             let (began, ended) = (period - pulse.start, period - pulse.start - pulse.duration);
-            let (push, slope) = of.pulse(began, ended);
+            let (push, slope) = of.pulse_response(began, ended);
             let parameter = &mut self.parameters[first + pulse.input];
             for axis in 0..2 {
                 let pushed = push[axis] * pulse.acceleration;
@@ -132,31 +132,31 @@ impl GradientObserver {
 
     /// Resets a state that is not finite, and keeps the parameters.
     fn stay_finite(&mut self) {
-        if !(self.motion.is_sound() && self.parameters.iter().all(|parameter| parameter.slope.is_sound())) {
-            self.motion.rest();
+        if !(self.motion.is_finite() && self.parameters.iter().all(|parameter| parameter.slope.is_finite())) {
+            self.motion.reset();
             for parameter in &mut self.parameters {
-                parameter.slope.rest();
+                parameter.slope.reset();
                 parameter.power = 0.0;
             }
         }
     }
 }
 
-impl Observer for GradientObserver {
+impl AdaptiveObserver for GradientObserver {
     fn update(&mut self, measured: f64) {
         let innovation = measured - self.motion.measured();
         if innovation.is_nan() || innovation.abs() > FARTHEST {
-            self.residual.take(None, self.motion.elastic());
+            self.residual.update(None, self.motion.elastic());
             return;
         }
         let modes = self.motion.phases.len();
         for (index, parameter) in self.parameters.iter_mut().enumerate() {
             let sensitivity = parameter.slope.measured();
-            parameter.weigh(sensitivity);
+            parameter.update_scale(sensitivity);
             let phase = self.motion.phases.get(index);
             let excited = phase.is_none_or(|phase| libm::hypot(phase[0], phase[1]) > self.gate);
             if index >= modes || excited {
-                parameter.learn(sensitivity, innovation, self.learning);
+                parameter.gradient_step(sensitivity, innovation, self.learning);
             }
             parameter.slope.correct(self.gains, -sensitivity);
         }
@@ -165,7 +165,7 @@ impl Observer for GradientObserver {
         }
         // A bounded innovation cannot make the state invalid at once: validity is checked after the cycle.
         self.motion.correct(self.gains, innovation);
-        self.residual.take(Some(innovation), self.motion.elastic());
+        self.residual.update(Some(innovation), self.motion.elastic());
     }
 
     fn advance(&mut self, pulses: &[Pulse]) {
@@ -179,12 +179,14 @@ impl Observer for GradientObserver {
     }
 
     fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
-        let of_mode = |(mode, phase): (usize, &ModelPhase)| {
+        let of_mode = |(mode, phase): (usize, &ModeVector)| {
             let (of, first) = (self.oscillator(mode), self.influences(mode));
-            let free = of.turned(&of.transition(ahead), ahead, *phase).0[0];
+            let free = of.propagate(&of.transition(ahead), ahead, *phase).0[0];
             let pushed = self.sound(pulses).map(|pulse| {
                 let (began, ended) = (ahead - pulse.start, ahead - pulse.start - pulse.duration);
-                self.parameters[first + pulse.input].value * pulse.acceleration * of.pulse(began, ended).0[0]
+                self.parameters[first + pulse.input].value
+                    * pulse.acceleration
+                    * of.pulse_response(began, ended).0[0]
             });
             free + pushed.sum::<f64>()
         };

@@ -1,6 +1,6 @@
 //! Identified parameter, and the derivative of the state with respect to it.
 
-use super::super::oscillator::ModelPhase;
+use super::super::oscillator::ModeVector;
 
 /// Weight of a sample in the mean square of a sensitivity.
 const WEIGHT: f64 = 0.01;
@@ -15,7 +15,7 @@ pub struct ChannelState {
     /// Rigid rate (rad/s).
     pub rate: f64,
     /// Elastic rate and quadrature of each mode (rad/s).
-    pub phases: Vec<ModelPhase>,
+    pub phases: Vec<ModeVector>,
 }
 
 impl ChannelState {
@@ -38,14 +38,14 @@ impl ChannelState {
     }
 
     /// Returns true if all values are finite and of a valid size.
-    pub fn is_sound(&self) -> bool {
+    pub fn is_finite(&self) -> bool {
         // Branch-free, because every derivative is checked twice a cycle.
         let tame = |tame: bool, n: &f64| tame & (n.abs() < HUGE);
         self.phases.as_flattened().iter().fold(tame(true, &self.rate), tame)
     }
 
     /// Resets the state to 0.
-    pub fn rest(&mut self) {
+    pub fn reset(&mut self) {
         self.rate = 0.0;
         self.phases.fill([0.0; 2]);
     }
@@ -70,13 +70,13 @@ pub struct Parameter {
 
 impl Parameter {
     /// Updates the mean square with a derivative of the prediction.
-    pub fn weigh(&mut self, sensitivity: f64) {
+    pub fn update_scale(&mut self, sensitivity: f64) {
         let square = sensitivity * sensitivity;
         self.power = (self.power + WEIGHT * (square - self.power)).max(PEAK * square);
     }
 
     /// Performs a gradient step that reduces the innovation.
-    pub fn learn(&mut self, sensitivity: f64, innovation: f64, rate: f64) {
+    pub fn gradient_step(&mut self, sensitivity: f64, innovation: f64, rate: f64) {
         let step = rate * sensitivity * innovation / (self.power + self.floor);
         if step.is_finite() {
             self.value =

@@ -10,7 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Tracker;
-use crate::document::Fault;
+use crate::document::ConfigError;
 use crate::quantity::{Finite, NonNegative, Positive};
 
 pub use observer::RecurrenceObserver;
@@ -22,9 +22,9 @@ pub struct Recurrence {
     /// Damping ratio of the mode, which is not identified.
     pub damping: NonNegative,
     /// Weights W1 to W3, for cycles in which no thruster fires.
-    pub coast: Weights,
+    pub coast: RecurrenceWeights,
     /// Weights W5 to W7, for cycles in which a thruster fires.
-    pub active: Weights,
+    pub active: RecurrenceWeights,
     /// Frequency gain kappa: W4 times the amplitude of the elastic rate. With the default weights it converges below 0.043.
     pub frequency_gain: NonNegative,
     /// Influence gain: W8 times the absolute value of the excitation from which the influence is identified.
@@ -40,7 +40,8 @@ pub struct Recurrence {
 /// Fractions of an innovation by which the estimates are corrected.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct Weights {
+#[schemars(rename = "Weights")]
+pub struct RecurrenceWeights {
     /// The rigid rate: W1 or W5.
     pub rigid: Finite,
     /// The elastic rate: W2 or W6.
@@ -49,7 +50,7 @@ pub struct Weights {
     pub next: Finite,
 }
 
-impl Default for Weights {
+impl Default for RecurrenceWeights {
     fn default() -> Self {
         let [rigid, elastic, next] = [0.05, 0.2, 0.15].map(|weight| Finite::new(weight).expect("finite"));
         Self { rigid, elastic, next }
@@ -62,8 +63,8 @@ impl Default for Recurrence {
         let positive = |value| Positive::new(value).expect("positive");
         Self {
             damping: from_zero(0.005),
-            coast: Weights::default(),
-            active: Weights::default(),
+            coast: RecurrenceWeights::default(),
+            active: RecurrenceWeights::default(),
             frequency_gain: from_zero(0.006),
             influence_gain: from_zero(0.25),
             gate: positive(5e-6),
@@ -76,7 +77,7 @@ impl Default for Recurrence {
 impl Recurrence {
     /// Checks the settings against each other, a tracker and the sampling period (s); returns the first inconsistent
     /// key and the reason.
-    pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<Fault> {
+    pub fn inconsistency(&self, tracker: &Tracker, period: f64) -> Option<ConfigError> {
         let trackers = std::slice::from_ref(tracker);
         super::inconsistency(self.damping, self.influence_bounds, self.reach, trackers, 1, period)
     }

@@ -1,9 +1,9 @@
 //! Run-time state of the recurrence observer.
 
-use super::super::oscillator::{ModelOscillator, ModelPhase};
+use super::super::oscillator::{ModeVector, OscillatorModel};
 use super::super::residual::MovingResidual;
 use super::super::tracker::{self, Tracker};
-use super::super::{ModeEstimate, Observer, Pulse};
+use super::super::{AdaptiveObserver, ModeEstimate, Pulse};
 use super::Recurrence;
 
 /// Weight of a sample in the mean square of the elastic rate.
@@ -19,7 +19,7 @@ impl Recurrence {
     /// Creates the observer of a channel with one mode and one input, its own thrusters. The tracker must be
     /// consistent.
     pub fn observer(&self, tracker: &Tracker, period: f64) -> RecurrenceObserver {
-        let mode = ModelOscillator { frequency: tracker.frequency.get(), damping: self.damping.get() };
+        let mode = OscillatorModel { frequency: tracker.frequency.get(), damping: self.damping.get() };
         let influence = tracker.influence.first().map_or(0.0, |influence| influence.get());
         let shrink = libm::exp(-mode.damping * mode.frequency * period);
         let root = f64::sqrt((1.0 - mode.damping) * (1.0 + mode.damping));
@@ -34,7 +34,7 @@ impl Recurrence {
             turn_bounds: [high, low].map(|bound| 2.0 * shrink * libm::cos(bound * period)),
             influence,
             influence_bounds: [a.min(b), a.max(b)],
-            motion: Motion::default(),
+            motion: RecurrenceState::default(),
             residual: MovingResidual::default(),
         }
     }
@@ -52,13 +52,13 @@ pub struct RecurrenceObserver {
     turn_bounds: [f64; 2],
     influence: f64,
     influence_bounds: [f64; 2],
-    motion: Motion,
+    motion: RecurrenceState,
     residual: MovingResidual,
 }
 
 /// State variables apart from the parameters; n is the last sample.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-struct Motion {
+struct RecurrenceState {
     /// Rigid rate (rad/s), predicted before a sample and corrected after it.
     rate: f64,
     /// Elastic rate g(n), predicted and corrected likewise, and g(n - 1) (rad/s).
@@ -77,7 +77,7 @@ struct Motion {
     square: f64,
 }
 
-impl Motion {
+impl RecurrenceState {
     fn is_sound(&self) -> bool {
         let Self { rate, elastic, elastic_before, push, push_before, driven, taken, square, .. } = self;
         [rate, elastic, elastic_before, push, push_before, driven, taken, square]
@@ -88,23 +88,24 @@ impl Motion {
 
 impl RecurrenceObserver {
     fn sound(pulses: &[Pulse]) -> impl Iterator<Item = &Pulse> {
-        pulses.iter().filter(|pulse| pulse.input == 0 && pulse.is_sound())
+        pulses.iter().filter(|pulse| pulse.input == 0 && pulse.is_valid())
     }
 
-    fn oscillator(&self) -> ModelOscillator {
+    fn oscillator(&self) -> OscillatorModel {
         let frequency = libm::acos(self.turn / (2.0 * self.shrink)) / self.period;
-        ModelOscillator { frequency, damping: self.spec.damping.get() }
+        OscillatorModel { frequency, damping: self.spec.damping.get() }
     }
 
     /// Returns the state [g, s] from g(n), g(n - 1) and the impulse at sample n.
-    fn phase(&self) -> ModelPhase {
-        let Motion { elastic, elastic_before, push, .. } = self.motion;
+    fn phase(&self) -> ModeVector {
+        let RecurrenceState { elastic, elastic_before, push, .. } = self.motion;
         let back = self.oscillator().transition(-self.period)[0];
         [elastic, (elastic_before - back[0] * (elastic - self.influence * push)) / back[1]]
     }
 
     fn learn(&mut self, innovation: f64, active: bool) {
-        let Motion { elastic_before, push, push_before, push_largest, driven, square, .. } = self.motion;
+        let RecurrenceState { elastic_before, push, push_before, push_largest, driven, square, .. } =
+            self.motion;
         let amplitude = f64::sqrt(2.0 * square);
         if !active && amplitude > self.spec.gate.get() && elastic_before != 0.0 {
             let step = self.spec.frequency_gain.get() / amplitude * elastic_before.signum() * innovation;
@@ -120,7 +121,7 @@ impl RecurrenceObserver {
     /// Resets a state that is not finite, and keeps the parameters.
     fn stay_finite(&mut self) {
         if !self.motion.is_sound() {
-            self.motion = Motion::default();
+            self.motion = RecurrenceState::default();
         }
     }
 }
@@ -129,12 +130,12 @@ fn stepped(value: f64, step: f64, [low, high]: [f64; 2]) -> f64 {
     if step.is_finite() { (value + step).clamp(low, high) } else { value }
 }
 
-impl Observer for RecurrenceObserver {
+impl AdaptiveObserver for RecurrenceObserver {
     fn update(&mut self, measured: f64) {
         let innovation = measured - self.motion.rate - self.motion.elastic;
         if innovation.is_nan() || innovation.abs() > FARTHEST {
             self.motion.taken = 0.0;
-            self.residual.take(None, self.motion.elastic);
+            self.residual.update(None, self.motion.elastic);
             return;
         }
         let active = self.motion.push != 0.0;
@@ -145,11 +146,11 @@ impl Observer for RecurrenceObserver {
         self.motion.square += WEIGHT * (self.motion.elastic * self.motion.elastic - self.motion.square);
         self.learn(innovation, active);
         self.stay_finite();
-        self.residual.take(Some(innovation), self.motion.elastic);
+        self.residual.update(Some(innovation), self.motion.elastic);
     }
 
     fn advance(&mut self, pulses: &[Pulse]) {
-        let Motion { elastic, elastic_before, push, .. } = self.motion;
+        let RecurrenceState { elastic, elastic_before, push, .. } = self.motion;
         let next: f64 = Self::sound(pulses).map(|pulse| pulse.acceleration * pulse.duration).sum();
         let driven = next - 0.5 * self.turn * push;
         let motion = &mut self.motion;
@@ -165,10 +166,10 @@ impl Observer for RecurrenceObserver {
 
     fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
         let of = self.oscillator();
-        let free = of.turned(&of.transition(ahead), ahead, self.phase()).0[0];
+        let free = of.propagate(&of.transition(ahead), ahead, self.phase()).0[0];
         let pushed = Self::sound(pulses).map(|pulse| {
             let (began, ended) = (ahead - pulse.start, ahead - pulse.start - pulse.duration);
-            self.influence * pulse.acceleration * of.pulse(began, ended).0[0]
+            self.influence * pulse.acceleration * of.pulse_response(began, ended).0[0]
         });
         vec![free + pushed.sum::<f64>()]
     }

@@ -1,0 +1,106 @@
+//! Results of a campaign: the table of statistics as a file, and on the terminal.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+
+use flexsc_core::count::counted;
+use flexsc_core::metrics::{Metrics, goal};
+use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
+
+use super::points::Points;
+use crate::error::CliError;
+use crate::number::short;
+use crate::{files, say};
+
+/// Results of a campaign.
+pub struct CampaignReport {
+    /// Number of runs.
+    pub runs: usize,
+    /// Statistics of the metrics.
+    pub statistics: Vec<Statistics>,
+    /// Points of a sweep.
+    pub points: Option<Points>,
+    /// Number of failed runs, number of the first failed run, and its error.
+    pub failed: Option<(u64, u64, String)>,
+    /// Metrics of a single run.
+    pub only: Option<Metrics>,
+    /// Path of the rows.
+    pub table: Option<PathBuf>,
+}
+
+/// Writes the table of statistics.
+pub fn write_statistics(path: &Path, statistics: &[Statistics]) -> Result<(), CliError> {
+    let table = || -> Result<Vec<u8>, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        let mut header: Vec<String> = ["metric", "unit", "runs", "mean", "sd"].map(str::to_owned).into();
+        header.extend(QUANTILES.map(|q| format!("q{:02.0}", 100.0 * q)));
+        writer.write_record(header)?;
+        for s in statistics {
+            let mut cells = vec![s.name.to_owned(), s.unit.to_owned(), s.runs.to_string()];
+            let numbers = [s.mean, s.sd].into_iter().chain(s.quantiles);
+            cells.extend(numbers.map(|n| if n.is_finite() { format!("{n:e}") } else { String::new() }));
+            writer.write_record(cells)?;
+        }
+        Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
+    };
+    let bytes = table().map_err(|error| CliError::write(path)(error.into()))?;
+    files::write_within(&[(path.to_owned(), bytes)])
+}
+
+/// Returns true if there are several runs and every metric has the same value in all of them.
+pub fn are_alike(statistics: &[Statistics]) -> bool {
+    let mut several = statistics.iter().filter(|s| s.runs + s.infinite > 1).peekable();
+    several.peek().is_some() && several.all(|s| s.sd == 0.0 && s.infinite == 0)
+}
+
+impl CampaignReport {
+    /// Prints the points of a sweep, or the statistics of another campaign.
+    pub fn say(&self) {
+        if self.runs == 0 {
+            return;
+        }
+        if let Some(points) = &self.points {
+            say!("{}", points.text().trim_end());
+            return;
+        }
+        let is_verdict = |s: &&Statistics| goal::NAMES.contains(&s.name);
+        for s in self.statistics.iter().filter(is_verdict).filter(|s| s.runs > 0) {
+            say!("  {:32}{}", s.name, met(s.runs as u64, s.mean));
+        }
+        let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
+        say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
+        for s in self.statistics.iter().filter(|s| s.runs > 0 && !is_verdict(s)) {
+            let quantiles = s.quantiles.map(|q| format!("{:>11}", short(q))).concat();
+            say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", s.name, s.runs, short(s.mean), short(s.sd));
+        }
+        for s in self.statistics.iter().filter(|s| s.infinite > 0) {
+            let runs = counted(self.runs, "run");
+            say!("  {}: too large for a number in {} of {runs}, left out", s.name, s.infinite);
+        }
+    }
+}
+
+/// Formats the number of runs that meet a goal, given their fraction.
+pub fn met(runs: u64, fraction: f64) -> String {
+    let met = (fraction * runs as f64).round() as u64;
+    let (low, high) = wilson(met, runs);
+    let [part, low, high] = [fraction, low, high].map(|part| format!("{:.0}", 100.0 * part));
+    format!("{met} of {runs} met ({part} %, 95 % interval {low} to {high})")
+}
+
+/// Returns a verdict as one word.
+pub fn verdict(is_met: bool) -> &'static str {
+    if is_met { "met" } else { "missed" }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::met;
+
+    #[test]
+    fn verdicts_are_counted() {
+        // scipy.stats.binomtest(103, 200).proportion_ci(0.95, "wilson"): 0.4461 to 0.5833.
+        assert_eq!(met(200, 0.515), "103 of 200 met (52 %, 95 % interval 45 to 58)");
+        assert_eq!(met(8, 1.0), "8 of 8 met (100 %, 95 % interval 68 to 100)");
+    }
+}

@@ -1,0 +1,49 @@
+//! Figure `extra`: the gain of the extra loop over the run, and the frequency of the dominant mode that schedules it.
+
+use flexsc_core::Scenario;
+use flexsc_core::law::{Extra, LawKind};
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+
+use super::motion::MotionData;
+use super::run_events::RunEvents;
+use super::{filter_lock, time, title};
+
+/// Returns the extra loop of a scenario, if it has one.
+pub fn extra(story: &RunEvents) -> Option<&Extra> {
+    match &story.scenario.law {
+        LawKind::Pd(pd) => pd.extra.as_ref(),
+        _ => None,
+    }
+}
+
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+    let read: Vec<Point> = if motion.estimates.is_empty() {
+        motion.time.iter().map(|t| (*t, frequency(&story.scenario, *t))).collect()
+    } else {
+        motion.estimates.iter().map(|estimate| (estimate.time, estimate.read_frequency)).collect()
+    };
+    let gain = |w: f64| extra(story).map_or(0.0, |extra| extra.gain(w));
+    let gains: Vec<Point> = read.iter().map(|(t, w)| (*t, gain(*w))).collect();
+    let x = time(0.0..story.end);
+    let panel = |x: FigureAxis, name: &str, line: Vec<Point>, named: bool| {
+        let y = FigureAxis::around(name, "", line.iter().map(|point| point.1));
+        let mut layers = filter_lock::spans(motion, &y, named);
+        let (label, _) = name.split_once(" (").unwrap_or((name, ""));
+        layers.push(Layer::new(label, colour::BLUE, LayerShape::Line(1.4), line));
+        Panel::new(x, y, layers)
+    };
+    let panels =
+        vec![panel(x.unnamed(), "gain k_d", gains, true), panel(x, "frequency read (rad/s)", read, false)];
+    Figure { title: title(story, "extra loop"), panels, panel_height: 200 }
+}
+
+/// Returns the natural frequency of the dominant mode (rad/s) that an ideal observer gives the law at time `t` (s).
+fn frequency(scenario: &Scenario, t: f64) -> f64 {
+    let ratio = |mode: usize| scenario.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
+    let modes = scenario.model.planar().into_iter().flat_map(|body| &body.modes).enumerate();
+    let now = modes.map(|(index, mode)| {
+        let ratio = ratio(index);
+        (mode.frequency.get() * ratio, mode.excitability().abs() / (ratio * ratio))
+    });
+    now.reduce(|best, mode| if mode.1 > best.1 { mode } else { best }).map_or(f64::NAN, |(w, _)| w)
+}

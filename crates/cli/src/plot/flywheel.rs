@@ -1,0 +1,43 @@
+//! Figure `wheel`: speed and momentum of the flywheel with its limits.
+
+use flexsc_core::actuator::FlywheelRotor;
+use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
+
+use super::motion::MotionData;
+use super::run_events::RunEvents;
+use super::{time, title};
+
+/// Returns the rotor of a scenario's wheel, if it has one that stores momentum.
+pub fn rotor(story: &RunEvents) -> Option<&FlywheelRotor> {
+    story.scenario.actuator.flywheel().and_then(|(wheel, _)| wheel.rotor.as_ref())
+}
+
+pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
+    let limit = rotor(story).and_then(|rotor| Some((rotor.speed_limit?.get(), rotor.inertia.get())));
+    let x = time(0.0..story.end);
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, values: &[f64], limit: Option<f64>| {
+        let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
+        let limits: Vec<f64> = limit.into_iter().flat_map(|limit| [limit, -limit]).collect();
+        let y = FigureAxis::around(name, unit, values.iter().chain(&limits).copied());
+        let level = |(index, height): (usize, &f64)| {
+            let name = if index == 0 { "limits" } else { "" };
+            Layer::new(
+                name,
+                colour::VERMILLION,
+                LayerShape::Dashes,
+                vec![(0.0, *height), (story.end, *height)],
+            )
+        };
+        let mut layers: Vec<Layer> = limits.iter().enumerate().map(level).collect();
+        layers.push(Layer::new(name, colour::BLACK, LayerShape::Line(1.2), line));
+        Panel::new(x, y, layers)
+    };
+    // A body without inertia has a rate instead of a momentum.
+    let momentum = if super::unit_of_torque(story) == "N m" { "N m s" } else { "rad/s" };
+    let [speeds, momenta] = &motion.wheel;
+    let panels = vec![
+        panel(x.unnamed(), "speed", "rad/s", speeds, limit.map(|(speed, _)| speed)),
+        panel(x, "momentum", momentum, momenta, limit.map(|(speed, inertia)| speed * inertia)),
+    ];
+    Figure { title: title(story, "flywheel"), panels, panel_height: 200 }
+}

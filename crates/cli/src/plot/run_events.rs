@@ -1,0 +1,190 @@
+//! Data of a run for its figures: the events of its log, and its motion, which is recomputed from the scenario in the
+//! log if the log does not have it.
+
+use std::path::Path;
+
+use flexsc_core::campaign::CommandLog;
+use flexsc_core::record::{Columns, Log};
+use flexsc_core::time::{Instant, Span};
+use flexsc_core::{Scenario, Simulation};
+
+use super::columns::{labels, rows, topics};
+use super::motion::{MotionData, MotionRecorder};
+use crate::error::CliError;
+
+/// Run of a log.
+pub struct RunEvents {
+    /// Scenario of the run.
+    pub scenario: Scenario,
+    /// Number of the run.
+    pub run: u64,
+    /// End of the run (s).
+    pub end: f64,
+    /// External commands of the run.
+    pub commanded: CommandLog,
+    /// Interval of time that figures show, if given.
+    pub shown: Option<std::ops::Range<f64>>,
+    /// Torque and gain at the start.
+    pub start: (f64, f64),
+    /// Switchings of the law.
+    pub switchings: Vec<SwitchingEvent>,
+    /// Window means of the envelope.
+    pub means: Vec<WindowMean>,
+    /// Window means of another objective of the adaptation.
+    pub objective: Vec<WindowMean>,
+    /// Steps of the adaptation.
+    pub steps: Vec<AdaptationStep>,
+}
+
+/// Switching of the law.
+pub struct SwitchingEvent {
+    pub time: f64,
+    /// Label of the new state.
+    pub state: String,
+    /// True if a timeout triggered the law's decision, not a guard.
+    pub timeout: bool,
+    pub torque: f64,
+    pub angle: f64,
+    pub rate: f64,
+}
+
+/// Mean of a quantity over a window.
+pub struct WindowMean {
+    pub from: f64,
+    pub to: f64,
+    pub value: f64,
+}
+
+/// Step of the adaptation.
+pub struct AdaptationStep {
+    pub time: f64,
+    /// Label of the decision.
+    pub decision: String,
+    pub gain: f64,
+}
+
+impl RunEvents {
+    /// Reads the events of a log.
+    pub fn read(log: &Log, path: &Path) -> Result<Self, CliError> {
+        let toml = log.require_scenario()?;
+        let scenario = Scenario::parse(&format!("{}: scenario.toml", path.display()), toml)?;
+        let about = log.metadata();
+        let run = about.get("run").and_then(|run| run.parse().ok()).unwrap_or(0);
+        let [law, command, means, objective, adaptation] =
+            topics(log, ["/law", "/command", "/envelope_mean", "/objective", "/adaptation"])?;
+        let first = |name: &str| law.numbers(name).and_then(|column| column.first().copied());
+        let gain = scenario.tuned_parameter().or(first("gain")).unwrap_or(scenario.law.tuned());
+        let start = (first("torque_nm").unwrap_or(f64::NAN), gain);
+        let switchings = switchings(&command);
+        let means = rows(&means, ["from_s", "to_s", "mean_rad"]);
+        let means: Vec<_> = means.map(|[from, to, value]| WindowMean { from, to, value }).collect();
+        let objective = rows(&objective, ["from_s", "to_s", "value"]);
+        let objective: Vec<_> = objective.map(|[from, to, value]| WindowMean { from, to, value }).collect();
+        let decisions = labels(&adaptation, "decision");
+        let steps = rows(&adaptation, ["time_s", "gain"]).zip(decisions);
+        let steps = steps.map(|([time, gain], decision)| AdaptationStep { time, decision, gain }).collect();
+        let reported = about.get("time_s").and_then(|time| time.parse().ok());
+        let last = switchings
+            .last()
+            .map(|s| s.time)
+            .into_iter()
+            .chain(means.last().or(objective.last()).map(|mean| mean.to));
+        let end = match about.get("end").map(String::as_str) {
+            Some("complete") => scenario.duration.seconds(),
+            _ => last.chain(reported).fold(0.0, f64::max),
+        };
+        let commanded = log.commands().map_or(Some(CommandLog::default()), CommandLog::parse);
+        let commanded = commanded.ok_or_else(|| unusable(path, "holds commands that are none".to_owned()))?;
+        Ok(Self { scenario, run, end, commanded, shown: None, start, switchings, means, objective, steps })
+    }
+
+    /// Returns the motion from a full log, or else from the repeated run, which keeps the whole motion only up to
+    /// `early` and from `late` on, and the envelope always.
+    pub fn motion(&self, log: &Log, path: &Path, early: f64, late: f64) -> Result<MotionData, CliError> {
+        if log.topics().iter().any(|topic| topic == "/attitude") {
+            return Ok(self.smooth(MotionData::read(log)?));
+        }
+        if let Some(why) = self.scenario.cost(None, true).limit_exceeded() {
+            let why = format!(
+                "its run is not repeated: {why}\n\nhint: a log made with `--log full` holds all that figures need"
+            );
+            return Err(CliError::Arguments(format!("{}: {why}", path.display())));
+        }
+        let mut repeat = MotionRecorder::new(early, late);
+        // The end of a torn log is rounded, and a switching may lie on it.
+        let end = Span::from_seconds(self.end + 1e-9).min(self.scenario.duration);
+        let mut simulation = Simulation::new(&self.scenario, self.run);
+        self.commanded
+            .run_until(&mut simulation, Instant::START + end, &mut repeat)
+            .map_err(|source| CliError::Run { name: self.scenario.name.clone(), source })?;
+        let same = |(a, b): (&f64, &SwitchingEvent)| (a - b.time).abs() <= 1e-6;
+        if repeat.switchings.len() < self.switchings.len()
+            || !repeat.switchings.iter().zip(&self.switchings).all(same)
+        {
+            let version = log.metadata().get("version").map_or("another", String::as_str);
+            return Err(unusable(
+                path,
+                format!(
+                    "flexsc {} switches at other times than this log of version {version}\n\n\
+                     hint: a log made with `--log full` holds all that figures need",
+                    env!("CARGO_PKG_VERSION")
+                ),
+            ));
+        }
+        Ok(self.smooth(repeat.motion))
+    }
+
+    /// Adds points between the rows of the motion under a switching law.
+    fn smooth(&self, mut motion: MotionData) -> MotionData {
+        if self.switches() {
+            let frequencies = self.scenario.model.frequencies();
+            let period = self.scenario.log.period_for(self.scenario.duration).seconds();
+            motion.smoothed(period, frequencies.fold(0.0, f64::max));
+        }
+        motion
+    }
+
+    /// Returns the key of the law's tuned parameter; k_t if none is tuned.
+    pub fn tunes(&self) -> &str {
+        self.scenario.adaptation.as_ref().map_or("k_t", |adaptation| adaptation.tunes())
+    }
+
+    /// Returns true if the law is a switching law.
+    pub fn switches(&self) -> bool {
+        self.scenario.law.is_switching()
+    }
+
+    /// Returns the start of the last `count` cycles: a cycle lasts from one entry into the law's last state to the
+    /// next, or for six switchings if that state is rare.
+    pub fn last_cycles(&self, count: usize) -> f64 {
+        let cycles = self.entries().rev().nth(count).unwrap_or(0.0);
+        let switchings = self.switchings.iter().rev().nth(6 * count).map_or(0.0, |s| s.time);
+        cycles.max(switchings)
+    }
+
+    /// Returns the end of the first `count` cycles, at most `before`.
+    pub fn first_cycles(&self, count: usize, before: f64) -> f64 {
+        let cycles = self.entries().nth(count).unwrap_or(before);
+        let switchings = self.switchings.get(6 * count).map_or(before, |s| s.time);
+        cycles.min(switchings).min(before)
+    }
+
+    /// Returns the times at which the law's last state was entered.
+    fn entries(&self) -> impl DoubleEndedIterator<Item = f64> {
+        let last = self.switchings.last().map(|s| &s.state);
+        self.switchings.iter().filter(move |s| Some(&s.state) == last).map(|s| s.time)
+    }
+}
+
+pub fn unusable(path: &Path, why: String) -> CliError {
+    CliError::Draw { path: path.to_owned(), why }
+}
+
+fn switchings(columns: &Columns) -> Vec<SwitchingEvent> {
+    let words = labels(columns, "state").into_iter().zip(labels(columns, "cause"));
+    let numbers = rows(columns, ["time_s", "torque_nm", "angle_rad", "rate_rad_s"]);
+    let switching = |([time, torque, angle, rate], (state, cause)): ([f64; 4], (String, String))| {
+        SwitchingEvent { time, state, timeout: cause == "timeout", torque, angle, rate }
+    };
+    numbers.zip(words).map(switching).collect()
+}

@@ -1,0 +1,212 @@
+//! A flywheel on a motor with back-EMF; commands have a delay, a dead zone, a quantum and a limit.
+
+use std::collections::VecDeque;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{AxisActuator, AxisActuatorContext, Failure};
+use crate::quantity::{Finite, NonNegative, Positive, Time};
+use crate::record::WheelMotion;
+use crate::time::{Instant, Span};
+
+/// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Wheel {
+    /// Torque per unit of the law's command (N m; k'_u of \[Wheel11, Sukhanov\] times the body's inertia).
+    pub gain: Positive,
+    /// Back-EMF torque per unit of the rate (N m s; k'_omega times the body's inertia).
+    #[serde(default)]
+    pub back_emf: NonNegative,
+    /// The rate that the back-EMF opposes.
+    #[serde(default)]
+    pub opposes: BackEmfRate,
+    /// The wheel.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub rotor: Option<FlywheelRotor>,
+    /// Commands smaller than this are not executed.
+    #[serde(default)]
+    pub dead_zone: NonNegative,
+    /// Quantum of the command; 0 for none.
+    #[serde(default)]
+    pub quantum: NonNegative,
+    /// Largest command; no limit by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub limit: Option<Positive>,
+    /// Time from a sample to the execution of the command computed from it (s).
+    #[serde(default)]
+    pub delay: Time,
+    /// Intervals in which the motor fails to execute commands; its back-EMF still acts.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
+}
+
+/// The rate that the back-EMF opposes.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Opposes")]
+pub enum BackEmfRate {
+    /// The measured rate, elastic part included, as in the papers; it overstates the damping of the modes.
+    #[default]
+    BodyRate,
+    /// The rigid rate; the momentum of the wheel then agrees exactly with the torque on the body.
+    RigidRate,
+}
+
+/// A wheel that stores momentum.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Rotor")]
+pub struct FlywheelRotor {
+    /// Moment of inertia (kg m²).
+    pub inertia: Positive,
+    /// Speed at the start (rad/s).
+    #[serde(default)]
+    pub speed: Finite,
+    /// Largest speed (rad/s), beyond which the motor cannot accelerate it; no limit by default.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub speed_limit: Option<Positive>,
+}
+
+impl Wheel {
+    /// Returns the executed value of a command: limited, quantised, and 0 within the dead zone.
+    pub fn execute_command(&self, command: f64) -> f64 {
+        let limit = self.limit.map_or(f64::INFINITY, Positive::get);
+        let (dead_zone, quantum) = (self.dead_zone.get(), self.quantum.get());
+        let command = command.clamp(-limit, limit);
+        if command.abs() < dead_zone {
+            0.0
+        } else if quantum > 0.0 {
+            libm::round(command / quantum) * quantum
+        } else {
+            command
+        }
+    }
+}
+
+/// Run-time state of the wheel.
+#[derive(Clone, Debug)]
+pub struct FlywheelState {
+    wheel: Wheel,
+    setting: AxisActuatorContext,
+    /// Command of the law, and motor torque without back-EMF (N m).
+    feedback: f64,
+    held: f64,
+    /// Commands not yet executed, with the times of their execution.
+    delayed: VecDeque<(Instant, f64)>,
+    /// Time of the next feedforward update, unless the law commands earlier.
+    next: Option<Instant>,
+}
+
+impl Wheel {
+    /// Creates the wheel before its first command.
+    pub fn start(&self, setting: &AxisActuatorContext) -> FlywheelState {
+        FlywheelState {
+            wheel: self.clone(),
+            setting: setting.clone(),
+            feedback: 0.0,
+            held: 0.0,
+            delayed: VecDeque::new(),
+            next: None,
+        }
+    }
+}
+
+impl FlywheelState {
+    /// Queues the sum of the law's command and the feedforward of the manoeuvre.
+    fn drive(&mut self, now: Instant) {
+        let delay = Span::from_seconds(self.wheel.delay.get());
+        let whole = self.feedback + self.feedforward(now);
+        self.delayed.push_back((now + delay, self.wheel.execute_command(whole)));
+    }
+
+    /// Returns the feedforward command for the wheel's share of the waveform over the law's next period, or until the
+    /// waveform ends: its mean torque, and the back-EMF at the mean rate.
+    fn feedforward(&mut self, now: Instant) -> f64 {
+        let (Some(waveform), Some(cycle)) = (&self.setting.waveform, self.setting.cycle) else { return 0.0 };
+        let end = Instant::START + Span::from_seconds(waveform.end());
+        let next = if now < end { end.min(now + cycle) } else { now + cycle };
+        self.next = Some(next);
+        let (from, to, inertia) = (now.seconds(), next.seconds(), self.setting.planned_inertia);
+        let span = next.since(now).seconds();
+        let rate =
+            self.setting.rate + (waveform.impulse(0.0, from) + waveform.travel(from, to) / span) / inertia;
+        (self.setting.share * waveform.impulse(from, to) / span + self.wheel.back_emf.get() * rate)
+            / self.wheel.gain.get()
+    }
+
+    /// Executes the commands whose delay has elapsed.
+    fn turn(&mut self, now: Instant, rigid_rate: f64) {
+        while let Some((_, command)) = self.delayed.front().copied().filter(|(at, _)| *at <= now) {
+            self.delayed.pop_front();
+            let torque = self.wheel.gain.get() * command;
+            // A torque that accelerates the body decelerates the wheel.
+            let spent = self
+                .speed(rigid_rate)
+                .is_some_and(|(speed, limit)| speed.abs() >= limit && speed * torque < 0.0);
+            self.held = if spent { 0.0 } else { torque };
+        }
+    }
+
+    /// Returns speed and speed limit (rad/s) of a wheel that stores momentum.
+    fn speed(&self, rigid_rate: f64) -> Option<(f64, f64)> {
+        let rotor = self.wheel.rotor.as_ref()?;
+        let gained = self.setting.inertia * (rigid_rate - self.setting.rate) / rotor.inertia.get();
+        let limit = rotor.speed_limit.map_or(f64::INFINITY, Positive::get);
+        Some((rotor.speed.get() - gained, limit))
+    }
+}
+
+impl AxisActuator for FlywheelState {
+    fn command(&mut self, now: Instant, command: f64, rigid_rate: f64) {
+        self.feedback = command;
+        self.drive(now);
+        self.turn(now, rigid_rate);
+    }
+
+    /// Updates the feedforward when due, also under a law that gives no command during the manoeuvre, and executes
+    /// delayed commands.
+    fn serve(&mut self, now: Instant, rigid_rate: f64) {
+        if self.next == Some(now) {
+            self.drive(now);
+        }
+        self.turn(now, rigid_rate);
+    }
+
+    fn due(&self) -> Option<Instant> {
+        let delayed = self.delayed.front().map(|(at, _)| *at);
+        [delayed, self.next].into_iter().flatten().min()
+    }
+
+    fn torque_per_unit(&self) -> f64 {
+        self.wheel.gain.get()
+    }
+
+    fn torque(&self) -> f64 {
+        self.held
+    }
+
+    fn asked(&self) -> f64 {
+        self.wheel.gain.get() * self.feedback
+    }
+
+    fn applied(&self, _: Instant, [rate, rigid_rate]: [f64; 2]) -> f64 {
+        let sensed = if self.wheel.opposes == BackEmfRate::BodyRate { rate } else { rigid_rate };
+        self.held - self.wheel.back_emf.get() * sensed
+    }
+
+    fn back_emf(&self) -> (f64, bool) {
+        (self.wheel.back_emf.get(), self.wheel.opposes == BackEmfRate::BodyRate)
+    }
+
+    fn rotor(&self, rigid_rate: f64) -> Option<WheelMotion> {
+        let (speed, _) = self.speed(rigid_rate)?;
+        let inertia = self.wheel.rotor.as_ref().map_or(0.0, |rotor| rotor.inertia.get());
+        Some(WheelMotion { speed_rad_s: speed, momentum_nm_s: inertia * speed })
+    }
+
+    fn copy(&self) -> Box<dyn AxisActuator> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,185 @@
+//! Allocation of a three-axis torque to wheels: the sum of axis times torque over the wheels is the demanded torque.
+
+use nalgebra::{Cholesky, Matrix3};
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use crate::attitude::Vector;
+
+/// How the demanded torque is distributed over the wheels.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Choice")]
+pub enum AllocationCriterion {
+    /// Smallest sum of squared wheel torques, by the pseudo-inverse.
+    #[default]
+    PseudoInverse,
+    /// Smallest largest wheel torque: more torque about most axes, but more reversals of the wheels.
+    LeastLargest,
+}
+
+/// Allocation of a torque to wheels with given axes.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Allocation {
+    axes: Vec<Vector>,
+    /// Torque of each wheel per unit of the demanded torque about each axis.
+    inverse: Vec<Vector>,
+    /// Cancelling torques of four wheels: the largest has size 1, the first that is not 0 is positive.
+    null: Option<[f64; 4]>,
+    choice: AllocationCriterion,
+}
+
+impl Allocation {
+    /// Creates the allocation to wheels about these unit axes; `None` if they do not span three axes.
+    pub fn new(axes: &[Vector], choice: AllocationCriterion) -> Option<Self> {
+        let gram = axes.iter().fold(Matrix3::zeros(), |sum, axis| sum + axis * axis.transpose());
+        // Wheels in a plane give no torque perpendicular to it.
+        if gram.determinant() < 1e-9 * axes.len().pow(3) as f64 {
+            return None;
+        }
+        let solved = Cholesky::new(gram)?.inverse();
+        Some(Self {
+            axes: axes.to_vec(),
+            inverse: axes.iter().map(|axis| solved * axis).collect(),
+            null: null_vector(axes),
+            choice,
+        })
+    }
+
+    /// Returns the wheels' axes.
+    pub fn axes(&self) -> &[Vector] {
+        &self.axes
+    }
+
+    /// Returns torques of four wheels that cancel each other, the largest of size 1.
+    pub fn null_vector(&self) -> Option<&[f64; 4]> {
+        self.null.as_ref()
+    }
+
+    /// Returns the torques of all wheels that give the torque `wanted` about the three axes (N m).
+    pub fn torques(&self, wanted: &Vector) -> Vec<f64> {
+        let mut torques: Vec<f64> = self.inverse.iter().map(|row| row.dot(wanted)).collect();
+        if let (AllocationCriterion::LeastLargest, Some(null)) = (self.choice, &self.null) {
+            let part = least_largest(&torques, null);
+            torques.iter_mut().zip(null).for_each(|(torque, null)| *torque += part * null);
+        }
+        torques
+    }
+
+    /// Returns the largest torque about a single axis (N m), with `limit` (N m) for each wheel.
+    pub fn largest_torque(&self, axis: usize, limit: f64) -> f64 {
+        let mut wanted = Vector::zeros();
+        wanted[axis] = 1.0;
+        limit / self.torques(&wanted).into_iter().map(f64::abs).fold(0.0, f64::max)
+    }
+}
+
+/// Returns four torques about four axes that cancel: up to their sign, the volumes that the other three axes span.
+fn null_vector(axes: &[Vector]) -> Option<[f64; 4]> {
+    let &[a, b, c, d] = axes else { return None };
+    let volume = |x: Vector, y: Vector, z: Vector| x.dot(&y.cross(&z));
+    let null = [volume(b, c, d), -volume(a, c, d), volume(a, b, d), -volume(a, b, c)];
+    let largest = null.into_iter().map(f64::abs).fold(0.0, f64::max);
+    let first = null.into_iter().find(|part| part.abs() > 1e-9 * largest)?;
+    Some(null.map(|part| part / libm::copysign(largest, first)))
+}
+
+/// Returns the multiple of a null vector that minimises the largest torque: two of them are equally large there. Of
+/// several such multiples it is the smallest.
+fn least_largest(torques: &[f64], null: &[f64; 4]) -> f64 {
+    let largest = |part: f64| {
+        let sizes = torques.iter().zip(null).map(|(torque, null)| (torque + part * null).abs());
+        sizes.fold(0.0, f64::max)
+    };
+    let mut best = (largest(0.0), 0.0_f64);
+    for (i, (u, n)) in torques.iter().zip(null).enumerate() {
+        for (v, m) in torques.iter().zip(null).take(i) {
+            for part in [(v - u) / (n - m), -(u + v) / (n + m)] {
+                // Parallel lines do not intersect.
+                if !part.is_finite() {
+                    continue;
+                }
+                let found = (largest(part), part);
+                if found.0 < best.0 || (found.0 == best.0 && part.abs() < best.1.abs()) {
+                    best = found;
+                }
+            }
+        }
+    }
+    best.1
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pyramid() -> Vec<Vector> {
+        let (sin, cos) = libm::sincos(35.0_f64.to_radians());
+        [45.0_f64, 135.0, 225.0, 315.0]
+            .map(|about| {
+                let (s, c) = libm::sincos(about.to_radians());
+                Vector::new(cos * c, cos * s, sin)
+            })
+            .to_vec()
+    }
+
+    fn given(axes: &[Vector], torques: &[f64]) -> Vector {
+        axes.iter().zip(torques).fold(Vector::zeros(), |sum, (axis, torque)| sum + axis * *torque)
+    }
+
+    #[test]
+    fn a_pyramid_of_four_gives_what_is_wanted() {
+        let wanted = -Vector::new(0.1, -0.05, 0.2);
+        let exact = [-0.108_752_79, -0.022_430_99, -0.065_591_89, -0.151_913_69];
+        let [least_squares, least_largest] =
+            [AllocationCriterion::PseudoInverse, AllocationCriterion::LeastLargest]
+                .map(|choice| Allocation::new(&pyramid(), choice).unwrap());
+        let torques = least_squares.torques(&wanted);
+        for (found, exact) in torques.iter().zip(exact) {
+            assert!((found - exact).abs() < 5e-9, "{found} {exact}");
+        }
+        for (found, exact) in least_squares.null_vector().unwrap().iter().zip([1.0, -1.0, 1.0, -1.0]) {
+            assert!((found - exact).abs() < 1e-15);
+        }
+        // Result of the linear programme.
+        let torques = least_largest.torques(&wanted);
+        let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
+        assert!((largest - 0.130_333_24).abs() < 5e-9, "{largest}");
+        assert!((given(&pyramid(), &torques) - wanted).norm() < 1e-16);
+        // Already equal.
+        let upwards = least_largest.torques(&Vector::z());
+        assert!((given(&pyramid(), &upwards) - Vector::z()).norm() < 1e-15, "{upwards:?}");
+    }
+
+    #[test]
+    fn any_four_axes_have_a_least_largest() {
+        let axes = [[1.0, 0.2, 0.1], [-0.3, 1.0, 0.0], [0.1, -0.2, 1.0], [0.5, 0.6, -0.4]]
+            .map(|axis| Vector::from(axis).normalize())
+            .to_vec();
+        let allocation = Allocation::new(&axes, AllocationCriterion::LeastLargest).unwrap();
+        let null = allocation.null_vector().unwrap();
+        assert!(given(&axes, null).norm() < 1e-15);
+        for wanted in [Vector::new(1.0, 2.0, -0.5), Vector::new(-0.2, 0.1, 3.0), Vector::new(0.0, 1.0, 0.0)] {
+            let torques = allocation.torques(&wanted);
+            assert!((given(&axes, &torques) - wanted).norm() < 1e-14);
+            let largest = |part: f64| {
+                let sizes = torques.iter().zip(null).map(|(u, n)| (u + part * n).abs());
+                sizes.fold(0.0, f64::max)
+            };
+            // A step along the null vector never reduces the largest torque.
+            for part in [-1.0, -1e-3, -1e-9, 1e-9, 1e-3, 1.0] {
+                assert!(largest(part) >= largest(0.0), "{part}");
+            }
+        }
+    }
+
+    #[test]
+    fn three_wheels_have_one_way_and_a_plane_none() {
+        let three = [Vector::x(), Vector::y(), Vector::z()];
+        let allocation = Allocation::new(&three, AllocationCriterion::LeastLargest).unwrap();
+        assert_eq!(allocation.torques(&Vector::new(1.0, 2.0, 3.0)), [1.0, 2.0, 3.0]);
+        assert_eq!(allocation.largest_torque(2, 0.4), 0.4);
+        let plane = [Vector::x(), Vector::y(), (Vector::x() + Vector::y()).normalize()];
+        assert!(Allocation::new(&plane, AllocationCriterion::PseudoInverse).is_none());
+    }
+}

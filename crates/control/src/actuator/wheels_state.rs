@@ -1,0 +1,376 @@
+//! Run-time state of reaction wheels: motor torques and stored momenta.
+//!
+//! A wheel's momentum about its axis is h = I (Omega + a.w), absolute: only the torque of its motor changes it, h' = u,
+//! whatever the motion of the body (Euler's third equation of a rotor). So it is known exactly at every instant, and
+//! with it the time at which it reaches its limit. The speed Omega also depends on the body's rate.
+
+use super::failure::ActiveFailures;
+use super::wheel_allocation::Allocation;
+use super::wheels::{FrictionCompensation, SpeedBias, Wheels};
+use super::{Actuator, AxisActuatorContext, Demand};
+use crate::attitude::Vector;
+use crate::motion::three_axis::{Rotor, RotorObservation};
+use crate::quantity::Positive;
+use crate::random::Seed;
+use crate::record;
+use crate::sensor::{Tachometer, TachometerState};
+use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
+
+/// Relative distance from its limit at which a wheel with friction counts as being at the limit.
+const AT_LIMIT: f64 = 1e-12;
+
+/// Shortest time (s) to the next check of a wheel with friction on its way to its limit.
+const SOONEST: f64 = 1e-6;
+
+/// Run-time state of the wheels of a body.
+#[derive(Clone, Debug)]
+pub struct WheelsState {
+    allocation: Allocation,
+    /// Moment of inertia of each wheel about its axis (kg m²).
+    inertia: f64,
+    /// Largest torque (N m), momentum (N m s) and speed (rad/s) of each wheel.
+    torque_limit: f64,
+    momentum_limit: f64,
+    speed_limit: f64,
+    bias: Option<SpeedBias>,
+    settings: Vec<AxisActuatorContext>,
+    /// Torque on the body that laws demand, and torque of other sources that the wheels counteract (N m).
+    wanted: Vector,
+    against: Vector,
+    wheels: Vec<WheelState>,
+    /// Time from which on the wheels' momenta are propagated.
+    since: Instant,
+    /// State of wheels in bearings, as computed by the motion.
+    turned: Vec<RotorObservation>,
+    /// Tachometer that provides the speeds to the drives; without one they are exact.
+    tachometer: Option<TachometerState>,
+    /// Stored momentum by the tachometer's last reading (N m s).
+    known: Option<Vector>,
+    compensation: Option<Box<FrictionCompensation>>,
+    /// Commanded torque of each drive (N m), and its failures.
+    commanded: Vec<f64>,
+    failing: Vec<Option<ActiveFailures>>,
+}
+
+/// State of a wheel.
+#[derive(Copy, Clone, Debug)]
+struct WheelState {
+    /// Momentum at the last change of the torque (N m s).
+    momentum: f64,
+    /// Torque of the motor on the wheel (N m).
+    torque: f64,
+    /// Time at which the wheel reaches a limit.
+    full: Option<Instant>,
+}
+
+impl WheelState {
+    fn momentum_at(&self, seconds: f64) -> f64 {
+        self.momentum + self.torque * seconds
+    }
+}
+
+impl Wheels {
+    /// Creates the wheels before their first command, on a body with these settings.
+    pub fn start(&self, allocation: &Allocation, settings: &[AxisActuatorContext]) -> WheelsState {
+        WheelsState::new(self, allocation.clone(), &self.speeds(allocation.axes().len()), settings)
+    }
+}
+
+impl WheelsState {
+    /// Creates the wheels before their first command, at these speeds (rad/s).
+    pub fn new(
+        wheels: &Wheels,
+        allocation: Allocation,
+        speeds: &[f64],
+        settings: &[AxisActuatorContext],
+    ) -> Self {
+        let inertia = wheels.inertia.get();
+        let rate = Vector::from_fn(|axis, _| settings.get(axis).map_or(0.0, |setting| setting.rate));
+        let spin = |(axis, speed): (&Vector, &f64)| WheelState {
+            momentum: inertia * (speed + axis.dot(&rate)),
+            torque: 0.0,
+            full: None,
+        };
+        let limit = |limit: Option<Positive>| limit.map_or(f64::INFINITY, Positive::get);
+        Self {
+            wheels: allocation.axes().iter().zip(speeds).map(spin).collect(),
+            allocation,
+            inertia,
+            torque_limit: limit(wheels.torque),
+            momentum_limit: limit(wheels.momentum),
+            speed_limit: limit(wheels.speed_limit),
+            bias: wheels.speed_bias,
+            settings: settings.to_vec(),
+            wanted: Vector::zeros(),
+            against: Vector::zeros(),
+            since: Instant::START,
+            turned: Vec::new(),
+            tachometer: None,
+            known: None,
+            compensation: wheels.compensation.clone(),
+            commanded: vec![0.0; speeds.len()],
+            failing: (0..speeds.len()).map(|wheel| wheels.wheel_failures(wheel)).collect(),
+        }
+    }
+
+    /// Makes the drives use the tachometer's speeds only.
+    #[must_use]
+    pub fn with_tachometer(mut self, tachometer: Option<(&Tachometer, Seed)>) -> Self {
+        let rate = Vector::from_fn(|axis, _| self.settings.get(axis).map_or(0.0, |setting| setting.rate));
+        self.tachometer = tachometer.map(|(tachometer, seed)| tachometer.start(self.speeds(&rate), seed));
+        self
+    }
+
+    fn elapsed(&self, now: Instant) -> f64 {
+        now.since(self.since).seconds()
+    }
+
+    /// Propagates the momenta to `now`.
+    fn turn(&mut self, now: Instant) {
+        let seconds = self.elapsed(now);
+        for wheel in &mut self.wheels {
+            wheel.momentum = wheel.momentum_at(seconds);
+        }
+        self.since = now;
+    }
+
+    /// Returns the speeds relative to a body with this rate (rad/s), as available to the drives.
+    fn speeds(&self, rate: &Vector) -> Vec<f64> {
+        if let Some(tachometer) = &self.tachometer {
+            return tachometer.speeds().to_vec();
+        }
+        if !self.turned.is_empty() {
+            return self.turned.iter().map(|wheel| wheel.speed).collect();
+        }
+        let axes = self.allocation.axes().iter();
+        axes.zip(&self.wheels).map(|(axis, wheel)| wheel.momentum / self.inertia - axis.dot(rate)).collect()
+    }
+
+    /// Returns the motor torques that give the body the demanded torque, within the torque limit.
+    fn motors(&self, speeds: &[f64]) -> Vec<f64> {
+        let mut torques = self.allocation.torques(&(self.against - self.wanted));
+        let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
+        if largest > self.torque_limit {
+            for torque in &mut torques {
+                *torque *= self.torque_limit / largest;
+            }
+        }
+        if let (Some(bias), Some(null)) = (self.bias, self.allocation.null_vector()) {
+            let square: f64 = null.iter().map(|part| part * part).sum();
+            let speed = null.iter().zip(speeds).map(|(part, speed)| part * speed).sum::<f64>() / square;
+            let mut part = bias.gain.get() * (bias.speed.get() - speed) * self.inertia;
+            for (torque, null) in torques.iter().zip(null).filter(|(_, null)| **null != 0.0) {
+                let ends = [self.torque_limit, -self.torque_limit].map(|limit| (limit - torque) / null);
+                part = part.clamp(ends[0].min(ends[1]).min(0.0), ends[0].max(ends[1]).max(0.0));
+            }
+            torques.iter_mut().zip(null).for_each(|(torque, null)| *torque += part * null);
+        }
+        torques
+    }
+
+    /// Returns the torque within the limits of a wheel at this speed, and the time until the wheel reaches a limit (s).
+    /// With friction that is a time before the limit, at which the rest is computed again.
+    fn within_limits(&self, index: usize, speed: f64, torque: f64) -> (f64, f64) {
+        let ahead = libm::copysign(1.0, torque);
+        let momentum = self.wheels[index].momentum;
+        let room =
+            (self.momentum_limit - ahead * momentum).min((self.speed_limit - ahead * speed) * self.inertia);
+        let Some(wheel) = self.turned.get(index) else {
+            return if room <= 0.0 { (0.0, f64::INFINITY) } else { (torque, room / torque.abs()) };
+        };
+        let limit = self.momentum_limit.min(self.speed_limit * self.inertia);
+        if limit.is_finite() && room <= AT_LIMIT * limit {
+            return (0.0, f64::INFINITY);
+        }
+        let net = ahead * (torque - wheel.friction);
+        (torque, if net > 0.0 { (room / net).max(SOONEST) } else { f64::INFINITY })
+    }
+
+    /// Commands all wheels with the torques that give the demanded torque.
+    fn drive_all(&mut self, now: Instant, rigid: &Vector) {
+        let speeds = self.speeds(rigid);
+        let mut torques = self.motors(&speeds);
+        self.compensate(&speeds, &mut torques);
+        for (index, torque) in torques.into_iter().enumerate() {
+            let speed = self.turned.get(index).map_or(speeds[index], |wheel| wheel.speed);
+            self.drive(now, index, speed, torque);
+        }
+    }
+
+    /// Sets the torque of a wheel from `now` on, subject to its failures and limits.
+    fn drive(&mut self, now: Instant, index: usize, speed: f64, torque: f64) {
+        self.commanded[index] = torque;
+        let torque = self.failing[index].as_ref().map_or(torque, |failing| failing.output(torque));
+        let (torque, seconds) = self.within_limits(index, speed, torque);
+        let full = seconds.is_finite().then(|| now + Span::from_seconds(seconds));
+        (self.wheels[index].torque, self.wheels[index].full) = (torque, full);
+    }
+
+    /// Returns the stored momentum (N m s) by the tachometer's speeds, of a body with this rate (rad/s).
+    fn measured_momentum(&self, rate: &Vector) -> Option<Vector> {
+        let speeds = self.tachometer.as_ref()?.speeds();
+        let wheels = self.allocation.axes().iter().zip(speeds);
+        Some(wheels.fold(Vector::zeros(), |sum, (axis, speed)| {
+            sum + axis * (self.inertia * (speed + axis.dot(rate)))
+        }))
+    }
+
+    /// Starts and ends failures, which change the torques of the drives.
+    fn fail(&mut self, now: Instant, rigid: &Vector) {
+        let mut any = false;
+        for (failing, commanded) in self.failing.iter_mut().zip(&self.commanded) {
+            any |= failing.as_mut().is_some_and(|failing| failing.update(now, *commanded));
+        }
+        if any {
+            self.turn(now);
+            let speeds = self.speeds(rigid);
+            for (index, known) in speeds.into_iter().enumerate() {
+                let speed = self.turned.get(index).map_or(known, |wheel| wheel.speed);
+                self.drive(now, index, speed, self.commanded[index]);
+            }
+        }
+    }
+
+    /// Returns the torque of a drive (N m) as estimators assume it: without failures.
+    fn believed(&self, index: usize) -> f64 {
+        if self.failing[index].is_some() { self.commanded[index] } else { self.wheels[index].torque }
+    }
+
+    /// Adds the friction compensation of the drives at these speeds (rad/s) to the torques (N m).
+    fn compensate(&self, speeds: &[f64], torques: &mut [f64]) {
+        let Some(FrictionCompensation { coulomb, viscous }) = self.compensation.as_deref() else { return };
+        for (wheel, (torque, speed)) in torques.iter_mut().zip(speeds).enumerate() {
+            // A wheel at rest is expected to move with the torque.
+            let way = if *speed == 0.0 { *torque } else { *speed };
+            let coulomb = if way == 0.0 { 0.0 } else { libm::copysign(coulomb.for_wheel(wheel).get(), way) };
+            let added = *torque + coulomb + viscous.for_wheel(wheel).get() * speed;
+            *torque = added.clamp(-self.torque_limit, self.torque_limit);
+        }
+    }
+}
+
+impl Actuator for WheelsState {
+    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
+        self.turn(now);
+        for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
+            self.wanted[axis] = setting.demanded_torque(demand);
+        }
+        self.drive_all(now, &rigid.into());
+    }
+
+    fn set_counter_torque(&mut self, torque: Vector) {
+        self.against = torque;
+    }
+
+    fn due(&self) -> Option<Instant> {
+        let read = self.tachometer.as_ref().map(TachometerState::due);
+        let failing = self.failing.iter().flatten().filter_map(ActiveFailures::due);
+        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).chain(failing).min()
+    }
+
+    /// Executes what is due. A wheel at its limit stays there until the next command; tachometers are read, and
+    /// compensation follows.
+    fn update(&mut self, now: Instant, rigid: [f64; 3]) {
+        self.fail(now, &rigid.into());
+        let turned = self.turned.iter().map(|wheel| [wheel.angle, wheel.speed]);
+        if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
+            tachometer.read(now, turned);
+            self.known = self.measured_momentum(&rigid.into());
+            if self.compensation.is_some() {
+                self.turn(now);
+                self.drive_all(now, &rigid.into());
+                return;
+            }
+        }
+        if self.wheels.iter().any(|wheel| wheel.full == Some(now)) {
+            self.turn(now);
+            let full: Vec<usize> =
+                (0..self.wheels.len()).filter(|index| self.wheels[*index].full == Some(now)).collect();
+            for index in full {
+                if let Some(wheel) = self.turned.get(index) {
+                    self.drive(now, index, wheel.speed, self.commanded[index]);
+                } else {
+                    (self.wheels[index].torque, self.wheels[index].full) = (0.0, None);
+                }
+            }
+        }
+    }
+
+    fn apply(&self, now: Instant, onto: &mut Wrench) {
+        let seconds = self.elapsed(now);
+        let rotor = |(axis, wheel): (&Vector, &WheelState)| Rotor {
+            axis: *axis,
+            momentum: wheel.momentum_at(seconds),
+            torque: wheel.torque,
+        };
+        onto.rotors.extend(self.allocation.axes().iter().zip(&self.wheels).map(rotor));
+    }
+
+    fn set_rotor_states(&mut self, now: Instant, rotors: &[RotorObservation]) {
+        self.turn(now);
+        for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
+            wheel.momentum = rotor.momentum;
+        }
+        self.turned.clear();
+        self.turned.extend_from_slice(rotors);
+    }
+
+    fn applied_torque(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {
+        if self.turned.is_empty() {
+            return self.held_torque(axis);
+        }
+        let held = self.turned.iter().zip(self.allocation.axes());
+        self.held_torque(axis) + held.map(|(wheel, about)| about[axis] * wheel.friction).sum::<f64>()
+    }
+
+    fn demanded_torque(&self, axis: usize) -> f64 {
+        self.wanted[axis]
+    }
+
+    fn held_torque(&self, axis: usize) -> f64 {
+        let wheels = self.allocation.axes().iter().zip(&self.wheels);
+        -wheels.map(|(about, wheel)| about[axis] * wheel.torque).sum::<f64>()
+    }
+
+    fn reduced_moment(&self, axis: usize) -> f64 {
+        let believed = self.allocation.axes().iter().enumerate();
+        let torque = -believed.map(|(index, about)| about[axis] * self.believed(index)).sum::<f64>();
+        torque / self.settings[axis].inertia
+    }
+
+    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {
+        let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
+        let motion = |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| record::Wheel {
+            speed_rad_s: self
+                .turned
+                .get(index)
+                .map_or(wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate), |turned| turned.speed),
+            momentum_nm_s: wheel.momentum_at(seconds),
+            torque_nm: wheel.torque,
+        };
+        self.allocation.axes().iter().zip(&self.wheels).enumerate().map(motion).collect()
+    }
+
+    fn measured_wheel_speeds(&self) -> Vec<f64> {
+        match &self.tachometer {
+            Some(tachometer) => tachometer.speeds().to_vec(),
+            None => self.turned.iter().map(|wheel| wheel.speed).collect(),
+        }
+    }
+
+    fn stored_momentum(&self, now: Instant) -> [f64; 3] {
+        if let Some(known) = self.known {
+            return known.into();
+        }
+        let (seconds, wheels) = (self.elapsed(now), self.allocation.axes().iter().zip(&self.wheels));
+        wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
+    }
+
+    fn copy(&self) -> Box<dyn Actuator> {
+        Box::new(self.clone())
+    }
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,75 @@
+//! The zero-order hold: in each period, the mean of the waveform and the feedback at the start.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{AxisActuator, AxisActuatorContext, Failure};
+use crate::quantity::Time;
+use crate::time::{Instant, Span};
+
+/// A zero-order hold.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct ZeroOrderHold {
+    /// Period (s).
+    pub period: Span,
+    /// Time of the first period (s); default: 0.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub phase: Option<Time>,
+    /// Intervals in which it fails.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub faults: Vec<Failure>,
+}
+
+/// Run-time state of the zero-order hold.
+#[derive(Clone, Debug)]
+pub struct ZeroOrderHoldState {
+    period: Span,
+    setting: AxisActuatorContext,
+    next: Instant,
+    feedback: f64,
+    held: f64,
+}
+
+impl ZeroOrderHold {
+    /// Creates the hold before its first period.
+    pub fn start(&self, setting: &AxisActuatorContext) -> ZeroOrderHoldState {
+        ZeroOrderHoldState {
+            period: self.period,
+            setting: setting.clone(),
+            next: super::first(self.phase),
+            feedback: 0.0,
+            held: 0.0,
+        }
+    }
+}
+
+impl AxisActuator for ZeroOrderHoldState {
+    fn command(&mut self, _: Instant, command: f64, _: f64) {
+        self.feedback = command;
+    }
+
+    fn serve(&mut self, now: Instant, _: f64) {
+        if self.next == now {
+            self.next = now + self.period;
+            let h = self.period.seconds();
+            self.held = self.feedback + self.setting.planned_impulse(now, h) / h;
+        }
+    }
+
+    fn due(&self) -> Option<Instant> {
+        Some(self.next)
+    }
+
+    fn torque(&self) -> f64 {
+        self.held
+    }
+
+    fn asked(&self) -> f64 {
+        self.feedback
+    }
+
+    fn copy(&self) -> Box<dyn AxisActuator> {
+        Box::new(self.clone())
+    }
+}

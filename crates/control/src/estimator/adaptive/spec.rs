@@ -1,0 +1,147 @@
+//! Settings of the adaptive observers in a scenario, one observer for each axis.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Gradient, Recurrence, Tracker};
+use crate::document::ConfigError;
+use crate::quantity::{Finite, NonNegative};
+
+/// Relative frequency difference below which modes cannot be distinguished.
+const MERGE: f64 = 0.08;
+
+/// Estimates the rigid rates and, for each axis of the gyro, its dominant elastic modes with their parameters.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, default)]
+pub struct Adaptive {
+    /// Form of the observers.
+    pub form: ObserverForm,
+    /// The modes to track; default: the dominant modes of the body.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub trackers: Option<GivenModes>,
+    /// Number of modes that each axis tracks; default: 2, or 1 in the form `recurrence`.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub count: Option<u32>,
+    /// Relative frequency difference below which modes of the body are tracked as one.
+    pub merge: NonNegative,
+    /// Whether an axis accounts for the jets of the other axes; default: true in the form `gradient`, else false.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub cross_axis: Option<bool>,
+    /// Relative error of the frequencies at the start.
+    pub frequency_error: Finite,
+    /// Relative error of the influences at the start.
+    pub influence_error: Finite,
+    /// Whether frequencies and influences are identified.
+    pub adapt: bool,
+}
+
+/// The forms of an observer.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(rename_all = "snake_case")]
+#[schemars(rename = "Form")]
+pub enum ObserverForm {
+    /// Recursive gradient with exact pulses.
+    Gradient(Gradient),
+    /// The recurrence of \[Timakov14\].
+    Recurrence(Recurrence),
+}
+
+/// Modes to track about each axis. The influence has one element per group of jets (roll, pitch, yaw), or a single one for
+/// the axis' own group if `cross_axis` is false.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "Given")]
+pub struct GivenModes {
+    /// About x.
+    #[serde(default)]
+    pub roll: Vec<Tracker>,
+    /// About y.
+    #[serde(default)]
+    pub pitch: Vec<Tracker>,
+    /// About z.
+    #[serde(default)]
+    pub yaw: Vec<Tracker>,
+}
+
+impl GivenModes {
+    /// Returns the modes of each axis.
+    pub fn axes(&self) -> [&[Tracker]; 3] {
+        [&self.roll, &self.pitch, &self.yaw]
+    }
+}
+
+impl Default for ObserverForm {
+    fn default() -> Self {
+        Self::Gradient(Gradient::default())
+    }
+}
+
+impl Default for Adaptive {
+    fn default() -> Self {
+        Self {
+            form: ObserverForm::default(),
+            trackers: None,
+            count: None,
+            merge: NonNegative::new(MERGE).unwrap_or_default(),
+            cross_axis: None,
+            frequency_error: Finite::default(),
+            influence_error: Finite::default(),
+            adapt: true,
+        }
+    }
+}
+
+impl Adaptive {
+    /// Returns true for the form `recurrence`.
+    fn recurs(&self) -> bool {
+        matches!(self.form, ObserverForm::Recurrence(_))
+    }
+
+    /// Returns the number of modes that each axis tracks.
+    pub fn count(&self) -> usize {
+        self.count.map_or(if self.recurs() { 1 } else { 2 }, |count| count as usize)
+    }
+
+    /// Returns true if the jets of other axes are inputs of an axis.
+    pub fn uses_cross_axis(&self) -> bool {
+        self.cross_axis.unwrap_or(!self.recurs())
+    }
+
+    /// Returns the form of the observers, with zero adaptation gains if `adapt` is false.
+    pub fn effective_form(&self) -> ObserverForm {
+        let mut form = self.form.clone();
+        if !self.adapt {
+            match &mut form {
+                ObserverForm::Gradient(gradient) => gradient.rate = NonNegative::default(),
+                ObserverForm::Recurrence(recurrence) => {
+                    recurrence.frequency_gain = NonNegative::default();
+                    recurrence.influence_gain = NonNegative::default();
+                }
+            }
+        }
+        form
+    }
+
+    /// Checks the settings against each other; returns the first inconsistent key and the reason.
+    pub fn inconsistency(&self) -> Option<ConfigError> {
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+        for (key, error) in
+            [("frequency_error", self.frequency_error), ("influence_error", self.influence_error)]
+        {
+            if error.get() <= -1.0 {
+                return at(key, format!("must be above -1, got {}", error.get()));
+            }
+        }
+        if self.count() == 0 {
+            return at("count", "must be 1 or more, got 0".to_owned());
+        }
+        if self.recurs() && self.count() > 1 {
+            let why = format!("must be 1 in the form `recurrence`, got {}", self.count());
+            return at("count", why);
+        }
+        if self.recurs() && self.uses_cross_axis() {
+            return at("cross_axis", "must be false in the form `recurrence`, got true".to_owned());
+        }
+        None
+    }
+}

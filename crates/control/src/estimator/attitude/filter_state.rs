@@ -1,0 +1,252 @@
+//! Run-time state of the attitude filter: from sensor readings to the state estimate about three axes.
+
+use nalgebra::Quaternion;
+
+use super::elastic_states::ElasticFilterStates;
+use super::spec::{AttitudeFilter, FilterSetup, SensorRole};
+use super::{AttitudeFilterState, AttitudeMeasurement, Correction, DelayedMeasurement, FilterHistory};
+use crate::attitude::{Vector, rotation, rotation_vector};
+use crate::estimator::kalman::Prior;
+use crate::estimator::{Estimator, SampleContext};
+use crate::random::Stream;
+use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates};
+use crate::sensor::{Orientation, Reading};
+use crate::state_estimate::StateEstimate;
+use crate::time::Instant;
+
+/// Run-time state of the attitude filter.
+#[derive(Clone, Debug)]
+pub struct AttitudeFilterRun {
+    spec: AttitudeFilter,
+    setting: FilterSetup,
+    draws: Stream,
+    /// Filter and its recent past; `None` before the first sample.
+    history: Option<FilterHistory>,
+    /// Last gyro reading (rad/s), and the time at which its interval ended.
+    rate: Vector,
+    since: Instant,
+    /// Time of the last sample and the attitude after it.
+    sampled: Option<(Instant, Quaternion<f64>)>,
+    /// Torque on the body about its axes (N m), which excites the modes.
+    torque: Vector,
+    /// Correction by the last sample, and true if it had any.
+    told: Correction,
+    used: bool,
+}
+
+impl AttitudeFilterRun {
+    /// Creates the filter before the first sample; `draws` supplies a drawn prior.
+    pub fn new(spec: &AttitudeFilter, setting: FilterSetup, draws: Stream) -> Self {
+        Self {
+            spec: spec.clone(),
+            setting,
+            draws,
+            history: None,
+            rate: Vector::zeros(),
+            since: Instant::START,
+            sampled: None,
+            torque: Vector::zeros(),
+            told: Correction::default(),
+            used: false,
+        }
+    }
+
+    /// Returns the filter's initial state for the true attitude at the start.
+    fn prior(&mut self, attitude: &Quaternion<f64>) -> AttitudeFilterState {
+        let deviations = [self.spec.initial.angle.get(), self.spec.initial.bias.get()];
+        let mut off = [Vector::zeros(); 2];
+        if self.spec.prior == Prior::Drawn {
+            for (off, deviation) in off.iter_mut().zip(deviations) {
+                *off = Vector::from_fn(|_, _| deviation * self.draws.normal());
+            }
+        }
+        let mut filter =
+            AttitudeFilterState::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations);
+        filter.swinging = self
+            .setting
+            .modes
+            .clone()
+            .map(|known| Box::new(ElasticFilterStates::new(known, &filter.covariance)));
+        filter
+    }
+
+    /// Propagates and corrects the filter with the readings of this sample.
+    fn read(&mut self, now: Instant, readings: &[Option<Reading>]) {
+        let Some(history) = &mut self.history else { return };
+        let mut corrections = Vec::new();
+        // The gyro comes first: then the filter has reached the time of any other measurement of this sample.
+        for (role, (_, reading)) in
+            self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Gyro { .. }))
+        {
+            if let (Some(rate), SensorRole::Gyro { latency }) = (reading.rate, role) {
+                // Before the first latency has elapsed, the rate is that at the start.
+                let of = if now < Instant::START + *latency { Instant::START } else { now.before(*latency) };
+                self.rate = rate.into();
+                corrections.extend(history.add_gyro(of, self.rate));
+                self.since = of;
+            }
+        }
+        for (role, (sensor, reading)) in
+            self.setting.readings_of_role(readings, &|role| matches!(role, SensorRole::Corrects { .. }))
+        {
+            let SensorRole::Corrects { latency, noise, gain } = role else { continue };
+            let measured = match (reading.sight, reading.at) {
+                (Some(sight), _) => AttitudeMeasurement::Vector(sight),
+                (None, Orientation::Attitude(attitude)) => AttitudeMeasurement::Attitude(attitude),
+                (None, Orientation::Angle(_)) => continue,
+            };
+            // A measurement at the start has no latency.
+            let exposed = if now == Instant::START { now } else { now.before(*latency) };
+            corrections.extend(history.add_measurement(DelayedMeasurement {
+                exposed,
+                measured,
+                noise: *noise,
+                gain: gain.as_deref().copied(),
+                sensor,
+            }));
+        }
+        self.used = !corrections.is_empty();
+        self.told = corrections.pop().unwrap_or_default();
+    }
+
+    /// Returns the attitude at `now`, propagated with the last gyro reading.
+    fn attitude(&self, now: Instant) -> Option<Quaternion<f64>> {
+        if let Some((_, attitude)) = self.sampled.filter(|(sampled, _)| *sampled == now) {
+            return Some(attitude);
+        }
+        let filter = self.history.as_ref()?.latest();
+        let mut turn = (self.rate - filter.bias) * now.since(self.since).seconds();
+        if let Some(swinging) = &filter.swinging {
+            turn -= swinging.rates()[1] * now.since(self.since).seconds();
+        }
+        Some(filter.attitude * rotation(&turn))
+    }
+
+    /// Returns the elastic part of the last gyro reading (rad/s) that is removed from the rate for the laws.
+    fn elastic_rate(&self) -> Vector {
+        let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
+        swinging.map_or_else(Vector::zeros, |swinging| {
+            let [hub, mount] = swinging.rates();
+            if swinging.known.rigid { hub + mount } else { mount }
+        })
+    }
+
+    /// Returns the attitude that laws read, from that of the hub: without the rotation by known modes if laws read the
+    /// rigid motion.
+    fn attitude_for_laws(&self, hub: Quaternion<f64>) -> Quaternion<f64> {
+        let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
+        match swinging.filter(|swinging| swinging.known.rigid) {
+            Some(swinging) => hub * rotation(&-swinging.hub_rotation()),
+            None => hub,
+        }
+    }
+}
+
+impl FilterSetup {
+    /// Iterates over the readings of the sensors whose role satisfies `wanted`, with their indices.
+    fn readings_of_role<'a>(
+        &'a self,
+        readings: &'a [Option<Reading>],
+        wanted: &'a dyn Fn(&SensorRole) -> bool,
+    ) -> impl Iterator<Item = (&'a SensorRole, (usize, Reading))> {
+        let all = self.roles.iter().zip(readings).enumerate();
+        let wanted = all.filter(move |(_, (role, _))| wanted(role));
+        wanted.filter_map(|(sensor, (role, reading))| Some((role, (sensor, (*reading)?))))
+    }
+}
+
+impl Estimator for AttitudeFilterRun {
+    fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
+        let Some(known) = &self.setting.modes else { return };
+        self.torque = Vector::from(moments).component_mul(&known.inertia);
+        if let Some(history) = &mut self.history {
+            history.set_torque(now, self.torque);
+        }
+    }
+
+    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        let now = taken.now;
+        if self.history.is_none() {
+            let Orientation::Attitude(origin) = taken.origin else { return };
+            let beyond = Vector::from_fn(|axis, _| (taken.truth)(axis).rigid_angle);
+            let filter = self.prior(&(origin * rotation(&beyond)));
+            let mut history = FilterHistory::new(now, filter, self.setting.noise, self.setting.reach);
+            history.set_torque(now, self.torque);
+            self.history = Some(history);
+        }
+        self.sampled = None;
+        self.read(now, taken.readings);
+        self.sampled = self.attitude(now).map(|attitude| (now, attitude));
+        let (Some(history), Some((_, attitude))) = (&self.history, self.sampled) else { return };
+        let (attitude, elastic) = (self.attitude_for_laws(attitude), self.elastic_rate());
+        let angles = Orientation::Attitude(attitude).error_from(taken.origin);
+        for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
+            if self.spec.watch_only {
+                if let Some(measured) = taken.measured {
+                    [state_estimate.angle, state_estimate.rate] = measured[axis];
+                }
+            } else {
+                (state_estimate.angle, state_estimate.rate) =
+                    (angles[axis], self.rate[axis] - history.latest().bias[axis] - elastic[axis]);
+            }
+        }
+    }
+
+    fn predict(&self, now: Instant, origin: &Orientation, state_estimates: &mut [StateEstimate]) {
+        let Some(attitude) = self.attitude(now).filter(|_| !self.spec.watch_only) else { return };
+        let angles = Orientation::Attitude(self.attitude_for_laws(attitude)).error_from(origin);
+        state_estimates
+            .iter_mut()
+            .zip(angles)
+            .for_each(|(state_estimate, angle)| state_estimate.angle = angle);
+    }
+
+    fn attitude_row(&self, now: Instant, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+        let (Orientation::Attitude(truth), filter) = (truth, self.history.as_ref()?.latest()) else {
+            return None;
+        };
+        let (estimate, bias) = (AttitudeFilterRun::attitude(self, now)?, Vector::from(bias));
+        let [angle_sd, bias_sd] = filter.deviations();
+        let error = [rotation_vector(&estimate, truth), bias - filter.bias];
+        let [angle_error, bias_error] = error;
+        let axis = |axis: usize| AxisEstimate {
+            angle_error_rad: -angle_error[axis],
+            angle_sd_rad: angle_sd[axis],
+            bias_rad_s: filter.bias[axis],
+            bias_error_rad_s: -bias_error[axis],
+            bias_sd_rad_s: bias_sd[axis],
+            innovation_rad: self.told.innovation[axis],
+        };
+        Some(AttitudeEstimate {
+            q_w: estimate.w,
+            q_x: estimate.i,
+            q_y: estimate.j,
+            q_z: estimate.k,
+            axes: [0, 1, 2].map(axis).into(),
+            nees: filter.normalised(&error) / AttitudeEstimate::STATES,
+            nis: self.told.nis / AttitudeEstimate::MEASUREMENTS,
+            numbers: self.told.numbers,
+            measured: self.used.into(),
+        })
+    }
+
+    fn elastic_row(&self) -> Option<ElasticEstimates> {
+        let swinging = self.history.as_ref()?.latest().swinging.as_deref()?;
+        let each = swinging.known.each.iter().zip(&swinging.state).zip(&swinging.frequencies);
+        let modes = each.zip(swinging.deviations()).map(|(((mode, state), frequency), deviation)| {
+            let [displacement, rate_over_frequency] = *state;
+            ElasticEstimate {
+                displacement,
+                rate_over_frequency,
+                frequency_rad_s: *frequency,
+                frequency_sd_rad_s: deviation,
+                true_frequency_rad_s: mode.true_frequency,
+            }
+        });
+        Some(ElasticEstimates { modes: modes.collect() })
+    }
+
+    fn copy(&self) -> Box<dyn Estimator> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,367 @@
+//! Extended Kalman filters of several runs in SIMD lanes: the matrix operations, each in the order of a single filter.
+
+use super::{KalmanFilter, Prediction};
+use crate::estimator::kalman::Ranking;
+use crate::lanes::LaneFloat;
+use crate::numerics::exponential::multiply;
+
+/// The filters in the lanes: mean and covariance of each in its lane, in column-major order.
+#[derive(Clone, Debug)]
+pub struct FilterLanes<R> {
+    pub(super) order: usize,
+    pub(super) motion: usize,
+    period: f64,
+    substeps: u32,
+    bounds: [f64; 2],
+    pub(super) mean: Vec<R>,
+    pub(super) covariance: Vec<R>,
+    noise: Vec<R>,
+    /// Derivative of the flow, transposed, and a buffer for a product.
+    pub(super) tangent: Vec<R>,
+    pub(super) room: Vec<R>,
+    frequency: Vec<R>,
+    gain: Vec<R>,
+    drag: Vec<R>,
+    /// Index of each mode's ratio in the state, if it has one.
+    ratio: Vec<Option<usize>>,
+    /// Rate factor subtracted by back-EMF in a substep, and the number of modes whose rate it opposes, if there is
+    /// back-EMF.
+    brake: Option<(R, usize)>,
+    pub(super) angle_noise: R,
+    /// Transitions of all modes.
+    turns: Vec<[R; 4]>,
+}
+
+impl<R: LaneFloat> FilterLanes<R> {
+    /// Creates the lanes from filters before their first sample; `None` unless all have the same structure.
+    pub fn new(kind: R, filters: &mut [&mut KalmanFilter]) -> Option<Self> {
+        let first = filters.first()?.tuning.clone();
+        let model = &first.model;
+        let alike = |filter: &&mut KalmanFilter| {
+            let (tuning, other) = (&filter.tuning, &filter.tuning.model);
+            matches!(tuning.prediction, Prediction::Extended)
+                && tuning.rate_noise.is_none()
+                && tuning.ranking == Ranking::Excitability
+                && tuning.period == first.period
+                && other.bounds == model.bounds
+                && other.substeps == model.substeps
+                && other.back_emf.1 == model.back_emf.1
+                && (other.back_emf.0 > 0.0) == (model.back_emf.0 > 0.0)
+                && (other.modes.len(), other.order()) == (model.modes.len(), model.order())
+        };
+        if !filters.iter().all(alike) {
+            return None;
+        }
+        let (order, modes) = (model.order(), model.modes.len());
+        let beside = |of: &dyn Fn(&KalmanFilter) -> f64| {
+            let mut each = [0.0; 16];
+            for lane in 0..R::LANES {
+                each[lane] = of(&*filters[lane.min(filters.len() - 1)]);
+            }
+            kind.load(&each)
+        };
+        let list = |count: usize, of: &dyn Fn(&KalmanFilter, usize) -> f64| -> Vec<R> {
+            (0..count).map(|at| beside(&|filter| of(filter, at))).collect()
+        };
+        let step = first.period / f64::from(model.substeps);
+        let zero = kind.splat(0.0);
+        let all = Self {
+            order,
+            motion: model.motion_states(),
+            period: first.period,
+            substeps: model.substeps,
+            bounds: model.bounds,
+            mean: list(order, &|filter, at| filter.mean[at]),
+            covariance: list(order * order, &|filter, at| filter.covariance.as_slice()[at]),
+            noise: list(order * order, &|filter, at| filter.noise.as_slice()[at]),
+            tangent: vec![zero; order * order],
+            room: vec![zero; order * order],
+            frequency: list(modes, &|filter, at| filter.tuning.model.modes[at].frequency),
+            gain: list(modes, &|filter, at| filter.tuning.model.modes[at].gain),
+            drag: list(modes, &|filter, at| filter.tuning.model.modes[at].drag),
+            ratio: (0..modes).map(|mode| model.ratio_of(mode)).collect(),
+            brake: (model.back_emf.0 > 0.0).then(|| {
+                (beside(&|filter| filter.tuning.model.back_emf_fraction(step)), model.set_back_emf_modes())
+            }),
+            angle_noise: beside(&|filter| filter.tuning.angle_noise),
+            turns: vec![[zero; 4]; modes],
+        };
+        for filter in filters {
+            filter.beside.lent = true;
+        }
+        Some(all)
+    }
+
+    /// Predicts all states over one period with the mean reduced moments `moment` (rad/s²).
+    #[inline(always)]
+    pub fn predict(&mut self, filters: &[&mut KalmanFilter], moment: R) {
+        let order = self.order;
+        let zero = moment.splat(0.0);
+        for at in 0..order * order {
+            self.tangent[at] = zero;
+        }
+        for at in 0..order {
+            self.tangent[at * order + at] = zero.splat(1.0);
+        }
+        let step = self.period / f64::from(self.substeps);
+        for substep in 0..self.substeps {
+            let middle = (f64::from(substep) + 0.5) * step;
+            if let Some((part, felt)) = self.brake {
+                self.turn(filters, 0.5 * step, middle);
+                self.coast(0.5 * step, middle, moment);
+                self.brake(part, felt);
+                self.coast(0.5 * step, middle, moment);
+            } else {
+                self.turn(filters, step, middle);
+                self.coast(step, middle, moment);
+            }
+        }
+        for at in (self.motion..order).step_by(2) {
+            self.mean[at] = self.mean[at] + self.mean[at + 1] * self.period;
+            self.add_column(at, at + 1, zero.splat(self.period));
+        }
+        self.carry();
+        let mut gated = [0.0; 16];
+        for (lane, filter) in filters.iter().enumerate() {
+            gated[lane] = f64::from(u8::from(filter.gated));
+        }
+        let gated = zero.lt(zero.load(&gated));
+        for at in self.motion..order {
+            let at = at * order + at;
+            let without = self.covariance[at] - self.noise[at];
+            self.covariance[at] = R::select(gated, without, self.covariance[at]);
+        }
+    }
+
+    /// Propagates the covariance and adds the noise of a period; computes the upper triangle and mirrors it.
+    #[inline(always)]
+    fn carry(&mut self) {
+        let order = self.order;
+        let Self { covariance, tangent, room, noise, .. } = self;
+        multiply(covariance, tangent, order, room);
+        for column in 0..order {
+            for row in 0..=column {
+                let (a, b) =
+                    (&tangent[row * order..(row + 1) * order], &room[column * order..(column + 1) * order]);
+                let value = dot(tangent[0].splat(0.0), a, b) + noise[column * order + row];
+                covariance[column * order + row] = value;
+                covariance[row * order + column] = value;
+            }
+        }
+    }
+
+    /// Computes the free transitions of all modes over `h` (s), at the ratios that the states have `middle` (s) after
+    /// the start of the period.
+    #[inline(always)]
+    fn turn(&mut self, filters: &[&mut KalmanFilter], h: f64, middle: f64) {
+        for mode in 0..self.frequency.len() {
+            let ratio = self.ratio_at(mode, middle);
+            let mut times = [0.0; 16];
+            ratio.store(&mut times);
+            let mut each = [[0.0; 16]; 4];
+            for (lane, filter) in filters.iter().enumerate() {
+                let transition = filter.tuning.model.modes[mode].flow.transition(times[lane] * h);
+                for part in 0..4 {
+                    each[part][lane] = transition[part];
+                }
+            }
+            let w = ratio * self.frequency[mode];
+            let [a, b, c, d] =
+                [ratio.load(&each[0]), ratio.load(&each[1]), ratio.load(&each[2]), ratio.load(&each[3])];
+            self.turns[mode] = [a, b / w, c * w, d];
+        }
+    }
+
+    #[inline(always)]
+    fn ratio_at(&self, mode: usize, middle: f64) -> R {
+        let one = self.angle_noise.splat(1.0);
+        let Some(at) = self.ratio[mode] else { return one };
+        let ratio = self.mean[at] + self.mean[at + 1] * middle;
+        let [low, high] = self.bounds;
+        ratio.max(one.splat(low)).min(one.splat(high))
+    }
+
+    #[inline(always)]
+    fn coast(&mut self, h: f64, middle: f64, moment: R) {
+        let order = self.order;
+        let half = moment.splat(0.5 * h) * moment;
+        self.mean[0] = self.mean[0] + (self.mean[1] + half) * h;
+        self.mean[1] = self.mean[1] + moment * h;
+        self.add_column(0, 1, moment.splat(h));
+        for mode in 0..self.frequency.len() {
+            let (x, v) = (2 + 2 * mode, 3 + 2 * mode);
+            let ratio = self.ratio_at(mode, middle);
+            let [a, b, c, d] = self.turns[mode];
+            let w = ratio * self.frequency[mode];
+            let centre = self.gain[mode] * moment / (w * w);
+            let one = moment.splat(1.0);
+            let shift = [centre * (one - a), -centre * c];
+            let (was, went) = (self.mean[x], self.mean[v]);
+            self.mean[x] = a * was + b * went + shift[0];
+            self.mean[v] = c * was + d * went + shift[1];
+            for row in 0..order {
+                let (left, right) = (self.tangent[x * order + row], self.tangent[v * order + row]);
+                self.tangent[x * order + row] = a * left + b * right;
+                self.tangent[v * order + row] = c * left + d * right;
+            }
+            if let Some(at) = self.ratio[mode] {
+                let (p, q) = (a * (was - centre) + b * went, c * (was - centre) + d * went);
+                let first = q * h - b * went - centre * 2.0 * (one - a);
+                let second = w * -h * (w * p + self.drag[mode] * q) + q - d * went + centre * 2.0 * c;
+                let (first, second) = (first / ratio, second / ratio);
+                self.add_column(x, at, first);
+                self.add_column(x, at + 1, first * middle);
+                self.add_column(v, at, second);
+                self.add_column(v, at + 1, second * middle);
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn brake(&mut self, part: R, felt: usize) {
+        let order = self.order;
+        let mut rate = self.mean[1];
+        for index in 1..=felt {
+            rate = rate + self.mean[1 + 2 * index];
+        }
+        self.mean[1] = self.mean[1] - part * rate;
+        for mode in 0..self.gain.len() {
+            self.mean[3 + 2 * mode] = self.mean[3 + 2 * mode] - self.gain[mode] * part * rate;
+        }
+        for row in 0..order {
+            let mut rate = self.tangent[order + row];
+            for index in 1..=felt {
+                rate = rate + self.tangent[(1 + 2 * index) * order + row];
+            }
+            for index in 0..=self.gain.len() {
+                let gain = if index == 0 { part.splat(1.0) } else { self.gain[index - 1] };
+                let at = (1 + 2 * index) * order + row;
+                self.tangent[at] = -gain * part * rate + self.tangent[at];
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn add_column(&mut self, to: usize, from: usize, factor: R) {
+        for row in 0..self.order {
+            let added = factor * self.tangent[from * self.order + row];
+            self.tangent[to * self.order + row] = self.tangent[to * self.order + row] + added;
+        }
+    }
+
+    /// Updates all states by the measured angles (rad), without the ratios in `gated` lanes. Returns the innovations
+    /// and their normalised squares.
+    #[inline(always)]
+    pub fn update(&mut self, measured: R, gated: R::Mask) -> [R; 2] {
+        let order = self.order;
+        let mut angle = self.mean[0];
+        for at in (2..self.motion).step_by(2) {
+            angle = angle + self.mean[at];
+        }
+        let innovation = measured - angle;
+        let seen = &mut self.room[..2 * order];
+        for row in 0..order {
+            seen[row] = self.covariance[row];
+            for at in (2..self.motion).step_by(2) {
+                seen[row] = seen[row] + self.covariance[at * order + row];
+            }
+        }
+        let mut variance = seen[0];
+        for at in (2..self.motion).step_by(2) {
+            variance = variance + seen[at];
+        }
+        let variance = variance + self.angle_noise * self.angle_noise;
+        for row in 0..order {
+            let gain = seen[row] / variance;
+            let none = row >= self.motion;
+            seen[order + row] = if none { R::select(gated, gain.splat(0.0), gain) } else { gain };
+            self.mean[row] = innovation * seen[order + row] + self.mean[row];
+        }
+        for column in 0..order {
+            for row in 0..=column {
+                let (gain, other) = (seen[order + row], seen[order + column]);
+                let value = self.covariance[column * order + row] - (gain * seen[column] + seen[row] * other)
+                    + variance * gain * other;
+                self.covariance[column * order + row] = value;
+                self.covariance[row * order + column] = value;
+            }
+        }
+        [innovation, innovation * innovation / variance]
+    }
+
+    /// Returns the mask of the lanes in which mean and covariance are finite and no variance is negative.
+    #[inline(always)]
+    pub fn are_valid(&self) -> R::Mask {
+        let zero = self.angle_noise.splat(0.0);
+        let (mut sum, mut least) = (zero, zero);
+        for at in 0..self.order * self.order {
+            sum = sum + self.covariance[at] * 0.0;
+        }
+        for at in 0..self.order {
+            sum = sum + self.mean[at] * 0.0;
+            least = self.covariance[at * self.order + at].min(least);
+        }
+        zero.le(least) & sum.le(zero)
+    }
+
+    /// Returns a copy of the covariances.
+    pub fn covariances(&self) -> Vec<R> {
+        self.covariance.clone()
+    }
+
+    /// Restores `covariances` in the lanes outside `others`.
+    pub fn restore(&mut self, covariances: &[R], others: R::Mask) {
+        for (covariance, before) in self.covariance.iter_mut().zip(covariances) {
+            *covariance = R::select(others, *covariance, *before);
+        }
+    }
+
+    /// Loads the means from the filters.
+    #[inline(always)]
+    pub fn load_means(&mut self, filters: &[&mut KalmanFilter]) {
+        let mut each = [0.0; 16];
+        for at in 0..self.order {
+            for (lane, filter) in filters.iter().enumerate() {
+                each[lane] = filter.mean[at];
+            }
+            self.mean[at] = self.mean[at].load(&each);
+        }
+    }
+
+    /// Stores the means in the filters of the selected lanes.
+    #[inline(always)]
+    pub fn store_means(&self, filters: &mut [&mut KalmanFilter], lanes: &[bool]) {
+        let mut each = [0.0; 16];
+        for at in 0..self.order {
+            self.mean[at].store(&mut each);
+            for (lane, filter) in filters.iter_mut().enumerate() {
+                if lanes[lane] {
+                    filter.mean[at] = each[lane];
+                }
+            }
+        }
+    }
+}
+
+/// Returns the dot product of two columns in the order of nalgebra: eight sums, and the rest.
+#[inline(always)]
+pub(super) fn dot<R: LaneFloat>(zero: R, a: &[R], b: &[R]) -> R {
+    let count = a.len();
+    let mut sum = zero;
+    let mut all = [sum; 8];
+    let mut at = 0;
+    while count - at >= 8 {
+        for part in 0..8 {
+            all[part] = all[part] + a[at + part] * b[at + part];
+        }
+        at += 8;
+    }
+    for part in 0..4 {
+        sum = sum + (all[part] + all[part + 4]);
+    }
+    while at < count {
+        sum = sum + a[at] * b[at];
+        at += 1;
+    }
+    sum
+}

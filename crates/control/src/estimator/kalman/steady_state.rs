@@ -1,0 +1,68 @@
+//! Steady state of a linear Kalman filter, with constant gains.
+
+use nalgebra::{DMatrix, DVector};
+use serde::Serialize;
+
+use super::filter::{KalmanFilter, Prediction};
+
+/// Largest number of samples until the gains settle.
+const MOST: usize = 2_000_000;
+/// Gains have settled if no sample changes them by more than this fraction of the largest.
+const SETTLED: f64 = 1e-13;
+
+/// Steady-state filter as a linear system: x- = F x + g m over a period with the mean reduced moment m (rad/s²); then,
+/// for the angle and for the rate if it is measured, x += k (y - h x-), one after the other.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct SteadyStateFilter {
+    /// Transition matrix F, row by row.
+    pub transition: Vec<Vec<f64>>,
+    /// Input vector g.
+    pub push: Vec<f64>,
+    /// Gain k of each measurement.
+    pub gains: Vec<Vec<f64>>,
+}
+
+impl KalmanFilter {
+    /// Returns the filter's steady state, if it is linear and its gains settle.
+    pub fn steady_state(&self) -> Option<SteadyStateFilter> {
+        let Prediction::Linear(transition, push) = &self.tuning().prediction else { return None };
+        let (order, tuning) = (push.len(), self.tuning());
+        let noises: Vec<f64> = [Some(tuning.angle_noise), tuning.rate_noise].into_iter().flatten().collect();
+        let mut covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
+        let mut before: Vec<DVector<f64>> = Vec::new();
+        // A gain may pass through a stationary point: it has settled only after being constant for long.
+        let mut still = 0;
+        for _ in 0..MOST {
+            covariance = transition * covariance * transition.transpose() + self.noise();
+            let mut gains = Vec::with_capacity(noises.len());
+            for (first, noise) in noises.iter().enumerate() {
+                let seen = (first..order)
+                    .step_by(2)
+                    .fold(DVector::zeros(order), |sum, place| sum + covariance.column(place));
+                let variance =
+                    (first..order).step_by(2).map(|place| seen[place]).sum::<f64>() + noise * noise;
+                let gain = &seen / variance;
+                covariance -= &gain * seen.transpose();
+                gains.push(gain);
+            }
+            covariance = (&covariance + covariance.transpose()) * 0.5;
+            if !gains.iter().all(|gain| gain.iter().all(|part| part.is_finite())) {
+                return None;
+            }
+            let settled =
+                before.iter().zip(&gains).all(|(old, new)| (new - old).amax() <= SETTLED * new.amax());
+            still = if settled && !before.is_empty() { still + 1 } else { 0 };
+            before = gains;
+            if still > 100 {
+                break;
+            }
+        }
+        // Without noise in the moment, the gains decay towards 0 for ever.
+        let moves = before.iter().any(|gain| gain.amax() > 1e-9);
+        (still > 100 && moves).then(|| SteadyStateFilter {
+            transition: transition.row_iter().map(|row| row.iter().copied().collect()).collect(),
+            push: push.iter().copied().collect(),
+            gains: before.iter().map(|gain| gain.iter().copied().collect()).collect(),
+        })
+    }
+}

@@ -1,0 +1,162 @@
+//! Run-time state of the laws of a run, one about each axis, with their current outputs.
+
+use super::{Authority, Command, ControlOutput, DampingStatus, DecisionCause, Law, LawKind, Phase, Setpoint};
+use crate::custom::PartError;
+use crate::guard::Guard;
+use crate::state_estimate::StateEstimate;
+use crate::time::Instant;
+
+/// Run-time state of the laws of all axes.
+#[derive(Clone, Debug)]
+pub struct Controllers {
+    axes: Vec<ControllerState>,
+    /// Earliest time of the laws' next decision.
+    until: Option<Instant>,
+    /// Commands set from outside, which replace the laws' outputs.
+    steered: Option<[Command; 3]>,
+}
+
+/// Law with its current output.
+#[derive(Clone, Debug)]
+struct ControllerState {
+    law: Box<dyn Law>,
+    hold: ControlOutput,
+    /// Key prefix of the law within a law `per_axis`; else empty.
+    place: String,
+}
+
+/// Event to which laws respond.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Event {
+    /// Start of the run.
+    Start,
+    /// Trip of a guard on the angle of a one-axis body.
+    Guard(usize),
+    /// Sample, or time of the next decision.
+    Due {
+        /// True if a sample was taken, at which guards are tested.
+        sampled: bool,
+    },
+}
+
+impl Controllers {
+    /// Creates the laws before a run, about axes with these actuator authorities.
+    pub fn new(law: &LawKind, authorities: &[Authority]) -> Self {
+        let axis = |(axis, authority)| {
+            let place = if let LawKind::PerAxis(laws) = law { laws.key_prefix(axis) } else { String::new() };
+            ControllerState { law: law.about(axis).start(authority), hold: ControlOutput::NONE, place }
+        };
+        Self { axes: authorities.iter().enumerate().map(axis).collect(), until: None, steered: None }
+    }
+
+    /// Sets commands that replace the laws' outputs from now on; the laws no longer decide.
+    pub fn set_external(&mut self, commands: [Command; 3]) {
+        if self.steered.replace(commands).is_none() {
+            self.until = None;
+            self.axes.iter_mut().for_each(|held| held.hold = ControlOutput::NONE);
+        }
+    }
+
+    /// Returns true if commands are set from outside.
+    pub fn is_external(&self) -> bool {
+        self.steered.is_some()
+    }
+
+    /// Lets the laws that an event concerns decide. Returns the cause of the first decision, if any.
+    pub fn decide(
+        &mut self,
+        now: Instant,
+        event: Event,
+        goal: impl Fn(usize, &dyn Law) -> Setpoint,
+        state_estimates: &[StateEstimate],
+    ) -> Option<DecisionCause> {
+        let mut first = None;
+        for (axis, (held, state_estimate)) in self.axes.iter_mut().zip(state_estimates).enumerate() {
+            let timeout = held.hold.until.filter(|until| *until == now).map(|_| DecisionCause::Timeout);
+            let cause = match event {
+                Event::Start => Some(DecisionCause::Start),
+                Event::Guard(guard) => Some(DecisionCause::Guard(guard)),
+                Event::Due { sampled: true } => {
+                    let holds = |guard: &Guard| guard.holds(state_estimate.angle);
+                    held.hold.guards.iter().position(holds).map(DecisionCause::Guard).or(timeout)
+                }
+                Event::Due { sampled: false } => timeout,
+            };
+            if let Some(cause) = cause {
+                held.hold = held.law.decide(now, cause, &goal(axis, &*held.law), state_estimate);
+                first = first.or(Some(cause));
+            }
+        }
+        self.until = self.axes.iter().filter_map(|held| held.hold.until).min();
+        first
+    }
+
+    /// Sets the state of the single relay law, which starts at `now`, after a push that started at `pushed`.
+    pub fn begin(&mut self, phase: Phase, now: Instant, pushed: Instant) {
+        let [held] = &mut self.axes[..] else { return };
+        if let Some(relay) = held.law.as_relay() {
+            held.hold = relay.set_state(phase, now, pushed);
+            self.until = held.hold.until;
+        }
+    }
+
+    /// Returns true if a law must decide at `now`, because of its time or of a sample.
+    pub fn must_decide(&self, now: Instant, sampled: bool, state_estimates: &[StateEstimate]) -> bool {
+        self.until == Some(now)
+            || sampled
+                && self.axes.iter().zip(state_estimates).any(|(held, state_estimate)| {
+                    held.hold.guards.iter().any(|guard| guard.holds(state_estimate.angle))
+                })
+    }
+
+    /// Returns the earliest time of the laws' next decision.
+    pub fn next_timeout(&self) -> Option<Instant> {
+        self.until
+    }
+
+    /// Returns the guards of the first axis.
+    pub fn guards(&self) -> &[Guard] {
+        &self.axes[0].hold.guards
+    }
+
+    /// Returns the command about each axis.
+    pub fn outputs(&self) -> [Command; 3] {
+        if let Some(commands) = self.steered {
+            return commands;
+        }
+        let mut commands = [Command::Torque(0.0); 3];
+        for (held, command) in self.axes.iter().zip(&mut commands) {
+            *command = held.hold.command;
+        }
+        commands
+    }
+
+    /// Returns the law about an axis.
+    pub fn about(&self, axis: usize) -> &dyn Law {
+        &*self.axes[axis].law
+    }
+
+    /// Returns the error that a law of another crate failed with.
+    pub fn halted(&self) -> Option<PartError> {
+        self.axes.iter().find_map(|held| held.law.failure())
+    }
+
+    /// Sets a parameter of all laws, or of the law about one axis that the key selects.
+    pub fn tune(&mut self, key: &str, value: f64) {
+        for held in &mut self.axes {
+            if let Some(key) = key.strip_prefix(held.place.as_str()) {
+                held.law.tune(key, value);
+            }
+        }
+    }
+
+    /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
+    pub fn lead_time(&self) -> f64 {
+        self.axes.iter().map(|held| held.law.lead_time()).fold(0.0, f64::max)
+    }
+
+    /// Returns the status of active damping in the last cycle about each axis; the default for laws without it.
+    pub fn damping_status(&self) -> Vec<DampingStatus> {
+        self.axes.iter().map(|held| held.law.damping_status().copied().unwrap_or_default()).collect()
+    }
+}

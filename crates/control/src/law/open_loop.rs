@@ -1,0 +1,37 @@
+//! The open loop: no feedback, so that only the manoeuvre and the disturbances drive the body.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Authority, ControlOutput, DecisionCause, EstimateNeeds, Law, LawSpec, Phase, Setpoint};
+use crate::state_estimate::StateEstimate;
+use crate::time::Instant;
+
+/// Open loop.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct Open {}
+
+impl LawSpec for Open {
+    fn start(&self, _: &Authority) -> Box<dyn Law> {
+        self.copy()
+    }
+
+    fn needs(&self) -> EstimateNeeds {
+        EstimateNeeds::Nothing
+    }
+}
+
+impl Law for Open {
+    fn decide(&mut self, _: Instant, _: DecisionCause, _: &Setpoint, _: &StateEstimate) -> ControlOutput {
+        ControlOutput::NONE
+    }
+
+    fn state(&self) -> Phase {
+        Phase::Open
+    }
+
+    fn copy(&self) -> Box<dyn Law> {
+        Box::new(self.clone())
+    }
+}

@@ -1,0 +1,74 @@
+//! Separate laws about three axes.
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Authority, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, Tunable};
+use crate::time::Span;
+
+/// A law of one angle for each of three axes.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+#[schemars(rename = "PerAxis")]
+pub struct PerAxisLaws {
+    /// About x.
+    pub roll: LawKind,
+    /// About y.
+    pub pitch: LawKind,
+    /// About z.
+    pub yaw: LawKind,
+}
+
+impl PerAxisLaws {
+    /// Returns the law about an axis.
+    pub fn about(&self, axis: usize) -> &LawKind {
+        [&self.roll, &self.pitch, &self.yaw][axis.min(2)]
+    }
+
+    /// Returns the key prefix of the law about an axis: `roll.pd.` and the like.
+    pub fn key_prefix(&self, axis: usize) -> String {
+        format!("{}.{}.", ["roll", "pitch", "yaw"][axis.min(2)], self.about(axis).kind())
+    }
+
+    fn all(&self) -> [&LawKind; 3] {
+        [&self.roll, &self.pitch, &self.yaw]
+    }
+}
+
+impl LawSpec for PerAxisLaws {
+    fn start(&self, authority: &Authority) -> Box<dyn Law> {
+        self.roll.start(authority)
+    }
+
+    /// Returns the shortest period of the laws, at which sensors without their own period are read.
+    fn period(&self) -> Option<Span> {
+        self.all().into_iter().filter_map(|law| law.period()).min()
+    }
+
+    fn is_switching(&self) -> bool {
+        self.all().into_iter().all(|law| law.is_switching())
+    }
+
+    fn expected_band(&self) -> ErrorBand {
+        ErrorBand::None
+    }
+
+    fn needs(&self) -> EstimateNeeds {
+        let of = |wanted: EstimateNeeds| self.all().into_iter().any(|law| law.needs() == wanted);
+        let order = [
+            EstimateNeeds::ElasticRates,
+            EstimateNeeds::DominantMode,
+            EstimateNeeds::Motion,
+            EstimateNeeds::Field,
+        ];
+        order.into_iter().find(|wanted| of(*wanted)).unwrap_or(EstimateNeeds::Nothing)
+    }
+
+    fn tunable(&self) -> Vec<Tunable> {
+        let of = |axis: usize| {
+            let place = self.key_prefix(axis);
+            self.about(axis).tunable().into_iter().map(move |number| number.nested(&place))
+        };
+        (0..3).flat_map(of).collect()
+    }
+}

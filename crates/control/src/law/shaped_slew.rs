@@ -1,0 +1,188 @@
+//! The slew to a target that leaves modes at rest: a command planned for them, or a slew with limits through a shaper.
+
+use nalgebra::Quaternion;
+
+use super::AttitudeTarget;
+use crate::body::Mode;
+use crate::document::ConfigError;
+use crate::manoeuvre::{PlannedSlew, RestToRestTask, Slew, SlewProfile, convolve};
+use crate::quantity::Positive;
+
+impl AttitudeTarget {
+    /// Returns true if the slew to the target is planned or shaped for modes.
+    pub(super) fn is_shaped(&self) -> bool {
+        self.command.is_some() || self.shaper.is_some()
+    }
+
+    /// Returns the slew to the target, of a body with these modes.
+    ///
+    /// # Errors
+    /// A `ConfigError` with the key that does not fit the modes and the reason.
+    pub(super) fn slew(
+        &self,
+        ways: [Quaternion<f64>; 2],
+        modes: &[Mode],
+    ) -> Result<PlannedSlew, ConfigError> {
+        PlannedSlew::new(ways, |angle| {
+            let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
+                let task = RestToRestTask { time: duration.get(), impulse: 0.0, travel: angle };
+                let planned = command.waveform(&task, &command.zeros(modes)?);
+                planned.map_err(|fault| ConfigError::new("duration", fault.why))?.0
+            } else {
+                let acceleration = self.acceleration.map_or(0.0, Positive::get);
+                let rate_limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
+                Slew::new(ways, acceleration, rate_limit, self.profile).command()
+            };
+            let Some(shaper) = &self.shaper else { return Ok(plan) };
+            Ok(convolve(&plan, &shaper.impulses(modes)?))
+        })
+    }
+
+    /// Checks the keys of a shaped slew against each other; returns the key and the reason.
+    pub(super) fn validate_shape(&self) -> Option<ConfigError> {
+        let limits = [
+            ("acceleration", self.acceleration.is_some()),
+            ("rate_limit", self.rate_limit.is_some()),
+            ("profile", self.profile != SlewProfile::default()),
+        ];
+        match (&self.command, self.duration) {
+            (Some(_), None) => Some(ConfigError::new(
+                "duration",
+                "must be given: it is how long the turn by `command` takes",
+            )),
+            (None, Some(_)) => Some(ConfigError::new("duration", "needs a `command`, whose duration it is")),
+            (Some(_), Some(_)) => limits.iter().find(|(_, given)| *given).map(|(key, _)| {
+                ConfigError::new(
+                    *key,
+                    "must be left out with a `command`, which is planned for its `duration`",
+                )
+            }),
+            (None, None) => (self.shaper.is_some() && self.acceleration.is_none()).then(|| {
+                ConfigError::new(
+                    "shaper",
+                    "needs the `acceleration` or the `command` of the turn that it shapes",
+                )
+            }),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::attitude::Vector;
+    use crate::attitude::rotation;
+    use crate::quantity::{Finite, Frequency, NonNegative};
+
+    fn modes() -> Vec<Mode> {
+        let mode = |frequency: f64, damping: f64| {
+            let damping = NonNegative::new(damping).expect("a ratio");
+            Mode::at_rest(Frequency::new(frequency).expect("a frequency"), Finite::default(), damping)
+        };
+        vec![mode(0.9, 0.005), mode(1.7, 0.01), mode(4.0, 0.0)]
+    }
+
+    fn target(keys: &str) -> AttitudeTarget {
+        toml::from_str(&format!("from = 0\n{keys}")).unwrap_or_else(|error| panic!("{keys}: {error}"))
+    }
+
+    /// Returns the residual of a mode after a slew, relative to that of a pulse with the largest acceleration, by
+    /// Simpson's rule over the poses of the slew, independent of waveforms.
+    fn left(turn: &PlannedSlew, mode: &Mode, axis: Vector) -> f64 {
+        let (w, zeta) = (mode.frequency.get(), mode.damping.get());
+        let damped = w * f64::sqrt(1.0 - zeta * zeta);
+        let end = turn.duration();
+        let (mut cosine, mut sine, mut most) = (0.0, 0.0, 0.0_f64);
+        let count = 200_000;
+        let h = end / f64::from(count);
+        // Rates are continuous, so the integral of the acceleration is taken by parts.
+        for k in 0..=count {
+            let t = h * f64::from(k);
+            let weight = if k == 0 || k == count {
+                1.0
+            } else if k % 2 == 1 {
+                4.0
+            } else {
+                2.0
+            };
+            let pose = turn.at(t.min(end * (1.0 - 1e-15)));
+            let rate = pose.rate.dot(&axis);
+            let grown = weight * h / 3.0 * libm::exp(zeta * w * (t - end)) * rate;
+            cosine += grown * libm::cos(damped * t);
+            sine += grown * libm::sin(damped * t);
+            most = most.max(rate.abs());
+        }
+        libm::hypot(cosine, sine) * w / most
+    }
+
+    #[test]
+    fn chosen_modes_rest_after_the_turn() {
+        let axis = Vector::new(1.0, 2.0, 2.0) / 3.0;
+        let from = rotation(&Vector::new(0.3, -0.2, 0.5));
+        let to = from * rotation(&(axis * 0.8));
+        // Tolerances of Simpson's rule for rates with kinks.
+        let cases = [
+            ("acceleration = 2e-3\nrate_limit = 0.02\nshaper = { zv = { modes = [0] } }", vec![0], 1e-7),
+            (
+                "acceleration = 2e-3\nrate_limit = 0.02\nprofile = \"versine\"\nshaper = { zvd = { modes = [0, 1] } }",
+                vec![0, 1],
+                1e-9,
+            ),
+            ("duration = 60\ncommand = { minimum_peak = { suppress = 2 } }", vec![0, 1], 1e-6),
+            ("duration = 60\ncommand = { cosine = { suppress = 3 } }", vec![0, 1, 2], 1e-8),
+            (
+                "duration = 60\ncommand = { minimum_energy = { suppress = 1 } }\nshaper = { zv = { modes = [2] } }",
+                vec![0, 2],
+                1e-7,
+            ),
+        ];
+        for (keys, rest, bound) in cases {
+            let turn =
+                target(keys).slew([from, to], &modes()).unwrap_or_else(|fault| panic!("{keys}: {fault}"));
+            for mode in rest {
+                let left = left(&turn, &modes()[mode], axis);
+                assert!(left < bound, "{keys}: mode {mode} keeps {left:e}");
+            }
+            // The slew ends at its target, at rest, and has a single axis.
+            let near_end = turn.at(turn.duration() * (1.0 - 1e-12));
+            assert!((near_end.attitude - to).norm() < 1e-12 && near_end.rate.norm() < 1e-11, "{keys}");
+            assert!((turn.at(0.4 * turn.duration()).rate.cross(&axis)).norm() < 1e-15);
+            assert!(turn.fastest() < 0.05);
+        }
+        let plain = target("acceleration = 2e-3\nrate_limit = 0.02");
+        let plain = plain.slew([from, to], &modes()).expect("a turn");
+        assert!(left(&plain, &modes()[0], axis) > 1e-2);
+        // Without a shaper it is the closed-form slew.
+        let slew = Slew::new([from, to], 2e-3, 0.02, SlewProfile::Trapezoid);
+        for k in 0..60 {
+            let (a, b) = (plain.at(f64::from(k)), slew.at(f64::from(k)));
+            assert!((a.attitude - b.attitude).norm() < 1e-14 && (a.rate - b.rate).norm() < 1e-15);
+        }
+    }
+
+    #[test]
+    fn keys_that_do_not_fit_are_refused() {
+        let ways = [rotation(&Vector::zeros()), rotation(&Vector::new(0.0, 0.0, 0.5))];
+        let fault = |keys: &str| {
+            let target = target(keys);
+            let found = target.validate_shape().or_else(|| target.slew(ways, &modes()).err());
+            found.unwrap_or_else(|| panic!("{keys}")).to_string()
+        };
+        let cases = [
+            ("duration = 10", "`duration` needs a `command`"),
+            ("command = { bang_bang = {} }", "`duration` must be given"),
+            (
+                "duration = 10\nacceleration = 1\ncommand = { bang_bang = {} }",
+                "`acceleration` must be left out with a `command`",
+            ),
+            ("shaper = { zv = {} }", "`shaper` needs the `acceleration`"),
+            ("acceleration = 1\nshaper = { zv = { modes = [3] } }", "`shaper.zv.modes[0]`"),
+            ("duration = 10\ncommand = { cosine = { suppress = 4 } }", "`command.cosine.suppress`"),
+            ("duration = 1\ncommand = { minimum_peak = { suppress = 3 } }", "`"),
+        ];
+        for (keys, why) in cases {
+            let found = fault(keys);
+            assert!(found.starts_with(why), "{keys}: {found}");
+        }
+    }
+}

@@ -1,0 +1,31 @@
+//! Settings of a sensor that another crate provides.
+
+use std::any::Any;
+
+use super::Sensor;
+use crate::random::Seed;
+use crate::time::Span;
+
+/// Settings of a sensor that another crate provides.
+pub trait SensorSpec: Send + Sync {
+    /// Returns the sensor's run-time state on a body with `axes` axes.
+    fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sensor>;
+
+    /// Returns the period of the samples.
+    fn period(&self) -> Span;
+
+    /// Returns the standard deviation of the measured angle (rad).
+    fn angle_noise(&self) -> f64 {
+        0.0
+    }
+
+    /// Returns the standard deviation of the measured rate (rad/s), if rates are measured.
+    fn rate_noise(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
+    fn any(&self) -> Option<&dyn Any> {
+        None
+    }
+}

@@ -1,0 +1,271 @@
+//! Metrics of a run of a three-axis body: propellant, firings, elastic energy, pointing.
+
+use super::goal::{self, GoalMetrics};
+use super::{
+    ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES,
+    FIRINGS, FRICTION_HEAT, FUEL, FUEL_AXES, FUEL_THRUSTERS, GIMBAL_RATE, GYRO_MOMENTUM_END,
+    GYRO_MOMENTUM_PEAK, LATE_SHARE, MOMENT_SHARE, MOMENTUM_END, MOMENTUM_PEAK, MOMENTUM_SHARE, MetricValue,
+    NamedMetric, POINTING_END, POINTING_RMS, RATE_END, REQUIREMENT, SINGULARITY, SLEW_PEAK, SLEW_RMS,
+    TORQUE_ERROR, TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS,
+    ZERO_CROSSINGS,
+};
+use crate::actuator::Saturation;
+use crate::quantity::Positive;
+use crate::record::{Accelerations, Sliding, SteeringRecord, ThreeAxisCycle, WheelEvent};
+use crate::scenario::{Pointing, Scenario};
+use crate::time::Instant;
+
+/// Length of the end of a run over which elastic rates are averaged (s).
+const LATE: f64 = 200.0;
+
+/// Collector of the cycles of a run.
+#[derive(Clone, Debug)]
+#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
+pub struct ThreeAxisMetrics {
+    /// Time from which on a cycle is late (s).
+    late: f64,
+    /// True if there are jets, whose propellant and pulses are counted.
+    jets: bool,
+    /// True if wheels have friction; numbers of zero crossings and stictions, last sliding direction of each wheel, and
+    /// heat (J).
+    rubs: bool,
+    slips: (u64, u64),
+    /// For each accelerometer its index among the sensors, the sum of the squares of its samples, and their number.
+    shaken: Vec<(u64, f64, u64)>,
+    ways: Vec<Option<Sliding>>,
+    heat: f64,
+    fuel: f64,
+    /// Propellant used (kg) by axis or by thruster, and true if by thruster.
+    fuels: (Vec<f64>, bool),
+    /// Number of pulses, and number of cycles with any.
+    firings: (u64, u64),
+    /// Elastic energy: initial, largest, and last (J).
+    energy: (f64, f64, f64),
+    /// Elastic energy of the modes that the gyro observes: largest, and last (J).
+    visible: (f64, f64),
+    /// Times at which this energy was first below a tenth and a hundredth of its initial value (s).
+    below: [f64; 2],
+    /// Sum of the squared elastic rates of late cycles (rad²/s²), and the number of these cycles.
+    square: (f64, u64),
+    error: f64,
+    /// Whether there are magnetorquers.
+    magnetic: bool,
+    /// Last rigid rate (rad/s); largest and last momentum of the wheels (N m s).
+    rate: f64,
+    stored: [f64; 2],
+    /// Values of control moment gyros.
+    steered: Option<SteeringRecord>,
+    saturation: Saturation,
+    /// Of slews, the largest error (rad), the sum of squares (rad²), and how many cycles; whether there are any.
+    slews: (f64, f64, u64),
+    has_slews: bool,
+    /// Pointing requirement, sum of the squared errors that count (rad²), and their number.
+    asked: Option<Pointing>,
+    pointing: (f64, u64),
+    verdict: GoalMetrics,
+    /// Half width of the band about the target on each axis (rad), and the start of the current time outside (s).
+    bands: [f64; 3],
+    outside: Option<f64>,
+    end: f64,
+}
+
+impl ThreeAxisMetrics {
+    /// Creates an empty collector for runs of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        let end = Instant::START + scenario.duration;
+        let own: [f64; 3] = std::array::from_fn(|axis| {
+            scenario.study.expected_bands.get(axis).copied().flatten().unwrap_or(f64::NAN)
+        });
+        let bands = scenario.reference.band.map_or(own, |band| [Positive::get(band); 3]);
+        let from = scenario.last_target_start(end).seconds();
+        Self {
+            verdict: GoalMetrics::new(from, bands.into_iter().fold(0.0, f64::max)),
+            bands,
+            outside: None,
+            end: end.seconds(),
+            late: scenario.duration.seconds() - LATE,
+            jets: scenario.study.fires(),
+            rubs: scenario.study.bearings.iter().any(|bearing| bearing.viscous + bearing.breakaway > 0.0),
+            slips: (0, 0),
+            shaken: scenario.sensor.accelerometers().map(|(index, _)| (index as u64, 0.0, 0)).collect(),
+            ways: vec![None; scenario.study.bearings.len()],
+            heat: 0.0,
+            fuel: 0.0,
+            fuels: (Vec::new(), scenario.actuator.jets().is_some_and(|(jets, _)| jets.is_by_thruster())),
+            firings: (0, 0),
+            energy: (f64::NAN, 0.0, f64::NAN),
+            visible: (0.0, f64::NAN),
+            below: [f64::NAN; 2],
+            square: (0.0, 0),
+            error: f64::NAN,
+            magnetic: scenario.actuator.magnetorquers().is_some(),
+            saturation: Saturation::new(&scenario.actuator, scenario.duration.seconds()),
+            slews: (f64::NAN, 0.0, 0),
+            has_slews: scenario.study.profile.has_slews(),
+            rate: f64::NAN,
+            stored: [0.0, f64::NAN],
+            steered: (!scenario.study.gimbals.is_empty()).then(SteeringRecord::unknown),
+            asked: scenario.reference.pointing.clone(),
+            pointing: (0.0, 0),
+        }
+    }
+
+    /// Records a cycle.
+    pub fn observe_cycle(&mut self, now: Instant, cycle: &ThreeAxisCycle) {
+        let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
+        let norm = |of: [f64; 3]| of.iter().map(|value| value * value).sum::<f64>();
+        self.fuel = cycle.jets.fuel_kg;
+        self.fuels.0.clone_from(&cycle.fuels_kg);
+        self.saturation.see(t, cycle);
+        if cycle.slewing {
+            let square = norm(cycle.error_rad);
+            self.slews = (self.slews.0.max(f64::sqrt(square)), self.slews.1 + square, self.slews.2 + 1);
+        }
+        self.heat = cycle.friction_heat_j;
+        self.firings.0 += cycle.pulses;
+        self.firings.1 += u64::from(cycle.pulses > 0);
+        if self.energy.0.is_nan() {
+            self.energy.0 = energy;
+        }
+        self.energy = (self.energy.0, self.energy.1.max(energy), energy);
+        self.visible = (self.visible.0.max(cycle.visible_energy_j), cycle.visible_energy_j);
+        for (below, part) in self.below.iter_mut().zip([0.1, 0.01]) {
+            if below.is_nan() && energy < part * self.energy.0 {
+                *below = t;
+            }
+        }
+        if t >= self.late {
+            self.square.0 += norm(cycle.elastic_rate_rad_s);
+            self.square.1 += 1;
+        }
+        self.error = f64::sqrt(norm(cycle.error_rad));
+        self.rate = f64::sqrt(norm(cycle.rigid_rate_rad_s));
+        let stored = f64::sqrt(norm(cycle.stored_nm_s));
+        self.stored = [self.stored[0].max(stored), stored];
+        self.steered = cycle.steered;
+        if self.asked.as_ref().is_some_and(|asked| asked.includes(t)) {
+            self.pointing.0 += norm(cycle.error_rad);
+            self.pointing.1 += 1;
+        }
+        if let Some(since) = self.outside.take() {
+            self.verdict.add_outside(since, t);
+        }
+        let is_outside = cycle.error_rad.iter().zip(self.bands).any(|(error, band)| error.abs() > band);
+        self.outside = is_outside.then_some(t);
+    }
+
+    /// Records a sample of an accelerometer.
+    pub fn observe_acceleration(&mut self, row: &Accelerations) {
+        if let Some((_, square, count)) = self.shaken.iter_mut().find(|(sensor, ..)| *sensor == row.sensor) {
+            *square += row.axes.iter().map(|axis| axis.measured_m_s2 * axis.measured_m_s2).sum::<f64>();
+            *count += 1;
+        }
+    }
+
+    /// Records a wheel's transition between sliding and sticking.
+    pub fn observe_bearing_event(&mut self, event: &WheelEvent) {
+        let Some(way) = self.ways.get_mut(event.wheel as usize) else { return };
+        if event.after == Sliding::Stuck {
+            self.slips.1 += 1;
+            *way = Some(event.before);
+        } else {
+            let came = if event.before == Sliding::Stuck { way.take() } else { Some(event.before) };
+            self.slips.0 += u64::from(came.is_some_and(|came| came != event.after));
+        }
+    }
+
+    /// Returns the metrics of the run that has ended.
+    pub fn finish(mut self) -> Vec<NamedMetric> {
+        if let Some(since) = self.outside {
+            self.verdict.add_outside(since, self.end);
+        }
+        let [tenth, hundredth] = self.below;
+        let jets = [
+            (&FUEL, MetricValue::Number(self.fuel)),
+            (&FIRINGS, MetricValue::Count(self.firings.0)),
+            (&FIRING_CYCLES, MetricValue::Count(self.firings.1)),
+        ];
+        let friction = [
+            (&ZERO_CROSSINGS, MetricValue::Count(self.slips.0)),
+            (&WHEEL_STOPS, MetricValue::Count(self.slips.1)),
+            (&FRICTION_HEAT, MetricValue::Number(self.heat)),
+        ];
+        let metrics = [
+            (&ELASTIC_PEAK, MetricValue::Number(self.energy.1)),
+            (&ELASTIC_END, MetricValue::Number(self.energy.2)),
+            (&VISIBLE_PEAK, MetricValue::Number(self.visible.0)),
+            (&VISIBLE_END, MetricValue::Number(self.visible.1)),
+            (&BELOW_10, MetricValue::Number(tenth)),
+            (&BELOW_1, MetricValue::Number(hundredth)),
+            (&ELASTIC_RATE, MetricValue::Number(f64::sqrt(self.square.0 / self.square.1 as f64))),
+            (&POINTING_END, MetricValue::Number(self.error)),
+        ];
+        let fuels = if self.fuels.1 { &FUEL_THRUSTERS } else { &FUEL_AXES };
+        let fuels = (fuels, MetricValue::Numbers(self.fuels.0));
+        let jets = jets.into_iter().chain([fuels]).filter(|_| self.jets);
+        let friction = friction.into_iter().filter(|_| self.rubs);
+        let rate = [(&RATE_END, MetricValue::Number(self.rate))].into_iter().filter(|_| self.magnetic);
+        let stored = [
+            (&MOMENTUM_PEAK, MetricValue::Number(self.stored[0])),
+            (&MOMENTUM_END, MetricValue::Number(self.stored[1])),
+        ];
+        let stored = stored.into_iter().filter(|_| self.saturation.has_wheels());
+        let slews = [
+            (&SLEW_PEAK, MetricValue::Number(self.slews.0)),
+            // 0/0 of no cycles: no number.
+            (&SLEW_RMS, MetricValue::Number(f64::sqrt(self.slews.1 / self.slews.2 as f64))),
+        ];
+        let slews = slews.into_iter().filter(|_| self.has_slews);
+        let steered = self.steered.map(|steered| {
+            [
+                (&GIMBAL_RATE, MetricValue::Number(steered.largest_rate_rad_s)),
+                (&SINGULARITY, MetricValue::Number(steered.least_measure)),
+                (&TORQUE_ERROR, MetricValue::Number(steered.largest_error_nm)),
+                (&GYRO_MOMENTUM_PEAK, MetricValue::Number(self.stored[0])),
+                (&GYRO_MOMENTUM_END, MetricValue::Number(self.stored[1])),
+            ]
+        });
+        let mut pointing: Vec<NamedMetric> = Vec::new();
+        if let Some(asked) = &self.asked {
+            // Without cycles the mean is 0/0: NaN.
+            let rms = f64::sqrt(self.pointing.0 / self.pointing.1 as f64);
+            pointing.push((&POINTING_RMS, MetricValue::Number(rms)));
+            let met = asked.rms.map(|most| goal::meets(rms, most.get()));
+            pointing.extend(met.map(|word| (&REQUIREMENT, MetricValue::Word(word))));
+        }
+        let shaken = self.shaken.iter().map(|(_, square, count)| f64::sqrt(square / *count as f64));
+        let shaken =
+            (!self.shaken.is_empty()).then(|| (&ACCELERATION, MetricValue::Numbers(shaken.collect())));
+        jets.chain(friction)
+            .chain(metrics)
+            .chain(shaken)
+            .chain(rate)
+            .chain(stored)
+            .chain(limits(&self.saturation))
+            .chain(steered.into_iter().flatten())
+            .chain(slews)
+            .chain(pointing)
+            .chain(self.verdict.finish(self.end))
+            .collect()
+    }
+}
+
+/// How wheels and magnetorquers reached their limits.
+fn limits(saturation: &Saturation) -> Vec<NamedMetric> {
+    let mut metrics: Vec<NamedMetric> = Vec::new();
+    if saturation.has_wheels() {
+        let [speed, momentum] = saturation.peaks();
+        metrics.push((&WHEEL_SPEED, MetricValue::Number(speed)));
+        metrics.push((&WHEEL_MOMENTUM, MetricValue::Number(momentum)));
+    }
+    for (meaning, share) in
+        [&TORQUE_SHARE, &MOMENTUM_SHARE, &MOMENT_SHARE].into_iter().zip(saturation.shares())
+    {
+        metrics.extend(share.map(|share| (meaning, MetricValue::Number(share))));
+    }
+    if let Some(state) = saturation.end_state() {
+        metrics.push((&ACTUATOR_END, MetricValue::Word(state.word())));
+        metrics.push((&LATE_SHARE, MetricValue::Number(saturation.late_share())));
+    }
+    metrics
+}

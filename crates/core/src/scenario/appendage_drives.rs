@@ -1,0 +1,333 @@
+//! Appendage drives: their angles at every instant of the run, known before it begins, and checks of parts that need
+//! fixed appendages.
+
+use std::sync::Arc;
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::{ResolvedScenario, Scenario, ScenarioSpec};
+use crate::attitude::Vector;
+use crate::body::BodyModel;
+use crate::body::craft::{Appendage, AppendageDrive, DrivePiece, TrackedObject};
+use crate::document::ConfigError;
+use crate::environment::{OrbitEnvironment, to_body};
+use crate::law::Frame;
+use crate::motion::three_axis::{ArticulatedBody, DriveAngles};
+use crate::sensor::SensorKind;
+use crate::time::{Instant, Span};
+
+/// Largest change of a drive angle (rad) before the modes are replaced by those of another angle.
+const APART: f64 = 1.0 / 32.0;
+
+/// Largest number of such changes in a run.
+const MOST_CHANGES: f64 = 1e6;
+
+/// Smallest sine of the angle between the Sun and the axis of a drive that tracks it.
+const ACROSS: f64 = 0.1;
+
+/// Number of intervals of a run at whose ends the rates of Sun-tracking drives are sampled.
+const LOOKS: u32 = 4096;
+
+/// Appendage drives of a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct AppendageDrives {
+    /// Model of the spacecraft with appendages that rotate on drives or hinges.
+    pub driven: Arc<ArticulatedBody>,
+    /// Angles of the drives over time.
+    pub courses: Arc<DriveProfiles>,
+}
+
+/// Angles of all drives over time.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct DriveProfiles {
+    each: Vec<DriveProfile>,
+    fastest: f64,
+    /// Instants at which the modes are replaced or a rate changes, each with the time (s) in the middle of the interval
+    /// that follows, at whose drive angles the modes are computed.
+    pub changes: Vec<(Instant, f64)>,
+}
+
+/// Angle of one drive over time.
+#[derive(Clone, Debug, PartialEq)]
+enum DriveProfile {
+    /// Pieces with constant acceleration.
+    Pieces(Vec<DrivePiece>),
+    /// Sun tracking.
+    Sun(Box<SunTracking>),
+}
+
+/// Sun tracking of a drive.
+#[derive(Clone, Debug, PartialEq)]
+struct SunTracking {
+    sky: OrbitEnvironment,
+    sun: Vector,
+    /// Frame of the spacecraft's target, and (`attitude`) the target attitude in it.
+    frame: Frame,
+    attitude: Quaternion<f64>,
+    /// Axes of the appendage with the drive at angle 0; in these axes, the drive's axis and the normal that faces the
+    /// Sun.
+    axes: Matrix3<f64>,
+    about: Vector,
+    facing: Vector,
+}
+
+impl SunTracking {
+    /// Returns the components of the direction to the Sun along the normal at drive angle 0 and at a quarter of a turn,
+    /// each with its rate (1/s).
+    fn seen(&self, t: f64) -> [[f64; 2]; 2] {
+        let pose = self.frame.state_at(&self.sky, t);
+        let rate: Vector = to_body(&self.attitude, &pose.rate);
+        let sun: Vector = to_body(&(pose.attitude * self.attitude), &self.sun);
+        let (own, change) = (self.axes.tr_mul(&sun), self.axes.tr_mul(&sun.cross(&rate)));
+        let across = self.about.cross(&self.facing);
+        [[self.facing.dot(&own), across.dot(&own)], [self.facing.dot(&change), across.dot(&change)]]
+    }
+
+    fn at(&self, t: f64) -> [f64; 2] {
+        let [[x, y], [dx, dy]] = self.seen(t);
+        [libm::atan2(y, x), (x * dy - y * dx) / (x * x + y * y)]
+    }
+
+    /// Returns the sine of the angle between the Sun and the drive's axis.
+    fn across(&self, t: f64) -> f64 {
+        let [[x, y], _] = self.seen(t);
+        libm::hypot(x, y)
+    }
+}
+
+impl DriveProfile {
+    fn at(&self, t: f64) -> [f64; 2] {
+        match self {
+            Self::Sun(following) => following.at(t),
+            Self::Pieces(pieces) => {
+                let past = pieces.partition_point(|[from, ..]| *from <= t);
+                let Some(last) = past.checked_sub(1) else {
+                    return [pieces.first().map_or(0.0, |piece| piece[1]), 0.0];
+                };
+                let [from, angle, rate, acceleration] = pieces[last];
+                let t = t - from;
+                [angle + (rate + 0.5 * acceleration * t) * t, rate + acceleration * t]
+            }
+        }
+    }
+}
+
+impl DriveAngles for DriveProfiles {
+    fn at(&self, drive: usize, t: f64) -> [f64; 2] {
+        self.each[drive].at(t)
+    }
+
+    fn fastest(&self) -> f64 {
+        self.fastest
+    }
+}
+
+impl DriveProfiles {
+    /// Returns the number of drives.
+    pub fn count(&self) -> usize {
+        self.each.len()
+    }
+}
+
+impl ResolvedScenario {
+    /// Returns the drives; `None` if appendages only swing on hinges, or are fixed.
+    pub fn articulation(&self) -> Option<&AppendageDrives> {
+        self.drives.as_ref().filter(|drives| drives.courses.count() > 0)
+    }
+
+    /// Returns the number of appendages that swing on hinges.
+    pub fn hinges(&self) -> usize {
+        self.drives.as_ref().map_or(0, |drives| drives.driven.hinges())
+    }
+}
+
+impl ScenarioSpec {
+    /// Returns the drive angles at the start (rad), 0 for appendages without a drive.
+    pub(super) fn start_angles(&self) -> Result<Vec<f64>, ConfigError> {
+        let angle = |index| Ok(self.course(index)?.map_or(0.0, |course| course.at(0.0)[0]));
+        (0..self.appendage.len()).map(angle).collect()
+    }
+
+    /// Returns the angle of an appendage's drive over time; `None` without a drive.
+    fn course(&self, index: usize) -> Result<Option<DriveProfile>, ConfigError> {
+        let appendage = &self.appendage[index];
+        let Some(drive) = &appendage.drive else { return Ok(None) };
+        let within = |fault: ConfigError| fault.within(&format!("appendage[{index}].drive"));
+        drive.validate().map_err(within)?;
+        if drive.track == Some(TrackedObject::Sun) {
+            return self.following(appendage, drive).map(Some).map_err(within);
+        }
+        // Times are rounded to instants of the run.
+        let rounded = |[from, angle, rate, acceleration]: DrivePiece| {
+            [Span::from_seconds(from).seconds(), angle, rate, acceleration]
+        };
+        Ok(Some(DriveProfile::Pieces(drive.profile().into_iter().map(rounded).collect())))
+    }
+
+    fn following(&self, appendage: &Appendage, drive: &AppendageDrive) -> Result<DriveProfile, ConfigError> {
+        let sky = self.orbit_environment();
+        let Some(sun) = sky.sun().copied() else {
+            return Err(ConfigError::new("track", "follows `environment.sun`, and there is none"));
+        };
+        let targets = self.targets();
+        let known = match targets {
+            [] => true,
+            [only] => only.starts() == Instant::START && only.table.is_empty() && only.acceleration.is_none(),
+            _ => false,
+        };
+        if !known {
+            let why = "follows the Sun from one `[[target]]` that holds from the start on: the angle has to be known before the \
+                       run; write it as a `table`";
+            return Err(ConfigError::new("track", why));
+        }
+        let target = targets.first();
+        let frame = target.map_or(Frame::Inertial, |target| target.frame);
+        if frame.validate(&sky).is_some() {
+            return Err(ConfigError::new("track", "needs the axes that the target is from"));
+        }
+        let following = SunTracking {
+            sky,
+            sun,
+            frame,
+            attitude: target.map_or_else(Quaternion::identity, crate::law::AttitudeTarget::attitude),
+            axes: appendage.turned.matrix(),
+            about: drive.axis(),
+            facing: drive.sun_facing(),
+        };
+        let least = looks(self.duration).map(|t| following.across(t)).fold(1.0, f64::min);
+        if least < ACROSS {
+            let why = format!(
+                "cannot follow a Sun along the drive's axis: the sine of the angle between them comes down to {least:.3}, and must \
+                 stay above {ACROSS}"
+            );
+            return Err(ConfigError::new("track", why));
+        }
+        Ok(DriveProfile::Sun(Box::new(following)))
+    }
+
+    /// Returns all drives of the run; `None` if no appendage rotates.
+    pub(super) fn drives(&self, model: &BodyModel) -> Result<Option<AppendageDrives>, ConfigError> {
+        let Some(driven) = model.craft().and_then(|craft| craft.driven.clone()) else { return Ok(None) };
+        let (mut each, mut fastest, mut edges) = (Vec::new(), 0.0_f64, vec![Instant::START]);
+        let end = Instant::START + self.duration;
+        for index in 0..self.appendage.len() {
+            let Some(course) = self.course(index)? else { continue };
+            let most = match &course {
+                DriveProfile::Pieces(pieces) => {
+                    edges.extend(pieces.iter().map(|piece| Instant::START + Span::from_seconds(piece[0])));
+                    pieces.iter().map(|piece| piece[2].abs()).fold(0.0, f64::max)
+                }
+                // The margin covers rates between the sampled instants.
+                DriveProfile::Sun(following) => {
+                    1.1 * looks(self.duration).map(|t| following.at(t)[1].abs()).fold(0.0, f64::max)
+                }
+            };
+            self.too_fast(index, most)?;
+            fastest = fastest.max(most);
+            each.push(course);
+        }
+        edges.push(end);
+        edges.retain(|edge| *edge <= end);
+        edges.sort();
+        edges.dedup();
+        if fastest * self.duration.seconds() / APART > MOST_CHANGES {
+            let why = format!(
+                "turns by {:.0} rad in this run: too much to follow",
+                fastest * self.duration.seconds()
+            );
+            return Err(ConfigError::new("appendage", why));
+        }
+        let mut changes = Vec::new();
+        for pair in edges.windows(2) {
+            let [from, to] = [pair[0].seconds(), pair[1].seconds()];
+            let parts = libm::ceil(fastest * (to - from) / APART).max(1.0) as u32;
+            for part in 0..parts {
+                let at = |part: f64| from + (to - from) * part / f64::from(parts);
+                let instant = if part == 0 {
+                    pair[0]
+                } else {
+                    Instant::START + Span::from_seconds(at(f64::from(part)))
+                };
+                changes.push((instant, at(f64::from(part) + 0.5)));
+            }
+        }
+        Ok(Some(AppendageDrives { driven, courses: Arc::new(DriveProfiles { each, fastest, changes }) }))
+    }
+
+    /// Checks that a drive is slow enough for the modes of its appendage.
+    fn too_fast(&self, index: usize, most: f64) -> Result<(), ConfigError> {
+        let clamped = self.appendage[index].clamped_modes();
+        let own = clamped.iter().map(|mode| mode.frequency.get());
+        let limit = 0.2 * own.fold(f64::INFINITY, f64::min);
+        if most <= limit {
+            return Ok(());
+        }
+        let why = format!(
+            "must be slower than {limit:.4} rad/s, a fifth of the lowest frequency with the root clamped, got {most:.4}: above it, the \
+             model neglects too much"
+        );
+        Err(ConfigError::new(format!("appendage[{index}].drive.rate"), why))
+    }
+}
+
+impl Scenario {
+    /// Returns the error of a part that is incompatible with drives and hinges.
+    pub(super) fn validate_drives(&self) -> Option<ConfigError> {
+        let driven = &self.study.drives.as_ref()?.driven;
+        let spacecraft = self.spacecraft.as_ref()?;
+        let on_hub = |point: Option<&str>| {
+            let Some(point) = point else { return true };
+            !spacecraft.points.is_empty() && spacecraft.points.iter().any(|own| own.name == point)
+                || spacecraft.points.is_empty() && point == "hub"
+        };
+        let place = |key: String| {
+            let why = "must be a point of the hub: with drives or hinges, the motion of points on appendages is not computed";
+            Some(ConfigError::new(key, why))
+        };
+        for (index, sensor) in self.sensor.iter().enumerate() {
+            if !on_hub(sensor.point()) {
+                return place(format!("{}.point", self.sensor_key(index)));
+            }
+            if matches!(sensor, SensorKind::Accelerometer(_)) {
+                let why = "cannot be used with appendages that turn, on drives or hinges: the acceleration by their modes is not computed";
+                return Some(ConfigError::new(self.sensor_key(index), why));
+            }
+        }
+        for (index, disturbance) in self.disturbance.iter().enumerate() {
+            if !on_hub(disturbance.point.as_deref()) {
+                return place(format!("disturbance[{index}].point"));
+            }
+        }
+        if let Some((jets, key)) = self.actuator.jets()
+            && let Some(index) = jets.thrusters.iter().position(|thruster| !on_hub(Some(&thruster.point)))
+        {
+            return place(format!("{key}.thrusters[{index}].point"));
+        }
+        if let Some((wheels, of)) = self.actuator.wheels()
+            && let Some(key) = wheels.friction_or_imbalance_key()
+        {
+            let why = "needs appendages that do not turn, on drives or hinges: the instants at which wheels stick, and the excitation of modes by \
+                       imbalance, are searched for with constant modes";
+            return Some(ConfigError::new(format!("{of}.{key}"), why));
+        }
+        let pressed = self.environment.as_ref().and_then(|around| {
+            let pressure = around.solar_pressure.is_some().then_some("solar_pressure");
+            pressure.or(around.drag.is_some().then_some("drag"))
+        });
+        if let Some(key) = pressed.filter(|_| driven.moves_centre()) {
+            let why = "acts at an arm that is known where drives and hinges do not move the centre of mass: put the axis of the drive \
+                       through that of the appendage, or write the hinge as a mode";
+            return Some(ConfigError::new(format!("environment.{key}"), why));
+        }
+        None
+    }
+}
+
+/// Returns evenly spaced instants of a run (s), start and end included.
+fn looks(duration: Span) -> impl Iterator<Item = f64> {
+    let end = duration.seconds();
+    (0..=LOOKS).map(move |look| end * f64::from(look) / f64::from(LOOKS))
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,113 @@
+//! Failures of sensors and actuators: checks, and intervals.
+
+use super::{Scenario, ScenarioSpec};
+use crate::actuator::{Failure, FailureScope};
+use crate::attitude::AXES;
+use crate::body::Planar;
+use crate::document::ConfigError;
+use crate::interval::Interval;
+use crate::law::LawKind;
+
+/// Failure of a part with its interval.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FailureInterval {
+    /// Key of the part.
+    pub part: String,
+    /// Component that fails, such as `wheel 2`; empty if the whole part fails.
+    pub of: String,
+    /// Kind of failure.
+    pub fault: &'static str,
+    /// Interval of the failure.
+    pub interval: Interval,
+}
+
+impl ScenarioSpec {
+    /// Returns all failures: of sensors in their order, then of actuators.
+    pub fn failures(&self) -> Vec<FailureInterval> {
+        let mut all = Vec::new();
+        for (index, sensor) in self.sensor.iter().enumerate() {
+            all.extend(sensor.faults().iter().map(|fault| FailureInterval {
+                part: self.sensor_key(index),
+                of: String::new(),
+                fault: fault.kind(),
+                interval: fault.interval(),
+            }));
+        }
+        for member in self.actuator.members() {
+            all.extend(member.kind.failures().iter().map(|failure| {
+                let FailureScope { interval, about, wheel, gimbal, thruster } = failure.scope();
+                let about = about.map(|about| AXES[about.index()].to_owned());
+                let of = about
+                    .or(wheel.map(|wheel| format!("wheel {wheel}")))
+                    .or(gimbal.map(|gimbal| format!("gimbal {gimbal}")))
+                    .or(thruster.map(|thruster| format!("thruster {thruster}")));
+                FailureInterval {
+                    part: member.key.clone(),
+                    of: of.unwrap_or_default(),
+                    fault: failure.kind(),
+                    interval,
+                }
+            }));
+        }
+        all
+    }
+}
+
+impl Scenario {
+    /// Checks that the failures are consistent with their sensors and actuators, and with the motion.
+    pub(super) fn validate_failures(&self) -> Option<ConfigError> {
+        for (number, sensor) in self.sensor.iter().enumerate() {
+            let disorder = |fault: &crate::sensor::SensorFailure| fault.interval().validate();
+            let mut faults = sensor.faults().iter().enumerate();
+            if let Some((index, fault)) = faults.find_map(|(index, fault)| Some((index, disorder(fault)?))) {
+                return Some(fault.within(&format!("{}.faults[{index}]", self.sensor_key(number))));
+            }
+        }
+        let members = self.actuator.members();
+        let failed = members.iter().find_map(|member| member.failure_fault(self.axis_count()));
+        failed.or_else(|| self.sines_fault())
+    }
+
+    /// Checks that the motion under sinusoidal torques has a closed form, or is integrated with steps that resolve
+    /// them.
+    fn sines_fault(&self) -> Option<ConfigError> {
+        let disturbed = self.disturbance.iter().position(|of| !of.sines.is_empty());
+        let disturbed = disturbed.map(|index| format!("disturbance[{index}].sines"));
+        let failed = self.actuator.members().into_iter().find_map(|member| {
+            let swings = |failure: &Failure| !failure.sines().is_empty();
+            let index = member.kind.failures().iter().position(swings)?;
+            Some(format!("{}.faults[{index}].added.sines", member.key))
+        });
+        if self.axis_count() == 3 {
+            let key = failed.or(disturbed).filter(|_| self.spacecraft.is_none())?;
+            let why = "are for a `[spacecraft]`: the modes of a `[body.spatial]` are pushed by torques that are constant for a \
+                       while, and its own `disturbance` is periodic";
+            return Some(ConfigError::new(key, why));
+        }
+        if let Some(key) = disturbed {
+            let why = "are for a `[spacecraft]`: on a body with one angle a failure of the actuator adds them, as \
+                       `added = { from = 0.0, sines = [..] }`";
+            return Some(ConfigError::new(key, why));
+        }
+        let key = failed?;
+        let why = match &self.law {
+            _ if self.actuator.flywheel().is_some() => {
+                "have no closed form with a wheel, whose back-EMF couples the modes: use an `[actuator.hold]`"
+            }
+            _ if self.drift.is_some() => "have no closed form for modes that drift",
+            _ if self.model.planar().is_some_and(Planar::is_coupled) => {
+                "have no closed form for modes that a damping matrix couples"
+            }
+            law if self.sensor.period(law.period()).is_none()
+                && !matches!(law, LawKind::Open(_) | LawKind::Pd(_)) =>
+            {
+                "leave no closed form for the crossings of the law: use a `[sensor.sampled]`"
+            }
+            _ if self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some()) => {
+                "are not piecewise constant torques, which an `[estimator.envelope]` needs"
+            }
+            _ => return None,
+        };
+        Some(ConfigError::new(key, why))
+    }
+}

@@ -1,0 +1,20 @@
+//! Condition for the relay kernel: the law alone moves the body.
+
+use super::Scenario;
+use crate::body::BodyModel;
+use crate::sensor::SensorKind;
+
+impl Scenario {
+    /// Returns true if only the law moves a one-axis body, in closed form, and its angle is measured at every instant.
+    pub fn has_fast_path(&self) -> bool {
+        matches!(self.model, BodyModel::Planar(_))
+            && self.linear.is_none()
+            && self.drift.is_none()
+            && self.plan.is_none()
+            && self.disturbance.is_empty()
+            && self.environment.is_none()
+            && self.study.sample_period.is_none()
+            && self.actuator.is_ideal()
+            && self.sensor.iter().all(|sensor| matches!(sensor, SensorKind::Continuous))
+    }
+}

@@ -1,0 +1,382 @@
+//! Data resolved from all parts of a scenario: one-axis models for laws and estimators, placement, allocation and
+//! authority.
+
+use nalgebra::{Cholesky, Matrix3};
+
+use super::{AppendageDrives, Scenario, ScenarioSpec};
+use crate::actuator::{
+    Actuator, ActuatorKind, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext,
+    AxisActuators, BackEmfRate, FiringMethod, GroupEffect, GyroAxes, ThrusterEffect,
+};
+use crate::attitude::{Vector, rotation_vector, tensor};
+use crate::body::craft::{HubRotor, Translation};
+use crate::body::{BodyAxes, BodyModel, CommandedQuantity, Mode, Planar, Spatial};
+use crate::document::ConfigError;
+use crate::environment::SurroundingsState;
+use crate::estimator::{EstimatorKind, adaptive, attitude};
+use crate::law::{AttitudeProfile, Authority, TorqueDistribution};
+use crate::motion::three_axis::{Bearing, SharedSteps};
+use crate::quantity::{Finite, Positive};
+use crate::random::Seed;
+use crate::time::{Instant, Span};
+
+/// Assessment period of a run without a period of its own (s).
+const TICK: f64 = 1.0;
+/// Tolerance for rounded shares.
+const ROUNDING: f64 = 1e-9;
+
+/// Data resolved from all parts of a scenario together.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct ResolvedScenario {
+    /// One-axis model of the body about each of its axes, as if that axis were alone.
+    pub axes: Vec<Planar>,
+    /// Authority of the actuators about each axis.
+    pub authorities: Vec<Authority>,
+    /// Period of the law, if it has one.
+    pub law_period: Option<Span>,
+    /// Sampling period; `None` if the angle is measured at every instant.
+    pub sample_period: Option<Span>,
+    /// Assessment period of a three-axis body.
+    pub assessment_period: Span,
+    /// Point of a three-axis body at which each sensor is mounted.
+    pub sensor_points: Vec<String>,
+    /// Point of a three-axis body at which torques act.
+    pub torque_point: String,
+    /// Translation of a spacecraft, if jets or forces can push it.
+    pub translation: Option<Translation>,
+    /// Environment of a three-axis body.
+    pub surroundings: Option<SurroundingsState>,
+    /// Drives and hinges of appendages.
+    pub drives: Option<AppendageDrives>,
+    /// Sequence of targets of a three-axis body.
+    pub profile: AttitudeProfile,
+    /// Effect of each group of jets that execute the law's commands: about each axis, plus and minus.
+    pub groups: Option<[[GroupEffect; 2]; 3]>,
+    /// Effect of each thruster of jets, whether they execute commands or unload wheels.
+    pub nozzles: Vec<ThrusterEffect>,
+    /// True for axes about which jets are the only actuator.
+    pub jet_only_axes: [bool; 3],
+    /// True if jets are the only actuator.
+    pub jets_alone: bool,
+    /// Effect of each group of jets that unload wheels: about each axis, plus and minus.
+    pub unloading_groups: Option<[[GroupEffect; 2]; 3]>,
+    /// Allocation of a torque to wheels with their own axes.
+    pub wheels: Option<Allocation>,
+    /// Axes of control moment gyros with the gimbals at angle 0.
+    pub gimbals: Vec<GyroAxes>,
+    /// Bearings of wheels with friction or imbalance.
+    pub bearings: Vec<Bearing>,
+    /// Back-EMF torque of a wheel per unit of the rate (N m s), and whether the rate is that of the elastic body.
+    pub back_emf: (f64, bool),
+    /// Design of the adaptive observers.
+    pub adaptive: Option<Box<adaptive::ObserverDesign>>,
+    /// Sensor data of an attitude filter.
+    pub attitude: Option<attitude::FilterSetup>,
+    /// Integration steps shared by all runs.
+    pub shared_steps: SharedSteps,
+    /// Error band about the target that the law of each axis promises (rad), if it promises one.
+    pub expected_bands: Vec<Option<f64>>,
+}
+
+impl ResolvedScenario {
+    /// Resolves the data of a scenario with its model, after the parts have been checked one by one.
+    ///
+    /// # Errors
+    /// Fails with a key that is inconsistent with the others, and the reason.
+    pub fn resolve(written: &ScenarioSpec, model: &BodyModel) -> Result<Self, ConfigError> {
+        let cycle = written.law.period();
+        let samples = written.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_none());
+        let mut study = Self {
+            law_period: cycle,
+            // With an estimator that works on samples, a continuous sensor is sampled at the law's period.
+            sample_period: written.sensor.period(cycle).or(cycle.filter(|_| samples)),
+            profile: AttitudeProfile::new(
+                written.targets(),
+                &written.orbit_environment(),
+                &model.free_modes(),
+            ),
+            back_emf: written.actuator.flywheel().map_or((0.0, true), |(wheel, _)| {
+                (wheel.back_emf.get(), wheel.opposes == BackEmfRate::BodyRate)
+            }),
+            jets_alone: matches!(written.actuator.only_actuator(), Some(ActuatorKind::Jets(_))),
+            ..Self::default()
+        };
+        study.assessment_period =
+            study.law_period.or(study.sample_period).unwrap_or(Span::from_seconds(TICK));
+        match model.axes() {
+            BodyAxes::One(body) => study.axes.push(body.clone()),
+            BodyAxes::Three(body) => study.locate_sensors_and_actuators(written, model, body)?,
+        }
+        study.authorities = (0..study.axes.len()).map(|axis| study.authority(written, axis)).collect();
+        if let Some(EstimatorKind::Adaptive(_)) = &written.estimator {
+            let at = |why: &str| Err(ConfigError::new("estimator.adaptive", why));
+            let jets = written.actuator.jets();
+            if jets.is_some_and(|(jets, _)| jets.allocation == FiringMethod::LeastPropellant) {
+                return at("predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`");
+            }
+            let members = written.actuator.members();
+            let part = |share: f64| share > 0.0 && share < 1.0 - ROUNDING;
+            let fires = |member: &&AssignedMember<'_>| matches!(&*member.kind, ActuatorKind::Jets(_));
+            if members.iter().filter(fires).any(|member| (0..3).any(|axis| part(member.share(axis)))) {
+                return at(
+                    "predicts what one actuator about each axis does: it needs jets with all of the demand about theirs",
+                );
+            }
+        }
+        if let Some(EstimatorKind::Adaptive(spec)) = &written.estimator {
+            let Some(period) = study.sample_period else {
+                return Err(ConfigError::new("estimator.adaptive", EstimatorKind::AT_SAMPLES));
+            };
+            let measured = match model.axes() {
+                BodyAxes::One(body) => one_axis_measurement(body),
+                BodyAxes::Three(body) => study.measured_rates(body),
+            };
+            let plan = adaptive::ObserverDesign::new(spec, &measured, period.seconds());
+            study.adaptive = Some(Box::new(plan.map_err(|fault| fault.within("estimator.adaptive"))?));
+        }
+        if let Some(spec) = written.estimator.as_ref().and_then(EstimatorKind::attitude) {
+            let jets = study.groups.is_some();
+            let mounted = model.spatial().map(|body| (body, &study.sensor_points[..], jets));
+            let setting = spec.setup(&written.sensor, cycle, mounted);
+            study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
+        }
+        for axis in 0..study.axes.len() {
+            study.authorities[axis].threshold = study.damping_threshold(written, axis)?;
+        }
+        study.expected_bands =
+            (0..study.axes.len()).map(|axis| study.error_band(written, model.spatial(), axis)).collect();
+        Ok(study)
+    }
+
+    /// Resolves the three-axis data: mounting points, groups of jets, allocation, environment, and one-axis models.
+    fn locate_sensors_and_actuators(
+        &mut self,
+        written: &ScenarioSpec,
+        model: &BodyModel,
+        body: &Spatial,
+    ) -> Result<(), ConfigError> {
+        let first = body.points.first().map_or(String::new(), |point| point.name.clone());
+        let named = |key: &str, point: Option<&str>| {
+            let Some(name) = point else { return Ok(first.clone()) };
+            if body.point(name).is_some() {
+                return Ok(name.to_owned());
+            }
+            let points = body.point_names();
+            Err(ConfigError::new(key, format!("must be one of the body's points, {points}, got `{name}`")))
+        };
+        for (index, sensor) in written.sensor.iter().enumerate() {
+            let key = format!("{}.{}.point", written.sensor.key("sensor", index), sensor.kind());
+            self.sensor_points.push(named(&key, sensor.point())?);
+        }
+        self.torque_point.clone_from(&first);
+        for member in written.actuator.members() {
+            let ActuatorKind::Jets(jets) = &*member.kind else { continue };
+            let (acts, groups) = match &member.task {
+                ActuatorTask::Executes(shares) => (shares.map(|share| share > 0.0), &mut self.groups),
+                ActuatorTask::Unloads(_) => ([true; 3], &mut self.unloading_groups),
+            };
+            *groups = Some(jets.group_effects(body, acts).map_err(|fault| fault.within(&member.key))?);
+            self.nozzles = jets.thruster_effects(body);
+            self.jet_only_axes = [0, 1, 2].map(|axis| member.share(axis) > 1.0 - ROUNDING);
+        }
+        if let Some((wheels, of)) = written.actuator.wheels() {
+            let allocation = wheels.allocation().map_err(|fault| fault.within(&of))?;
+            self.wheels = Some(allocation);
+            let tachometer = written.sensor.tachometer().map(|(index, _)| written.sensor_key(index));
+            let own = wheels.bearing_key().map(|key| format!("{of}.{key}"));
+            if let Some(key) = own.or(tachometer) {
+                let Some(flexible) = model.flexible() else {
+                    let why = "is for wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its rotation, \
+                               against which wheels turn";
+                    return Err(ConfigError::new(key, why));
+                };
+                let bearings = wheels.bearings((body, flexible));
+                self.bearings = bearings.map_err(|fault| fault.within(&of))?;
+            }
+        }
+        if let Some((gyros, of)) = written.actuator.control_moment_gyros() {
+            self.gimbals = gyros.axes().map_err(|fault| fault.within(&of))?;
+            if model.flexible().is_none() {
+                let why = "are for a `[spacecraft]`, which needs no appendages: the modes of a `[body.spatial]` are pushed by \
+                           torques that are constant for a while, and gimbals turn theirs";
+                return Err(ConfigError::new(of, why));
+            }
+        }
+        self.surroundings = surroundings(written, model, body)?;
+        self.drives = written.drives(model)?;
+        for (index, disturbance) in written.disturbance.iter().enumerate() {
+            named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
+        }
+        let pushed = self.fires() || written.disturbance.iter().any(|of| of.force.is_some());
+        let craft = model.craft().filter(|_| pushed);
+        self.translation = craft.map(|craft| Translation::new(body, craft.mass));
+        let measured = self.measured_rates(body);
+        let angles = rotation_vector(&self.profile.target(Instant::START), &body.attitude.get());
+        for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
+            let mode = |(index, mode): (usize, &crate::body::spatial::ThreeAxisMode)| {
+                let shape = seen[index];
+                let scaled = |value: Finite| Finite::new(shape * value.get()).unwrap_or_default();
+                let gain = shape * input.forces[index] / input.acceleration;
+                Mode {
+                    displacement: scaled(mode.displacement),
+                    rate: scaled(mode.rate),
+                    ..Mode::at_rest(mode.frequency, Finite::new(gain).unwrap_or_default(), mode.damping)
+                }
+            };
+            self.axes.push(Planar {
+                inertia: Positive::new(body.inertia_tensor()[(axis, axis)]).unwrap_or(Positive::ONE),
+                angle: Finite::new(angles[axis]).unwrap_or_default(),
+                rate: body.rate[axis],
+                modes: body.modes.iter().enumerate().map(mode).collect(),
+                ..Planar::default()
+            });
+        }
+        Ok(())
+    }
+
+    /// Returns the measured modal rates of a three-axis body, and the effect of its actuators on them.
+    pub fn measured_rates(&self, body: &Spatial) -> adaptive::RateMeasurement {
+        let (seen, hub) = (rotations(body, &self.sensor_points[0]), rotations(body, &self.torque_point));
+        let tensor = body.inertia_tensor();
+        let input = |axis: usize| {
+            let jets = self.groups.as_ref().filter(|_| self.jet_only_axes[axis]);
+            let (forces, torque, acceleration) = if let Some(groups) = jets {
+                let group = &groups[axis][0];
+                (group.push.forces.clone(), group.push.torque, group.acceleration)
+            } else {
+                let forces = hub.iter().map(|rotation| rotation[axis]).collect();
+                let torque = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+                (forces, torque, 1.0 / tensor[(axis, axis)])
+            };
+            let turned = Cholesky::new(tensor).map_or_else(Vector::zeros, |of| of.solve(&torque));
+            let turning = turned.iter().map(|rate| rate / acceleration).collect();
+            adaptive::ActuatorInput { forces, acceleration, turning }
+        };
+        adaptive::RateMeasurement {
+            frequencies: body.modes.iter().map(|mode| mode.frequency).collect(),
+            seen: (0..3).map(|axis| seen.iter().map(|rotation| rotation[axis]).collect()).collect(),
+            inputs: (0..3).map(input).collect(),
+        }
+    }
+
+    /// Returns true if the body has jets.
+    pub fn fires(&self) -> bool {
+        self.groups.is_some() || self.unloading_groups.is_some()
+    }
+
+    /// Returns the conversion of the laws' commands into torques about the axes.
+    pub fn distribution(&self, scenario: &Scenario) -> TorqueDistribution {
+        match scenario.model.axes() {
+            BodyAxes::One(body) => TorqueDistribution::for_one_axis(body.commanded_inertia()),
+            BodyAxes::Three(body) => TorqueDistribution::for_three_axes(
+                scenario.law.inertia().map_or_else(|| body.inertia_tensor(), tensor),
+            ),
+        }
+    }
+
+    /// Creates the actuators of a run.
+    pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuator> {
+        let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
+        let manoeuvre = scenario.manoeuvre.as_ref();
+        let setting = |(axis, model): (usize, &Planar)| AxisActuatorContext {
+            axis,
+            inertia: model.commanded_inertia(),
+            planned_inertia: manoeuvre.map_or(model, |of| of.planned_for(model)).commanded_inertia(),
+            rate: model.rate.get(),
+            cycle: scenario.law.about(axis).period(),
+            waveform: waveform.clone(),
+            share: 1.0,
+        };
+        let settings: Vec<AxisActuatorContext> = self.axes.iter().enumerate().map(setting).collect();
+        if let Some(kind) = scenario.actuator.only_actuator() {
+            return self.actuator_state(scenario, kind, settings, self.groups.as_ref(), seed);
+        }
+        let members = scenario.actuator.members();
+        let start = |member: &AssignedMember<'_>| {
+            let (share, groups) = match &member.task {
+                ActuatorTask::Executes(shares) => (*shares, self.groups.as_ref()),
+                ActuatorTask::Unloads(_) => ([1.0; 3], self.unloading_groups.as_ref()),
+            };
+            let own = settings
+                .iter()
+                .map(|of| AxisActuatorContext { share: share[of.axis], ..of.clone() })
+                .collect();
+            self.actuator_state(scenario, &member.kind, own, groups, seed)
+        };
+        let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
+        Box::new(ActuatorSet::new(settings.len(), started))
+    }
+
+    /// Creates one actuator before it first acts.
+    fn actuator_state(
+        &self,
+        scenario: &Scenario,
+        kind: &ActuatorKind,
+        settings: Vec<AxisActuatorContext>,
+        groups: Option<&[[GroupEffect; 2]; 3]>,
+        seed: Seed,
+    ) -> Box<dyn Actuator> {
+        match (kind, groups, &self.wheels) {
+            (ActuatorKind::Jets(jets), Some(groups), _) => {
+                jets.start((groups, &self.nozzles), self.assessment_period)
+            }
+            (ActuatorKind::Wheels(wheels), _, Some(allocation)) => {
+                let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
+                Box::new(wheels.start(allocation, &settings).with_tachometer(tachometer))
+            }
+            (ActuatorKind::ControlMomentGyros(gyros), ..) => Box::new(gyros.start(&self.gimbals, &settings)),
+            (ActuatorKind::Magnetorquers(torquers), ..) => Box::new(torquers.start(&settings)),
+            (ActuatorKind::Own(own), ..) => own.start(&settings),
+            (kind, ..) => Box::new(AxisActuators::new(kind, settings)),
+        }
+    }
+}
+
+/// Creates the environment of a three-axis body, including the wheels' inertia that the body's tensor excludes.
+fn surroundings(
+    written: &ScenarioSpec,
+    model: &BodyModel,
+    body: &Spatial,
+) -> Result<Option<SurroundingsState>, ConfigError> {
+    let bendings = model.craft().map_or(&[][..], |craft| &craft.bendings);
+    let sunny =
+        written.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
+    if !bendings.is_empty() && !sunny {
+        let index = written.appendage.iter().position(|appendage| appendage.thermal.is_some());
+        let why = "depends on sunlight and shadow: it needs `environment.orbit` and `environment.sun`";
+        return Err(ConfigError::new(format!("appendage[{}].thermal", index.unwrap_or(0)), why));
+    }
+    let Some(environment) = &written.environment else { return Ok(None) };
+    let rotors = match written.actuator.wheels() {
+        Some((wheels, key)) => wheels.rotors().map_err(|fault| fault.within(&key))?,
+        None => Vec::new(),
+    };
+    let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
+    let centre = model.craft().map_or_else(Vector::zeros, |craft| craft.centre);
+    let around = SurroundingsState::new(
+        environment,
+        written.orbit_environment(),
+        [body.inertia_tensor(), spinning],
+        &centre,
+    );
+    Ok(Some(around.with_thermal_bending(bendings)))
+}
+
+/// Returns the modal rotations at a point (rad/(m sqrt(kg))).
+fn rotations(body: &Spatial, point: &str) -> Vec<Vector> {
+    body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect()
+}
+
+/// Returns the measured modal rates of a one-axis body: the modes appear in the angle with weight 1, or not at all.
+fn one_axis_measurement(model: &Planar) -> adaptive::RateMeasurement {
+    let visible = if model.drive == CommandedQuantity::Torque { 1.0 } else { 0.0 };
+    adaptive::RateMeasurement {
+        frequencies: model.modes.iter().map(|mode| mode.frequency).collect(),
+        seen: vec![vec![visible; model.modes.len()]],
+        inputs: vec![adaptive::ActuatorInput {
+            forces: model.modes.iter().map(|mode| mode.gain.get()).collect(),
+            acceleration: 1.0,
+            turning: vec![1.0],
+        }],
+    }
+}

@@ -1,0 +1,182 @@
+//! Scenario as written in a file.
+
+use std::collections::BTreeMap;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+use toml::{Table, Value, value::Datetime};
+
+use super::{LogSpec, Reference, epoch};
+use crate::actuator::AssignedActuator;
+use crate::adaptation::AdaptationKind;
+use crate::body::craft::{Appendage, Spacecraft};
+use crate::body::{Body, Drift};
+use crate::disturbance::Disturbance;
+use crate::environment::Environment;
+use crate::estimator::EstimatorKind;
+use crate::law::{AttitudeTarget, LawKind};
+use crate::manoeuvre::Manoeuvre;
+use crate::one_or_many::OneOrMany;
+use crate::sensor::SensorKind;
+use crate::time::{Instant, Span};
+use crate::uncertain::{Correlated, Distribution};
+
+/// A scenario as it is written.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
+#[serde(deny_unknown_fields, rename = "Scenario")]
+#[schemars(description = "A scenario.")]
+pub struct ScenarioSpec {
+    /// Name of the study; default: the name of its file.
+    #[serde(default)]
+    pub name: String,
+    /// Description of the study.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub about: String,
+    /// Seed of all random numbers.
+    #[serde(default)]
+    pub seed: u64,
+    /// Simulated time (s).
+    pub duration: Span,
+    /// Date and time of the start; a log counts its time from here.
+    #[serde(default, skip_serializing_if = "Option::is_none", deserialize_with = "epoch::parse")]
+    #[schemars(with = "Option<String>")]
+    pub epoch: Option<Datetime>,
+    /// The controlled body, unless it is a `spacecraft`.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    #[schemars(with = "Body")]
+    pub body: Option<Body>,
+    /// The hub of a controlled spacecraft, which is built from its parts.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub spacecraft: Option<Spacecraft>,
+    /// Appendages clamped to the hub of the spacecraft.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub appendage: Vec<Appendage>,
+    /// Drift of the natural frequencies; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub drift: Option<Drift>,
+    /// The sensor, or an array of several.
+    #[serde(default)]
+    pub sensor: OneOrMany<SensorKind>,
+    /// The estimator.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub estimator: Option<EstimatorKind>,
+    /// The adaptation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub adaptation: Option<AdaptationKind>,
+    /// The planned manoeuvre.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub manoeuvre: Option<Manoeuvre>,
+    /// The control law. Only a scenario with a manoeuvre can omit it.
+    #[serde(default)]
+    pub law: LawKind,
+    /// The actuator, which executes the commanded torque, or an array of several.
+    #[serde(default)]
+    pub actuator: OneOrMany<AssignedActuator>,
+    /// Disturbance torques and forces.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub disturbance: Vec<Disturbance>,
+    /// Environment of a body with three axes; default: none.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub environment: Option<Environment>,
+    /// Contents of a full log.
+    #[serde(default)]
+    pub log: LogSpec,
+    /// Target attitudes of a body with three axes, in the order of their times; before the first one, the target is the
+    /// inertial axes. A law `phase_plane` may have targets of its own.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub target: Vec<AttitudeTarget>,
+    /// Reference values for the metrics.
+    #[serde(default, skip_serializing_if = "Reference::is_empty")]
+    pub reference: Reference,
+    /// Distributions of keys from which a campaign draws a value for each run.
+    #[serde(default, skip_serializing_if = "BTreeMap::is_empty")]
+    pub uncertain: BTreeMap<String, Distribution>,
+    /// Correlated keys of `uncertain`.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub correlated: Vec<Correlated>,
+}
+
+impl ScenarioSpec {
+    /// Returns the number of axes of the body.
+    pub fn axis_count(&self) -> usize {
+        self.body.as_ref().map_or(3, Body::axis_count)
+    }
+
+    /// Returns the kind of the body.
+    pub fn body_kind(&self) -> &'static str {
+        self.body.as_ref().map_or("spacecraft", Body::kind)
+    }
+
+    /// Returns the key of the body.
+    pub fn body_key(&self) -> String {
+        self.body.as_ref().map_or_else(|| "spacecraft".to_owned(), |body| format!("body.{}", body.kind()))
+    }
+
+    /// Returns the target attitudes of a three-axis body.
+    pub fn targets(&self) -> &[AttitudeTarget] {
+        match &self.law {
+            LawKind::PhasePlane(law) if !law.targets.is_empty() => &law.targets,
+            _ => &self.target,
+        }
+    }
+
+    /// Returns the start of the last target that begins before `before`; the start of the run if there is none.
+    pub fn last_target_start(&self, before: Instant) -> Instant {
+        let begins = self.targets().iter().rev().map(AttitudeTarget::starts);
+        begins.into_iter().find(|from| *from < before).unwrap_or(Instant::START)
+    }
+
+    /// Returns the key of the law about an axis.
+    pub fn law_key(&self, axis: usize) -> String {
+        match &self.law {
+            LawKind::PerAxis(laws) => {
+                format!("law.per_axis.{}.{}", crate::attitude::AXES[axis], laws.about(axis).kind())
+            }
+            law => format!("law.{}", law.kind()),
+        }
+    }
+
+    /// Returns the scenario with all its defaults, as a table.
+    pub fn to_table(&self) -> Table {
+        // Every scenario can be expressed in TOML.
+        let mut table = Table::try_from(self).unwrap_or_default();
+        // serde knows no dates: `toml` makes a marked table of one.
+        if let Some(epoch) = self.epoch {
+            table.insert("epoch".to_owned(), Value::Datetime(epoch));
+        }
+        table
+    }
+
+    /// Returns the scenario with all its defaults, as TOML.
+    pub fn to_toml(&self) -> String {
+        toml::to_string(&self.to_table()).unwrap_or_default()
+    }
+
+    /// Returns the sampling period of the motion in a full log.
+    pub fn log_period(&self) -> Span {
+        self.log.period_for(self.duration)
+    }
+
+    /// Replaces references to mode files by the modes that were read from them.
+    pub(crate) fn inline_files(&mut self) {
+        if let Some(Body::Spatial(spatial)) = &mut self.body {
+            spatial.modes.inline();
+        }
+        self.appendage.iter_mut().for_each(Appendage::inline_modes);
+    }
+
+    /// The date of the start in nanoseconds since 1970 UTC, if it has one.
+    pub fn date_ns(&self) -> Option<u64> {
+        self.epoch.as_ref().and_then(epoch::nanoseconds_since_1970)
+    }
+
+    /// The instant in nanoseconds since 1970 UTC from which a log counts: the date of the start, 0 without one.
+    pub fn epoch_ns(&self) -> u64 {
+        self.date_ns().unwrap_or(0)
+    }
+
+    /// Returns true if the torque consists of more than the switchings of a law.
+    pub fn has_torque_rows(&self) -> bool {
+        !self.law.is_switching() || !self.disturbance.is_empty() || !self.actuator.is_ideal()
+    }
+}

@@ -1,0 +1,126 @@
+//! Star-tracker exposures: the mean attitude over each is computed from a copy of the plant, one smooth motion segment
+//! after another.
+//!
+//! Loads change at segment starts that are not known in advance, so a segment is averaged when it is over. The plant of
+//! the run itself is never moved back.
+
+use super::plant::Plant;
+use super::sensors::Sensors;
+use super::{Simulation, SimulationError};
+use crate::numerics::quadrature;
+use crate::record::Record;
+use crate::scenario::Scenario;
+use crate::sensor::{ExposureMean, Orientation};
+use crate::time::{Instant, Span};
+
+/// Exposures of all star trackers of a run.
+#[derive(Clone, Debug)]
+pub struct Exposures {
+    shutters: Vec<ExposureTiming>,
+    /// Copy of the plant in the current segment, while an exposure is open; `averaged` is the instant up to which the
+    /// mean is accumulated.
+    copy: Option<Plant>,
+    averaged: Instant,
+}
+
+/// Exposure timing of one star tracker.
+#[derive(Clone, Debug)]
+struct ExposureTiming {
+    /// Index among the sensors.
+    sensor: usize,
+    period: Span,
+    /// Half the exposure time.
+    half: Span,
+    /// Middle of the exposure that is open or comes next.
+    middle: Instant,
+    /// Instant at which the exposure closes or opens next.
+    due: Instant,
+    is_open: bool,
+    exposure: ExposureMean,
+}
+
+impl Exposures {
+    /// Creates the exposures of a scenario, before its start.
+    pub fn new(scenario: &Scenario) -> Self {
+        let shutter = |(sensor, [period, half]): (usize, [Span; 2])| ExposureTiming {
+            sensor,
+            period,
+            half,
+            middle: Instant::START + period,
+            due: (Instant::START + period).before(half),
+            is_open: false,
+            exposure: ExposureMean::default(),
+        };
+        let shutters = scenario.sensor.exposures().map(shutter).collect();
+        Self { shutters, copy: None, averaged: Instant::START }
+    }
+
+    /// Returns the next instant at which an exposure opens or closes.
+    pub fn due(&self) -> Option<Instant> {
+        self.shutters.iter().map(|shutter| shutter.due).min()
+    }
+
+    /// Copies the plant before it advances from `now`, if an exposure is open and there is no copy of this segment.
+    pub fn copy_plant(&mut self, now: Instant, plant: &Plant) {
+        if self.copy.is_none() && self.shutters.iter().any(|shutter| shutter.is_open) {
+            (self.copy, self.averaged) = (Some(plant.clone()), now);
+        }
+    }
+
+    /// Discards the copy at the end of its segment.
+    pub fn discard_copy(&mut self) {
+        self.copy = None;
+    }
+
+    /// Closes and opens the exposures that are due, and hands the means of closed ones to their sensors.
+    fn serve(&mut self, now: Instant, sensing: &mut Sensors) {
+        for shutter in self.shutters.iter_mut().filter(|shutter| shutter.due <= now) {
+            if shutter.is_open {
+                sensing.close_exposure(shutter.sensor, &shutter.exposure);
+                shutter.exposure.clear();
+                shutter.middle += shutter.period;
+                // Two rounded halves may exceed the period by a tick.
+                shutter.due = shutter.middle.before(shutter.half).max(now);
+                shutter.is_open = false;
+            }
+            if shutter.due == now {
+                shutter.due = shutter.middle + shutter.half;
+                shutter.is_open = true;
+            }
+        }
+        if self.shutters.iter().all(|shutter| !shutter.is_open) {
+            self.discard_copy();
+        }
+    }
+}
+
+impl Simulation {
+    /// Closes and opens the exposures that are due at the current instant.
+    pub(super) fn update_exposures(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        if self.exposures.due().is_some_and(|due| due <= self.now) {
+            self.accumulate_mean(record)?;
+            self.exposures.serve(self.now, &mut self.sensors);
+        }
+        Ok(())
+    }
+
+    /// Accumulates the mean of open exposures from the last averaged instant up to now.
+    pub(super) fn accumulate_mean(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let (Exposures { shutters, copy, averaged }, now) = (&mut self.exposures, self.now);
+        let Some(plant) = copy.as_mut().filter(|_| now > *averaged) else { return Ok(()) };
+        let from = std::mem::replace(averaged, now);
+        let fastest = plant.fastest_frequency().max(self.plant.fastest_frequency());
+        for (t, lasts) in quadrature::nodes(now.since(from).seconds(), fastest) {
+            let at = from + Span::from_seconds(t);
+            plant.advance(at, record)?;
+            plant.evaluate(at)?;
+            for shutter in shutters.iter_mut().filter(|shutter| shutter.is_open) {
+                let truth = plant.truth_at_sensor(shutter.sensor);
+                if let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) {
+                    shutter.exposure.add(attitude, lasts);
+                }
+            }
+        }
+        Ok(())
+    }
+}

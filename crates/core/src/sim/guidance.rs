@@ -1,0 +1,140 @@
+//! Guidance: the reference motion on a manoeuvre and at its end, or along the targets of a three-axis body.
+
+use std::sync::Arc;
+
+use crate::attitude::Vector;
+use crate::law::{AttitudeProfile, Frame, Law, Setpoint};
+use crate::scenario::Scenario;
+use crate::sensor::Orientation;
+use crate::state_estimate::StateEstimate;
+use crate::time::{Instant, Span};
+use crate::waveform::Waveform;
+use nalgebra::Quaternion;
+
+/// Reference motion of a scenario.
+#[derive(Clone, Debug)]
+pub struct Guidance {
+    /// Setpoint after the manoeuvre; angle 0 without one.
+    pub setpoint: Setpoint,
+    /// Manoeuvre of a one-axis body, if there is one.
+    planned: Option<PlannedManoeuvre>,
+    /// Sequence of targets of a three-axis body.
+    profile: Option<AttitudeProfile>,
+}
+
+/// Manoeuvre as a rigid body executes it.
+#[derive(Clone, Debug)]
+struct PlannedManoeuvre {
+    waveform: Arc<Waveform>,
+    /// Initial angle (rad) and rate (rad/s).
+    from: (f64, f64),
+    /// Inertia (kg m²) that converts the waveform into acceleration.
+    inertia: f64,
+}
+
+impl PlannedManoeuvre {
+    /// Creates the planned manoeuvre of a scenario; `None` without one.
+    fn new(scenario: &Scenario) -> Option<Self> {
+        let (manoeuvre, plan) = scenario.manoeuvre.as_ref().zip(scenario.plan.as_ref())?;
+        let body = scenario.model.planar()?;
+        Some(Self {
+            waveform: Arc::new(plan.waveform.clone()),
+            from: (body.angle.get(), body.rate.get()),
+            inertia: manoeuvre.planned_for(body).commanded_inertia(),
+        })
+    }
+}
+
+impl Guidance {
+    /// Creates the reference of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self {
+            setpoint: scenario.goal(),
+            planned: PlannedManoeuvre::new(scenario),
+            profile: scenario.model.spatial().map(|_| scenario.study.profile.clone()),
+        }
+    }
+
+    /// Returns the reference angle (rad) and rate (rad/s) of a one-axis body: during the manoeuvre, those of a rigid
+    /// body.
+    pub fn manoeuvre_state(&self, now: Instant) -> (f64, f64) {
+        match &self.planned {
+            Some(PlannedManoeuvre { waveform, from: (angle, rate), inertia }) if now < self.setpoint.from => {
+                let t = now.seconds();
+                let (travel, impulse) = (waveform.travel(0.0, t), waveform.impulse(0.0, t));
+                (angle + rate * t + travel / inertia, rate + impulse / inertia)
+            }
+            _ => self.setpoint.at(now),
+        }
+    }
+
+    /// Returns the setpoint of a law about an axis: `led` if the three-axis reference moves; the manoeuvre for laws
+    /// that track; else the goal.
+    pub fn setpoint_for(&self, law: &dyn Law, now: Instant, led: Option<Setpoint>) -> Setpoint {
+        if let Some(goal) = led {
+            return goal;
+        }
+        if now < self.setpoint.from && law.tracks_manoeuvre() {
+            let (angle, rate) = self.manoeuvre_state(now);
+            return Setpoint { from: now, angle, rate, acceleration: 0.0 };
+        }
+        self.setpoint
+    }
+
+    /// Returns the origin of the angles: the current reference attitude of three axes, or angle 0.
+    pub fn origin(&self, now: Instant) -> Orientation {
+        match &self.profile {
+            None => Orientation::Angle(0.0),
+            Some(way) => Orientation::Attitude(way.at(now).attitude),
+        }
+    }
+
+    /// Whether the target moves from one attitude to another, of three axes.
+    pub fn slews(&self, now: Instant) -> bool {
+        self.profile.as_ref().is_some_and(|way| way.slews(now))
+    }
+
+    /// Returns the target attitude towards which a three-axis body turns; angle 0 for one axis.
+    pub fn target(&self, now: Instant) -> Orientation {
+        match &self.profile {
+            None => Orientation::Angle(0.0),
+            Some(way) => Orientation::Attitude(way.target(now)),
+        }
+    }
+
+    /// Returns the current target as written in the scenario: its reference frame and the attitude in it; `None` for
+    /// one axis.
+    pub fn target_as_written(&self, now: Instant) -> Option<(Frame, Quaternion<f64>)> {
+        self.profile.as_ref().map(|way| way.target_as_written(now))
+    }
+
+    /// Returns the setpoints of the three axes while the reference moves, at the estimated angles; `None` while it
+    /// rests.
+    pub fn reference_motion(&self, now: Instant, state_estimates: &[StateEstimate]) -> Option<[Setpoint; 3]> {
+        let way = self.profile.as_ref().filter(|way| way.is_moving(now))?;
+        let beyond = Vector::from_fn(|axis, _| {
+            state_estimates.get(axis).map_or(0.0, |state_estimate| state_estimate.angle)
+        });
+        let [rate, acceleration] = way.at(now).in_body_axes(&beyond);
+        let goal = |axis: usize| Setpoint {
+            from: now,
+            angle: 0.0,
+            rate: rate[axis],
+            acceleration: acceleration[axis],
+        };
+        Some([0, 1, 2].map(goal))
+    }
+
+    /// Returns the instant after `now` at which the origin changes: the next tick while the reference moves, else the
+    /// start of the next target.
+    pub fn next_change(&self, now: Instant) -> Option<Instant> {
+        self.profile
+            .as_ref()
+            .and_then(|way| if way.is_moving(now) { Some(now + Span::TICK) } else { way.next(now) })
+    }
+
+    /// Returns the feedforward torque of the manoeuvre (N m).
+    pub fn feedforward(&self, now: Instant) -> f64 {
+        self.planned.as_ref().map_or(0.0, |planned| planned.waveform.at(now.seconds()))
+    }
+}

@@ -1,0 +1,124 @@
+//! Loads on the body: the actuator, which executes the laws and the manoeuvre, disturbances, and the environment.
+
+use crate::actuator::Actuator;
+use crate::body::Drift;
+use crate::disturbance::{Disturbance, DisturbanceState};
+use crate::environment::SurroundingsState;
+use crate::law::{Command, TorqueDistribution};
+use crate::random::Seed;
+use crate::scenario::Scenario;
+use crate::state_estimate::StateEstimate;
+use crate::time::{Instant, Span};
+use crate::wrench::Wrench;
+
+/// Everything that acts on the body.
+#[derive(Clone, Debug)]
+pub struct Loads {
+    /// Run-time state of the actuator.
+    pub actuator: Box<dyn Actuator>,
+    distribution: TorqueDistribution,
+    disturbances: Vec<DisturbanceState>,
+    /// Instants, latest first, at which the waveform has a break, a disturbance or the environment changes, the
+    /// frequency drift has a kink, or the appendage drives reach the angles at which the modes are replaced.
+    scheduled_changes: Vec<Instant>,
+    /// Next instant of `edges`, or of the random changes of disturbances.
+    next_change: Option<Instant>,
+    /// Next instant at which a load changes without a command.
+    pub due: Option<Instant>,
+    wrench: Wrench,
+}
+
+impl Loads {
+    /// Creates the loads of a scenario, before its start.
+    pub fn new(scenario: &Scenario, seed: Seed) -> Self {
+        let at = |t: f64| Instant::START + Span::from_seconds(t);
+        let breaks = scenario.plan.iter().flat_map(|plan| plan.waveform.breaks()).map(at);
+        let kinks = scenario.drift.iter().flat_map(Drift::kinks).map(at);
+        let disturbed = scenario.disturbance.iter().flat_map(Disturbance::change_times);
+        let around = scenario.study.surroundings.iter().flat_map(SurroundingsState::change_times);
+        let turned = scenario.study.drives.iter().flat_map(|drives| &drives.courses.changes);
+        let turned = turned.map(|(at, _)| *at).filter(|at| *at > Instant::START);
+        let mut edges: Vec<Instant> =
+            breaks.chain(disturbed).chain(kinks).chain(around).chain(turned).collect();
+        edges.sort_by(|a, b| b.cmp(a));
+        edges.dedup();
+        let stream = |index: usize| seed.stream(&format!("disturbance {index}"));
+        let disturbances = scenario.disturbance.iter().enumerate();
+        let mut drive = Self {
+            actuator: scenario.study.actuator(scenario, seed),
+            distribution: scenario.study.distribution(scenario),
+            disturbances: disturbances
+                .map(|(index, of)| DisturbanceState::new(of, scenario.model.spatial(), stream(index)))
+                .collect(),
+            scheduled_changes: edges,
+            next_change: None,
+            due: None,
+            wrench: Wrench::default(),
+        };
+        drive.update_due();
+        drive
+    }
+
+    /// Finds the next instant at which a load changes.
+    fn update_due(&mut self) {
+        let drawn = self.disturbances.iter().filter_map(DisturbanceState::due).min();
+        self.next_change = self.scheduled_changes.last().copied().into_iter().chain(drawn).min();
+        self.due = self.next_change.into_iter().chain(self.actuator.due()).min();
+    }
+
+    /// Applies the commands of the laws from `now` on, given the state estimates and the rigid rates (rad/s).
+    pub fn command(
+        &mut self,
+        now: Instant,
+        commands: [Command; 3],
+        state_estimates: &[StateEstimate],
+        rigid: [f64; 3],
+    ) {
+        let actuator = &mut self.actuator;
+        let demands = self.distribution.demands(commands, state_estimates, || actuator.stored_momentum(now));
+        actuator.command(now, &demands, rigid);
+        self.due = self.next_change.into_iter().chain(actuator.due()).min();
+    }
+
+    /// Applies the changes of loads that are due at `now`, after the laws have decided, given the rigid rates (rad/s).
+    pub fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+        while self.scheduled_changes.last().is_some_and(|edge| *edge <= now) {
+            self.scheduled_changes.pop();
+        }
+        self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
+        self.actuator.update(now, rigid);
+        self.update_due();
+    }
+
+    /// Returns the wrench of all loads from `now` on.
+    pub fn wrench(&mut self, now: Instant) -> &Wrench {
+        self.wrench.clear();
+        self.actuator.apply(now, &mut self.wrench);
+        if !self.disturbances.is_empty() {
+            for axis in 0..3 {
+                self.wrench.hub[axis] +=
+                    self.sum_disturbances(|disturbance| disturbance.torque_on_hub(now, axis));
+            }
+            for disturbance in &self.disturbances {
+                disturbance.force_effect(now, &mut self.wrench);
+            }
+        }
+        &self.wrench
+    }
+
+    /// Returns the wrench of the actuator alone from `now` on.
+    pub fn actuator_wrench(&self, now: Instant) -> Wrench {
+        let mut wrench = Wrench::default();
+        self.actuator.apply(now, &mut wrench);
+        wrench
+    }
+
+    /// Returns the torque of all disturbances about an axis (N m).
+    pub fn disturbance(&self, now: Instant, axis: usize) -> f64 {
+        self.sum_disturbances(|disturbance| disturbance.torque(now, axis))
+    }
+
+    fn sum_disturbances(&self, of: impl Fn(&DisturbanceState) -> f64) -> f64 {
+        self.disturbances.iter().map(of).sum()
+    }
+}

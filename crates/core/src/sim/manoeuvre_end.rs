@@ -1,0 +1,47 @@
+//! State at the end of the manoeuvre: distance from the goal and residual vibration.
+
+use crate::body::{CommandedQuantity, Planar};
+use crate::law::Setpoint;
+use crate::motion::AxisState;
+use crate::record::{self, Residual};
+use crate::scenario::Scenario;
+use crate::sensor::Truth;
+use crate::time::Instant;
+
+/// Pending end of a manoeuvre.
+#[derive(Clone, Debug)]
+pub struct ManoeuvreEnd {
+    /// Instant of the end.
+    pub at: Instant,
+    goal: Setpoint,
+    body: Planar,
+}
+
+impl ManoeuvreEnd {
+    /// Creates the end of a scenario's manoeuvre; `None` without one.
+    pub fn new(scenario: &Scenario, goal: &Setpoint) -> Option<Self> {
+        let body = scenario.model.planar().filter(|_| scenario.plan.is_some())?.clone();
+        Some(Self { at: goal.from, goal: *goal, body })
+    }
+
+    /// Returns the row of the record for a body in this state.
+    pub fn row(&self, truth: &Truth, state: &AxisState) -> record::Arrival {
+        let modes = || self.body.modes.iter().zip(&state.modes);
+        let amplitudes: Vec<f64> = modes().map(|(mode, phase)| mode.amplitude(*phase)).collect();
+        let visible = if self.body.drive == CommandedQuantity::Torque { 1.0 } else { 0.0 };
+        let outputs = self.body.outputs.iter().map(|output| {
+            let parts = output.modes.iter().zip(&amplitudes);
+            Residual {
+                amplitude: parts.map(|(weight, amplitude)| weight.get().abs() * amplitude).sum(),
+                unit: output.unit.clone(),
+            }
+        });
+        record::Arrival {
+            angle_error_rad: truth.sensor_angles()[0] - self.goal.angle,
+            rate_error_rad_s: truth.rate[0] - self.goal.rate,
+            angle_residual_rad: visible * amplitudes.iter().sum::<f64>(),
+            elastic_energy_j: modes().map(|(mode, phase)| mode.energy(*phase, self.body.inertia.get())).sum(),
+            outputs: outputs.collect(),
+        }
+    }
+}

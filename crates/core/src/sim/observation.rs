@@ -1,0 +1,210 @@
+//! State of a run as a flat vector with names and units: true state, measurements, and estimates.
+
+use super::plant::Plant;
+use super::{Simulation, SimulationError};
+use crate::flow::ThreeAxisState;
+use crate::motion::AxisState;
+use crate::record::Hinges;
+use crate::scenario::Scenario;
+use crate::sensor::Truth;
+
+/// Origin of the values of a field.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum ObservationGroup {
+    /// True state.
+    True,
+    /// Latest measurement of the sensors; NaN before the first.
+    Measured,
+    /// State estimate that the laws read.
+    Estimated,
+}
+
+/// Quantity in the vector of [`Simulation::look`].
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct ObservationField {
+    /// Origin of the values.
+    pub group: ObservationGroup,
+    /// Name within the group.
+    pub name: &'static str,
+    /// Unit; empty for a dimensionless field.
+    pub unit: &'static str,
+    /// Number of values of a vector; `None` for a scalar.
+    pub count: Option<usize>,
+}
+
+impl ObservationField {
+    /// Returns the number of values in the flat vector.
+    pub fn width(&self) -> usize {
+        self.count.unwrap_or(1)
+    }
+}
+
+impl Simulation {
+    /// Returns the state of a one-axis body at the current instant.
+    pub fn state(&self) -> Option<&AxisState> {
+        if let Plant::OneAxis(plant) = &self.plant { Some(plant.state()) } else { None }
+    }
+
+    /// Returns the state of a three-axis body at the current instant.
+    pub fn spatial_state(&self) -> Option<&ThreeAxisState> {
+        if let Plant::ThreeAxis(plant) = &self.plant { Some(plant.state()) } else { None }
+    }
+
+    /// Returns the mean of the total envelope over the last closed window (rad).
+    pub fn window_mean(&self) -> Option<f64> {
+        self.monitor.as_ref().map(|monitor| monitor.mean)
+    }
+
+    /// Sets a tunable parameter of the law, such as `k_t`, as an adaptation does.
+    pub fn set_parameter(&mut self, key: &str, value: f64) {
+        self.controllers.tune(key, value);
+    }
+
+    /// Returns the fields of the vector of [`Simulation::look`], in its order, for a run of this scenario.
+    pub fn observation_fields(&self, scenario: &Scenario) -> Vec<ObservationField> {
+        let field = |group, name, unit, count| ObservationField { group, name, unit, count };
+        let state = |name, unit, count| field(ObservationGroup::True, name, unit, count);
+        let mut fields = match &self.plant {
+            Plant::OneAxis(plant) => {
+                let modes = Some(plant.state().modes.len());
+                vec![
+                    state("angle", "rad", None),
+                    state("rate", "rad/s", None),
+                    state("rigid_angle", "rad", None),
+                    state("rigid_rate", "rad/s", None),
+                    state("modes", "rad", modes),
+                    state("mode_rates", "rad/s", modes),
+                    state("torque", scenario.model.torque_unit(), None),
+                ]
+            }
+            Plant::ThreeAxis(plant) => {
+                let modes = Some(plant.state().modes.len());
+                vec![
+                    state("attitude", "", Some(4)),
+                    state("error", "rad", Some(3)),
+                    state("rate", "rad/s", Some(3)),
+                    state("rigid_rate", "rad/s", Some(3)),
+                    state("modes", "m sqrt(kg)", modes),
+                    state("mode_rates", "m sqrt(kg)/s", modes),
+                    state("torque", "N m", Some(3)),
+                ]
+            }
+        };
+        let actuator = &self.loads.actuator;
+        let wheels = match &self.plant {
+            Plant::OneAxis(_) => usize::from(actuator.wheel(0, 0.0).is_some()),
+            Plant::ThreeAxis(_) => actuator.wheels(self.now, [0.0; 3]).len(),
+        };
+        if wheels > 0 {
+            let count = (self.estimates.len() > 1).then_some(wheels);
+            fields.push(state(if count.is_some() { "wheel_speeds" } else { "wheel_speed" }, "rad/s", count));
+        }
+        if let Some(gimbals) = actuator.gimbal_row(self.now) {
+            let count = Some(gimbals.gyros.len());
+            fields.push(state("gimbal_angles", "rad", count));
+            fields.push(state("gimbal_rates", "rad/s", count));
+        }
+        if let Some(hinges) = self.hinges() {
+            let count = Some(hinges.hinges.len());
+            fields.push(state("hinge_angles", "rad", count));
+            fields.push(state("hinge_rates", "rad/s", count));
+        }
+        let count = (self.estimates.len() > 1).then_some(3);
+        let angle = if count.is_some() { "error" } else { "angle" };
+        for group in [ObservationGroup::Measured, ObservationGroup::Estimated] {
+            fields.push(field(group, angle, "rad", count));
+            fields.push(field(group, "rate", "rad/s", count));
+        }
+        fields
+    }
+
+    /// Writes the current state into a vector with the fields of [`Simulation::fields`]. With a sensor that measures at
+    /// every instant, measurements and estimates are current too; otherwise they are those of the last sample.
+    ///
+    /// # Errors
+    /// Fails if the state is no longer finite.
+    ///
+    /// # Panics
+    /// Panics if the length of `row` differs from the total width of the fields.
+    pub fn observe(&mut self, row: &mut [f64]) -> Result<(), SimulationError> {
+        let now = self.now;
+        self.plant.evaluate(now)?;
+        let truth = self.plant.truth();
+        let mut row = RowWriter(row);
+        let origin = self.guidance.origin(now);
+        match &self.plant {
+            Plant::OneAxis(plant) => {
+                let state = plant.state();
+                row.write(&[truth.sensor_angles()[0], truth.rate[0], state.rigid_angle, state.rigid_rate]);
+                row.write_all(state.modes.iter().map(|mode| mode.displacement));
+                row.write_all(plant.mode_rates());
+                row.write(&[self.torque(0, truth)]);
+                row.write_all(self.loads.actuator.wheel(0, truth.rigid[0]).map(|wheel| wheel.speed_rad_s));
+            }
+            Plant::ThreeAxis(plant) => {
+                let q = plant.attitude();
+                row.write(&[q.w, q.i, q.j, q.k]);
+                row.write(&truth.orientation.error_from(&origin));
+                row.write(&truth.rate);
+                row.write(&truth.rigid);
+                row.write_all(plant.state().modes.iter().map(|mode| mode.displacement));
+                row.write_all(plant.mode_rates());
+                let magnetic = plant.magnetic_torque();
+                row.write(&[0, 1, 2].map(|axis| magnetic[axis] + self.torque(axis, truth)));
+                let wheels = self.loads.actuator.wheels(now, truth.rate);
+                row.write_all(wheels.iter().map(|wheel| wheel.speed_rad_s));
+                if let Some(gimbals) = self.loads.actuator.gimbal_row(now) {
+                    row.write_all(gimbals.gyros.iter().map(|gyro| gyro.angle_rad));
+                    row.write_all(gimbals.gyros.iter().map(|gyro| gyro.rate_rad_s));
+                }
+                if let Some(Hinges { hinges }) = plant.hinges() {
+                    row.write_all(hinges.iter().map(|hinge| hinge.angle_rad));
+                    row.write_all(hinges.iter().map(|hinge| hinge.rate_rad_s));
+                }
+            }
+        }
+        let axes = self.estimates.len();
+        if self.sensors.next.is_none() {
+            let error = truth.orientation.rotated_by(truth.sensor_angles()).error_from(&origin);
+            for _ in 0..2 {
+                row.write(&error[..axes]);
+                row.write(&truth.rate[..axes]);
+            }
+            return Ok(());
+        }
+        let reported = self.sensors.reading.is_some();
+        let measured = |part: usize| {
+            self.sensors.measured.iter().map(move |of| if reported { of[part] } else { f64::NAN })
+        };
+        row.write_all(measured(0));
+        row.write_all(measured(1));
+        row.write_all(self.estimates.iter().map(|state_estimate| state_estimate.angle));
+        row.write_all(self.estimates.iter().map(|state_estimate| state_estimate.rate));
+        Ok(())
+    }
+
+    /// Returns the motion of the appendages' hinges; `None` without hinges.
+    fn hinges(&self) -> Option<Hinges> {
+        if let Plant::ThreeAxis(plant) = &self.plant { plant.hinges() } else { None }
+    }
+
+    /// Returns the torque that the actuator applies about an axis (N m).
+    fn torque(&self, axis: usize, truth: &Truth) -> f64 {
+        self.loads.actuator.applied_torque(self.now, axis, [truth.rate[axis], truth.rigid[axis]])
+    }
+}
+
+/// Cursor into an output row.
+struct RowWriter<'a>(&'a mut [f64]);
+
+impl RowWriter<'_> {
+    fn write(&mut self, values: &[f64]) {
+        let (place, rest) = std::mem::take(&mut self.0).split_at_mut(values.len());
+        place.copy_from_slice(values);
+        self.0 = rest;
+    }
+
+    fn write_all(&mut self, values: impl IntoIterator<Item = f64>) {
+        values.into_iter().for_each(|value| self.write(&[value]));
+    }
+}

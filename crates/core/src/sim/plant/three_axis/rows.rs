@@ -1,0 +1,105 @@
+//! Rows of a three-axis body: attitude, energy, position, drives, hinges, modes and orbit.
+
+use super::super::coupled::CoupledMotion;
+use super::ThreeAxisPlant;
+use crate::attitude::Vector;
+use crate::environment::to_body;
+use crate::flow::RigidBody;
+use crate::motion::ModeState;
+use crate::record::{
+    DriveMotion, DrivenMode, DrivesMotion, Energy, HingeMotion, Hinges, Orbit, OrbitAxis, Pointing, Position,
+    Vibration, Vibrations,
+};
+
+impl ThreeAxisPlant {
+    /// Returns the row of the energies.
+    pub fn energy(&self) -> Energy {
+        let one_way = || {
+            let momentum = RigidBody::momentum(&self.state.turn);
+            let whole = self.rotors(self.evaluated_at).map_or(momentum, |(rotors, _)| momentum + rotors);
+            (self.rigid.energy(&self.state.turn), whole.norm())
+        };
+        let (rotational_j, momentum_nm_s) =
+            self.coupled.as_deref().map_or_else(one_way, CoupledMotion::energy);
+        let (elastic_j, visible_j) = self.elastic_energies();
+        Energy { rotational_j, elastic_j, visible_j, momentum_nm_s }
+    }
+
+    /// Returns the row of the first point's position; `None` for a body without forces or with unknown mass.
+    pub fn position(&self) -> Option<Position> {
+        let [at, speed] = self.coupled.as_deref()?.position()?;
+        Some(Position { x_m: at.x, y_m: at.y, z_m: at.z, x_m_s: speed.x, y_m_s: speed.y, z_m_s: speed.z })
+    }
+
+    /// Returns the row of the attitude, with its errors (rad) against the target.
+    pub fn pointing(&self, error: [f64; 3]) -> Pointing {
+        let q = self.attitude();
+        let [roll_rad, pitch_rad, yaw_rad] = crate::attitude::angles(q);
+        let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
+        Pointing {
+            q_w: q.w,
+            q_x: q.i,
+            q_y: q.j,
+            q_z: q.k,
+            roll_rad,
+            pitch_rad,
+            yaw_rad,
+            roll_error_rad,
+            pitch_error_rad,
+            yaw_error_rad,
+        }
+    }
+
+    /// Returns the row of the appendages' drives and of the modal frequencies, which change with them; `None` without
+    /// drives.
+    pub fn drives(&self) -> Option<DrivesMotion> {
+        let two_way = self.coupled.as_deref()?;
+        let (frequencies, _) = two_way.modes().filter(|_| two_way.has_drives())?;
+        let drive = |[angle_rad, rate_rad_s]: [f64; 2]| DriveMotion { angle_rad, rate_rad_s };
+        let mode = |frequency_rad_s: &f64| DrivenMode { frequency_rad_s: *frequency_rad_s };
+        Some(DrivesMotion {
+            drives: two_way.drives(self.evaluated_at.seconds()).into_iter().map(drive).collect(),
+            modes: frequencies.iter().map(mode).collect(),
+        })
+    }
+
+    /// Returns the row of the appendages' hinges; `None` without hinges.
+    pub fn hinges(&self) -> Option<Hinges> {
+        let hinge = |[angle_rad, rate_rad_s]: &[f64; 2]| HingeMotion {
+            angle_rad: *angle_rad,
+            rate_rad_s: *rate_rad_s,
+        };
+        let hinges = self.coupled.as_deref()?.hinges();
+        (!hinges.is_empty()).then(|| Hinges { hinges: hinges.iter().map(hinge).collect() })
+    }
+
+    /// Returns the row of the orbit; `None` without one.
+    pub fn orbit(&self) -> Option<Orbit> {
+        let (sky, t) = (self.surroundings.as_ref()?.sky(), self.evaluated_at.seconds());
+        let place = sky.position(t)?;
+        let here = |v: Vector| to_body(self.attitude(), &v);
+        let nowhere = Vector::repeat(f64::NAN);
+        let (nadir, field) = (here(place.local[2]), sky.observation(t).field.map_or(nowhere, here));
+        let sun = sky.sun().map_or(nowhere, |sun| here(*sun));
+        let axis = |axis: usize| OrbitAxis {
+            position_m: place.position[axis],
+            velocity_m_s: place.velocity[axis],
+            nadir: nadir[axis],
+            field_t: field[axis],
+            sun: sun[axis],
+        };
+        Some(Orbit { axes: [0, 1, 2].map(axis).into(), light: sky.is_lit(t).into() })
+    }
+
+    /// Returns the row of the modes.
+    pub fn vibrations(&self) -> Vibrations {
+        let modes = &self.state.modes;
+        let rates = self.elastic.rates(modes).zip(self.energies());
+        let of = |(phase, (rate, energy_j)): (&ModeState, (f64, f64))| Vibration {
+            displacement: phase.displacement,
+            rate,
+            energy_j,
+        };
+        Vibrations { modes: modes.iter().zip(rates).map(of).collect() }
+    }
+}

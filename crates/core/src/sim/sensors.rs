@@ -1,0 +1,171 @@
+//! Sensors of a run: when each samples, and the latest measurements about each axis.
+
+use super::Simulation;
+use super::plant::Plant;
+use crate::attitude::Vector;
+use crate::custom::PartError;
+use crate::environment::to_body;
+use crate::random::Seed;
+use crate::scenario::Scenario;
+use crate::sensor::{ExposureMean, Orientation, Reading, Sensor, SensorKind, Truth};
+use crate::time::{Instant, Span};
+
+/// Run-time state of the sensors.
+#[derive(Clone, Debug)]
+pub struct Sensors {
+    schedules: Vec<SensorSchedule>,
+    /// New reading of each sensor; `None` if it was not due or gives no measurement.
+    pub new_readings: Vec<Option<Reading>>,
+    /// Latest measurements of all sensors together: the last orientation, and the last rates.
+    pub reading: Option<Reading>,
+    /// Latest measured angle (rad) and rate (rad/s) about each axis.
+    pub measured: Vec<[f64; 2]>,
+    /// Instant and value of the last measured magnetic field in body axes (T); `field_rate` is its rate of change
+    /// (T/s).
+    pub field: Option<(Instant, Vector)>,
+    /// Rate of change of `field` (T/s); `None` before the second sample.
+    pub field_rate: Option<Vector>,
+    /// Next sampling instant of all sensors; `None` with a continuous sensor.
+    pub next: Option<Instant>,
+}
+
+/// Sensor with its sampling schedule.
+#[derive(Clone, Debug)]
+struct SensorSchedule {
+    sensor: Box<dyn Sensor>,
+    /// True if the sensor measures the attitude or angle, not only rates.
+    provides_attitude: bool,
+    period: Option<Span>,
+    next: Option<Instant>,
+    /// Reading before the newest one.
+    last: Option<Reading>,
+    /// True for the magnetometer that provides the field.
+    is_field_source: bool,
+    /// True if rates are derived from differences of the sensor's angles.
+    derives_rates: bool,
+}
+
+impl Sensors {
+    /// Creates the sensors of a scenario, before its start.
+    pub fn new(scenario: &Scenario, seed: Seed) -> Self {
+        let (study, axes) = (&scenario.study, scenario.study.axes.len());
+        let all = &scenario.sensor;
+        let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
+        let feels = all.iter().position(SensorKind::measures_field);
+        let due = |(index, sensor): (usize, &SensorKind)| {
+            let period = if all.motion_sensors() == 1 && sensor.measures_motion() {
+                study.sample_period
+            } else {
+                sensor.period(study.law_period)
+            };
+            SensorSchedule {
+                sensor: sensor.start(axes, seed, all.index_in_kind(index)),
+                provides_attitude: all.provides_attitude(index),
+                period,
+                next: period.map(|period| Instant::START + period),
+                last: None,
+                is_field_source: feels == Some(index),
+                derives_rates: all.provides_attitude(index) && !rates,
+            }
+        };
+        let sensors: Vec<SensorSchedule> = all.iter().enumerate().map(due).collect();
+        Self {
+            new_readings: vec![None; sensors.len()],
+            reading: None,
+            measured: vec![[0.0; 2]; axes],
+            field: None,
+            field_rate: None,
+            next: sensors.iter().filter_map(|due| due.next).min(),
+            schedules: sensors,
+        }
+    }
+
+    /// Reads the sensors that are due at `now`, with angles counted from `origin`; returns true if anything was
+    /// measured. The plant has to be evaluated at `now`.
+    pub fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
+        let mut any = false;
+        for (index, due) in self.schedules.iter_mut().enumerate() {
+            let fresh = &mut self.new_readings[index];
+            if fresh.is_some() {
+                due.last = fresh.take();
+            }
+            if now > Instant::START && due.next.is_some_and(|next| next != now) {
+                continue;
+            }
+            let truth = plant.truth_at_sensor(index);
+            *fresh = due.sensor.read(now, &truth, due.last.as_ref());
+            if let Some(period) = due.period.filter(|_| now > Instant::START) {
+                due.next = Some(due.sensor.next_due(now, period));
+            }
+            let Some(reading) = fresh else { continue };
+            any = true;
+            if let Some(sight) = reading.sight.filter(|_| due.is_field_source) {
+                let before = self.field.replace((now, sight.vector)).filter(|(then, _)| *then < now);
+                self.field_rate =
+                    before.map(|(then, field)| (sight.vector - field) / now.since(then).seconds());
+            }
+            let rates = reading.rate.or_else(|| due.differentiated_rates(now, reading, &truth));
+            if due.provides_attitude {
+                let angles = reading.at.error_from(origin);
+                self.measured.iter_mut().zip(angles).for_each(|(measured, angle)| measured[0] = angle);
+            }
+            if let Some(rates) = rates {
+                self.measured.iter_mut().zip(rates).for_each(|(measured, rate)| measured[1] = rate);
+            }
+            let all = self.reading.get_or_insert(Reading { sight: None, ..*reading });
+            if due.provides_attitude {
+                all.at = reading.at;
+            }
+            all.rate = reading.rate.or(all.rate);
+        }
+        self.next = self.schedules.iter().filter_map(|due| due.next).min();
+        any
+    }
+
+    /// Hands the mean of the exposure that ends now to a sensor.
+    pub fn close_exposure(&mut self, sensor: usize, exposure: &ExposureMean) {
+        self.schedules[sensor].sensor.close_exposure(exposure);
+    }
+
+    /// Returns the error of a custom sensor that cannot go on.
+    pub fn halted(&self) -> Option<PartError> {
+        self.schedules.iter().find_map(|due| due.sensor.failure())
+    }
+
+    /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.
+    pub fn gyro_bias(&self) -> [f64; 3] {
+        self.schedules.iter().find_map(|due| due.sensor.true_bias()).unwrap_or_default()
+    }
+}
+
+impl Simulation {
+    /// Sets the magnetic field in the actuator: the last measured one, or the true one if no sensor measures it.
+    pub(super) fn set_magnetic_field(&mut self) {
+        let truth = self.plant.truth();
+        let measured = self.sensors.field.map(|(_, field)| field);
+        let here = || match (truth.orientation, truth.sky.field) {
+            (Orientation::Attitude(attitude), Some(field)) => Some(to_body(&attitude, &field)),
+            _ => None,
+        };
+        if let Some(field) = measured.or_else(here) {
+            self.loads.actuator.set_magnetic_field(field);
+        }
+    }
+}
+
+impl SensorSchedule {
+    /// Returns the rates (rad/s) of a sensor that measures angles only: differences over the period, and the true rates
+    /// at first.
+    fn differentiated_rates(&self, now: Instant, reading: &Reading, truth: &Truth) -> Option<[f64; 3]> {
+        if !self.derives_rates {
+            return None;
+        }
+        let (Some(period), true) = (self.period, now > Instant::START) else { return Some(truth.rate) };
+        let nowhere = match reading.at {
+            Orientation::Angle(_) => Orientation::Angle(0.0),
+            attitude @ Orientation::Attitude(_) => attitude,
+        };
+        let last = self.last.map_or(nowhere, |last| last.at);
+        Some(reading.at.error_from(&last).map(|difference| difference / period.seconds()))
+    }
+}

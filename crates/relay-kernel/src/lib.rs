@@ -1,0 +1,46 @@
+//! Runs of a relay law on a body with modes: motions, crossings and envelopes of many runs in SIMD lanes, or of a
+//! single run.
+//!
+//! The kernel is independent of scenarios and logs: the host of the runs, a [`LaneHost`], supplies them as plain numbers
+//! and is notified of events. The results of a lane equal, to the bit, those of the run loop of `flexsc-core`. The
+//! kernels are a separate crate because they take as long to compile as the rest of the engine, and compile in
+//! parallel with it.
+
+mod chatter;
+#[cfg(feature = "damped")]
+mod damped;
+mod envelope_lanes;
+mod host;
+mod kernel;
+mod lane_time;
+mod undamped;
+
+use flexsc_motion::lanes::Processor;
+
+pub use chatter::{SWITCHINGS, shortest_window};
+pub use host::{CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneShape, LaneState, RunSetup};
+pub use kernel::MOST;
+
+/// Returns true if there is a kernel for runs of a structure.
+pub fn is_supported(structure: LaneShape) -> bool {
+    Processor::best().is_some() && (cfg!(feature = "damped") || !structure.is_damped)
+}
+
+/// Computes all runs of a host in SIMD lanes; the structure must be supported ([`is_supported`]).
+pub fn fly_beside(processor: Processor, structure: LaneShape, host: &mut dyn LaneHost) {
+    #[cfg(feature = "damped")]
+    if structure.is_damped {
+        return damped::run_lanes(processor, structure, host);
+    }
+    undamped::fly_beside(processor, structure, host);
+}
+
+/// Computes the single run of a host; the structure must be supported ([`is_supported`]).
+pub fn fly_alone(structure: LaneShape, host: &mut dyn LaneHost) {
+    let Some(processor) = Processor::best() else { return };
+    #[cfg(feature = "damped")]
+    if structure.is_damped {
+        return damped::run_single(processor, structure, host);
+    }
+    undamped::fly_alone(processor, structure, host);
+}

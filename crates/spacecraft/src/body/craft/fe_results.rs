@@ -1,0 +1,188 @@
+//! Modes of an appendage from the results of a finite-element program, and the keys for data that such results omit.
+
+use std::path::Path;
+
+use schemars::JsonSchema;
+use serde::{Deserialize, Serialize};
+
+use super::{Appendage, ClampedMode};
+use crate::body::spatial::NamedPoint;
+use crate::document::ConfigError;
+use crate::quantity::{Finite, Frequency, NonNegative};
+use crate::structure::Shape;
+use crate::structure::fe::{FileMode, ResultFormat, StructurePoint};
+use crate::structure::mode_table::{MOST_MODES, ModeRow};
+
+/// Relative difference allowed between the masses of the file's structure and of the appendage, for clamped nodes and
+/// attached equipment.
+const OWN_MASS: f64 = 0.2;
+
+/// Units of a file that states none, because the solver leaves them to its user.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
+pub enum Units {
+    /// Metres, kilograms, newtons.
+    #[default]
+    #[serde(rename = "m")]
+    Metres,
+    /// Millimetres, tonnes, newtons.
+    #[serde(rename = "mm")]
+    Millimetres,
+}
+
+impl Units {
+    /// Returns the unit of length (m).
+    const fn length(self) -> f64 {
+        match self {
+            Self::Metres => 1.0,
+            Self::Millimetres => 1e-3,
+        }
+    }
+
+    /// Returns the unit of mass (kg).
+    const fn mass(self) -> f64 {
+        match self {
+            Self::Metres => 1.0,
+            Self::Millimetres => 1e3,
+        }
+    }
+}
+
+impl Appendage {
+    /// Reads the modes, if they are in a file, or copies them from another appendage that was read from the same file.
+    ///
+    /// # Errors
+    /// The key, and the reason or the error in the file.
+    pub fn read_modes(&mut self, directory: &Path, others: Option<&Self>) -> Result<(), ConfigError> {
+        self.modes.locate(directory);
+        let file = self.modes.file();
+        let Some((file, format)) = file.and_then(|file| Some((file, ResultFormat::from_path(file)?))) else {
+            self.no_keys_of_results()?;
+            return self
+                .modes
+                .read(others.map(|other| &other.modes))
+                .map_err(|why| ConfigError::new("modes", why));
+        };
+        let keys = |of: &Self| (of.mass, of.keep, of.units, of.damping.clone(), of.points.clone());
+        if let Some(others) =
+            others.filter(|others| others.modes.file() == Some(file) && keys(others) == keys(self))
+        {
+            self.modes = others.modes.clone();
+            return Ok(());
+        }
+        if format == ResultFormat::Flex && self.units.is_some() {
+            return Err(ConfigError::new("units", "must be left out: files of 42 are in SI"));
+        }
+        if self.is_point() {
+            let why = "must be given: a structure from a finite-element program is not a point mass";
+            return Err(ConfigError::new("inertia", why));
+        }
+        if let Some(keep) = self.keep.filter(|keep| !(1..=MOST_MODES).contains(keep)) {
+            return Err(ConfigError::new("keep", format!("must be 1 to {MOST_MODES} modes, got {keep}")));
+        }
+        let reported = |why| ConfigError::new("modes", format!("cannot be used: {}: {why}", file.display()));
+        let places = if format.has_shapes() { self.places() } else { Vec::new() };
+        let results = format.read(file, self.keep, &places).map_err(reported)?;
+        if let Some(mass) = results.mass {
+            self.weighs(mass * self.units.unwrap_or_default().mass())?;
+        }
+        let dampings = self.dampings(&results.modes)?;
+        let modes = results.modes.iter().zip(dampings).enumerate();
+        let modes = modes.map(|(index, (mode, damping))| {
+            self.clamped(mode, damping)
+                .map_err(|why| reported(format!("mode {} of the lowest: {why}", index + 1)))
+        });
+        let modes = modes.collect::<Result<Vec<_>, _>>()?;
+        self.modes.fill(modes);
+        Ok(())
+    }
+
+    /// Keeps the modes inline, and removes the reference to their file.
+    pub fn inline_modes(&mut self) {
+        self.modes.inline();
+        (self.damping, self.keep, self.units) = (None, None, None);
+    }
+
+    /// Checks that keys which complete finite-element results are absent without such results.
+    fn no_keys_of_results(&self) -> Result<(), ConfigError> {
+        let keys = [
+            ("damping", self.damping.is_some()),
+            ("keep", self.keep.is_some()),
+            ("units", self.units.is_some()),
+        ];
+        keys.iter().find(|(_, there)| *there).map_or(Ok(()), |(key, _)| {
+            let why = "must be left out: it applies to `modes` from a .f06, .frd, .dat or .flex file, and a table contains this itself";
+            Err(ConfigError::new(*key, why))
+        })
+    }
+
+    /// Returns the appendage's points in the units of the file.
+    fn places(&self) -> Vec<StructurePoint> {
+        let unit = self.units.unwrap_or_default().length();
+        let place = |point: &NamedPoint| StructurePoint {
+            name: point.name.clone(),
+            at: point.position.map(|part| part.get() / unit),
+        };
+        self.points.iter().map(place).collect()
+    }
+
+    /// Checks that the mass of the file's structure (kg) agrees with the appendage's.
+    fn weighs(&self, structure: f64) -> Result<(), ConfigError> {
+        let mass = self.mass.get();
+        if (structure - mass).abs() <= OWN_MASS * mass {
+            return Ok(());
+        }
+        let why = format!(
+            "must be that of the structure in the file, {structure} kg, to a fifth, got {mass}: are its `units` right? A \
+             CalculiX file leaves out what clamped nodes weigh"
+        );
+        Err(ConfigError::new("mass", why))
+    }
+
+    /// Returns the damping ratios: those of the scenario if given, else those of the file.
+    fn dampings(&self, modes: &[FileMode]) -> Result<Vec<NonNegative>, ConfigError> {
+        let count = modes.len();
+        match &self.damping {
+            Some(damping) => damping.for_modes(count).map_err(|why| ConfigError::new("damping", why)),
+            None => modes.iter().map(|mode| mode.damping.and_then(NonNegative::new)).collect::<Option<_>>().ok_or_else(
+                || {
+                    let why = "must say the damping ratio of the modes, or [one for each], because the file has none; 0 for \
+                               none, 0.005 is a common guess";
+                    ConfigError::new("damping", why)
+                },
+            ),
+        }
+    }
+
+    /// Converts a mode of the file to SI units.
+    fn clamped(&self, mode: &FileMode, damping: NonNegative) -> Result<ClampedMode, String> {
+        let units = self.units.unwrap_or_default();
+        let root = f64::sqrt(units.mass());
+        let three = |parts: [f64; 3], unit: f64| -> Result<[Finite; 3], String> {
+            let mut three = <[Finite; 3]>::default();
+            for (to, part) in three.iter_mut().zip(parts) {
+                *to = Finite::new(unit * part).ok_or("its participations must be finite")?;
+            }
+            Ok(three)
+        };
+        let frequency = Frequency::new(mode.frequency).ok_or_else(|| {
+            let found = mode.frequency;
+            format!("must have a natural frequency of 1e-4 to 1e3 rad/s, got {found}: `keep` fewer modes")
+        })?;
+        let mut clamped = ClampedMode::from_frequency(frequency);
+        clamped.damping = damping;
+        clamped.translation = three(mode.translation, root)?;
+        clamped.rotation = Some(three(mode.rotation, root * units.length())?);
+        if let Some([x, y, z]) = mode.moments {
+            let unit = root * units.length();
+            clamped.moments = Some([three(x, unit)?, three(y, unit)?, three(z, unit)?]);
+        }
+        for (point, [moved, turned]) in self.points.iter().zip(&mode.shapes) {
+            let shape = Shape {
+                translation: three(*moved, 1.0 / root)?,
+                rotation: three(*turned, 1.0 / (root * units.length()))?,
+            };
+            clamped.shapes.insert(point.name.clone(), shape);
+        }
+        Ok(clamped)
+    }
+}

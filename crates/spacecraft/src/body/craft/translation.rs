@@ -1,0 +1,48 @@
+//! Translation of a spacecraft under jets and forces: its mass, and the position of its first point.
+
+use nalgebra::Quaternion;
+
+use crate::attitude::{Vector, vector};
+use crate::body::spatial::Spatial;
+use crate::motion::three_axis::BodyView;
+
+/// Mass of a spacecraft, and the point of its hub whose position is logged.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Translation {
+    /// Total mass (kg).
+    mass: f64,
+    /// Position of the point on the undeformed body, from the centre of mass (m).
+    at: Vector,
+    /// Displacement of the point per unit of each free mode, in the hub's axes (1/sqrt(kg)).
+    shifts: Vec<Vector>,
+}
+
+impl Translation {
+    /// Creates the translation of a body of the given mass (kg), for its first point.
+    pub fn new(body: &Spatial, mass: f64) -> Self {
+        let first = body.points.first();
+        let at = first.map_or_else(Vector::zeros, |point| vector(&point.position));
+        let shifts = body.displacements(first.map_or("", |point| &point.name), &Vector::zeros());
+        Self { mass, at, shifts }
+    }
+
+    /// Returns the acceleration of the centre of mass under a force (N), in m/s².
+    pub fn acceleration(&self, force: &Vector) -> Vector {
+        force / self.mass
+    }
+
+    /// Returns the point's position, in inertial axes from the centre of mass at the start (m), and its velocity (m/s).
+    pub fn position(&self, seen: &BodyView) -> [Vector; 2] {
+        let sum = |of: &[f64]| -> Vector {
+            self.shifts.iter().zip(of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
+        };
+        let bent = || [sum(&seen.displacements), sum(&seen.rates)];
+        let [moved, speed] = seen.shift.unwrap_or_else(bent);
+        let arm = self.at + moved;
+        let rate = seen.rate.cross(&arm) + speed;
+        let q = seen.attitude;
+        let inertial = |v: Vector| (q * Quaternion::from_imag(v) * q.conjugate()).vector().into_owned();
+        let [position, velocity] = seen.moved;
+        [position + inertial(arm), velocity + inertial(rate)]
+    }
+}

@@ -1,0 +1,93 @@
+//! Environment that does not depend on the attitude: position on the orbit, magnetic field, Sun, and the planet's
+//! shadow.
+
+use super::{Environment, Kepler, MagneticField, OrbitPosition};
+use crate::attitude::Vector;
+use crate::time::{Instant, Span};
+
+/// Orbit, magnetic field and Sun of a run.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct OrbitEnvironment {
+    orbit: Option<Kepler>,
+    field: Option<MagneticField>,
+    /// Direction to the Sun in inertial axes.
+    sun: Option<Vector>,
+    /// Intervals in which the planet hides the Sun.
+    shadows: Vec<[Instant; 2]>,
+}
+
+/// Observable environment at an instant, in inertial axes.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct EnvironmentObservation {
+    /// Magnetic field (T), if there is one.
+    pub field: Option<Vector>,
+    /// Direction to the Sun; `None` in shadow.
+    pub sun: Option<Vector>,
+}
+
+impl OrbitEnvironment {
+    /// Creates the sky of an environment for a run of this duration from `epoch_ns` nanoseconds after 1970, if known.
+    pub fn new(environment: &Environment, duration: Span, epoch_ns: Option<u64>) -> Self {
+        let sun = environment.sun.map(|sun| sun.direction(epoch_ns.unwrap_or(0)));
+        let dated = |field: MagneticField| epoch_ns.map_or(field, |ns| field.at_epoch(ns));
+        let shadows = match (&environment.orbit, &sun) {
+            (Some(orbit), Some(sun)) => orbit.shadows(sun, duration.seconds()),
+            _ => Vec::new(),
+        };
+        let at = |seconds: f64| Instant::START + Span::from_seconds(seconds);
+        Self {
+            orbit: environment.orbit,
+            field: environment.magnetic_field.map(dated),
+            sun,
+            shadows: shadows.into_iter().map(|shadow| shadow.map(at)).collect(),
+        }
+    }
+
+    /// Returns the position at `t` seconds after the start, if the body is on an orbit.
+    pub fn position(&self, t: f64) -> Option<OrbitPosition> {
+        self.orbit.as_ref().map(|orbit| orbit.at(t))
+    }
+
+    /// Returns the orbit.
+    pub fn orbit(&self) -> Option<&Kepler> {
+        self.orbit.as_ref()
+    }
+
+    /// Returns the direction to the Sun in inertial axes, in the light or not.
+    pub fn sun(&self) -> Option<&Vector> {
+        self.sun.as_ref()
+    }
+
+    /// Returns the instants at which the shadow begins and ends.
+    pub fn shadow_edges(&self) -> impl Iterator<Item = Instant> {
+        self.shadows.iter().flatten().copied()
+    }
+
+    /// Returns true if the planet does not hide the Sun at a time since the start (s).
+    pub fn is_lit(&self, t: f64) -> bool {
+        let past = self.shadows.partition_point(|[from, _]| from.seconds() <= t);
+        past.checked_sub(1).is_none_or(|last| t >= self.shadows[last][1].seconds())
+    }
+
+    /// Returns the magnetic field at a position, in inertial axes (T), at a time since the start (s).
+    pub(super) fn field(&self, place: &OrbitPosition, t: f64) -> Option<Vector> {
+        self.field.as_ref().map(|field| field.at(&place.position, t))
+    }
+
+    /// Returns an upper bound of the field on the orbit (T).
+    pub fn field_bound(&self) -> f64 {
+        let on = self.orbit.as_ref().zip(self.field.as_ref());
+        on.map_or(0.0, |(orbit, field)| field.bound(orbit.nearest()))
+    }
+
+    /// Returns true if there is a magnetic field.
+    pub fn is_magnetic(&self) -> bool {
+        self.field.is_some()
+    }
+
+    /// Returns the observable environment at a time since the start (s).
+    pub fn observation(&self, t: f64) -> EnvironmentObservation {
+        let field = self.field.as_ref().and_then(|_| self.field(&self.position(t)?, t));
+        EnvironmentObservation { field, sun: self.sun.filter(|_| self.is_lit(t)) }
+    }
+}

@@ -1,0 +1,166 @@
+//! Run-time state of the environment of one body.
+
+use nalgebra::{Matrix3, Quaternion};
+
+use super::dipole::AxialDipole;
+use super::orbit::to_body;
+use super::{Environment, EnvironmentObservation, GravityGradient, Kepler, OrbitEnvironment, SolarPressure};
+use crate::attitude::{Vector, vector};
+use crate::body::craft::Bending;
+use crate::motion::three_axis::{Surroundings, ThermalForces};
+use crate::time::Instant;
+
+/// Environment of a body during a run.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurroundingsState {
+    environment: Environment,
+    sky: OrbitEnvironment,
+    /// Field of the body's dipole, if that has one of its own.
+    axial: Option<AxialDipole>,
+    /// Inertia of the rotors about their axes (kg m²), which the body's inertia leaves out and gravity acts on too.
+    spinning: Matrix3<f64>,
+    /// Centre of mass from the origin of positions (m).
+    centre: Vector,
+    /// Torque that is constant in inertial axes (N m).
+    torque: Vector,
+    /// Thermal bending of the appendages.
+    heated: Vec<ThermalForces>,
+    /// Magnetic moment of the torquers, in the body's axes (A m²).
+    held: Vector,
+    bound: f64,
+    frequency: f64,
+}
+
+impl SurroundingsState {
+    /// Creates the environment of a body under `sky`. The inertia tensors (kg m²) are those of the body without the
+    /// rotors' axial inertia, and of the rotors about their axes; `centre` is the centre of mass from the origin of
+    /// positions (m).
+    pub fn new(
+        environment: &Environment,
+        sky: OrbitEnvironment,
+        [inertia, spinning]: [Matrix3<f64>; 2],
+        centre: &Vector,
+    ) -> Self {
+        let pressed = environment.solar_pressure.as_ref().map_or(0.0, |of| of.bound(centre));
+        let torque = vector(&environment.torque);
+        let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
+        let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
+        let push = dipole.map_or(0.0, |dipole| dipole.bound(sky.field_bound()));
+        let drag = environment.drag.as_ref().zip(sky.orbit());
+        let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre));
+        let axial = dipole.and_then(super::Dipole::own_field);
+        let own = gradient.and_then(|of| of.orbit_rate).map(crate::quantity::Positive::get);
+        let turning = environment.magnetic_field.map(|field| field.rotation.get().abs());
+        let orbits = [own, axial.map(|of| of.rate), sky.orbit().map(Kepler::fastest)];
+        let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + turning.unwrap_or(0.0);
+        Self {
+            environment: environment.clone(),
+            axial,
+            spinning,
+            centre: *centre,
+            bound: torque.norm() + pressed + pull + push + braked,
+            // Gradient and dipole torques are of second order in the sine and cosine of the local axes' angle.
+            frequency: 2.0 * fastest,
+            torque,
+            held: Vector::zeros(),
+            heated: Vec::new(),
+            sky,
+        }
+    }
+
+    /// Adds thermal bending of the body by sunlight, relative to the state of light at the start.
+    #[must_use]
+    pub fn with_thermal_bending(self, bendings: &[Bending]) -> Self {
+        let start = if self.sky.is_lit(0.0) { 1.0 } else { 0.0 };
+        let level = |edge: Instant| {
+            let t = edge.seconds();
+            [t, if self.sky.is_lit(t) { 1.0 - start } else { -start }]
+        };
+        let aims = || self.sky.shadow_edges().map(level);
+        let heated = |of: &Bending| ThermalForces::new(of.forces.clone(), of.time_constant, aims());
+        let heated = bendings.iter().map(heated).collect();
+        let fastest = bendings.iter().map(|of| 1.0 / of.time_constant).fold(0.0, f64::max);
+        Self { heated, frequency: self.frequency + fastest, ..self }
+    }
+
+    /// Sets the magnetic moment of the torquers from now on, in the body's axes (A m²).
+    pub fn set_magnetic_moment(&mut self, moment: Vector) {
+        self.held = moment;
+    }
+
+    /// Returns the torque of the torquers' moment on a body of the given attitude, in its axes (N m).
+    pub fn magnetic_torque(&self, t: f64, attitude: &Quaternion<f64>) -> Vector {
+        if self.held == Vector::zeros() {
+            return Vector::zeros();
+        }
+        self.sky
+            .observation(t)
+            .field
+            .map_or_else(Vector::zeros, |field| self.held.cross(&to_body(attitude, &field)))
+    }
+
+    /// Returns the orbit, field and Sun.
+    pub fn sky(&self) -> &OrbitEnvironment {
+        &self.sky
+    }
+
+    /// Returns the observable field and Sun direction at a time since the start (s).
+    pub fn observation(&self, t: f64) -> EnvironmentObservation {
+        self.sky.observation(t)
+    }
+
+    /// Returns the instants at which a torque or bending by sunlight begins or ends.
+    pub fn change_times(&self) -> impl Iterator<Item = Instant> {
+        let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::edges);
+        let matters = self.environment.solar_pressure.is_some() || !self.heated.is_empty();
+        own.chain(self.sky.shadow_edges().filter(move |_| matters))
+    }
+}
+
+impl Surroundings for SurroundingsState {
+    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector {
+        let Environment { gravity_gradient, solar_pressure, dipole, drag, .. } = &self.environment;
+        let mut torque = to_body(attitude, &self.torque);
+        let place = self.sky.position(t);
+        if let Some(gradient) = gravity_gradient {
+            let pull = gradient.direction_and_strength(t, attitude, place.as_ref());
+            torque += GravityGradient::torque(pull, &(inertia + self.spinning));
+        }
+        if let Some(pressure) = solar_pressure.as_ref().filter(|of| of.is_lit(t) && self.sky.is_lit(t)) {
+            torque += pressure.torque(attitude, self.sky.sun(), &self.centre);
+        }
+        if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {
+            torque += drag.torque(orbit, place, attitude, &self.centre);
+        }
+        let field = place.and_then(|place| self.sky.field(&place, t));
+        if let Some(dipole) = dipole {
+            let field = self.axial.map(|own| own.at(t)).or(field).unwrap_or_default();
+            torque += dipole.torque(&field, attitude);
+        }
+        if let Some(field) = field.filter(|_| self.held != Vector::zeros()) {
+            torque += self.held.cross(&to_body(attitude, &field));
+        }
+        torque
+    }
+
+    fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>> {
+        let gradient = self.environment.gravity_gradient.as_ref()?;
+        Some(GravityGradient::modal_tensor(gradient.direction_and_strength(
+            t,
+            attitude,
+            self.sky.position(t).as_ref(),
+        )))
+    }
+
+    fn thermal_forces(&self) -> &[ThermalForces] {
+        &self.heated
+    }
+
+    fn bound(&self) -> f64 {
+        self.bound + self.held.norm() * self.sky.field_bound()
+    }
+
+    fn frequency(&self) -> f64 {
+        self.frequency
+    }
+}

@@ -1,0 +1,66 @@
+//! Slew about one axis with an acceleration that is a waveform: a planned command, or a limited slew through a shaper.
+
+use nalgebra::Quaternion;
+
+use super::slew::{AttitudeMotion, eigenaxis};
+use crate::attitude::{Vector, rotation};
+use crate::document::ConfigError;
+use crate::waveform::Waveform;
+
+/// Number of samples from which the largest rate is taken, besides the breaks of the acceleration.
+const PLACES: u32 = 200;
+
+/// Slew from rest to rest by a planned command.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PlannedSlew {
+    from: Quaternion<f64>,
+    to: Quaternion<f64>,
+    /// Rotation axis, with the same components in both attitudes.
+    axis: Vector,
+    /// Acceleration about the axis (rad/s²).
+    acceleration: Waveform,
+}
+
+impl PlannedSlew {
+    /// Creates the shorter rotation, with the acceleration (rad/s²) that `plan` returns for its angle (rad).
+    ///
+    /// # Errors
+    /// The reason why there is no plan.
+    pub fn new(
+        [from, to]: [Quaternion<f64>; 2],
+        plan: impl FnOnce(f64) -> Result<Waveform, ConfigError>,
+    ) -> Result<Self, ConfigError> {
+        let (axis, angle) = eigenaxis(&from, &to);
+        Ok(Self { from, to, axis, acceleration: plan(angle)? })
+    }
+
+    /// Returns the final attitude.
+    pub fn to(&self) -> Quaternion<f64> {
+        self.to
+    }
+
+    /// Returns the duration (s).
+    pub fn duration(&self) -> f64 {
+        self.acceleration.end()
+    }
+
+    /// Returns an estimate of the largest rate of the slew (rad/s), from samples.
+    pub fn fastest(&self) -> f64 {
+        let step = self.duration() / f64::from(PLACES);
+        let places = (0..=PLACES).map(|place| step * f64::from(place)).chain(self.acceleration.breaks());
+        places.map(|t| self.acceleration.impulse(0.0, t).abs()).fold(0.0, f64::max)
+    }
+
+    /// Returns attitude, rate and acceleration at `t` seconds after the start of the slew.
+    pub fn at(&self, t: f64) -> AttitudeMotion {
+        if t >= self.duration() {
+            return AttitudeMotion::at_rest(self.to);
+        }
+        let t = t.max(0.0);
+        AttitudeMotion {
+            attitude: self.from * rotation(&(self.axis * self.acceleration.travel(0.0, t))),
+            rate: self.axis * self.acceleration.impulse(0.0, t),
+            acceleration: self.axis * self.acceleration.at(t),
+        }
+    }
+}
