@@ -222,7 +222,7 @@ fn a_body_without_inertia_is_accelerated() {
     assert!(!wheel.contains("N m") && !wheel.contains("torque"), "{wheel}");
     said("rotation-kinematic").says(&["acceleration   at most", "deg/s²"]);
     said("rotation-sine").says(&["torque         at most", "N m"]);
-    dir.run("cycle relay-fixed.toml").exits(0).says(&["rad/s per hour"]);
+    dir.run("cycle relay-fixed.toml --units si").exits(0).says(&["rad/s per hour"]);
     let units = |name: &str, metric: &str| {
         let row = metrics(scenario(name, &[("duration", "20")])).to_row();
         row.metrics.into_iter().find(|of| of.name == metric).expect("a metric").unit

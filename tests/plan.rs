@@ -40,11 +40,12 @@ fn the_numbers_of_a_plan() {
     assert_eq!(reported["even_coefficients_nm"], serde_json::json!([]));
     assert_eq!(reported["constant_nm"], 0.0);
     let dir = dir("torque", 0.0, &quarter);
-    dir.run("plan turn.toml").exits(0).says(&[
+    dir.run("plan turn.toml --units si").exits(0).says(&[
+        "1.571 rad in 12.000000000 s",
         "411.465238316, -190.087330099 N m",
-        "521.080754 N m",
+        "521.1 N m",
         "phi4",
-        "1.189e-3",
+        "0.001189",
     ]);
     // Another command, in the time that its peak allows.
     let set = "--set manoeuvre.command.sine.suppress=2 --peak-torque 521.080754063";

@@ -8,12 +8,20 @@ use flexsc_core::law::{LawKind, RelaySides};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
+use crate::human::{Units, UnitsArgs};
 use crate::results::{Results, show};
-use crate::say;
-use crate::scenario::Args;
+use crate::{say, scenario};
 
 /// Number of resonances that are printed for each mode.
 const NEAREST: usize = 3;
+
+#[derive(clap::Args)]
+pub struct Args {
+    #[command(flatten)]
+    pub scenario: scenario::Args,
+    #[command(flatten)]
+    units: UnitsArgs,
+}
 
 /// Limit cycles of a scenario's relay law, and their resonances.
 pub struct RelayCycles {
@@ -24,10 +32,11 @@ pub struct RelayCycles {
     unit: &'static str,
     cycles: Vec<RigidCycle>,
     resonances: Vec<Resonance>,
+    units: Units,
 }
 
 /// Computes the limit cycles of a scenario's relay law on a rigid body.
-pub fn results(scenario: &Scenario) -> Result<RelayCycles, CliError> {
+pub fn results(scenario: &Scenario, args: &Args) -> Result<RelayCycles, CliError> {
     let body = scenario.one_angle()?;
     let LawKind::Relay(law) = &scenario.law else {
         return Err(CliError::Arguments(format!(
@@ -43,11 +52,12 @@ pub fn results(scenario: &Scenario) -> Result<RelayCycles, CliError> {
     }
     let (name, k_t) = (scenario.name.clone(), law.k_t.get());
     let unit = if body.has_unit_inertia() { "rad/s" } else { "N m s" };
-    Ok(RelayCycles { name, k_t, unit, cycles: cycles(law, body, k_t), resonances: resonances(law, body) })
+    let (cycles, resonances) = (cycles(law, body, k_t), resonances(law, body));
+    Ok(RelayCycles { name, k_t, unit, cycles, resonances, units: args.units.units })
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
-    show(&results(&args.load()?)?, None, args.json)
+    show(&results(&args.scenario.load()?, args)?, None, args.scenario.json)
 }
 
 impl Results for RelayCycles {
@@ -57,7 +67,7 @@ impl Results for RelayCycles {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { name, k_t, unit, cycles, resonances } = self;
+        let Self { name, k_t, unit, cycles, resonances, units } = self;
         say!("{name}   k_t = {k_t}, modes left out");
         if cycles.is_empty() {
             say!("  no limit cycle exists");
@@ -70,10 +80,11 @@ impl Results for RelayCycles {
             say!("    push           {:.9} s", cycle.push_s);
             say!("    brake          {:.9} s", cycle.brake_s);
             say!("    coast          {:.9} s", cycle.coast_s);
-            say!("    entry rate     {:.9e} rad/s", cycle.entry_rate_rad_s);
-            say!("    angle          {:.6e} to {:.6e} rad", cycle.angle_min_rad, cycle.angle_max_rad);
+            say!("    entry rate     {}", units.quantity(cycle.entry_rate_rad_s, "rad/s"));
+            let ends = [cycle.angle_min_rad, cycle.angle_max_rad];
+            say!("    angle          {}", units.list(&ends, " to ", "rad"));
             say!("    duty           {:.4} under strong torque", cycle.duty);
-            say!("    impulse        {:.6e} {unit} per hour", cycle.impulse_per_hour_nm_s);
+            say!("    impulse        {} per hour", units.quantity(cycle.impulse_per_hour_nm_s, unit));
         }
         if !resonances.is_empty() {
             say!(

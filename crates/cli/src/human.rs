@@ -42,10 +42,15 @@ impl Units {
 
     /// Returns values with one unit that fits the largest of them: `1 -> 2 deg` with ` -> ` between them.
     pub fn list(self, values: &[f64], between: &str, unit: &str) -> String {
-        let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
-        let (factor, unit) = self.scale(largest, unit);
+        let (factor, unit) = self.common(values, unit);
         let texts: Vec<String> = values.iter().map(|value| digits(value * factor)).collect();
         format!("{} {unit}", texts.join(between))
+    }
+
+    /// Returns the factor from SI, and the unit, that fit the largest of some values.
+    pub fn common(self, values: &[f64], unit: &str) -> (f64, String) {
+        let largest = values.iter().fold(0.0, |most: f64, value| most.max(value.abs()));
+        self.scale(largest, unit)
     }
 
     /// Returns the speed of a rotor (rad/s) with its unit.

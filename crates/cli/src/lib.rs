@@ -77,7 +77,7 @@ enum Verb {
     /// Print the limit cycles and resonances of a relay law
     ///
     /// In closed form, for the rigid body. A resonance is a gain at which an odd harmonic of the limit cycle matches a mode.
-    Cycle(scenario::Args),
+    Cycle(cycle::Args),
     /// Plan a manoeuvre without residual vibration, or compare plans
     Plan(plan::Args),
     /// Find stable, fast gains of a sampled loop

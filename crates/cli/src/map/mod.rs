@@ -14,6 +14,7 @@ use serde_json::{Value as Json, json};
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureOutput};
 use crate::grid::PositiveGrid;
+use crate::human::{Units, UnitsArgs, digits};
 use crate::out::Out;
 use crate::results::{Results, show};
 use crate::sampled_loop::{SettlingArgs, sampled};
@@ -46,6 +47,8 @@ pub struct Args {
     /// Replace a FILE of other content
     #[arg(long)]
     force: bool,
+    #[command(flatten)]
+    units: UnitsArgs,
 }
 
 /// Map of a scenario's sampled loop.
@@ -55,6 +58,7 @@ pub struct MapResults {
     cells: Vec<MapCell>,
     /// Frequency (rad/s) and period (s) of the scenario itself.
     own: Point,
+    units: Units,
 }
 
 impl Args {
@@ -70,7 +74,8 @@ impl Args {
         self.settled.check_cost(&of, frequencies.len() * periods.len(), shortest, 0.0)?;
         let gain = |frequency: f64| self.gain.unwrap_or_else(|| law.extra_gain(frequency));
         let cells = map(&of, frequencies, periods, self.settled.scaling(), gain, window);
-        Ok(MapResults { name: scenario.name.clone(), cells, own: (of.frequency(), of.period) })
+        let (name, own) = (scenario.name.clone(), (of.frequency(), of.period));
+        Ok(MapResults { name, cells, own, units: self.units.units })
     }
 }
 
@@ -84,7 +89,34 @@ impl Results for MapResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        print(csv(&self.cells).as_bytes())
+        print(csv(&self.cells).as_bytes())?;
+        self.print_summary("");
+        Ok(())
+    }
+}
+
+impl MapResults {
+    /// Prints the ranges of the map and the stable cell that settles first; `place` names the file of the table.
+    fn print_summary(&self, place: &str) {
+        let Self { name, cells, own, units } = self;
+        let stable = || cells.iter().filter(|cell| cell.spectral_radius < 1.0);
+        say!("{name}   {}, {} stable{place}", counted(cells.len(), "cell"), stable().count());
+        let range = |value: fn(&MapCell) -> f64| {
+            let values = || cells.iter().map(value);
+            let (low, high) = (values().fold(f64::INFINITY, f64::min), values().fold(0.0, f64::max));
+            move |factor: f64| format!("{} to {}", digits(low * factor), digits(high * factor))
+        };
+        let (factor, unit) = units.frequency();
+        let at = |frequency: f64, period: f64| {
+            format!("at {} {unit} and a period of {} s", digits(frequency * factor), digits(period))
+        };
+        say!("  frequency      {} {unit}", range(|cell| cell.frequency_rad_s)(factor));
+        say!("  period         {} s", range(|cell| cell.period_s)(1.0));
+        say!("  scenario       {}", at(own.0, own.1));
+        let settled = stable().filter_map(|cell| Some((cell.settling_s?, cell)));
+        if let Some((time, cell)) = settled.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            say!("  settles first  in {} s {}", digits(time), at(cell.frequency_rad_s, cell.period_s));
+        }
     }
 }
 
@@ -110,9 +142,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         }
     };
     files::write(path, csv(&mapped.cells).as_bytes(), args.force)?;
-    let MapResults { name, cells, .. } = &mapped;
-    let stable = cells.iter().filter(|cell| cell.spectral_radius < 1.0).count();
-    say!("{name}   {}, {stable} stable, in {}", counted(cells.len(), "cell"), path.display());
+    mapped.print_summary(&format!(", in {}", path.display()));
     Ok(())
 }
 

@@ -8,8 +8,12 @@ use serde_json::Value as Json;
 
 use super::percent;
 use crate::error::CliError;
+use crate::human::{Units, columns, digits};
 use crate::results::Results;
 use crate::say;
+
+/// Number of lines in the head of the printed table.
+const HEAD: usize = 3;
 
 /// Comparison of all commands for a manoeuvre.
 pub struct AlternativesResults {
@@ -24,6 +28,8 @@ pub struct AlternativesResults {
     /// Data that all commands have in common.
     pub common: ComparisonBasis,
     pub rows: Vec<CommandCost>,
+    /// Units of the text.
+    pub units: Units,
 }
 
 impl Results for AlternativesResults {
@@ -32,63 +38,69 @@ impl Results for AlternativesResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { name, body, shown, rows, .. } = self;
-        let chosen = shown.checked_sub(1).map_or("angle", |index| &body.outputs[index].name);
-        let unit = body.torque_unit();
+        let Self { name, body, units, rows, .. } = self;
         match self.common {
             ComparisonBasis::Time(time) => say!("{name}   every command in {} s", time.seconds()),
             ComparisonBasis::PeakTorque(peak) => {
-                say!("{name}   every command at a peak of {} {unit}", peak.get());
+                let peak = units.quantity(peak.get(), body.torque_unit());
+                say!("{name}   every command at a peak of {peak}");
             }
         }
-        let (band, hub) = (percent(self.band), "angle");
-        say!(
-            "  {:<28}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>11}{:>11}{:>11}",
-            "",
-            "time",
-            "peak",
-            "RMS",
-            "at 0+",
-            chosen,
-            "±5 %",
-            format!("±{band} %"),
-            hub,
-            format!("±{band} %")
-        );
-        say!(
-            "  {:<28}{:>10}{:>10}{:>10}{:>10}{:>11}{:>11}{:>11}{:>11}{:>11}",
-            "",
-            "s",
-            unit,
-            unit,
-            unit,
-            "left",
-            "worst",
-            "worst",
-            "left",
-            "worst"
-        );
+        let mut lines = columns(&self.table(), 0).into_iter();
+        for line in lines.by_ref().take(HEAD) {
+            say!("  {line}");
+        }
         for row in rows {
             match &row.outcome {
                 Err(fault) => say!("  {:<28}{}", row.name, fault.why),
-                Ok(outcome) => {
-                    let (own, hub) = (&outcome.residuals[*shown], &outcome.residuals[0]);
-                    say!(
-                        "  {:<28}{:>10.4}{:>10.2}{:>10.2}{:>10.2}{:>11.3e}{:>11.3e}{:>11.3e}{:>11.3e}{:>11.3e}",
-                        row.name,
-                        outcome.plan.time,
-                        outcome.torque.peak.value,
-                        outcome.torque.rms,
-                        outcome.torque.initial,
-                        own.nominal,
-                        own.near,
-                        own.worst,
-                        hub.nominal,
-                        hub.worst
-                    );
+                Ok(_) => {
+                    if let Some(line) = lines.next() {
+                        say!("  {line}");
+                    }
                 }
             }
         }
         Ok(())
+    }
+}
+
+impl AlternativesResults {
+    /// Returns the cells of the printed table: the lines of its head, and a line of each feasible command.
+    fn table(&self) -> Vec<Vec<String>> {
+        let Self { body, shown, units, rows, .. } = self;
+        let shown = *shown;
+        let output = shown.checked_sub(1).and_then(|index| body.outputs.get(index));
+        let (chosen, unit) =
+            output.map_or(("angle", "rad"), |output| (output.name.as_str(), output.unit.as_str()));
+        let outcomes = || rows.iter().filter_map(|row| Some((&row.name, row.outcome.as_ref().ok()?)));
+        let (mut torques, mut own, mut hub) = (Vec::new(), Vec::new(), Vec::new());
+        for (_, outcome) in outcomes() {
+            torques.extend([outcome.torque.peak.value, outcome.torque.rms, outcome.torque.initial]);
+            let (left, angle) = (&outcome.residuals[shown], &outcome.residuals[0]);
+            own.extend([left.nominal, left.near, left.worst]);
+            hub.extend([angle.nominal, angle.worst]);
+        }
+        // One unit per column, so that commands can be compared.
+        let (of_torque, torque_unit) = units.common(&torques, body.torque_unit());
+        let (of_own, own_unit) = units.common(&own, unit);
+        let (of_hub, hub_unit) = units.common(&hub, "rad");
+        let band = format!("±{} %", percent(self.band));
+        let (torque, own, hub) = (torque_unit.as_str(), own_unit.as_str(), hub_unit.as_str());
+        let head: [[&str; 10]; HEAD] = [
+            ["", "time", "peak", "RMS", "at 0+", chosen, "±5 %", &band, "angle", &band],
+            ["", "", "", "", "", "left", "worst", "worst", "left", "worst"],
+            ["", "s", torque, torque, torque, own, own, own, hub, hub],
+        ];
+        let mut table: Vec<Vec<String>> = head.map(|line| line.map(str::to_owned).to_vec()).to_vec();
+        for (name, outcome) in outcomes() {
+            let (left, angle) = (&outcome.residuals[shown], &outcome.residuals[0]);
+            let mut line = vec![format!("{name:<26}"), format!("{:.4}", outcome.plan.time)];
+            let torques = [outcome.torque.peak.value, outcome.torque.rms, outcome.torque.initial];
+            line.extend(torques.map(|torque| digits(torque * of_torque)));
+            line.extend([left.nominal, left.near, left.worst].map(|residual| digits(residual * of_own)));
+            line.extend([angle.nominal, angle.worst].map(|residual| digits(residual * of_hub)));
+            table.push(line);
+        }
+        table
     }
 }

@@ -15,6 +15,7 @@ use flexsc_core::{Scenario, ScenarioError};
 
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureOutput};
+use crate::human::UnitsArgs;
 use crate::results::{Results, show};
 use crate::scenario;
 use alternatives::AlternativesResults;
@@ -46,6 +47,8 @@ pub struct Args {
     /// Coordinate to compare and to plot: `angle` or an output [default: the last output]
     #[arg(long, alias = "output", value_name = "NAME", requires = "views")]
     coordinate: Option<String>,
+    #[command(flatten)]
+    units: UnitsArgs,
 }
 
 impl Args {
@@ -63,10 +66,11 @@ impl Args {
         let shown = chosen(self.coordinate.as_deref(), &body)?;
         let model = manoeuvre.planned_for(&body).clone();
         let name = scenario.written.name;
+        let units = self.units.units;
         if self.compare {
             let common = ComparisonBasis::from_manoeuvre(&manoeuvre, limit, &plan);
             let rows = compare(&manoeuvre, common, &model, band);
-            return Ok(Box::new(AlternativesResults { name, body, band, shown, common, rows }));
+            return Ok(Box::new(AlternativesResults { name, body, band, shown, common, rows, units }));
         }
         let plan = if limit.is_some() {
             let slower = Manoeuvre { time: None, peak_torque: limit, ..manoeuvre.clone() };
@@ -80,7 +84,7 @@ impl Args {
             plan
         };
         let report = PlanReport::new(&plan, &body, band);
-        Ok(Box::new(PlanResults { name, body, model, manoeuvre, plan, report, shown }))
+        Ok(Box::new(PlanResults { name, body, model, manoeuvre, plan, report, shown, units }))
     }
 
     /// Returns the peak torque that is planned for, if given.

@@ -10,6 +10,7 @@ use serde_json::{Value as Json, json};
 use super::family::CommandFamily;
 use super::{figures, percent};
 use crate::error::CliError;
+use crate::human::{Units, columns, digits};
 use crate::results::{Results, of_scenario};
 use crate::say;
 
@@ -26,6 +27,8 @@ pub struct PlanResults {
     pub report: PlanReport,
     /// Index of the coordinate in the figures: the hub's angle or an output.
     pub shown: usize,
+    /// Units of the text.
+    pub units: Units,
 }
 
 impl Results for PlanResults {
@@ -46,20 +49,25 @@ impl Results for PlanResults {
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { name, body, manoeuvre, plan, report, .. } = self;
-        let (angle, time) = (plan.angle, plan.time);
+        let Self { name, body, manoeuvre, plan, report, units, .. } = self;
+        let (angle, time) = (units.quantity(plan.angle, "rad"), plan.time);
         let kind = manoeuvre.command.kind().replace('_', " ");
         let shaped = if manoeuvre.shaper.is_some() { ", shaped" } else { "" };
-        say!("{name}   {angle} rad in {time:.9} s by {kind}{shaped}");
+        say!("{name}   {angle} in {time:.9} s by {kind}{shaped}");
         if plan.start_rate != 0.0 || plan.end_rate != 0.0 {
-            say!("  rates            {} -> {} rad/s", plan.start_rate, plan.end_rate);
+            let rates = units.list(&[plan.start_rate, plan.end_rate], " -> ", "rad/s");
+            say!("  rates            {rates}");
         }
         let (_, unit) = body.commanded();
         if let Some(c) = &plan.coefficients {
-            let list = |c: &[f64]| c.iter().map(|c| format!("{c:.9}")).collect::<Vec<_>>().join(", ");
+            let all: Vec<f64> = c.odd.iter().chain(&c.even).copied().chain([c.constant]).collect();
+            let (factor, unit) = units.common(&all, unit);
+            // More digits than of other numbers: the coefficients define the command.
+            let text = |coefficient: f64| format!("{:.9}", coefficient * factor);
+            let list = |c: &[f64]| c.iter().map(|c| text(*c)).collect::<Vec<_>>().join(", ");
             say!("  coefficients     {} {unit}", list(&c.odd));
             if !c.even.is_empty() || c.constant != 0.0 {
-                say!("  even, constant   {}; {:.9} {unit}", list(&c.even), c.constant);
+                say!("  even, constant   {}; {} {unit}", list(&c.even), text(c.constant));
             }
         }
         let torque = &report.torque;
@@ -70,33 +78,15 @@ impl Results for PlanResults {
         } else {
             ("peak torque", "torque at start", "N² m² s", "J")
         };
-        say!("  {peak:<16} {:.6} {unit} at {:.6} s", torque.peak.value, torque.peak.time);
-        say!("  root mean square {:.6} {unit}", torque.rms);
-        say!("  square integral  {:.6e} {square}", torque.square);
-        say!("  {start:<16} {:.6} {unit}", torque.initial);
-        say!("  hub at the end   {:.3e} rad, {:.3e} rad/s off", report.angle_error, report.rate_error);
-        say!("  energy left      {:.4e} {energy}", report.energy);
-        say!(
-            "  {:<16} {:>12}{:>12}{:>12}{:>14}{:>12}",
-            "coordinate",
-            "left",
-            "worst 5 %",
-            format!("worst {} %", percent(report.band)),
-            "deflection",
-            "at"
-        );
-        for (left, deflection) in report.residuals.iter().zip(&report.deflections) {
-            say!(
-                "  {:<16} {:>12.3e}{:>12.3e}{:>12.3e}{:>14.6e}{:>10.4} s   {}",
-                left.name,
-                left.nominal,
-                left.near,
-                left.worst,
-                deflection.value,
-                deflection.time,
-                left.unit,
-            );
-        }
+        say!("  {peak:<16} {} at {:.6} s", units.quantity(torque.peak.value, unit), torque.peak.time);
+        say!("  root mean square {}", units.quantity(torque.rms, unit));
+        say!("  square integral  {}", units.quantity(torque.square, square));
+        say!("  {start:<16} {}", units.quantity(torque.initial, unit));
+        let errors = [(report.angle_error, "rad"), (report.rate_error, "rad/s")];
+        let [angle, rate] = errors.map(|(error, unit)| units.quantity(error, unit));
+        say!("  hub at the end   {angle}, {rate} off");
+        say!("  energy left      {}", units.quantity(report.energy, energy));
+        self.print_coordinates();
         let both = |(below, above): (Option<f64>, f64)| match below {
             Some(below) => format!("{below:.6} or {above:.6} s"),
             None => format!("{above:.6} s"),
@@ -107,5 +97,27 @@ impl Results for PlanResults {
             say!("  mode {} rests after a single sine in {}{cosine}", tuned.mode, both(tuned.sine));
         }
         Ok(())
+    }
+}
+
+impl PlanResults {
+    /// Prints the residual and the deflection of each coordinate.
+    fn print_coordinates(&self) {
+        let Self { report, units, .. } = self;
+        let worst = format!("worst {} %", percent(report.band));
+        let head: [&str; 7] = ["coordinate      ", "left", "worst 5 %", &worst, "", "deflection", "at"];
+        let mut rows = vec![head.map(str::to_owned).to_vec()];
+        for (left, deflection) in report.residuals.iter().zip(&report.deflections) {
+            let residuals = [left.nominal, left.near, left.worst];
+            let (factor, unit) = units.common(&residuals, &left.unit);
+            let mut row = vec![format!("{:<16}", left.name)];
+            row.extend(residuals.map(|residual| digits(residual * factor)));
+            row.extend([unit, units.quantity(deflection.value, &left.unit)]);
+            row.push(format!("{} s", digits(deflection.time)));
+            rows.push(row);
+        }
+        for line in columns(&rows, 0) {
+            say!("  {line}");
+        }
     }
 }

@@ -11,6 +11,7 @@ use flexsc_core::analysis::sampled_loop::{ModelUncertainty, RobustGoal, RobustSe
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
 use crate::grid::{PositiveGrid, SignedGrid};
+use crate::human::UnitsArgs;
 use crate::results::{Results, show};
 use crate::sampled_loop::{SettlingArgs, positive, sampled};
 use crate::{print, scenario};
@@ -51,6 +52,8 @@ pub struct Args {
     /// Print the schedule as `[law.pd.extra]` of a scenario
     #[arg(long, conflicts_with = "json")]
     schedule: bool,
+    #[command(flatten)]
+    units: UnitsArgs,
     #[command(flatten)]
     drawing: FigureOutput,
 }
@@ -98,7 +101,7 @@ impl Args {
                 TuneMethodResults::Robust { off, rows: optimize(&tuning.of, &tuning.frequencies, search) }
             }
         };
-        Ok(TuneResults { tuning, found })
+        Ok(TuneResults { tuning, found, units: self.units.units })
     }
 
     /// Returns the search for gains that are admissible with a relative model error.

@@ -4,11 +4,13 @@ use std::io::Write;
 
 use flexsc_core::analysis::sampled_loop::{GainRegion, Gains, RobustGain};
 
+use crate::human::{Units, digits};
 use crate::number::fixed;
 use crate::say;
 
 /// Prints the region of admissible gains.
-pub fn print(name: &str, limit: f64, gains: Gains, found: &[GainRegion]) {
+pub fn print(name: &str, limit: f64, gains: Gains, found: &[GainRegion], units: Units) {
+    let (factor, unit) = units.frequency();
     let Gains { low, high, step } = gains;
     say!(
         "{name}   gains of the extra loop that are stable and settle in {limit} s, of {low} to {high} by {step}"
@@ -23,11 +25,11 @@ pub fn print(name: &str, limit: f64, gains: Gains, found: &[GainRegion]) {
         "radius",
         "without"
     );
-    say!("  {:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}", "rad/s", "", "", "", "s", "", "s");
+    say!("  {:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}", unit, "", "", "", "s", "", "s");
     for r in found {
         say!(
-            "  {:>10.4}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}",
-            r.frequency_rad_s,
+            "  {:>10}{:>10}{:>10}{:>10}{:>12}{:>12}{:>14}",
+            digits(r.frequency_rad_s * factor),
             fixed(r.gain.map(|gain| gain.0), 3),
             fixed(r.gain.map(|gain| gain.1), 3),
             fixed(r.midpoint, 3),
@@ -39,7 +41,8 @@ pub fn print(name: &str, limit: f64, gains: Gains, found: &[GainRegion]) {
 }
 
 /// Prints the robust gains.
-pub fn print_robust(name: &str, off: f64, found: &[RobustGain]) {
+pub fn print_robust(name: &str, off: f64, found: &[RobustGain], units: Units) {
+    let (factor, unit) = units.frequency();
     say!("{name}   gains of the extra loop that settle soonest with the model off by {} %", off * 100.0);
     say!(
         "  {:>10}{:>10}{:>12}{:>14}{:>12}{:>14}",
@@ -50,11 +53,11 @@ pub fn print_robust(name: &str, off: f64, found: &[RobustGain]) {
         "radius",
         "without"
     );
-    say!("  {:>10}{:>10}{:>12}{:>14}{:>12}{:>14}", "rad/s", "", "s", "s", "", "s");
+    say!("  {:>10}{:>10}{:>12}{:>14}{:>12}{:>14}", unit, "", "s", "s", "", "s");
     for r in found {
         say!(
-            "  {:>10.4}{:>10}{:>12}{:>14}{:>12}{:>14}",
-            r.frequency_rad_s,
+            "  {:>10}{:>10}{:>12}{:>14}{:>12}{:>14}",
+            digits(r.frequency_rad_s * factor),
             fixed(r.gain, 3),
             fixed(r.settling_s, 1),
             fixed(r.settling_quantile_s, 1),

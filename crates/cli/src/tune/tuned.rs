@@ -7,6 +7,7 @@ use serde_json::{Value as Json, json};
 use super::tuning::TuneSetup;
 use super::{figures, table};
 use crate::error::CliError;
+use crate::human::Units;
 use crate::results::Results;
 
 /// Admissible gains.
@@ -21,6 +22,8 @@ pub enum TuneMethodResults {
 pub struct TuneResults {
     pub tuning: TuneSetup,
     pub found: TuneMethodResults,
+    /// Units of the text.
+    pub units: Units,
 }
 
 impl TuneResults {
@@ -71,8 +74,12 @@ impl Results for TuneResults {
     fn print(&self) -> Result<(), CliError> {
         let TuneSetup { name, limit, gains, .. } = &self.tuning;
         match &self.found {
-            TuneMethodResults::Regions(regions) => table::print(name, *limit, *gains, regions),
-            TuneMethodResults::Robust { off, rows } => table::print_robust(name, *off, rows),
+            TuneMethodResults::Regions(regions) => {
+                table::print(name, *limit, *gains, regions, self.units);
+            }
+            TuneMethodResults::Robust { off, rows } => {
+                table::print_robust(name, *off, rows, self.units);
+            }
         }
         Ok(())
     }
