@@ -8,8 +8,9 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use super::family::CommandFamily;
-use super::{figures, percent};
+use super::{figures, percent, trajectory};
 use crate::error::CliError;
+use crate::number_table::NumberTable;
 use crate::results::{Results, of_scenario};
 use crate::say;
 
@@ -43,6 +44,10 @@ impl Results for PlanResults {
         let Self { name, body, plan, manoeuvre, model, shown, .. } = self;
         let family = CommandFamily::new(name, body, plan, manoeuvre, model, *shown);
         figures::all(&family, self.report.band)
+    }
+
+    fn table(&self) -> Option<NumberTable> {
+        Some(trajectory::table(&self.body, &self.plan))
     }
 
     fn print(&self) -> Result<(), CliError> {
