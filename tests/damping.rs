@@ -10,7 +10,7 @@ use flexsc_core::estimator::adaptive::{ModeVector, OscillatorModel};
 use flexsc_core::numerics::delay_margin::delay_margin;
 
 use crate::study::close;
-use crate::util::Dir;
+use crate::util::{Dir, table};
 
 const TURN: f64 = 2.0 * PI;
 const CYCLE: f64 = 0.2;
@@ -271,6 +271,25 @@ fn a_delayed_relay_ends_in_a_limit_cycle() {
         close(swings, seen, 0.005);
         close(border.limit_cycle(acceleration), largest, 0.25);
         close(border.frequency, TURN * swings, 0.01);
+    }
+}
+
+#[test]
+fn the_table_is_written_as_csv() {
+    let dir = Dir::new();
+    let grid = format!("damping --frequency 0.5:8:4 --delay 0.2 --acceleration {YAW}");
+    let ran = dir.run(&format!("{grid} --json -o damping.csv")).exits(0).says(&["damping.csv: 4 rows"]);
+    let reported = ran.json();
+    let header = "frequency_rad_s,phase_factor,slope_rad_s2,delay_limit_s,gain_limit_1_s,limit_cycle_rate_rad_s,\
+                  limit_cycle_frequency_rad_s,decay_s,thrust_s\n";
+    assert!(dir.text("damping.csv").starts_with(header));
+    let rows = table(&dir, "damping.csv");
+    assert_eq!(rows.len(), 4);
+    for (row, expected) in rows.iter().zip(reported["rows"].as_array().expect("rows")) {
+        for (name, cell) in row {
+            // Absent numbers, here the time of the decay, are empty cells.
+            assert_eq!(cell.parse().ok(), expected[name].as_f64(), "{name}");
+        }
     }
 }
 

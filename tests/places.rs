@@ -27,7 +27,9 @@ fn a_file_is_written_where_its_ending_makes_sense() {
         (GRID, "m/map.csv", "frequency_rad_s,"),
         (GRID, "m/map.svg", "<svg"),
         ("plan rotation-cosine.toml -o", "p/plan.svg", "<svg"),
+        ("plan rotation-cosine.toml -o", "p/plan.csv", "time_s,angle_rad,"),
         ("damping --frequency 0.5:5:5 --acceleration 0.1 -o", "d/d.svg", "<svg"),
+        ("damping --frequency 0.5:5:5 --acceleration 0.1 -o", "d/d.csv", "frequency_rad_s,"),
         ("layout relay-fixed.toml -o", "l/lay.json", "{"),
         ("log recover relay-fixed.mcap -o", "r/saved.mcap", "\u{89}MCAP"),
         ("export relay-fixed.mcap --topic /command -o", "t/c.csv", "time_s,"),
@@ -74,8 +76,12 @@ fn other_endings_are_refused_and_nothing_is_made() {
         ("examples wheel-ekf -o ex.csv", ".toml"),
         ("examples wheel-ekf wheel-wheel -o ex.toml", "several examples"),
         ("new x.mcap", ".toml"),
-        ("plan rotation-cosine.toml -o plan.csv", ".svg, .png or .pdf"),
-        ("damping --frequency 0.5:5:5 --acceleration 0.1 -o dd.csv", ".svg, .png or .pdf"),
+        ("plan rotation-cosine.toml -o plan.parquet", ".svg, .png, .pdf or .csv"),
+        ("plan rotation-cosine.toml --format svg -o plan.csv", "--format"),
+        ("plan rotation-cosine.toml --coordinate angle -o plan.csv", "--coordinate"),
+        ("damping --frequency 0.5:5:5 --acceleration 0.1 -o dd.mcap", ".svg, .png, .pdf or .csv"),
+        ("damping --frequency 0.5:5:5 --acceleration 0.1 --format pdf -o dd.csv", "--format"),
+        ("observer --frequency 1.2566 -o observer.csv", ".svg, .png or .pdf"),
         ("plot relay-fixed.mcap -o f.jpg", ".svg, .png or .pdf"),
         ("layout relay-fixed.toml -o lay", "must end in .json"),
         ("log recover relay-fixed.mcap -o rec", "must end in .mcap"),
@@ -123,6 +129,7 @@ fn an_input_is_no_output() {
     std::os::unix::fs::symlink("relay-fixed.toml", dir.path("soft.json")).expect("linked");
     std::fs::hard_link(dir.path("wheel-fixed-gain.toml"), dir.path("map.csv")).expect("linked");
     std::fs::hard_link(dir.path("rotation-cosine.toml"), dir.path("plan.svg")).expect("linked");
+    std::fs::hard_link(dir.path("rotation-cosine.toml"), dir.path("plan.csv")).expect("linked");
     std::os::unix::fs::symlink("relay-fixed.mcap", dir.path("soft.svg")).expect("linked");
     std::fs::hard_link(dir.path("u.toml"), dir.path("u.csv")).expect("linked");
     std::fs::hard_link(dir.path("u.toml"), dir.path("u.mcap")).expect("linked");
@@ -136,6 +143,7 @@ fn an_input_is_no_output() {
         "layout relay-fixed.toml -o soft.json",
         "map wheel-fixed-gain.toml --frequency 0.5:1:2 --period 0.2:0.4:2 -o wheel-fixed-gain.toml",
         "map wheel-fixed-gain.toml --frequency 0.5:1:2 --period 0.2:0.4:2 -o map.csv",
+        "plan rotation-cosine.toml -o plan.csv",
         "plan rotation-cosine.toml -o plan.svg",
         "plot relay-fixed.mcap -o soft.svg",
         "log recover relay-fixed.mcap -o ./relay-fixed.mcap",

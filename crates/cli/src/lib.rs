@@ -24,6 +24,7 @@ mod memory_log;
 mod merge;
 mod modes;
 mod number;
+mod number_table;
 mod observer;
 mod out;
 mod plan;
@@ -31,6 +32,7 @@ mod plot;
 mod progress;
 #[cfg_attr(not(feature = "papers"), path = "reproduce/unavailable.rs")]
 mod reproduce;
+mod result_files;
 mod results;
 mod runs_table;
 mod sampled_loop;

@@ -5,6 +5,7 @@ use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
 use crate::figure_files::FigureOutput;
+use crate::number_table::NumberTable;
 use crate::print;
 
 /// Results of an analysis.
@@ -15,6 +16,11 @@ pub trait Results {
     /// Returns the figures, each with the name of its file; by default none.
     fn figures(&self) -> Vec<Named> {
         Vec::new()
+    }
+
+    /// Returns the table that is written as CSV; by default none.
+    fn table(&self) -> Option<NumberTable> {
+        None
     }
 
     /// Prints the results as text.

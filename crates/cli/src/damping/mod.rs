@@ -10,10 +10,11 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
-use crate::figure_files::FigureOutput;
 use crate::grid::PositiveGrid;
 use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::number_or_none;
+use crate::number_table::NumberTable;
+use crate::result_files::ResultOutput;
 use crate::results::{Results, show};
 use crate::say;
 
@@ -47,7 +48,7 @@ pub struct Args {
     #[command(flatten)]
     units: UnitsArgs,
     #[command(flatten)]
-    drawing: FigureOutput,
+    output: ResultOutput,
     /// Print one JSON object to stdout
     #[arg(long)]
     json: bool,
@@ -95,7 +96,12 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
-    show(&args.results()?, Some(&args.drawing), args.json)
+    let target = args.output.target(&[])?;
+    let results = args.results()?;
+    if let Some(target) = target {
+        target.save(&results)?;
+    }
+    show(&results, None, args.json)
 }
 
 impl Results for DampingResults {
@@ -106,6 +112,10 @@ impl Results for DampingResults {
 
     fn figures(&self) -> Vec<Named> {
         vec![("damping".to_owned(), figures::figure(&self.rows, self.limit))]
+    }
+
+    fn table(&self) -> Option<NumberTable> {
+        Some(NumberTable::from_rows(&self.rows))
     }
 
     fn print(&self) -> Result<(), CliError> {

@@ -1,24 +1,16 @@
 //! Figures of a plan: torque, hub angle and an output over time, and the residual vibration over the frequency error
 //! (\[Rotation\], figures 3 to 8 and beyond).
 
-use std::f64::consts::TAU;
-use std::sync::Arc as Shared;
-
-use flexsc_core::body::{CommandedQuantity, Planar};
-use flexsc_core::flow::{ActiveWaveform, SegmentInput, UncoupledSegment};
+use flexsc_core::body::CommandedQuantity;
 use flexsc_core::manoeuvre::Plan;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour, name_and_unit};
 
 use super::family::{CommandFamily, FamilyMember};
+use super::trajectory::{self, PlannedMotion};
 use crate::plot::readable;
 
-/// Fewest and largest number of points of a line.
-const FEWEST: f64 = 1500.0;
-const MOST: f64 = 20_000.0;
 /// Number of points of the frequency band.
 const BAND: u32 = 401;
-/// Periods of the slowest mode that are shown after the manoeuvre.
-const PERIODS: f64 = 4.0;
 
 /// Returns all figures; `band` is the relative uncertainty of the frequencies.
 pub fn all(family: &CommandFamily, band: f64) -> Vec<Named> {
@@ -47,7 +39,7 @@ impl CommandFamily<'_> {
     }
 
     fn torque(&self) -> Figure {
-        let lines = self.lines(|plan| plan.torque(self.body, self.step(self.plan.time)));
+        let lines = self.lines(|plan| plan.torque(self.body, trajectory::step(self.body, self.plan.time)));
         let name = if self.body.has_unit_inertia() { "acceleration" } else { "torque" };
         let y = FigureAxis::around(name, self.body.torque_unit(), heights(&lines));
         let zero =
@@ -119,37 +111,21 @@ impl CommandFamily<'_> {
 
     /// Returns the end of the shown time (s).
     fn end(&self) -> f64 {
-        let slowest = frequencies(self.body).fold(f64::INFINITY, f64::min);
-        let after = if slowest.is_finite() { PERIODS * TAU / slowest } else { 0.0 };
-        self.plan.time + after.max(0.2 * self.plan.time)
-    }
-
-    /// Returns the spacing of points (s) on a line of duration `length` (s).
-    fn step(&self, length: f64) -> f64 {
-        let fastest = frequencies(self.body).fold(0.0, f64::max);
-        let fine = if fastest > 0.0 { TAU / (24.0 * fastest) } else { length };
-        fine.clamp(length / MOST, length / FEWEST)
+        trajectory::end(self.body, self.plan)
     }
 
     /// Returns the hub's angle and the shown coordinate under a plan, by the exact solution.
     fn motion(&self, plan: &Plan) -> Vec<(f64, [f64; 2])> {
         let end = self.end();
-        let count = (end / self.step(end)).ceil();
-        let mut segment = UncoupledSegment::new(self.body);
-        let mut state = self.body.initial_state();
-        let waveform = Some(ActiveWaveform::new(Shared::new(plan.waveform.clone()), 0.0));
-        segment.depart(&state.clone(), &SegmentInput { constant: 0.0, waveform });
+        let count = (end / trajectory::step(self.body, end)).ceil();
+        let mut motion = PlannedMotion::new(self.body, plan);
+        let output = self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index));
         let mut at = |t: f64| {
-            let angle = segment.at(t, &mut state).angle;
-            let output = self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index));
-            (t, [angle, output.map_or(angle, |output| output.evaluate(&state))])
+            let (hub, state) = motion.evaluate(t);
+            (t, [hub.angle, output.map_or(hub.angle, |output| output.evaluate(state))])
         };
         (0..=count as u32).map(|i| at(end * (f64::from(i) / count))).collect()
     }
-}
-
-fn frequencies(body: &Planar) -> impl Iterator<Item = f64> {
-    body.modes.iter().map(|mode| mode.frequency.get())
 }
 
 fn heights(lines: &[Vec<Point>]) -> impl Iterator<Item = f64> {

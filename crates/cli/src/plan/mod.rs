@@ -4,6 +4,7 @@ mod alternatives;
 mod family;
 mod figures;
 mod planned;
+mod trajectory;
 
 use std::path::PathBuf;
 
@@ -14,8 +15,9 @@ use flexsc_core::quantity::{Fraction, Positive};
 use flexsc_core::{Scenario, ScenarioError};
 
 use crate::error::CliError;
-use crate::figure_files::{FigureFormat, FigureOutput};
+use crate::figure_files::FigureFormat;
 use crate::human::UnitsArgs;
+use crate::result_files::{ResultOutput, ResultTarget};
 use crate::results::{Results, show};
 use crate::scenario;
 use alternatives::AlternativesResults;
@@ -35,14 +37,14 @@ pub struct Args {
     #[arg(long, value_name = "TORQUE")]
     peak_torque: Option<f64>,
     /// Plot the command with those that suppress fewer modes, or with the rigid bang-bang: directory, created if missing, or
-    /// one FILE.svg, .png or .pdf
+    /// one FILE.svg, .png or .pdf. FILE.csv: write the planned trajectory as a table
     #[arg(short = 'o', long = "out", visible_alias = "figures", value_name = "DIR|FILE", group = "views")]
-    figures: Option<PathBuf>,
+    out: Option<PathBuf>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
-    #[arg(long, value_enum, requires = "figures")]
+    #[arg(long, value_enum, requires = "out")]
     format: Option<FigureFormat>,
     /// Replace a FILE of other content
-    #[arg(long, requires = "figures")]
+    #[arg(long, requires = "out")]
     force: bool,
     /// Coordinate to compare and to plot: `angle` or an output [default: the last output]
     #[arg(long, alias = "output", value_name = "NAME", requires = "views")]
@@ -98,10 +100,17 @@ impl Args {
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
-    let drawing = FigureOutput { figures: args.figures.clone(), format: args.format, force: args.force };
-    drawing.check(&args.scenario.scenario)?;
+    let output = ResultOutput { out: args.out.clone(), format: args.format, force: args.force };
+    let target = output.target(&[args.scenario.scenario.as_path()])?;
+    if args.coordinate.is_some() && matches!(target, Some(ResultTarget::Table { .. })) {
+        let why = "--coordinate: the table has every coordinate\n\nhint: leave out --coordinate";
+        return Err(CliError::Arguments(why.to_owned()));
+    }
     let results = args.results(args.scenario.load()?)?;
-    show(&*results, Some(&drawing), args.scenario.json)
+    if let Some(target) = target {
+        target.save(&*results)?;
+    }
+    show(&*results, None, args.scenario.json)
 }
 
 fn percent(band: f64) -> f64 {

@@ -8,9 +8,10 @@ use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 
 use super::family::CommandFamily;
-use super::{figures, percent};
+use super::{figures, percent, trajectory};
 use crate::error::CliError;
 use crate::human::{Units, columns, digits};
+use crate::number_table::NumberTable;
 use crate::results::{Results, of_scenario};
 use crate::say;
 
@@ -34,10 +35,10 @@ pub struct PlanResults {
 impl Results for PlanResults {
     fn json(&self) -> Vec<Json> {
         let mut object = of_scenario(&self.name, json!({"command": self.manoeuvre.command.kind()}));
-        if let (Some(object), Json::Object(told)) =
+        if let (Some(object), Json::Object(report)) =
             (object.as_object_mut(), self.report.to_json(&self.plan, &self.body))
         {
-            object.extend(told);
+            object.extend(report);
         }
         vec![object]
     }
@@ -46,6 +47,10 @@ impl Results for PlanResults {
         let Self { name, body, plan, manoeuvre, model, shown, .. } = self;
         let family = CommandFamily::new(name, body, plan, manoeuvre, model, *shown);
         figures::all(&family, self.report.band)
+    }
+
+    fn table(&self) -> Option<NumberTable> {
+        Some(trajectory::table(&self.body, &self.plan))
     }
 
     fn print(&self) -> Result<(), CliError> {

@@ -52,7 +52,8 @@ class _Filter:
     def __init__(self, parts: Mapping[str, Any], order: int) -> None:
         import numpy as np
 
-        self.gyro, self.sensor = _Sensor.from_parts(parts["gyro"], order), _Sensor.from_parts(parts["sensor"], order)
+        self.gyro = _Sensor.from_parts(parts["gyro"], order)
+        self.sensor = _Sensor.from_parts(parts["sensor"], order)
         self.gain = np.array(parts["gain"], dtype=np.float64)
         # Exposures that may still correct it, the newest first, and what they show beyond what is expected.
         count = (self.sensor.latency + self.gyro.period) // self.sensor.period + 2

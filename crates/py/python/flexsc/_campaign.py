@@ -165,7 +165,9 @@ def sweep(
     if jobs is None and scenario.parts:
         jobs = 1
     names = None if metrics is None else list(metrics)
-    work = engine.Work.create(scenario._native, (0, runs), grids, "random", replicas, names, None, yes, uncertain)
+    work = engine.Work.create(
+        scenario._native, (0, runs), grids, "random", replicas, names, None, yes, uncertain
+    )
     return _made(work, jobs)
 
 

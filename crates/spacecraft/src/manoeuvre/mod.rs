@@ -38,7 +38,7 @@ pub use attitude_table::{AttitudeRow, AttitudeTable};
 pub use command::{BangBang, ManoeuvreCommand, MinimumPeak, PolynomialCommand};
 pub use effort::PlanEffort;
 pub use peak_search::PeakValue;
-pub use plan::Plan;
+pub use plan::{CommandSample, Plan};
 pub use planned_slew::PlannedSlew;
 pub use report::{PlanReport, RestTimes};
 pub use residual::FinalResidual;

@@ -7,6 +7,20 @@ use super::series::SeriesCoefficients;
 use crate::body::{CommandedQuantity, Planar};
 use crate::waveform::Waveform;
 
+/// Largest part of the peak by which a command differs on both sides of a break without a jump.
+const CONTINUOUS: f64 = 1e-9;
+
+/// Sample of a planned command.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct CommandSample {
+    /// Time (s).
+    pub time: f64,
+    /// Command (N m, or rad/s² if the hub's motion is commanded).
+    pub command: f64,
+    /// Torque on the hub (N m).
+    pub torque: f64,
+}
+
 /// Planned manoeuvre of a body whose modes rest at its start.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Plan {
@@ -67,6 +81,34 @@ impl Plan {
             line.extend((0..=count as u32).map(time).map(|t| (t, torque(body, &history, middle, t))));
         }
         line
+    }
+
+    /// Returns samples of the command from its start to a time `end` (s), which may be after the manoeuvre: at most
+    /// `step` seconds apart, and two at one time where the command jumps.
+    pub fn samples(&self, body: &Planar, step: f64, end: f64) -> Vec<CommandSample> {
+        let history = ModalResponse::new(body, &self.waveform, 1.0);
+        let breaks = self.waveform.breaks();
+        let within = breaks.into_iter().filter(|time| 0.0 < *time && *time < end);
+        let edges: Vec<f64> = std::iter::once(0.0).chain(within).chain([end]).collect();
+        let small = CONTINUOUS * self.peak().value.abs();
+        let mut samples: Vec<CommandSample> = Vec::new();
+        for piece in edges.windows(2) {
+            let (from, length) = (piece[0], piece[1] - piece[0]);
+            let middle = from + 0.5 * length;
+            let count = libm::ceil(length / step).max(1.0);
+            let sample = |time: f64| CommandSample {
+                time,
+                command: self.waveform.value_on_piece(middle, time),
+                torque: torque(body, &history, middle, time),
+            };
+            let first = sample(from);
+            if samples.last().is_none_or(|before| (first.command - before.command).abs() > small) {
+                samples.push(first);
+            }
+            samples.extend((1..count as u32).map(|i| sample(from + length * (f64::from(i) / count))));
+            samples.push(sample(piece[1]));
+        }
+        samples
     }
 
     /// Returns the residual in the hub's angle and in each output, as in a [`FinalResidual`](super::FinalResidual), for

@@ -1,0 +1,56 @@
+//! Table of numbers as CSV: columns with units in their names.
+
+use serde::Serialize;
+use serde_json::{Value as Json, json};
+
+/// Table of numbers.
+pub struct NumberTable {
+    /// Names of the columns, with their units.
+    pub columns: Vec<String>,
+    /// Cells of each row; `None` for a number that does not exist or is infinite.
+    pub rows: Vec<Vec<Option<f64>>>,
+}
+
+impl NumberTable {
+    /// Returns the table of structs, whose fields are the columns.
+    pub fn from_rows<T: Serialize>(rows: &[T]) -> Self {
+        let objects: Vec<Json> = rows.iter().map(|row| json!(row)).collect();
+        let objects: Vec<_> = objects.iter().filter_map(Json::as_object).collect();
+        let columns = objects.first().map_or_else(Vec::new, |first| first.keys().cloned().collect());
+        let rows = objects.iter().map(|object| object.values().map(Json::as_f64).collect()).collect();
+        Self { columns, rows }
+    }
+
+    /// Returns the table as CSV.
+    ///
+    /// # Errors
+    /// Rows of unequal lengths.
+    pub fn to_csv(&self) -> Result<Vec<u8>, csv::Error> {
+        let mut writer = csv::Writer::from_writer(Vec::new());
+        writer.write_record(&self.columns)?;
+        // The shortest text that reads back as the same double; the sum makes a negative zero positive.
+        let text = |cell: Option<f64>| cell.map_or_else(String::new, |number| format!("{:e}", number + 0.0));
+        for row in &self.rows {
+            writer.write_record(row.iter().copied().map(text))?;
+        }
+        Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn absent_and_infinite_numbers_are_empty_cells() {
+        #[derive(Serialize)]
+        struct Row {
+            time_s: f64,
+            gain_1_s: Option<f64>,
+        }
+        let rows =
+            [Row { time_s: -0.0, gain_1_s: None }, Row { time_s: f64::INFINITY, gain_1_s: Some(-2e-9) }];
+        let csv = NumberTable::from_rows(&rows).to_csv().expect("rows of one length");
+        assert_eq!(String::from_utf8_lossy(&csv), "time_s,gain_1_s\n0e0,\n,-2e-9\n");
+    }
+}
