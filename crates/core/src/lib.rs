@@ -15,7 +15,7 @@
 //! One loop runs one-axis and three-axis bodies (relay runs of one axis may run in the kernel of `flexsc_relay_kernel`
 //! instead, with the same records); each axis has an estimate, a law and a goal. Each role is a trait:
 //! [`sensor::Sensor`], [`estimator::Estimator`], [`law::Law`], [`actuator::Actuator`]. `docs/extending.md` describes
-//! how to add a kind.
+//! how to add a kind, and `crates/core/examples` has short programs that use this crate.
 //!
 //! ```
 //! use flexsc_core::{Scenario, Simulation, record::{Detail, Trace}};
