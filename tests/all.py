@@ -125,10 +125,13 @@ def crates() -> None:
 
 
 def lint_light() -> None:
-    """The light build, and the benchmarks, which are checked and not built."""
-    others = (word for name in FULL for word in ("--exclude", name))
+    """Checks the light build and the benchmarks with clippy, and the documentation of the code with rustdoc."""
+    others = [word for name in FULL for word in ("--exclude", name)]
     targets = ("--bins", "--tests", "--benches", "--no-default-features")
     run("cargo", "clippy", "--release", "--quiet", "--workspace", *others, *targets, "--", "-D", "warnings")
+    # What rustdoc warns of: links to what there is not, and to what is private.
+    os.environ["RUSTDOCFLAGS"] = "-D warnings"
+    run("cargo", "doc", "--release", "--quiet", "--no-deps", "--workspace", *others, "--no-default-features")
 
 
 def build() -> None:
@@ -271,8 +274,8 @@ def python_and_around() -> str:
 STEPS = [
     Step("licences, sources and duplicates of all crates", 5, crates),
     Step(
-        "form of the code: rustfmt, ruff, spelling; clippy of the light build and the benchmarks",
-        55,
+        "form of the code: rustfmt, ruff, spelling; clippy of the light build and the benchmarks; rustdoc",
+        75,
         form_and_light,
     ),
     Step("building the command, the tests and the fuzzer, with clippy", 350, build),
