@@ -352,6 +352,27 @@ fn archives_have_bounds() {
     }
 }
 
+/// Estimates (s) follow from the values of keys: measured times are within a factor of two of the middle.
+#[test]
+fn estimates_follow_the_keys() {
+    let cases = [
+        ("relay-fixed", "hysteresis = 1e-4", "hysteresis = 1e-15", [50.0, 220.0]),
+        ("relay-fixed", "duration = 20000.0", "duration = 1e6", [0.02, 0.09]),
+        ("relay-one-sided", "duration = 20000.0", "duration = 1e6", [0.1, 0.4]),
+        ("detumble-and-point", "rate = [0.035, -0.03, 0.025]", "rate = [100, 0, 0]", [50.0, 230.0]),
+        ("wheel-unstable-band", "duration = 1500.0", "duration = 145000.0", [0.3, 1.2]),
+        ("four-clamped-modes-faults", "duration = 300.0", "duration = 3000.0", [0.12, 0.5]),
+    ];
+    for (name, line, other, [low, high]) in cases {
+        let dir = Dir::with(&[name]);
+        let shipped = dir.text(&format!("{name}.toml"));
+        assert!(shipped.contains(line), "{line}");
+        dir.write("a.toml", shipped.replace(line, other));
+        let estimate = dir.run("check a.toml --json").exits(0).json()["estimate_s"].as_f64().expect("a time");
+        assert!((low..=high).contains(&estimate), "{name}, {other}: {estimate}");
+    }
+}
+
 /// Shipped scenarios, and ordinary large studies, need no yes.
 #[test]
 fn ordinary_work_needs_no_yes() {

@@ -72,6 +72,23 @@ fn ends(dir: &Dir, arguments: &[String]) -> Option<String> {
     }
 }
 
+/// Keys with which a run takes minutes: the estimate is printed before the run begins.
+#[test]
+#[cfg(unix)]
+fn runs_of_minutes_are_announced() {
+    let dir = Dir::with(&["relay-fixed", "detumble-and-point"]);
+    for (name, key, what) in [
+        ("relay-fixed", "law.relay.hysteresis=1e-15", "note: `law.relay.hysteresis` makes 1."),
+        ("detumble-and-point", "spacecraft.rate=[100,0,0]", "note: `duration` makes 2."),
+    ] {
+        let running = dir.start(&format!("simulate {name}.toml --log none --set {key}"));
+        thread::sleep(Duration::from_secs(2));
+        let ran = running.signal("KILL");
+        assert_eq!(ran.code, None, "{}", ran.err);
+        assert!(ran.err.contains(what) && ran.err.contains("on one core"), "{}", ran.err);
+    }
+}
+
 #[test]
 #[cfg(unix)]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]

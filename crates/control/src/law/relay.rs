@@ -56,13 +56,26 @@ pub enum RelaySides {
 }
 
 impl Relay {
-    /// Mean time between switchings on a rigid body (s), in a cycle that a push over the hysteresis keeps going: an estimate, for
-    /// what a run costs.
+    /// Returns an estimate of the mean time between switchings in the limit cycle of a rigid body (s).
+    ///
+    /// The push over the hysteresis gives back the speed that the brake takes. Then the body crosses the dead zone, or
+    /// the weak torque returns it to the boundary that it left.
     pub fn mean_switching(&self, inertia: f64) -> f64 {
-        let (push, back) = (self.strong.get() / inertia, self.hysteresis.get());
-        let pushed = f64::sqrt(2.0 * back / push);
-        let coasted = 2.0 * self.dead_zone.get() / f64::sqrt(2.0 * back * push);
-        ((1.0 + self.k_t.get()) * pushed + coasted) / 3.0
+        let (push, weak) = (self.strong.get() / inertia, self.weak.get() / inertia);
+        let (zone, back, k_t) = (self.dead_zone.get(), self.hysteresis.get(), self.k_t.get());
+        // The overshoot of `expected_band`. Without a brake it grows: switchings are most frequent at half the dead zone.
+        let overshoot = (back * (1.0 - k_t) * (1.0 - k_t) / (4.0 * k_t)).min(0.5 * zone);
+        let speed = f64::sqrt(2.0 * push * overshoot);
+        let pushed = (speed + f64::sqrt(2.0 * push * (overshoot + back))) / push;
+        let left = speed * speed - 4.0 * weak * zone;
+        let coasted = if self.sides == RelaySides::Two && left > 0.0 {
+            4.0 * zone / (speed + f64::sqrt(left))
+        } else if weak > 0.0 {
+            2.0 * speed / weak
+        } else {
+            f64::INFINITY
+        };
+        ((1.0 + k_t) * pushed + coasted) / 3.0
     }
 }
 

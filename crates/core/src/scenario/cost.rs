@@ -3,17 +3,18 @@
 
 use super::Scenario;
 use super::pace::{STEP, SWITCHES, TURNS};
-use crate::actuator::{ActuatorKind, ActuatorTask, UnloadingTask};
+use crate::actuator::{ActuatorKind, ActuatorTask, Failure, UnloadingTask};
 use crate::attitude::vector;
 use crate::body::Spatial;
 use crate::body::spatial::PeriodicTorque;
 use crate::document::ConfigError;
 use crate::estimator::EstimatorKind;
 use crate::flow::LONGEST_TURN;
-use crate::law::{AttitudeTarget, LawKind};
+use crate::law::{AttitudeTarget, LawKind, RelaySides};
 use crate::motion::three_axis::{Bearing, SHAKE, Surroundings};
 use crate::quantity::NonNegative;
 use crate::record::Detail;
+use crate::relay_setup::{SWITCHINGS, shortest_window};
 use crate::sensor::SensorKind;
 use crate::time::Span;
 
@@ -30,6 +31,8 @@ const MOST_WAITING: f64 = 1e6;
 
 /// Time on one core (s) above which a confirmation is needed.
 const LONG_S: f64 = 36_000.0;
+/// Time on one core (s) above which the estimate is printed before the work.
+const NOTICEABLE_S: f64 = 10.0;
 /// Memory (bytes) above which a confirmation is needed.
 const MUCH_MEMORY: f64 = 4e9;
 /// Disk space for logs (bytes) above which a confirmation is needed.
@@ -38,6 +41,12 @@ const MUCH_DISK: f64 = 2e10;
 /// Steps of a relay law per radian of the fastest mode: between runs in batches, which take half as long, and single
 /// runs with damped modes, which take twice as long.
 const RELAY_STRIDES: f64 = 0.1;
+/// Steps per radian of the fastest mode with a one-sided law, whose long flights outside the dead zone are searched.
+const ONE_SIDED_STRIDES: f64 = 0.7;
+/// Rate (rad/s) below which swings of a body that holds its attitude in surroundings do not shorten steps.
+const QUIET_RATE: f64 = 1e-3;
+/// Length of steps of such a body, relative to steps that resolve its modes.
+const QUIET_STEPS: f64 = 64.0;
 /// Evaluations of the motion within an exposure: constant part, and part per radian of the fastest mode.
 const LOOKS: (f64, f64) = (6.0, 1.0);
 /// Number of runs about one axis that take the time of one in SIMD lanes.
@@ -88,6 +97,17 @@ impl Cost {
             bytes(MUCH_MEMORY),
             bytes(MUCH_DISK)
         ))
+    }
+
+    /// Returns a description of the work if it takes noticeably long; `None` otherwise.
+    pub fn notice(&self) -> Option<String> {
+        let Self { most: (what, steps), runs, seconds, .. } = self;
+        let each =
+            if *runs > 1.0 { format!(" in each of {} runs", after_check(*runs)) } else { String::new() };
+        let is_long = *seconds > NOTICEABLE_S;
+        is_long.then(|| {
+            format!("{what} makes {} steps{each}: about {} on one core", after_check(*steps), time(*seconds))
+        })
     }
 
     /// Returns the cost of `runs` such computations, whose results are kept in memory.
@@ -255,9 +275,15 @@ impl Scenario {
             }
         }
         // Crossings are predicted or searched, and exact panels integrated, by steps that are a part of a vibration.
+        let is_coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let strides = match &self.law {
             _ if self.model.chain().is_some() => 20.0,
-            LawKind::Relay(_) if self.study.sample_period.is_none() => RELAY_STRIDES,
+            LawKind::Relay(law) if self.study.sample_period.is_none() => {
+                let is_searched = law.sides == RelaySides::One && !is_coupled;
+                if is_searched { ONE_SIDED_STRIDES } else { RELAY_STRIDES }
+            }
+            // The motion with a wheel is a series in the phase of the fastest mode.
+            _ if self.actuator.flywheel().is_some() && self.study.sample_period.is_none() => 1.0,
             _ => 0.0,
         };
         let modes = self.model.planar().into_iter().flat_map(|body| &body.modes);
@@ -265,18 +291,64 @@ impl Scenario {
         if strides * fastest > 0.0 {
             steps.push(("duration".to_owned(), strides * duration * fastest));
         }
-        if let (LawKind::Relay(law), Some(body)) = (&self.law, self.model.planar()) {
-            steps.push((SWITCHES.to_owned(), duration / law.mean_switching(body.commanded_inertia())));
+        if let (LawKind::Relay(law), Some(body), None) =
+            (&self.law, self.model.planar(), self.study.sample_period)
+        {
+            let mean = law.mean_switching(body.commanded_inertia());
+            // The first window of chatter ends the run.
+            let chatters = mean * SWITCHINGS as f64 <= shortest_window(fastest);
+            let switchings = if chatters { SWITCHINGS as f64 } else { duration / mean };
+            steps.push((SWITCHES.to_owned(), switchings));
         }
         if let Some(body) = self.model.spatial() {
             let rate = self.largest_expected_rate(body);
-            let step = self.model.flexible().map_or(LONGEST_TURN / rate, |flexible| flexible.step(rate));
+            let turn = LONGEST_TURN / rate;
+            let step = self.model.flexible().map_or(turn, |flexible| flexible.step(rate));
             let step = step.min(self.imbalance_step_count());
             if step.is_finite() {
-                steps.push((TURNS.to_owned(), duration / step));
+                let count = if self.is_quiet(rate) {
+                    // Applied forces shorten steps to those that resolve the modes.
+                    let forced = self.forced_time();
+                    forced / step + (duration - forced) / turn.min(QUIET_STEPS * step)
+                } else {
+                    duration / step
+                };
+                steps.push((TURNS.to_owned(), count));
             }
         }
         steps
+    }
+
+    /// Returns true if a three-axis body of this rate (rad/s) holds its attitude in surroundings, and its steps need not resolve
+    /// its modes.
+    fn is_quiet(&self, rate: f64) -> bool {
+        let study = &self.study;
+        rate < QUIET_RATE
+            && study.surroundings.as_ref().is_some_and(|around| around.thermal_forces().is_empty())
+            && study.drives.is_none()
+            && study.hinges() == 0
+            && study.bearings.is_empty()
+            && self.actuator.control_moment_gyros().is_none()
+    }
+
+    /// Returns the time in which forces act at points of the body (s).
+    fn forced_time(&self) -> f64 {
+        let duration = self.duration.seconds();
+        let forces = self.disturbance.iter().filter(|disturbance| disturbance.force.is_some());
+        let times = forces.map(|disturbance| {
+            let until = disturbance.to.map_or(duration, |to| to.get().min(duration));
+            let part = disturbance.pulse.map_or(1.0, |pulse| pulse.on.seconds() / pulse.period.seconds());
+            part * (until - disturbance.from.get()).max(0.0)
+        });
+        times.sum::<f64>().min(duration)
+    }
+
+    /// Returns the largest frequency of the sinusoidal torques of disturbances and failures (rad/s); 0 without.
+    pub(super) fn largest_sine_frequency(&self) -> f64 {
+        let members = self.actuator.members();
+        let failures = members.iter().flat_map(|member| member.kind.failures()).flat_map(Failure::sines);
+        let disturbances = self.disturbance.iter().flat_map(|disturbance| &disturbance.sines);
+        failures.chain(disturbances).map(|sine| sine.frequency.get()).fold(0.0, f64::max)
     }
 
     /// Returns the expected largest frequency (rad/s) of the rotation and loads of a three-axis body.
@@ -287,7 +359,7 @@ impl Scenario {
         let own = body.disturbance.as_ref().map_or(0.0, PeriodicTorque::frequency);
         let gimbals =
             self.actuator.control_moment_gyros().map_or(0.0, |(gyros, _)| gyros.largest_gimbal_rate());
-        limits.fold(start, f64::max) + around + own + gimbals
+        limits.fold(start, f64::max) + around + own + gimbals + self.largest_sine_frequency()
     }
 
     /// Returns the length of steps that resolve the imbalance of wheels at their initial or bias speed (s); infinite

@@ -5,11 +5,12 @@ use super::Scenario;
 use crate::actuator::FiringMethod;
 use crate::estimator::EstimatorKind;
 use crate::law::LawKind;
+use crate::motion::three_axis::Surroundings;
 
 /// The key of the steps of a rotation.
 pub const TURNS: &str = "duration";
 /// Key to which the switchings of a relay law are attributed.
-pub(super) const SWITCHES: &str = "law.relay.strong";
+pub(super) const SWITCHES: &str = "law.relay.hysteresis";
 
 /// A time (s), and what each mode adds.
 type Pace = (f64, f64);
@@ -20,19 +21,25 @@ pub const STEP: Pace = (3e-7, 4e-8);
 const CHAIN: Pace = (6e-7, 1e-7);
 /// A search for a crossing of a relay law whose modes a wheel or a drift couples.
 const COUPLED_RELAY: Pace = (8e-6, 1.5e-6);
-/// Steps that the search for one switching of a relay law takes.
-const SEARCH: f64 = 6.0;
+/// Number of steps that the search for one switching of a relay law takes: 0.8 in a cycle as long as the modes' periods, 2 in one that
+/// is much shorter.
+const SEARCH: f64 = 1.5;
 /// A sample or a decision of a law about one axis, and one of a wheel's law that no sensor samples.
 const ONE_AXIS: Pace = (6e-7, 3e-7);
 const UNSAMPLED_WHEEL: Pace = (1.2e-6, 6e-7);
+/// A radian of the fastest mode that a wheel couples, beyond one between two events.
+const COUPLED_RADIAN: Pace = (3e-7, 4e-7);
 /// A sample or a decision of laws about three axes: of a body at rest, of one that turns, and a step of its turn.
 const AT_REST: Pace = (6e-7, 5e-8);
 const TURNING: Pace = (1.2e-6, 5e-8);
 const TURN: Pace = (1.5e-6, 5e-8);
-/// A sample, a decision or a step of a turn in surroundings that act on the body, with wheels in bearings, and with appendages on hinges.
-const SURROUNDED: Pace = (3e-6, 3e-6);
+/// A sample, a decision or a step of a turn in surroundings that act on the body, with appendages that are driven or bend in
+/// sunlight there, with wheels in bearings, with appendages on hinges, and under sinusoidal torques.
+const SURROUNDED: Pace = (3e-6, 1e-6);
+const DRIVEN: Pace = (3e-6, 3e-6);
 const BEARINGS: Pace = (1e-6, 6.5e-7);
 const HINGES: Pace = (7e-6, 7e-6);
+const SINES: Pace = (1.5e-6, 5e-7);
 /// A look at the motion within an exposure (s), and a cycle of individually commanded jets.
 const LOOK_S: f64 = 2e-6;
 const ALLOCATION_S: f64 = 5e-6;
@@ -63,17 +70,13 @@ impl Scenario {
         }
         let filtered = events * self.filter_seconds(modes) + windows * takes(STEP);
         if self.axis_count() == 3 {
-            let jets = self.actuator.jets();
-            let programmes = jets.is_some_and(|(jets, _)| jets.allocation == FiringMethod::LeastPropellant);
-            let allocated = if programmes { events * ALLOCATION_S } else { 0.0 };
-            let stride = if self.study.hinges() > 0 {
-                Some(HINGES)
-            } else if self.study.surroundings.is_some() {
-                Some(SURROUNDED)
-            } else {
-                (!self.study.bearings.is_empty()).then_some(BEARINGS)
-            };
-            let moves = match stride {
+            let jets = self.actuator.jets().map(|(jets, _)| jets);
+            let programmed = jets.filter(|jets| jets.allocation == FiringMethod::LeastPropellant);
+            let cycles = programmed.map_or(0.0, |jets| {
+                jets.period.map_or(events, |period| self.duration.seconds() / period.seconds())
+            });
+            let allocated = cycles * ALLOCATION_S;
+            let moves = match self.loaded_step() {
                 Some(stride) => (events + turns) * takes(stride),
                 // A step that an event ends is part of the event.
                 None if turns > 0.0 => events * takes(TURNING) + (turns - events).max(0.0) * takes(TURN),
@@ -90,11 +93,26 @@ impl Scenario {
                 strides.max(switchings * SEARCH * takes(STEP))
             }
             _ if self.actuator.flywheel().is_some() && self.study.sample_period.is_none() => {
-                events * takes(UNSAMPLED_WHEEL)
+                events * takes(UNSAMPLED_WHEEL) + (turns - events).max(0.0) * takes(COUPLED_RADIAN)
             }
             _ => events * takes(ONE_AXIS),
         };
         moves + filtered
+    }
+
+    /// Returns the pace of a step of a three-axis body on which more acts than constant torques; `None` otherwise.
+    fn loaded_step(&self) -> Option<Pace> {
+        if self.study.hinges() > 0 {
+            return Some(HINGES);
+        }
+        if let Some(around) = &self.study.surroundings {
+            let is_driven = self.study.drives.is_some() || !around.thermal_forces().is_empty();
+            return Some(if is_driven { DRIVEN } else { SURROUNDED });
+        }
+        if !self.study.bearings.is_empty() {
+            return Some(BEARINGS);
+        }
+        (self.largest_sine_frequency() > 0.0).then_some(SINES)
     }
 
     /// The time of a sample of its filter (s).
