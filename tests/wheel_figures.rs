@@ -163,9 +163,11 @@ fn tuned_gains_are_drawn() {
     near(settling.up(without[1][0].1, ["20", "160"]), 180.3, 0.5);
 
     // A region that ends at the highest gain is reported as such, and without --robust there is no such gain.
-    dir.run("tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures")
-        .exits(0)
-        .says(&["wheel-scheduled-gain-tune-region.png", "0.3000"]);
+    dir.run(
+        "tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures --units si",
+    )
+    .exits(0)
+    .says(&["wheel-scheduled-gain-tune-region.png", "0.3000"]);
     let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
     region.shows(&["highest gain tried"]);
     assert!(!region.texts().iter().any(|text| text.contains("robust")));

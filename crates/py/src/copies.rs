@@ -252,9 +252,11 @@ impl Simulators {
     fn one(&self, index: usize) -> PyResult<Simulator> {
         let flight = &self.flights[index];
         match (&flight.simulation, &flight.failed) {
-            (Some(simulation), None) => {
-                Ok(Simulator::new(simulation.clone(), self.campaign.scenario(), flight.given.clone()))
-            }
+            (Some(simulation), None) => Ok(Simulator::from_simulation(
+                simulation.clone(),
+                self.campaign.scenario(),
+                flight.given.clone(),
+            )),
             (_, why) => {
                 let why = why.clone().unwrap_or_default();
                 Err(crate::error::SimulationError::new_err(format!(

@@ -111,7 +111,11 @@ pub struct Simulator {
 }
 
 impl Simulator {
-    pub fn new(simulation: Simulation, scenario: &flexsc_core::Scenario, given: Option<CommandLog>) -> Self {
+    pub fn from_simulation(
+        simulation: Simulation,
+        scenario: &flexsc_core::Scenario,
+        given: Option<CommandLog>,
+    ) -> Self {
         Self {
             fields: simulation.observation_fields(scenario),
             simulation,
@@ -149,8 +153,11 @@ impl Simulator {
 impl Simulator {
     #[new]
     fn new(py: Python<'_>, scenario: &Scenario, run: u64) -> PyResult<Self> {
-        let mut simulator =
-            Self::new(Simulation::new(&scenario.inner, run), &scenario.inner, Some(CommandLog::default()));
+        let mut simulator = Self::from_simulation(
+            Simulation::new(&scenario.inner, run),
+            &scenario.inner,
+            Some(CommandLog::default()),
+        );
         simulator.go(py, |simulation, record| simulation.open(record))?;
         Ok(simulator)
     }

@@ -14,9 +14,9 @@ use crate::law::{AttitudeTarget, LawKind, RelaySides};
 use crate::motion::three_axis::{Bearing, SHAKE, Surroundings};
 use crate::quantity::NonNegative;
 use crate::record::Detail;
-use crate::relay_setup::{SWITCHINGS, shortest_window};
 use crate::sensor::SensorKind;
 use crate::time::Span;
+use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
 
 /// Largest number of steps of one kind in a run; more would take days.
 pub const MOST_STEPS: f64 = 1e12;

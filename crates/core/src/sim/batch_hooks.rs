@@ -86,15 +86,6 @@ impl Simulation {
     pub(crate) fn true_state(&self) -> Vec<f64> {
         self.estimator.true_filter_state(self.now, &self.plant.about_axis(0, &self.angle_origin))
     }
-
-    /// Processes everything that is due at the current instant.
-    ///
-    /// # Errors
-    /// Fails like [`Simulation::run_until`].
-    pub(crate) fn process_instant(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        self.serve(record)
-    }
-
     /// Ends the run, if it is at its end.
     ///
     /// # Errors

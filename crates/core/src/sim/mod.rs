@@ -156,7 +156,7 @@ impl Simulation {
         self.resume(None, record)?;
         self.run_in_kernel(until, record)?;
         while self.advance_to_next(until, record)? {
-            self.serve(record)?;
+            self.process_instant(record)?;
         }
         self.finish(record)
     }
@@ -201,8 +201,9 @@ impl Simulation {
         due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
-    /// Processes everything that is due at the current instant.
-    fn serve(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+    /// Processes everything that is due at the current instant, in the numbered steps of docs/events.md. Step 1, the state
+    /// of the body, is evaluated by `advance_to_next`.
+    pub(crate) fn process_instant(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let event = self.law_event();
         self.sense_and_estimate(record)?;
         self.control_and_actuate(event, record)
@@ -217,26 +218,31 @@ impl Simulation {
         }
     }
 
-    /// Reads the sensors and updates the estimates, windows and objectives that are due at the current instant.
+    /// Performs steps 2 to 5 of an instant: sensors, estimates, windows of the adaptation, and the end of a manoeuvre.
     fn sense_and_estimate(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        self.update_exposures(record)?;
         let now = self.now;
+        // Steps 2 and 3: exposures that end, sensors, and the estimator.
+        self.update_exposures(record)?;
         if self.sample_is_due() || self.sample_read_ahead.is_some() {
             self.update_estimates(record)?;
         }
+        // Step 4: windows of the envelope and of other objectives, and the adaptation.
         if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
             self.close_envelope_window(record)?;
         }
         self.close_objective_window(record)?;
+        // Step 5.
         self.record_manoeuvre_end(record)
     }
 
-    /// Lets the laws decide on `event`, applies their commands and changes of the loads, and records the instant.
+    /// Performs steps 6 to 9 of an instant: laws, which decide on `event`, actuators, loads, and the record's rows.
     fn control_and_actuate(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
+        // Steps 6 and 7: the laws, and the actuator's commands.
         if self.external_command_pending || self.laws_must_decide(event) {
             self.control_step(event, record)?;
         }
+        // Step 8: bearings, disturbances and the actuator's own periods.
         let met = std::mem::take(&mut self.bearing_event);
         if met || self.loads.due == Some(now) {
             self.plant.evaluate(now)?;
@@ -245,6 +251,7 @@ impl Simulation {
             self.begin_segment(record)?;
         }
         self.check_custom_parts()?;
+        // Step 9.
         self.record_bearing_events(record)?;
         self.record_failures(record)?;
         self.record_accelerations(record)?;
