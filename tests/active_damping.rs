@@ -8,7 +8,7 @@ use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Column, Columns, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
-use crate::study::{close, metrics, numbers, scenario};
+use crate::study::{close, metrics, numbers, pairs, scenario};
 use crate::util::{Dir, table};
 
 /// Returns the metrics of runs 0 to 11.
@@ -230,12 +230,11 @@ fn an_axis_that_knows_the_jets_of_the_others_sees_no_motion_that_is_not() {
         let column = |name| element_column(&rows, "channels", [0, 3], name);
         let (told, truth) = (column("elastic_rad_s"), column("true_elastic_rad_s"));
         let square = |values: &mut dyn Iterator<Item = f64>| values.map(|v| v * v).sum::<f64>().sqrt();
-        let rate =
-            square(&mut told.iter().zip(&truth).map(|(a, b)| a - b)) / square(&mut truth.iter().copied());
+        let rate = square(&mut pairs(&told, &truth).map(|(a, b)| a - b)) / square(&mut truth.iter().copied());
         let off = |index| {
             let [found, truth] = ["frequency_rad_s", "true_frequency_rad_s"]
                 .map(|name| element_column(&rows, "trackers", [index, 9], name));
-            let ratios = found.iter().zip(&truth).map(|(found, truth)| (found / truth - 1.0).abs());
+            let ratios = pairs(&found, &truth).map(|(found, truth)| (found / truth - 1.0).abs());
             ratios.fold(0.0, f64::max)
         };
         (rate, off(0), off(2))
@@ -262,7 +261,7 @@ fn what_is_logged_agrees_with_itself() {
     close(element_column(&rows, "channels", [1, 3], "threshold_rad_s")[0], 2.0 * 1.289e-4 * 0.2, 2e-3);
     let [on, rate, latched] = ["damping_on_s", "acted_on_rad_s", "latched"].map(yaw);
     assert!(on.iter().filter(|on| **on != 0.0).count() > 20);
-    for (on, (rate, latched)) in on.iter().zip(rate.iter().zip(&latched)) {
+    for (on, (rate, latched)) in pairs(&on, pairs(&rate, &latched)) {
         assert!(on * rate <= 0.0 && (*on == 0.0 || *latched == 1.0), "{on} {rate} {latched}");
     }
 }

@@ -11,6 +11,7 @@ use flexsc_core::estimator::adaptive::{
 use flexsc_core::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::random::{Seed, Stream};
 
+use crate::study::pairs;
 use crate::util::Dir;
 
 const CYCLE: f64 = 0.2;
@@ -255,7 +256,7 @@ fn beside_yaw(run: u64) -> [(f64, f64); 2] {
                 let found = observer.modes();
                 wrong.push(found.iter().map(|mode| mode.phase[0]).sum::<f64>() - channel.elastic());
                 elastic.push(channel.elastic());
-                for (mode, (at, _)) in found.iter().zip(&modes) {
+                for (mode, (at, _)) in pairs(found.iter(), &modes) {
                     worst = worst.max(error(mode.frequency, 2.0 * PI * at));
                 }
             }

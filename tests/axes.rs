@@ -9,6 +9,7 @@ use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::plants::golden;
+use crate::study::pairs;
 
 const INERTIAS: [f64; 3] = [80.0, 120.0, 200.0];
 const AXES: [&str; 3] = ["roll", "pitch", "yaw"];
@@ -131,7 +132,7 @@ fn difference(rest: &str, scale: f64) -> [f64; 2] {
     let three = of_three(&together(rest, scale), &TIMES);
     let mut worst = [0.0_f64; 2];
     for axis in 0..3 {
-        for ((angles, rates), (angle, rate)) in three.iter().zip(of_one(&alone(axis, rest, scale), &TIMES)) {
+        for ((angles, rates), (angle, rate)) in pairs(&three, of_one(&alone(axis, rest, scale), &TIMES)) {
             worst[0] = worst[0].max((angles[axis] - angle).abs());
             worst[1] = worst[1].max((rates[axis] - rate).abs());
         }

@@ -5,6 +5,7 @@ use flexsc_core::metrics::{MetricValue, Metrics};
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::scenario::Scenario;
 
+use crate::study::pairs;
 use crate::traces::{column, flown, traced, within};
 use crate::util::SCENARIOS;
 
@@ -105,9 +106,9 @@ fn drives_know_what_tachometers_read() {
     let (known, speeds) =
         (of_wheels(&trace, "/bearings", "known_rad_s"), of_wheels(&trace, "/wheels", "speed_rad_s"));
     let quantum = std::f64::consts::TAU / 24.0 / 0.05;
-    for (row, (known, speeds)) in known.chunks(4).zip(speeds.chunks(4)).enumerate().skip(1) {
+    for (row, (known, speeds)) in pairs(known.chunks(4), speeds.chunks(4)).enumerate().skip(1) {
         let t = 0.25 * row as f64;
-        for (known, speed) in known.iter().zip(speeds) {
+        for (known, speed) in pairs(known, speeds) {
             assert!((known / quantum - (known / quantum).round()).abs() < 1e-9);
             let late = if (10.0..20.0).contains(&t) { 4.0 } else { 0.1 };
             assert!((known - speed).abs() < quantum + late, "{t}: {known} {speed}");

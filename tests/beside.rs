@@ -12,7 +12,7 @@ use flexsc_core::campaign::{Campaign, CampaignRun, Grid, RunOutcome};
 use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
 
-use crate::study::scenario;
+use crate::study::{pairs, scenario};
 
 /// Number of runs: some full batches and a remainder.
 const RUNS: u64 = 19;
@@ -44,7 +44,7 @@ fn taken(what: &str, scenario: &Scenario) -> usize {
         let beside = batch::simulate_on(processor, &jobs);
         let count = beside.iter().flatten().count();
         widest.get_or_insert(count);
-        for ((number, alone), metrics) in alone.iter().enumerate().zip(beside) {
+        for (number, (alone, metrics)) in pairs(&alone, beside).enumerate() {
             if let Some(metrics) = metrics {
                 let beside = format!("{:?}", Ok::<_, &str>(metrics));
                 assert_eq!(&beside, alone, "{what}: run {number} with {}", processor.name());

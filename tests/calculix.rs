@@ -5,6 +5,8 @@
 
 use flexsc_core::Scenario;
 
+use crate::study::pairs;
+
 /// Frequencies of the panel `fe/solar.inp`, clamped and with the hub free, by its full matrices (tests/golden/panel_oracle.py).
 const CLAMPED: [f64; 8] = [
     9.76515522718374,
@@ -94,7 +96,7 @@ fn a_panel_of_solids_has_the_frequencies_of_a_beam_and_of_its_full_matrices() {
     let modes = &scenario.appendage[0].modes;
     let clamped: Vec<f64> = modes.iter().map(|mode| mode.frequency.get()).collect();
     // The full matrices, clamped (tests/golden/panel_oracle.py), to the digits that they and the results are printed with.
-    for (found, exact) in clamped.iter().zip(CLAMPED) {
+    for (found, exact) in pairs(&clamped, CLAMPED) {
         near(*found, exact, 1e-5);
     }
     // Euler and Bernoulli's cantilever: x² sqrt(EI/m L⁴), participation 2 (cosh x + cos x)/(x (sinh x + sin x)), of which the
@@ -114,7 +116,7 @@ fn a_panel_of_solids_has_the_frequencies_of_a_beam_and_of_its_full_matrices() {
     // With the hub free, 8 modes make the 7 lowest of the full matrices of hub and panel, from above.
     let free: Vec<f64> =
         scenario.model.spatial().expect("three axes").modes.iter().map(|mode| mode.frequency.get()).collect();
-    for (found, exact) in free.iter().zip(FREE).take(7) {
+    for (found, exact) in pairs(&free, FREE).take(7) {
         near(*found, exact, 3e-4);
         assert!(*found > exact * (1.0 - 1e-5), "{found} {exact}");
     }

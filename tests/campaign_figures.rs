@@ -3,6 +3,7 @@
 use serde_json::Value as Json;
 
 use crate::drawing::{BLACK, BLUE, Drawing, VERMILLION, near};
+use crate::study::pairs;
 use crate::util::{Dir, UNCERTAIN, has_extension, table};
 
 /// Returns the quantile of some values as NumPy defines it.
@@ -119,8 +120,7 @@ fn sweeps_have_curves_and_maps() {
         is.then(|| node.attribute("cx").and_then(|x| x.parse::<f64>().ok()))?
     });
     let keys = column(&dir, "one/runs.csv", "law.relay.k_t");
-    assert_eq!(dots.len(), keys.len());
-    for (dot, key) in dots.iter().zip(keys) {
+    for (dot, key) in pairs(&dots, keys) {
         near(curve.along(*dot), key, 1e-4);
     }
 
@@ -187,7 +187,7 @@ fn the_worst_runs_can_be_repeated() {
     let mut duty = column(&dir, "relay/runs.csv", "duty");
     duty.sort_by(|a, b| b.total_cmp(a));
     // JSON here is read to some fifteen digits.
-    for (found, exact) in values.iter().zip(duty) {
+    for (found, exact) in pairs(&values, duty) {
         near(*found, exact, 1e-12);
     }
 }

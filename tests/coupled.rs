@@ -4,6 +4,7 @@ use flexsc_core::Scenario;
 use flexsc_core::record::{Column, Trace};
 
 use crate::plants::golden;
+use crate::study::pairs;
 use crate::traces::{column, traced};
 use crate::util::Dir;
 
@@ -48,7 +49,8 @@ fn switches_as(text: &str, name: &str) {
     let (whole, part) = (counts("time_whole_s"), counts("time_fs"));
     let events = golden(name);
     assert!(whole.len() >= events.len(), "{} of {}", whole.len(), events.len());
-    for (index, (row, (whole, part))) in events.iter().zip(whole.iter().zip(part)).enumerate() {
+    for (index, (row, (whole, part))) in pairs(&events, whole.iter().zip(part).take(events.len())).enumerate()
+    {
         let (seconds, decimals) = row[3].split_once('.').expect("decimals");
         let exact: f64 = format!("0.{decimals}").parse().expect("a number");
         let error = (whole - seconds.parse::<f64>().expect("seconds") + (part / 1e15 - exact)).abs();
@@ -155,5 +157,5 @@ fn a_diagonal_damping_matrix_is_ratios() {
     let (a, b) = (run(&ratios), run(&matrix));
     let (a, b) = (column(&a, "/command", "time_s"), column(&b, "/command", "time_s"));
     assert!(a.len() > 40 && a.len() == b.len());
-    assert!(a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-11));
+    assert!(pairs(a, b).all(|(a, b)| (a - b).abs() < 1e-11));
 }

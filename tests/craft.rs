@@ -11,6 +11,8 @@ use flexsc_core::body::craft::{AssembledSpacecraft, HubRotor};
 use flexsc_core::{Document, Scenario, ScenarioError};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
 
+use crate::study::pairs;
+
 /// The reference spacecraft.
 pub const CRAFT: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/craft.toml");
 
@@ -185,7 +187,7 @@ fn the_parts_come_to_the_right_sums() {
     let found = increasing(&(&e - delta.tr_mul(&(inverse * &delta))));
     let exact =
         [0.243720072316, 0.279403101175, 0.9254706099614, 0.9433988123306, 0.9718565445801, 1.0, 1.0, 1.0];
-    for (found, exact) in found.iter().zip(exact) {
+    for (found, exact) in pairs(&found, exact) {
         near(*found, exact, 1e-12);
     }
     let carried = &delta * e.try_inverse().expect("definite") * delta.transpose();
@@ -211,7 +213,7 @@ fn free_modes_lead_back_to_clamped_ones() {
     });
     let mut clamped: Vec<f64> = craft.parts.iter().map(|part| part.frequency).collect();
     clamped.sort_by(f64::total_cmp);
-    for (square, exact) in increasing(&matrix).iter().rev().zip(clamped) {
+    for (square, exact) in pairs(increasing(&matrix).iter().rev(), clamped) {
         near(1.0 / square.sqrt() / exact, 1.0, 1e-12);
     }
 }
@@ -310,7 +312,7 @@ fn order_origin_and_axes_do_not_matter() {
         ("moved", craft(&moved), Matrix3::identity()),
         ("turned", &put(&turned), back),
     ] {
-        for (index, (mode, exact)) in again.flexible.modes.iter().zip(&exact.flexible.modes).enumerate() {
+        for (index, (mode, exact)) in pairs(&again.flexible.modes, &exact.flexible.modes).enumerate() {
             near(mode.frequency / exact.frequency, 1.0, 2e-13);
             near(mode.damping / exact.damping, 1.0, 2e-12);
             near((back * mode.rotation - exact.rotation).norm(), 0.0, 1e-13);

@@ -9,7 +9,7 @@ use flexsc_core::analysis::damping::{Decay, PulsedDamping};
 use flexsc_core::estimator::adaptive::{ModeVector, OscillatorModel};
 use flexsc_core::numerics::delay_margin::delay_margin;
 
-use crate::study::close;
+use crate::study::{close, pairs};
 use crate::util::{Dir, table};
 
 const TURN: f64 = 2.0 * PI;
@@ -285,7 +285,7 @@ fn the_table_is_written_as_csv() {
     assert!(dir.text("damping.csv").starts_with(header));
     let rows = table(&dir, "damping.csv");
     assert_eq!(rows.len(), 4);
-    for (row, expected) in rows.iter().zip(reported["rows"].as_array().expect("rows")) {
+    for (row, expected) in pairs(&rows, reported["rows"].as_array().expect("rows")) {
         for (name, cell) in row {
             // Absent numbers, here the time of the decay, are empty cells.
             assert_eq!(cell.parse().ok(), expected[name].as_f64(), "{name}");

@@ -4,7 +4,7 @@
 use flexsc_core::Scenario;
 use flexsc_core::record::Trace;
 
-use crate::study::close;
+use crate::study::{close, pairs};
 use crate::traces::{column, nested, traced};
 
 const BODY: &str = "[body.spatial]
@@ -62,14 +62,14 @@ fn the_monitor_knows_what_the_commanded_torque_does_to_modes() {
     // Envelopes from the model and from the true motion are equal if the modes do not act back on the rotation.
     let [dynamic, trigonometric, truth] =
         ["dynamic", "trigonometric", "truth"].map(|form| means(BODY, PD, form));
-    for ((dynamic, trigonometric), truth) in dynamic.iter().zip(&trigonometric).zip(&truth) {
+    for ((dynamic, trigonometric), truth) in pairs(pairs(&dynamic, &trigonometric), &truth) {
         close(*dynamic, *truth, 1e-9);
         close(*trigonometric, *truth, 1e-9);
     }
     // On a spacecraft they are nearly equal.
     let wheels = format!("{CRAFT}[actuator.wheels]\narrangement = \"pyramid\"\ninertia = 0.01\n");
     let [dynamic, truth] = ["dynamic", "truth"].map(|form| means(&wheels, PD, form));
-    for (dynamic, truth) in dynamic.iter().zip(&truth) {
+    for (dynamic, truth) in pairs(&dynamic, &truth) {
         close(*dynamic, *truth, 1e-3);
     }
 }
@@ -92,11 +92,13 @@ fn the_envelope_is_that_of_the_logged_modes() {
         }
     }
     let logged = column(&trace, "/envelope", "envelope_rad");
+    assert!(logged.len() > 5600, "{}", logged.len());
     for (found, exact) in logged.iter().zip(&sums) {
         close(*found, *exact, 1e-8);
     }
     // Means over windows by the midpoints of short pieces.
     let found = column(&trace, "/envelope_mean", "mean_rad");
+    assert_eq!(found.len(), 8);
     for (window, mean) in found.iter().enumerate() {
         let part = &logged[700 * window..=700 * (window + 1)];
         let trapezium: f64 = part.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).sum::<f64>() / 700.0;

@@ -6,7 +6,7 @@ use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Column, Detail, Record, Trace};
 
-use crate::study::{close, metrics, numbers, scenario};
+use crate::study::{close, metrics, numbers, pairs, scenario};
 use crate::util::{Dir, SCENARIOS};
 
 fn number(metrics: &Metrics, name: &str) -> f64 {
@@ -162,7 +162,7 @@ fn where_nothing_is_in_closed_form_no_sample_is_larger() {
     let reported = numbers(&metrics(chain.clone()), "output_peaks");
     let logged = largest_logged(&chain, "/outputs");
     assert_eq!(logged.len(), 4);
-    for (told, logged) in reported.into_iter().zip(logged) {
+    for (told, logged) in pairs(reported, logged) {
         // A crest between two samples is a part (40 rad/s 0.5 ms)²/2 higher at most.
         assert!(told >= logged * (1.0 - 1e-9) && told <= logged * (1.0 + 3e-4), "{told} {logged}");
     }

@@ -4,6 +4,7 @@ use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::record::{Columns, Trace};
 use flexsc_core::{Scenario, ScenarioError, Simulation};
 
+use crate::study::pairs;
 use crate::traces::{column, traced};
 
 const HUB: &str = "duration = 100.0\n[law.open]\n[log]\nperiod = 10.0\n[spacecraft]\nmass = 250.0\n\
@@ -71,7 +72,7 @@ fn pulses_give_their_impulse_and_a_swinging_mass_takes_its_part() {
     };
     let single = flown(&format!("{body}{}", (0..9).map(one).collect::<String>()));
     for name in ["x_m", "y_m", "z_m", "y_m_s"] {
-        for (a, b) in column(&pulsed, "/position", name).iter().zip(column(&single, "/position", name)) {
+        for (a, b) in pairs(column(&pulsed, "/position", name), column(&single, "/position", name)) {
             near(*a, *b, 2e-11);
         }
     }
@@ -133,7 +134,7 @@ fn a_force_turns_every_body_with_three_axes() {
         flown(&format!("{}{point}{force}", HUB.replace("[spacecraft]\nmass = 250.0", "[body.spatial]")));
     assert!(spatial.topic("/position").is_none_or(Columns::is_empty), "nobody knows its mass");
     for name in ["q_w", "q_x", "q_y", "q_z"] {
-        for (a, b) in column(&spacecraft, "/pointing", name).iter().zip(column(&spatial, "/pointing", name)) {
+        for (a, b) in pairs(column(&spacecraft, "/pointing", name), column(&spatial, "/pointing", name)) {
             near(*a, *b, 1e-10);
         }
     }

@@ -6,6 +6,7 @@ use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
+use crate::study::pairs;
 use crate::traces::{column, flown, golden_rows, traced, within};
 use crate::util::SCENARIOS;
 
@@ -104,7 +105,7 @@ fn small_swings_are_those_of_the_mode() {
         let scenario = Scenario::load(format!("{GOLDEN}/outside/{name}.toml").as_ref()).expect("a scenario");
         scenario.model.frequencies().collect()
     };
-    for (hinge, mode) in of("two-panels").into_iter().zip(of("two-modes")) {
+    for (hinge, mode) in pairs(of("two-panels"), of("two-modes")) {
         assert!((hinge - mode).abs() < 1e-13 * mode, "{hinge} {mode}");
     }
 }

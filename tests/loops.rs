@@ -6,7 +6,7 @@ use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{DiscretePlant, Gains, SampledLoop, Scaling, SettlingWindow, map};
 use flexsc_core::law::Differentiation;
 
-use crate::study::close;
+use crate::study::{close, pairs};
 use crate::util::Dir;
 
 /// The set that reproduces the papers' settling times: they print neither wheel nor period.
@@ -148,7 +148,7 @@ fn the_integral_and_the_shaped_command() {
         SampledLoop::from_scenario(&Scenario::parse("shaped.toml", &text).expect("valid")).expect("a loop").0
     };
     let idle = scenario("limit = 1e9");
-    for (shaped, linear) in at(&idle, 0.2).closed(1.2).angles(6667).iter().zip(&x) {
+    for (shaped, linear) in pairs(at(&idle, 0.2).closed(1.2).angles(6667).iter(), &x) {
         assert!((shaped - linear).abs() < 1e-13);
     }
     // A dead zone leaves what a command within it would have moved: u never answers angles of less than 1e-4/7.5 rad.
@@ -176,7 +176,7 @@ fn delays() {
     for (delay, like) in [(1e-6, &y), (0.3 - 1e-6, &x), (0.3 + 1e-6, &x)] {
         let late = late(delay);
         let angles = DiscretePlant::new(&late, &[1.0; 4]).closed(0.5).angles(50);
-        assert!(angles.iter().zip(like.iter()).all(|(a, b)| (a - b).abs() < 1e-7), "{delay}");
+        assert!(pairs(angles.iter(), like.iter()).all(|(a, b)| (a - b).abs() < 1e-7), "{delay}");
     }
     // Halved periods with every second sample: a delay of half a period, by hand.
     let half = late(0.15);

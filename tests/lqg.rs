@@ -8,6 +8,7 @@ use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::plants::golden;
+use crate::study::pairs;
 
 /// The body and the loop around it, without actuator, slew, and what the filter feeds.
 const LOOP: &str = r#"duration = 120.0
@@ -133,7 +134,7 @@ fn wheel_and_body_keep_their_momentum() {
     };
     let (rates, momenta) = (column("/rate", "rigid_rad_s"), column("/wheel", "momentum_nm_s"));
     assert!(rates.iter().any(|rate| *rate > 0.01));
-    for (rate, momentum) in rates.iter().zip(&momenta) {
+    for (rate, momentum) in pairs(&rates, &momenta) {
         let sum = 120.0 * rate + momentum;
         assert!((sum - 0.3).abs() < 1e-13, "{sum}");
     }

@@ -10,7 +10,7 @@ use flexsc_core::manoeuvre::FinalResidual;
 use crate::spacecraft::{
     FREQUENCIES, INERTIA, PARTICIPATIONS, body, plan, quarter_turn, report, scenario, text, with,
 };
-use crate::study::close;
+use crate::study::{close, pairs};
 
 /// Row of the paper's example: coefficients, peak, root mean square, integral of the square, peak of the last section's
 /// angle and its time, the residual in it by each mode and in total, in the hub's angle, and the largest angle between
@@ -50,7 +50,7 @@ fn the_paper_s_example() {
         let ours = plan.coefficients.as_ref().expect("a series");
         assert_eq!(ours.odd.len(), p + 1);
         assert!(ours.even.is_empty() && ours.constant == 0.0);
-        ours.odd.iter().zip(coefficients).for_each(|(ours, exact)| close(*ours, *exact, 1e-9));
+        pairs(&ours.odd, coefficients).for_each(|(ours, exact)| close(*ours, *exact, 1e-9));
         close(report.torque.peak.value, peak, 1e-9);
         close(report.torque.rms, rms, 1e-9);
         close(report.torque.square, square, 1e-9);
@@ -234,7 +234,7 @@ fn the_hub_s_own_motion() {
         if p == 2 {
             let ours = &plan(&scenario).coefficients.as_ref().expect("a series").odd;
             let exact = [0.068_400_329_7, 0.024_769_968_9, -0.036_739_184_1];
-            ours.iter().zip(exact).for_each(|(ours, exact)| close(*ours, exact, 2e-9));
+            pairs(ours, exact).for_each(|(ours, exact)| close(*ours, exact, 2e-9));
         }
         if p == 0 {
             close(report.residuals[1].nominal, 0.1546, 3e-2);
@@ -329,7 +329,7 @@ fn twenty_modes_and_forty_lose_no_digits() {
             let gap: f64 = ours.iter().zip(&exact).map(|(a, b)| (a - b) * (a - b)).sum();
             let size: f64 = exact.iter().map(|b| b * b).sum();
             assert!((gap / size).sqrt() < 1e-13, "{kind} {count}: {:e}", (gap / size).sqrt());
-            exact.iter().zip(ours).for_each(|(exact, ours)| close(*ours, *exact, 1e-12));
+            pairs(&exact, ours).for_each(|(exact, ours)| close(*ours, *exact, 1e-12));
         }
     }
 }

@@ -7,6 +7,7 @@ use flexsc_core::metrics::{MetricValue, MetricsCollector};
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::{Scenario, Simulation};
 
+use crate::study::pairs;
 use crate::traces::{column, flown, traced};
 use crate::util::SCENARIOS;
 
@@ -168,7 +169,7 @@ fn clamped_frequencies_are_not_those_of_the_whole() {
     let scenario = Scenario::load(format!("{SCENARIOS}/half-turn.toml").as_ref()).expect("a scenario");
     let modes = &scenario.model.spatial().expect("three axes").modes;
     let printed = [0.402_619_33, 0.428_596_00, 1.308_649_82, 1.506_435_24];
-    for (mode, hertz) in modes.iter().zip(printed) {
+    for (mode, hertz) in pairs(modes.iter(), printed) {
         near(mode.frequency.get() / std::f64::consts::TAU, hertz, 2e-8);
     }
 }

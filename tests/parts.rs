@@ -4,6 +4,7 @@ use std::path::Path;
 
 use flexsc_core::campaign::{ColumnCells, Directory};
 
+use crate::study::pairs;
 use crate::util::{Dir, UNCERTAIN, table};
 
 /// All columns of a directory but the time that runs took, with their names.
@@ -49,7 +50,7 @@ fn a_campaign_is_a_directory_of_parts() {
             column => {
                 let exact = texts.iter().map(|text| text.parse().unwrap_or(f64::NAN));
                 let same = |(a, b): (f64, f64)| a == b || a.is_nan() && b.is_nan();
-                assert!(column.numbers().into_iter().zip(exact).all(same), "{name}");
+                assert!(pairs(column.numbers(), exact).all(same), "{name}");
             }
         }
     }

@@ -20,6 +20,7 @@ fn reproduced(paper: &str, number: u32) -> String {
     dir.run(&format!("reproduce {paper} -o page --docs docs")).exits(0).says(&["papers.html", "verdicts in"]);
     let committed = std::fs::read_to_string(PAPERS).expect("documentation");
     let (ours, committed) = (section(&dir.text("docs/papers.md"), number), section(&committed, number));
+    assert!(!committed.is_empty(), "no section {number}");
     for (line, (ours, committed)) in ours.lines().zip(committed.lines()).enumerate() {
         assert_eq!(ours, committed, "line {} of section {number} of docs/papers.md", line + 1);
     }

@@ -3,6 +3,8 @@
 use flexsc_core::body::craft::ClampedMode;
 use flexsc_core::{Document, Scenario, attitude};
 
+use crate::study::pairs;
+
 const GOLDEN: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../tests/golden/fe/");
 
 /// A spacecraft with the boom of bars, and some keys beside its modes.
@@ -83,7 +85,7 @@ fn millimetres_and_tonnes_become_metres_and_kilograms() {
         .replace("[-8.0, -4.266667, 15.697]", "[-8e-3, -4.266667e-3, 15.697e-3]");
     let small = Scenario::parse(&format!("{GOLDEN}boom.toml"), &text).expect("a scenario");
     let (metres, small) = (&metres.appendage[0].modes, &small.appendage[0].modes);
-    for (metres, small) in metres.iter().zip(small.iter()) {
+    for (metres, small) in pairs(metres.iter(), small.iter()) {
         assert_eq!(metres.frequency, small.frequency);
         assert!((small.translation(1.0) - metres.translation(1.0) * 1000_f64.sqrt()).norm() < 1e-12);
         let rotation = |mode: &ClampedMode| attitude::vector(&mode.rotation.expect("one"));

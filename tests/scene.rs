@@ -3,6 +3,7 @@
 
 use flexsc_core::record::{Column, Columns, Log};
 
+use crate::study::pairs;
 use crate::util::{Dir, SCENARIOS};
 
 fn log(dir: &Dir, scenario: &str, options: &str) -> Log {
@@ -212,7 +213,7 @@ fn plumes_are_those_of_the_torque() {
         (command.numbers("time_s").expect("times"), command.numbers("torque_nm").expect("torques"));
     // One at the start, and one at each switching to another torque.
     assert_eq!(plumes[0].0, 0.0);
-    for (time, torque) in times.iter().zip(torques) {
+    for (time, torque) in pairs(times, torques) {
         let (_, burning) = plumes.iter().rev().find(|(at, _)| *at <= time + 1e-9).expect("told");
         let sign = if *torque > 0.0 { "plus" } else { "minus" };
         assert_eq!(*burning, [format!("{sign} 1"), format!("{sign} 2")], "{time}");

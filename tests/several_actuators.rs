@@ -9,6 +9,7 @@ use flexsc_core::scenario::CustomParts;
 use flexsc_core::{Document, Scenario};
 
 use crate::own_parts::servo;
+use crate::study::pairs;
 use crate::traces::{self, traced};
 use crate::util::{Dir, SCENARIOS};
 
@@ -42,8 +43,7 @@ fn scenario(text: &str) -> Scenario {
 
 /// The largest difference, of columns with numbers of this size.
 fn difference(a: &[f64], b: &[f64]) -> f64 {
-    assert_eq!(a.len(), b.len());
-    a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
+    pairs(a, b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max)
 }
 
 #[test]
@@ -112,7 +112,7 @@ fn wheels_and_jets_about_axes_of_their_own_agree_with_scipy() {
     let fuel = last("/jets", "fuel_kg") * 220.0 * 9.806_65 / 0.5;
     let q = ["q_w", "q_x", "q_y", "q_z"].map(|name| last("/pointing", name));
     let found = [&q[..], rates, &wheels[..2], &[fuel]].concat();
-    for ((name, exact), found) in head.split(',').zip(golden).zip(found) {
+    for ((name, exact), found) in pairs(pairs(head.split(','), golden), found) {
         assert!((found - exact).abs() < 1e-11, "{name}: {found:e} {exact:e}");
     }
 }

@@ -2,6 +2,7 @@
 
 use flexsc_core::Scenario;
 
+use crate::study::pairs;
 use crate::traces::{column, nested, traced};
 
 const BODY: &str = "duration = 40.0\nseed = 3\n[law.pd]\nk_p = 4.0\nk_d = 60.0\nperiod = 0.5\n[body.spatial]\n\
@@ -37,7 +38,7 @@ fn each_is_read_at_its_own_period() {
     assert_eq!((changes(&alone), changes(&both)), (40, 160));
     let (other, turned) = seen(&format!("[{GYRO}, {CAMERA}]"));
     // The one that is first decides on the last digits.
-    let apart = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let apart = |a: &[f64], b: &[f64]| pairs(a, b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(apart(&errors, &other) < 1e-15 && apart(&both, &turned) < 1e-15);
     // The loop is closed by both, and stands in the end where the camera's bench says so.
     assert!(errors.last().expect("rows").abs() < 2e-3, "{:?}", errors.last());

@@ -7,6 +7,7 @@ use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::plants::golden;
+use crate::study::pairs;
 
 const BODY: &str = "duration = 120.0
 [body.planar]
@@ -72,7 +73,7 @@ fn a_pd_law_is_a_matrix() {
         };
         let (pd, matrix) = (end("pd]\nk_p = 4.0\nk_d = 40.0"), end("state_space]\nd = [[4.0, 40.0]]"));
         assert!(pd.len() > 100 && pd.iter().any(|angle| angle.abs() > 1e-2));
-        for (pd, matrix) in pd.iter().zip(&matrix) {
+        for (pd, matrix) in pairs(&pd, &matrix) {
             assert!((pd - matrix).abs() < 1e-13, "{slew} {track}: {pd} {matrix}");
         }
     }
@@ -99,7 +100,7 @@ fn three_axes_turn_by_accelerations() {
     let matrix = "[law.state_space]\nperiod = 0.25\ncommand = \"acceleration\"\nd = [[0.01, 0.16]]";
     let (attitude, matrix) = (with(law.trim_end()), with(matrix));
     assert!(attitude.iter().any(|angle| *angle > 0.02));
-    for (attitude, matrix) in attitude.iter().zip(&matrix) {
+    for (attitude, matrix) in pairs(&attitude, &matrix) {
         assert!((attitude - matrix).abs() < 1e-11, "{attitude} {matrix}");
     }
 }

@@ -7,6 +7,7 @@ use flexsc_core::record::{Detail, Trace};
 use flexsc_core::time::{Instant, Span};
 use flexsc_core::{ObservationField, Scenario, Simulation, StopAt};
 
+use crate::study::pairs;
 use crate::util::SCENARIOS;
 
 /// Shipped scenarios of every kind of motion, law, sensor and actuator, and their simulated times (s).
@@ -103,7 +104,7 @@ fn what_a_law_would_command_may_come_from_outside() {
     let (one, other) = (whole.spatial_state().expect("axes"), steered.spatial_state().expect("axes"));
     let off = (one.turn.attitude - other.turn.attitude).norm();
     assert!(off < 1e-10, "{off:e}");
-    for (one, other) in one.modes.iter().zip(&other.modes) {
+    for (one, other) in pairs(one.modes.iter(), &other.modes) {
         assert!((one.displacement - other.displacement).abs() < 1e-9, "{one:?} {other:?}");
     }
 }

@@ -8,7 +8,7 @@ use flexsc_core::campaign::{Campaign, CampaignRun, Grid};
 use flexsc_core::record::Detail;
 use flexsc_core::{Document, Scenario};
 
-use crate::study::close;
+use crate::study::{close, pairs};
 use crate::util::Dir;
 
 /// Law for a body that is analysed, not controlled.
@@ -73,7 +73,7 @@ fn is_the_free_example(body: &Planar) {
     close(body.inertia.get(), 4616.67, 1e-14);
     assert_eq!((body.modes.len(), output.rigid.get()), (4, 0.0));
     for ((mode, weight), [frequency, participation, product]) in
-        body.modes.iter().zip(&output.modes).zip(FREE)
+        pairs(pairs(body.modes.iter(), &output.modes), FREE)
     {
         close(mode.frequency.get(), frequency, 1e-12);
         close(mode.gain.get(), 4616.67 * participation * participation, 1e-11);
@@ -86,7 +86,8 @@ fn is_the_free_example(body: &Planar) {
 fn is_the_clamped_example(body: &Planar) {
     let output = body.outputs.last().expect("an output");
     close(body.inertia.get(), 4616.67, 1e-14);
-    for ((mode, weight), [frequency, coupling, product]) in body.modes.iter().zip(&output.modes).zip(CLAMPED)
+    for ((mode, weight), [frequency, coupling, product]) in
+        pairs(pairs(body.modes.iter(), &output.modes), CLAMPED)
     {
         close(mode.frequency.get(), frequency, 1e-12);
         close(mode.gain.get(), coupling * coupling / 4616.67, 1e-11);
@@ -144,7 +145,7 @@ fn a_long_chain_has_its_frequencies() {
     let chain =
         format!("[body.panels]\nhub_inertia = 166.67\nroot = 0.5\nkeep = 4\nsections = [{sections}]\n");
     let body = model(&Dir::new(), &chain);
-    for (mode, w) in body.modes.iter().zip([3.586_689_4, 9.036_270_8, 19.762_341_7, 36.958_048_5]) {
+    for (mode, w) in pairs(body.modes.iter(), [3.586_689_4, 9.036_270_8, 19.762_341_7, 36.958_048_5]) {
         close(mode.frequency.get(), w, 2e-8);
     }
 }

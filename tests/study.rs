@@ -27,6 +27,15 @@ pub fn numbers(metrics: &Metrics, name: &str) -> Vec<f64> {
     }
 }
 
+/// Returns the pairs of two sequences, which must have the same length and not be empty.
+#[track_caller]
+pub fn pairs<A: IntoIterator, B: IntoIterator>(a: A, b: B) -> impl Iterator<Item = (A::Item, B::Item)> {
+    let (a, b): (Vec<_>, Vec<_>) = (a.into_iter().collect(), b.into_iter().collect());
+    assert_eq!(a.len(), b.len(), "lengths");
+    assert!(!a.is_empty(), "nothing to compare");
+    a.into_iter().zip(b)
+}
+
 /// A value must agree with an exact one, relative to it.
 #[track_caller]
 pub fn close(value: f64, exact: f64, relative: f64) {

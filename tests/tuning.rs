@@ -7,7 +7,7 @@ use flexsc_core::analysis::sampled_loop::{
 };
 
 use crate::loops::{FITTED, GAINS, WINDOW, at, fitted};
-use crate::study::close;
+use crate::study::{close, pairs};
 use crate::util::{Dir, table};
 
 #[test]
@@ -22,7 +22,7 @@ fn the_region_of_the_extra_gain() {
         Some((-0.9, 3.7)),
         Some((-0.95, 5.45)),
     ];
-    for (region, exact) in found.iter().zip(exact) {
+    for (region, exact) in pairs(&found, exact) {
         match (region.gain, exact) {
             (Some((low, high)), Some((lowest, highest))) => {
                 assert!((low - lowest).abs() < 1e-9 && (high - highest).abs() < 1e-9, "{region:?}");
@@ -121,7 +121,7 @@ fn the_command_tells_regions_schedules_and_maps() {
     let rows = table(&dir, "map.csv");
     assert_eq!(rows.len(), 12);
     let reported = dir.run("map fitted.toml --frequency 0.1:0.3:3 --period 0.1:0.7:4 --json").exits(0).json();
-    for (row, cell) in rows.iter().zip(reported["rows"].as_array().expect("rows")) {
+    for (row, cell) in pairs(&rows, reported["rows"].as_array().expect("rows")) {
         let (table, json): (f64, _) =
             (row["spectral_radius"].parse().expect("a number"), &cell["spectral_radius"]);
         close(table, json.as_f64().expect("a number"), 1e-15);

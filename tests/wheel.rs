@@ -6,7 +6,7 @@
 use flexsc_core::Scenario;
 use flexsc_core::record::Trace;
 
-use crate::study::{metrics, scenario};
+use crate::study::{metrics, pairs, scenario};
 use crate::traces::{column, traced};
 use crate::util::Dir;
 
@@ -18,7 +18,7 @@ fn angles(scenario: &Scenario) -> [f64; 5] {
 }
 
 fn agree(name: &str, ours: &[f64], exact: &[f64], tolerance: f64) {
-    let worst = ours.iter().zip(exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+    let worst = pairs(ours, exact).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
     assert!(worst < tolerance, "{name}: {worst:e}\n{ours:?}\n{exact:?}");
 }
 
@@ -158,7 +158,7 @@ fn wheels_have_limits() {
     let momentum = column(&trace, "/wheel", "momentum_nm_s");
     let rigid = column(&trace, "/rate", "rigid_rad_s");
     // What the wheel has, the body has lost.
-    assert!(momentum.iter().zip(rigid).all(|(wheel, body)| (wheel + body).abs() < 1e-15));
+    assert!(pairs(momentum, rigid).all(|(wheel, body)| (wheel + body).abs() < 1e-15));
 
     let shaped = |key: &str, value: &str| {
         let set = [(key, value), ("duration", "60"), ("log.period", "0.3")];
@@ -166,7 +166,7 @@ fn wheels_have_limits() {
         let applied = column(&trace, "/torque", "applied_nm").to_vec();
         let rate = column(&trace, "/rate", "rate_rad_s");
         // The command that is left when the back-EMF is taken out.
-        let commands = applied.iter().zip(rate).map(|(torque, rate)| (torque + 1e-4 * rate) / 5e-4);
+        let commands = pairs(&applied, rate).map(|(torque, rate)| (torque + 1e-4 * rate) / 5e-4);
         commands.collect::<Vec<f64>>()
     };
     assert!(shaped("actuator.wheel.limit", "0.1").iter().all(|command| command.abs() < 0.1 + 1e-9));

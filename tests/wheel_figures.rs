@@ -151,6 +151,7 @@ fn tuned_gains_are_drawn() {
     // From -0.8 to 1 at 0.2 rad/s, from -0.9 to 3.7 at 0.3 rad/s.
     let corners = &region.shapes("polygon", "fill", SKY)[1];
     let found: Vec<f64> = corners.iter().map(|p| region.up(p.1, ["−1.0", "3.0"])).collect();
+    assert!(found.len() >= 4, "{found:?}");
     for (found, exact) in found.iter().zip([-0.8, -0.9, 3.7, 1.0]) {
         near(*found, exact, 0.02);
     }
