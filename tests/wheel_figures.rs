@@ -168,7 +168,7 @@ fn tuned_gains_are_drawn() {
         "tune wheel-scheduled-gain.toml --frequency 0.2:0.3:2 --gain -1:2:31 --figures figures --units si",
     )
     .exits(0)
-    .says(&["wheel-scheduled-gain-tune-region.png", "0.3000"]);
+    .says(&["wheel-scheduled-gain-tune-region.png", "0.3    -0.900"]);
     let region = Drawing::read(&dir, "wheel-scheduled-gain-tune-region");
     region.shows(&["highest gain tried"]);
     assert!(!region.texts().iter().any(|text| text.contains("robust")));
