@@ -20,7 +20,7 @@ fn holds(text: &str, words: &[&str], without: &[&str]) {
 fn summaries_hold_what_applies_to_the_run() {
     holds(
         &summary("half-turn", ""),
-        &["over the whole run", "slews "],
+        &["over the whole run", "slews ", "rms from "],
         &["last 200 s", "in modes that the gyro"],
     );
     holds(

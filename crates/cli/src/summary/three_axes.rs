@@ -5,6 +5,7 @@ use std::io::Write;
 use flexsc_core::attitude::AXES;
 use flexsc_core::count::counted;
 use flexsc_core::metrics::MetricValue;
+use flexsc_core::quantity::Time;
 
 use super::Summary;
 use crate::human::digits;
@@ -47,8 +48,14 @@ impl Summary<'_> {
                 self.quantity("slew_error_rms_rad", "rad"),
             );
         }
-        if let Some(MetricValue::Word(word)) = self.metrics.get("requirement") {
-            say!("  requirement    {word}: {} rms in its window", self.quantity("pointing_rms_rad", "rad"));
+        if let (Some(MetricValue::Word(word)), Some(pointing)) =
+            (self.metrics.get("requirement"), &self.scenario.reference.pointing)
+        {
+            let [start, end] = pointing.window.map(Time::get);
+            say!(
+                "  requirement    {word}: {} rms from {start} to {end} s",
+                self.quantity("pointing_rms_rad", "rad")
+            );
         }
         let own = self.scenario.study.expected_bands.iter().map(|band| band.unwrap_or(f64::NAN));
         let bands: Vec<f64> = match self.scenario.reference.band {
