@@ -125,7 +125,7 @@ def crates() -> None:
 
 
 def lint_light() -> None:
-    """Checks the light build and the benchmarks with clippy, and the documentation of the code with rustdoc."""
+    """Checks the light build and the benchmarks with clippy, and the code's documentation with rustdoc."""
     others = [word for name in FULL for word in ("--exclude", name)]
     targets = ("--bins", "--tests", "--benches", "--no-default-features")
     run("cargo", "clippy", "--release", "--quiet", "--workspace", *others, *targets, "--", "-D", "warnings")

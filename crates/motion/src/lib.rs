@@ -2,8 +2,8 @@
 //!
 //! This crate is independent of laws, sensors and scenarios: `flexsc-core` combines them.
 //!
-//! - [`State`], [`MotionPiece`], [`crossing`]: modes in closed form, and the certified search for crossings;
-//! - [`linear`]: coupled linear motion by poles and residues; [`turning`]: three-axis bodies;
+//! - [`AxisState`], [`MotionPiece`], [`crossing`]: modes in closed form, and the certified search for crossings;
+//! - [`linear`]: coupled linear motion by poles and residues; [`three_axis`]: three-axis bodies;
 //! - [`numerics`]: special functions, quadrature, roots; [`lanes`]: the same arithmetic on many runs in SIMD lanes;
 //! - [`time`], [`quantity`], [`random`], [`attitude`], [`guard`], [`waveform`]: instants, validated numbers, seeded
 //!   streams, vectors and quaternions, conditions of events, commands as functions of time.

@@ -76,7 +76,7 @@ impl WindowedEnvelope {
         }
     }
 
-    /// Loads the state that a batch has computed up to `now`: see [`EnvelopeMonitor::take_over`].
+    /// Loads the state that a batch has computed up to `now`: see [`EnvelopeMonitor::load`].
     pub fn take_over(&mut self, now: Instant, integral: f64, tracks: &[[f64; 7]]) {
         self.observer.load(now, integral, tracks);
     }

@@ -191,7 +191,7 @@ pub trait Estimator: fmt::Debug + Send + Sync {
         None
     }
 
-    /// Returns the true values of the state components of the filter from [`Estimator::filter`].
+    /// Returns the true values of the state components of the filter from [`Estimator::batch_filter`].
     fn true_filter_state(&self, _now: Instant, _truth: &AxisState) -> Vec<f64> {
         Vec::new()
     }

@@ -21,9 +21,9 @@ pub enum Sampling {
     /// Independent random numbers.
     #[default]
     Random,
-    /// A Latin hypercube: as many intervals of each key as there are points, and one point in each [McKay79].
+    /// A Latin hypercube: as many intervals of each key as there are points, and one point in each \[McKay79\].
     LatinHypercube,
-    /// A Sobol sequence, with the direction numbers of [JoeKuo08], scrambled by the seed [Owen95].
+    /// A Sobol sequence, with the direction numbers of \[JoeKuo08\], scrambled by the seed \[Owen95\].
     Sobol,
 }
 

@@ -91,7 +91,7 @@ impl Campaign {
         self.go(runs, threads, (1, Selection::ALL), work, tell)
     }
 
-    /// Simulates runs like [`Campaign::each`], for the selected metrics, if `work` only simulates: runs of one
+    /// Simulates runs like [`Campaign::for_each_run`], for the selected metrics, if `work` only simulates: runs of one
     /// structure are then simulated in batches where possible, with equal results.
     pub fn for_each_run_in_batches<E>(
         self: &Arc<Self>,

@@ -19,7 +19,7 @@ pub enum ObservationGroup {
     Estimated,
 }
 
-/// Quantity in the vector of [`Simulation::look`].
+/// Quantity in the vector of [`Simulation::observe`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ObservationField {
     /// Origin of the values.
@@ -60,7 +60,7 @@ impl Simulation {
         self.controllers.tune(key, value);
     }
 
-    /// Returns the fields of the vector of [`Simulation::look`], in its order, for a run of this scenario.
+    /// Returns the fields of the vector of [`Simulation::observe`], in its order, for a run of this scenario.
     pub fn observation_fields(&self, scenario: &Scenario) -> Vec<ObservationField> {
         let field = |group, name, unit, count| ObservationField { group, name, unit, count };
         let state = |name, unit, count| field(ObservationGroup::True, name, unit, count);
@@ -118,7 +118,7 @@ impl Simulation {
         fields
     }
 
-    /// Writes the current state into a vector with the fields of [`Simulation::fields`]. With a sensor that measures at
+    /// Writes the current state into a vector with the fields of [`Simulation::observation_fields`]. With a sensor that measures at
     /// every instant, measurements and estimates are current too; otherwise they are those of the last sample.
     ///
     /// # Errors

@@ -7,7 +7,7 @@
 //!
 //! Code over lanes must be inlined into the function that [`Processor::run`] compiles for the processor: every
 //! function on the way is `#[inline(always)]` and has plain loops. Closures, iterator adaptors and `array::from_fn`
-//! are separate functions that lack the instructions: they are correct, and ten times as slow. [`LaneFloat::apart`]
+//! are separate functions that lack the instructions: they are correct, and ten times as slow. [`LaneFloat::run_outlined`]
 //! creates a separate function that has them.
 
 mod float;

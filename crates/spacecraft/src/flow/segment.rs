@@ -277,7 +277,7 @@ impl UncoupledSegment {
         }
     }
 
-    /// Returns the time derivative of a state on this segment, in the components of [`UncoupledSegment::carry`].
+    /// Returns the time derivative of a state on this segment, in the components of [`UncoupledSegment::propagate_deviation`].
     pub fn velocity(&self, state: &AxisState) -> DVector<f64> {
         let mut velocity = vec![state.rigid_rate, self.moment];
         for (swing, phase) in self.modes.iter().zip(&state.modes) {

@@ -1,6 +1,6 @@
 //! A spacecraft assembled from its parts: a rigid hub, appendages with clamped modes, rotors.
 //!
-//! [`Spacecraft`] and [`Appendage`] are the forms of a scenario; [`Craft`] is the body in free modes that is assembled
+//! [`Spacecraft`] and [`Appendage`] are the forms of a scenario; [`AssembledSpacecraft`] is the body in free modes that is assembled
 //! from them before a run (`docs/spacecraft.md`).
 
 mod appendage;
