@@ -12,7 +12,7 @@ use flexsc_core::time::Instant;
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// How often Python is asked for signals.
+/// Period at which Python is asked for signals.
 pub const LOOK: Duration = Duration::from_millis(20);
 /// How long work may take to end once it is asked to stop: what has not ended then is left behind.
 const PATIENCE: Duration = Duration::from_millis(150);

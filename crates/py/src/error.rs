@@ -91,7 +91,7 @@ pub fn log_error(error: flexsc_core::record::LogError) -> PyErr {
     LogError::new_err(error.to_string())
 }
 
-/// Why there is no file at a path, as the `OSError` that Python itself would raise.
+/// Returns a conversion of the error for the file at a path into the `OSError` that Python itself would raise.
 pub fn no_file(path: &Path) -> impl FnOnce(io::Error) -> PyErr + '_ {
     move |error| match error.raw_os_error() {
         Some(code) => PyOSError::new_err((code, error.to_string(), path.display().to_string())),

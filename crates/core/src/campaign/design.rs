@@ -112,7 +112,7 @@ impl DesignBlock {
         }
     }
 
-    /// Returns the keys.
+    /// Returns the scenario keys that the design varies.
     pub fn keys(&self) -> Vec<&str> {
         match self {
             Self::Even { key, .. } | Self::List { key, .. } => vec![key],

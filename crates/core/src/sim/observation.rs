@@ -22,7 +22,7 @@ pub enum ObservationGroup {
 /// Quantity in the vector of [`Simulation::observe`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ObservationField {
-    /// Origin of the values.
+    /// Origin of the field's values: true state, measurement or estimate.
     pub group: ObservationGroup,
     /// Name within the group.
     pub name: &'static str,

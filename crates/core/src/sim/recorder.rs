@@ -108,7 +108,7 @@ impl Recorder {
         std::mem::replace(&mut self.stage, JournalStage::After) != JournalStage::After
     }
 
-    /// The last lines of the journal.
+    /// Records the last lines of the run's journal.
     pub fn journal_end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
         if let Some(line) = self.saturation.warning() {
             self.events.warned(now, "actuators", line, record)?;

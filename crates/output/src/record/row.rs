@@ -22,7 +22,7 @@ pub struct RowField {
     pub name: &'static str,
     /// Description of the field.
     pub doc: &'static [&'static str],
-    /// Kind of the contents.
+    /// Kind of value that the field holds.
     pub kind: FieldKind,
 }
 
