@@ -297,7 +297,7 @@ impl Law for Deciding {
         let Some(hold) = reported else { return Held::NONE };
         self.above = hold.at_least.is_some();
         self.phase = hold.phase;
-        hold.to_engine(now, self.period)
+        hold.engine_output(now, self.period)
     }
 
     fn state(&self) -> Phase {
