@@ -470,7 +470,7 @@ class Effort:
 @final
 class Work:
     @staticmethod
-    def of(
+    def create(
         scenario: Scenario,
         runs: tuple[int, int],
         grids: list[tuple[str, list[float]]],
