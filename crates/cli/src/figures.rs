@@ -16,7 +16,7 @@ use crate::plot::{self, FigureKind};
 /// # Errors
 /// A failed run.
 pub fn log_of(run: &CampaignRun, commanded: &CommandLog, until: Instant) -> Result<Log, String> {
-    memory_log::of_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
+    memory_log::log_run(run, commanded, until, Path::new(&run.scenario.name), Detail::Events)
         .map_err(|failure| failure.to_string())
 }
 
@@ -33,7 +33,7 @@ pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
 ///
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
-pub fn of_log(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
+pub fn log_figure(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
     plot::figure_of(log, path, name).map_err(|failure| failure.to_string())
 }
 
@@ -42,24 +42,24 @@ pub fn of_log(log: &Log, path: &Path, name: &str) -> Result<Figure, String> {
 ///
 /// # Errors
 /// A figure or a metric that the campaign does not have.
-pub fn of_columns(
+pub fn column_figure(
     work: &RowMaker,
     column: &dyn Fn(&str) -> Option<ColumnCells>,
     kind: Option<&str>,
     metrics: &[String],
 ) -> Result<Vec<Named>, String> {
     let kind = kind.map(|kind| FigureKind::from_str(kind, false)).transpose()?;
-    plot::of_columns(work, column, kind, metrics).map_err(|failure| failure.to_string())
+    plot::column_figures(work, column, kind, metrics).map_err(|failure| failure.to_string())
 }
 
 /// Returns named figures of the campaigns in a directory, as [`of_columns`] does, and a `fan` of their logs.
 ///
 /// # Errors
 /// A directory without a campaign, or a figure or a metric that they do not have.
-pub fn of_directory(path: &Path, kind: Option<&str>, metrics: &[String]) -> Result<Vec<Named>, String> {
+pub fn directory_figures(path: &Path, kind: Option<&str>, metrics: &[String]) -> Result<Vec<Named>, String> {
     let kinds: Vec<FigureKind> =
         kind.map(|kind| FigureKind::from_str(kind, false)).transpose()?.into_iter().collect();
-    plot::of_directory(path, &kinds, metrics).map_err(|failure| failure.to_string())
+    plot::directory_figures(path, &kinds, metrics).map_err(|failure| failure.to_string())
 }
 
 /// Returns a figure of a scenario's natural frequencies and influences, as an overview; `None` without modes.

@@ -35,9 +35,9 @@ pub fn run(args: &Args) -> Result<(), CliError> {
         out::file(path, &["json"], &[&args.path])?;
     }
     let layout = if args.path.extension().is_some_and(|extension| extension == "toml") {
-        of_scenario(scenario::load(&args.path, &args.set, None)?, &args.path)?
+        layout_for_scenario(scenario::load(&args.path, &args.set, None)?, &args.path)?
     } else if args.set.is_empty() {
-        of_log(&args.path)?
+        layout_for_log(&args.path)?
     } else {
         let path = args.path.display();
         return Err(CliError::Arguments(format!("--set: {path} is a log, whose scenario is what was run")));
@@ -50,7 +50,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Returns the layout for a scenario's log with a scene; a simulation determines the range of each value.
-fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, CliError> {
+fn layout_for_scenario(scenario: Scenario, path: &Path) -> Result<Layout, CliError> {
     let layout = Layout::for_scenario(&scenario).for_detail(Detail::Scene);
     let cost = scenario.cost(Some(Detail::Full), true);
     if cost.seconds > LONGEST || cost.memory > LARGEST {
@@ -59,7 +59,7 @@ fn of_scenario(scenario: Scenario, path: &Path) -> Result<Layout, CliError> {
     Ok(layout.with_limits(&logged(scenario, path, Detail::Full)?)?)
 }
 
-fn of_log(path: &Path) -> Result<Layout, CliError> {
+fn layout_for_log(path: &Path) -> Result<Layout, CliError> {
     let log = Log::open(path)?;
     let scenario = Scenario::parse(&path.display().to_string(), log.require_scenario()?)?;
     let layout =

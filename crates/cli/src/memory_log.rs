@@ -14,11 +14,11 @@ use crate::stop::StopRecord;
 /// Returns the log of a scenario's own run in this detail; errors refer to it as `path`.
 pub fn logged(scenario: Scenario, path: &Path, detail: Detail) -> Result<Log, CliError> {
     let run = simulate::scenario_run(&Campaign::new(scenario, &path.to_string_lossy(), None)?);
-    of_run(&run, &CommandLog::default(), Instant::END, path, detail)
+    log_run(&run, &CommandLog::default(), Instant::END, path, detail)
 }
 
 /// Returns the log of a run under these commands, up to an instant, in this detail.
-pub fn of_run(
+pub fn log_run(
     run: &CampaignRun,
     commanded: &CommandLog,
     until: Instant,

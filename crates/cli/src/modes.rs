@@ -16,7 +16,7 @@ use serde_json::{Value as Json, json};
 use crate::error::CliError;
 use crate::human::{Units, UnitsArgs, columns, digits};
 use crate::number::unsigned_zero;
-use crate::results::{Results, of_scenario, show};
+use crate::results::{Results, show, with_scenario_name};
 use crate::{say, scenario};
 
 /// Largest number of modes for which the weights of outputs are printed side by side.
@@ -126,7 +126,7 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
 
 impl Results for Spatial {
     fn json(&self) -> Vec<Json> {
-        vec![of_scenario(&self.name, json!(self.modes))]
+        vec![with_scenario_name(&self.name, json!(self.modes))]
     }
 
     fn print(&self) -> Result<(), CliError> {
@@ -139,7 +139,7 @@ impl Results for Spatial {
 
 impl Results for Planar {
     fn json(&self) -> Vec<Json> {
-        vec![of_scenario(&self.name, json!(self.modal))]
+        vec![with_scenario_name(&self.name, json!(self.modal))]
     }
 
     fn print(&self) -> Result<(), CliError> {

@@ -42,7 +42,7 @@ pub fn print_lines(objects: &[Json]) -> Result<(), CliError> {
 }
 
 /// Returns an object whose first key is the scenario.
-pub fn of_scenario(name: &str, table: Json) -> Json {
+pub fn with_scenario_name(name: &str, table: Json) -> Json {
     let mut object = json!({ "scenario": name });
     if let (Some(object), Json::Object(table)) = (object.as_object_mut(), table) {
         object.extend(table);

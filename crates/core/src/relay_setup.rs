@@ -26,11 +26,11 @@ pub fn is_supported(scenario: &Scenario) -> Option<(&Planar, &Relay)> {
 /// Returns the modes of the envelope's model; empty without an envelope estimator.
 pub fn envelope_modes(scenario: &Scenario) -> &[Mode] {
     let envelope = scenario.estimator.as_ref().and_then(EstimatorKind::envelope);
-    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(|| own(scenario)))
+    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(|| body_modes(scenario)))
 }
 
 /// Returns the modes of the one-axis body.
-fn own(scenario: &Scenario) -> &[Mode] {
+fn body_modes(scenario: &Scenario) -> &[Mode] {
     scenario.model.planar().map_or(&[], |body| &body.modes)
 }
 
@@ -73,7 +73,7 @@ pub fn single(scenario: &Scenario) -> Option<RunSetup> {
 
 /// Returns the numbers of modes and the presence of damping, which all runs of a batch share.
 pub fn lane_shape(scenario: &Scenario) -> LaneShape {
-    let (modes, tracks) = (own(scenario), envelope_modes(scenario));
+    let (modes, tracks) = (body_modes(scenario), envelope_modes(scenario));
     let is_damped = modes.iter().chain(tracks).any(|mode| mode.damping.get() > 0.0);
     LaneShape { modes: modes.len(), tracks: tracks.len(), is_damped }
 }

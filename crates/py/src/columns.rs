@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// The columns of a topic. Labels are indices with the labels, rows within rows their counts with their columns.
-pub fn of_rows(py: Python<'_>, rows: Columns) -> PyResult<Bound<'_, PyDict>> {
+pub fn rows_to_dict(py: Python<'_>, rows: Columns) -> PyResult<Bound<'_, PyDict>> {
     let columns = PyDict::new(py);
     for (name, column) in rows.columns {
         match column {
@@ -26,7 +26,7 @@ pub fn of_rows(py: Python<'_>, rows: Columns) -> PyResult<Bound<'_, PyDict>> {
                 columns.set_item(name, (indices.into_pyarray(py), labels))?;
             }
             Column::Rows(counts, inner) => {
-                columns.set_item(name, (counts.into_pyarray(py), of_rows(py, inner)?))?;
+                columns.set_item(name, (counts.into_pyarray(py), rows_to_dict(py, inner)?))?;
             }
         }
     }
@@ -34,7 +34,7 @@ pub fn of_rows(py: Python<'_>, rows: Columns) -> PyResult<Bound<'_, PyDict>> {
 }
 
 /// The metrics of a run; `None` where there is no number.
-pub fn of_metrics<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py, PyDict>> {
+pub fn metrics_to_dict<'py>(py: Python<'py>, metrics: &Metrics) -> PyResult<Bound<'py, PyDict>> {
     let dict = PyDict::new(py);
     for (meaning, value) in &metrics.0 {
         match value {

@@ -126,7 +126,8 @@ pub fn log_figures(py: Python<'_>, log: &Log) -> PyResult<Vec<String>> {
 #[pyfunction]
 pub fn log_figure(py: Python<'_>, log: &Log, name: String) -> PyResult<Figure> {
     let (path, log) = (place(log), log.0.clone());
-    let figure = aside(py, move |_| figures::of_log(&log, &path, &name))?.map_err(PyValueError::new_err)?;
+    let figure =
+        aside(py, move |_| figures::log_figure(&log, &path, &name))?.map_err(PyValueError::new_err)?;
     Ok(Figure(Arc::new(figure)))
 }
 
@@ -143,7 +144,7 @@ pub fn campaign_figures(
         columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
     let work = work.0.clone();
     let drawn = aside(py, move |_| {
-        figures::of_columns(&work, &|name| columns.get(name).cloned(), kind.as_deref(), &metrics)
+        figures::column_figure(&work, &|name| columns.get(name).cloned(), kind.as_deref(), &metrics)
     })?;
     Ok(shared(drawn.map_err(PyValueError::new_err)?))
 }
@@ -156,7 +157,7 @@ pub fn directory_figures(
     kind: Option<String>,
     metrics: Vec<String>,
 ) -> PyResult<Vec<(String, Figure)>> {
-    let drawn = aside(py, move |_| figures::of_directory(Path::new(&path), kind.as_deref(), &metrics))?;
+    let drawn = aside(py, move |_| figures::directory_figures(Path::new(&path), kind.as_deref(), &metrics))?;
     Ok(shared(drawn.map_err(PyValueError::new_err)?))
 }
 

@@ -29,7 +29,7 @@ pub fn sample<'py>(
     let seen = seen.map_err(|error| simulation_error(&scenario.inner.name, error))?;
     let topics = PyDict::new(py);
     for (name, rows) in seen.into_columns() {
-        topics.set_item(name, columns::of_rows(py, rows)?)?;
+        topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
     }
     Ok(topics)
 }

@@ -236,9 +236,9 @@ fn simulate<'py>(
     let metrics = metrics.map_err(|error| simulation_error(scenario.name(), error))?;
     let topics = PyDict::new(py);
     for (name, rows) in trace.into_iter().flat_map(Trace::into_columns) {
-        topics.set_item(name, columns::of_rows(py, rows)?)?;
+        topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
     }
-    Ok((columns::of_metrics(py, &metrics)?, topics))
+    Ok((columns::metrics_to_dict(py, &metrics)?, topics))
 }
 
 #[pyfunction]
@@ -349,7 +349,7 @@ impl Log {
 
     fn columns<'py>(&self, py: Python<'py>, topic: &str) -> PyResult<Bound<'py, PyDict>> {
         let (log, topic) = (self.0.clone(), topic.to_owned());
-        columns::of_rows(py, aside(py, move |_| log.columns(&topic))?.map_err(log_error)?)
+        columns::rows_to_dict(py, aside(py, move |_| log.columns(&topic))?.map_err(log_error)?)
     }
 }
 

@@ -193,7 +193,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             moved.advance(after);
             mode.store_end(&moved);
         }
-        (LaneTime::of_ticks(ticks), after)
+        (LaneTime::from_ticks(ticks), after)
     }
 
     /// Finds the first crossing: its time, and which threshold is reached.
@@ -230,7 +230,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         };
         let certain = found.certain;
         if certain.all() {
-            return ((LaneTime::of_ticks(found.ticks), found.after), found.first);
+            return ((LaneTime::from_ticks(found.ticks), found.after), found.first);
         }
         // Lanes without a certain crossing do not move yet.
         for mode in &mut self.modes {
@@ -238,7 +238,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
                 mode.end[part] = R::select(certain, mode.end[part], mode.at[part]);
             }
         }
-        let mut span = LaneTime::of_ticks(R::select(certain, found.ticks, zero));
+        let mut span = LaneTime::from_ticks(R::select(certain, found.ticks, zero));
         let mut after = R::select(certain, found.after, zero);
         let mut first = R::select(found.first | !certain, one, -one);
         let known = R::select(certain, one, zero);

@@ -21,7 +21,7 @@ pub struct LaneTime<R> {
 impl<R: LaneFloat> LaneTime<R> {
     /// Creates a span from femtoseconds, below 9000 s.
     #[inline(always)]
-    pub fn of_ticks(ticks: R) -> Self {
+    pub fn from_ticks(ticks: R) -> Self {
         let whole = (ticks / ticks.splat(FEMTOSECONDS)).round();
         let part = ticks - whole * FEMTOSECONDS;
         let borrow = one(part.lt(ticks.splat(0.0)), part);

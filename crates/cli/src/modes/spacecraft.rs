@@ -11,7 +11,7 @@ use super::{SMALL, Style, frequency, print_influences, print_table, texts};
 use crate::error::CliError;
 use crate::human::digits;
 use crate::number::unsigned_zero;
-use crate::results::{Results, of_scenario};
+use crate::results::{Results, with_scenario_name};
 use crate::say;
 
 /// Modes of a spacecraft, and the influence of its actuator on them.
@@ -26,7 +26,7 @@ pub struct Spacecraft {
 
 impl Results for Spacecraft {
     fn json(&self) -> Vec<Json> {
-        vec![of_scenario(&self.name, json!(self.parts))]
+        vec![with_scenario_name(&self.name, json!(self.parts))]
     }
 
     fn print(&self) -> Result<(), CliError> {

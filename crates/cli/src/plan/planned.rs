@@ -12,7 +12,7 @@ use super::{figures, percent, trajectory};
 use crate::error::CliError;
 use crate::human::{Units, columns, digits};
 use crate::number_table::NumberTable;
-use crate::results::{Results, of_scenario};
+use crate::results::{Results, with_scenario_name};
 use crate::say;
 
 /// Plan of a scenario's manoeuvre.
@@ -34,7 +34,7 @@ pub struct PlanResults {
 
 impl Results for PlanResults {
     fn json(&self) -> Vec<Json> {
-        let mut object = of_scenario(&self.name, json!({"command": self.manoeuvre.command.kind()}));
+        let mut object = with_scenario_name(&self.name, json!({"command": self.manoeuvre.command.kind()}));
         if let (Some(object), Json::Object(report)) =
             (object.as_object_mut(), self.report.to_json(&self.plan, &self.body))
         {

@@ -49,7 +49,7 @@ use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_
 
 use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
-pub use campaign::{of_columns, of_directory};
+pub use campaign::{column_figures, directory_figures};
 pub use figure_kind::FigureKind;
 use motion::MotionData;
 use run_events::RunEvents;

@@ -93,7 +93,7 @@ impl EnvelopeMonitor {
     }
 
     /// Creates the observer of a three-axis body: each free mode with its rotation at the sensor.
-    pub fn of_three_axes(spec: &Envelope, modes: &[(ThreeAxisMode, f64)]) -> Self {
+    pub fn for_three_axes(spec: &Envelope, modes: &[(ThreeAxisMode, f64)]) -> Self {
         let track = |(mode, rotation): &(ThreeAxisMode, f64)| {
             let start = Mode::at_rest(mode.frequency, Finite::default(), mode.damping);
             let mut track = ModePhasor::new(&start);

@@ -42,7 +42,7 @@ impl WindowedEnvelope {
         modes: &[(ThreeAxisMode, f64)],
         search: Option<AdaptationRun>,
     ) -> Self {
-        Self::with_observer(spec, EnvelopeMonitor::of_three_axes(spec, modes), search)
+        Self::with_observer(spec, EnvelopeMonitor::for_three_axes(spec, modes), search)
     }
 
     fn with_observer(spec: &Envelope, observer: EnvelopeMonitor, search: Option<AdaptationRun>) -> Self {

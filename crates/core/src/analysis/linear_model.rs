@@ -60,12 +60,12 @@ impl LinearModel {
             return Err(ConfigError::new("appendage", format!("has drives that {why}")));
         }
         Ok(match scenario.model.axes() {
-            BodyAxes::One(body) => Self::of_one_angle(scenario, body, at),
-            BodyAxes::Three(body) => Self::of_three_axes(scenario, body),
+            BodyAxes::One(body) => Self::for_one_axis(scenario, body, at),
+            BodyAxes::Three(body) => Self::for_three_axes(scenario, body),
         })
     }
 
-    fn of_one_angle(scenario: &Scenario, body: &Planar, at: f64) -> Self {
+    fn for_one_axis(scenario: &Scenario, body: &Planar, at: f64) -> Self {
         let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, at));
         let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
         let (back_emf, total) = scenario.back_emf(body);
@@ -96,7 +96,7 @@ impl LinearModel {
         Self::new(&coupled.system, &b, states, vec![signal("torque", body.torque_unit())], seen)
     }
 
-    fn of_three_axes(scenario: &Scenario, body: &Spatial) -> Self {
+    fn for_three_axes(scenario: &Scenario, body: &Spatial) -> Self {
         let (study, modes) = (&scenario.study, body.modes.len());
         let flexible = scenario.model.flexible();
         let inertia = flexible.map_or_else(|| body.inertia_tensor(), |flexible| flexible.inertia);

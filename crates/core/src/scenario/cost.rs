@@ -86,11 +86,11 @@ impl Cost {
             return None;
         }
         let each =
-            if *runs > 1.0 { format!(" in each of {} runs", after_check(*runs)) } else { String::new() };
+            if *runs > 1.0 { format!(" in each of {} runs", count_text(*runs)) } else { String::new() };
         let room = if *disk > 0.0 { format!(", {} for logs", bytes(*disk)) } else { String::new() };
         Some(format!(
             "{what} makes {} steps{each}: about {} on one core, {} of memory{room}, and more than {}, {} or {} must be confirmed",
-            after_check(*steps),
+            count_text(*steps),
             time(*seconds),
             bytes(*memory),
             time(LONG_S),
@@ -103,10 +103,10 @@ impl Cost {
     pub fn notice(&self) -> Option<String> {
         let Self { most: (what, steps), runs, seconds, .. } = self;
         let each =
-            if *runs > 1.0 { format!(" in each of {} runs", after_check(*runs)) } else { String::new() };
+            if *runs > 1.0 { format!(" in each of {} runs", count_text(*runs)) } else { String::new() };
         let is_long = *seconds > NOTICEABLE_S;
         is_long.then(|| {
-            format!("{what} makes {} steps{each}: about {} on one core", after_check(*steps), time(*seconds))
+            format!("{what} makes {} steps{each}: about {} on one core", count_text(*steps), time(*seconds))
         })
     }
 
@@ -133,7 +133,7 @@ impl Cost {
     }
 }
 
-fn after_check(number: f64) -> String {
+fn count_text(number: f64) -> String {
     if number < 1e6 { format!("{number:.0}") } else { format!("{number:.1e}") }
 }
 
@@ -143,7 +143,7 @@ fn time(seconds: f64) -> String {
         s if s < 7200.0 => format!("{:.0} min", s / 60.0),
         s if s < 172_800.0 => format!("{:.0} h", s / 3600.0),
         s if s < 3.2e7 => format!("{:.0} days", s / 86_400.0),
-        s => format!("{} years", after_check(libm::round(s / 3.156e7))),
+        s => format!("{} years", count_text(libm::round(s / 3.156e7))),
     }
 }
 
@@ -151,7 +151,7 @@ fn bytes(number: f64) -> String {
     match number {
         n if n < 1e9 => format!("{:.0} MB", n / 1e6),
         n if n < 1e12 => format!("{:.0} GB", n / 1e9),
-        n => format!("{} TB", after_check(libm::round(n / 1e12))),
+        n => format!("{} TB", count_text(libm::round(n / 1e12))),
     }
 }
 
@@ -195,9 +195,9 @@ impl Scenario {
             if waiting > MOST_WAITING {
                 let why = format!(
                     "keeps {} commands waiting, one every {} s: at most {} are supported",
-                    after_check(waiting),
+                    count_text(waiting),
                     period.seconds(),
-                    after_check(MOST_WAITING)
+                    count_text(MOST_WAITING)
                 );
                 return Some(ConfigError::new(format!("{key}.delay"), why));
             }
@@ -205,12 +205,12 @@ impl Scenario {
         let messages = self.messages(Some(Detail::Scene));
         let (key, steps) =
             self.step_counts().into_iter().chain(messages).find(|(_, steps)| *steps > MOST_STEPS)?;
-        let (duration, most) = (self.duration.seconds(), after_check(MOST_STEPS));
+        let (duration, most) = (self.duration.seconds(), count_text(MOST_STEPS));
         Some(ConfigError::new(
             key,
             format!(
                 "makes {} steps in the run's {duration} s: at most {most} are allowed",
-                after_check(steps)
+                count_text(steps)
             ),
         ))
     }
@@ -304,7 +304,7 @@ impl Scenario {
             let rate = self.largest_expected_rate(body);
             let turn = LONGEST_TURN / rate;
             let step = self.model.flexible().map_or(turn, |flexible| flexible.step(rate));
-            let step = step.min(self.imbalance_step_count());
+            let step = step.min(self.imbalance_step());
             if step.is_finite() {
                 let count = if self.is_quiet(rate) {
                     // Applied forces shorten steps to those that resolve the modes.
@@ -364,7 +364,7 @@ impl Scenario {
 
     /// Returns the length of steps that resolve the imbalance of wheels at their initial or bias speed (s); infinite
     /// without wheels.
-    fn imbalance_step_count(&self) -> f64 {
+    fn imbalance_step(&self) -> f64 {
         let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
         let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
         SHAKE / (highest * wheels.largest_initial_speed())

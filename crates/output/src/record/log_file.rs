@@ -224,7 +224,7 @@ impl Log {
     /// Returns the rows of several topics in one pass through the log; `None` for a topic that it does not have.
     pub fn tables(&self, topics: &[&str]) -> Result<Vec<Option<Columns>>, LogError> {
         let mut tables: Vec<Option<TopicTable>> = topics.iter().map(|_| None).collect();
-        let mut budget = MemoryBudget::of_file(self.bytes.len());
+        let mut budget = MemoryBudget::for_file(self.bytes.len());
         let mut schemas = BTreeMap::new();
         let mut channels: BTreeMap<u16, Channel> = BTreeMap::new();
         let mut undecodable = None;

@@ -10,7 +10,7 @@ const TIMES: usize = 64;
 
 impl MemoryBudget {
     /// Creates the budget of a log of `bytes` bytes.
-    pub fn of_file(bytes: usize) -> Self {
+    pub fn for_file(bytes: usize) -> Self {
         Self(bytes.saturating_mul(TIMES).saturating_add(LEAST))
     }
 

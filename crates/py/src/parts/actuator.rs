@@ -128,12 +128,12 @@ impl Effort {
 
 /// An actuator as a scenario has it.
 #[derive(Debug)]
-pub struct Brought {
+pub struct PythonActuator {
     object: Object,
     limits: Vec<f64>,
 }
 
-impl Brought {
+impl PythonActuator {
     /// Reads what an actuator says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let limit = part.getattr("limit")?;
@@ -153,7 +153,7 @@ impl Brought {
     }
 }
 
-impl ActuatorSpec for Brought {
+impl ActuatorSpec for PythonActuator {
     fn start(&self, settings: &[EngineSetting]) -> Box<dyn Actuator> {
         let reported: Vec<Setting> = settings
             .iter()

@@ -15,14 +15,14 @@ use super::object::{Method, Object};
 
 /// An adaptation as a scenario has it.
 #[derive(Debug)]
-pub struct Brought {
+pub struct PythonAdaptation {
     object: Object,
     tunes: String,
     objective: Objective,
     window: Option<Span>,
 }
 
-impl Brought {
+impl PythonAdaptation {
     /// Reads what an adaptation says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let word: String = part.getattr("objective")?.extract()?;
@@ -40,7 +40,7 @@ impl Brought {
     }
 }
 
-impl AdaptationSpec for Brought {
+impl AdaptationSpec for PythonAdaptation {
     fn tunes(&self) -> &str {
         &self.tunes
     }

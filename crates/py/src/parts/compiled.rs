@@ -21,7 +21,7 @@ type Function = unsafe extern "C" fn(f64, f64, f64, f64, f64, f64, f64, *mut f64
 
 /// A law as a scenario has it.
 #[derive(Debug)]
-pub struct Brought {
+pub struct CompiledLaw {
     object: Object,
     function: Function,
     period: Option<Span>,
@@ -30,7 +30,7 @@ pub struct Brought {
     states: Vec<f64>,
 }
 
-impl Brought {
+impl CompiledLaw {
     /// Reads what a compiled law says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let address: usize = part.getattr("address")?.extract()?;
@@ -40,7 +40,7 @@ impl Brought {
         let period: Option<f64> = part.getattr("period")?.extract()?;
         Ok(Self {
             object: Object::new(part),
-            function: of_address(address),
+            function: from_address(address),
             period: period.map(|period| positive(period, "period")).transpose()?,
             promise: part.getattr("promise")?.extract()?,
             switches: part.getattr("switches")?.extract()?,
@@ -50,12 +50,12 @@ impl Brought {
 }
 
 #[expect(unsafe_code, reason = "whoever gives the address says that it is that of such a function")]
-fn of_address(address: usize) -> Function {
+fn from_address(address: usize) -> Function {
     // SAFETY: `flexsc.CompiledLaw` documents the signature, and keeps the function's owner alive.
     unsafe { std::mem::transmute::<*const (), Function>(address as *const ()) }
 }
 
-impl LawSpec for Brought {
+impl LawSpec for CompiledLaw {
     fn start(&self, _: &Authority) -> Box<dyn Law> {
         Box::new(Deciding {
             function: self.function,

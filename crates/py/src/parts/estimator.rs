@@ -152,7 +152,7 @@ impl Taken {
 
 /// An estimator as a scenario has it.
 #[derive(Debug)]
-pub struct Brought {
+pub struct PythonEstimator {
     object: Object,
     also: Also,
 }
@@ -167,7 +167,7 @@ struct Also {
     attitude: bool,
 }
 
-impl Brought {
+impl PythonEstimator {
     /// Reads what an estimator says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let has = |method| overrides(part, "Estimator", method);
@@ -181,7 +181,7 @@ impl Brought {
     }
 }
 
-impl EstimatorSpec for Brought {
+impl EstimatorSpec for PythonEstimator {
     fn start(&self, known: &EngineKnown<'_>, seed: Seed) -> Box<dyn Estimator> {
         let reads = |reads: &EstimateNeeds| match reads {
             EstimateNeeds::Nothing => "nothing",

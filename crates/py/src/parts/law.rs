@@ -159,7 +159,7 @@ impl Event {
 
 /// A law as a scenario has it.
 #[derive(Debug)]
-pub struct Brought {
+pub struct PythonLaw {
     object: Object,
     period: Option<Span>,
     reads: EstimateNeeds,
@@ -181,7 +181,7 @@ fn kept(key: &str) -> &'static str {
     leaked
 }
 
-impl Brought {
+impl PythonLaw {
     /// Reads what a law says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         let period: Option<f64> = part.getattr("period")?.extract()?;
@@ -221,7 +221,7 @@ pub fn positive(seconds: f64, what: &str) -> PyResult<Span> {
     }
 }
 
-impl LawSpec for Brought {
+impl LawSpec for PythonLaw {
     fn start(&self, authority: &EngineAuthority) -> Box<dyn Law> {
         let method = Python::attach(|py| {
             let begun = Py::new(py, Authority(*authority)).and_then(|with| self.object.begun(py, (with,)));

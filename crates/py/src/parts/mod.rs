@@ -41,24 +41,31 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<CustomParts> {
         let part = part.bind(py).call_method0("copy")?;
         match role.split_once(' ') {
             Some(("actuator", place)) => {
-                own.actuators
-                    .push((place.parse()?, Custom::new(Arc::new(actuator::Brought::from_python(&part)?))));
+                own.actuators.push((
+                    place.parse()?,
+                    Custom::new(Arc::new(actuator::PythonActuator::from_python(&part)?)),
+                ));
             }
             Some((_, place)) => {
                 own.sensors
-                    .push((place.parse()?, Custom::new(Arc::new(sensor::Brought::from_python(&part)?))));
+                    .push((place.parse()?, Custom::new(Arc::new(sensor::PythonSensor::from_python(&part)?))));
             }
             None if role == "law" && part.hasattr("address")? => {
-                own.law = Some(Custom::new(Arc::new(compiled::Brought::from_python(&part)?)));
+                own.law = Some(Custom::new(Arc::new(compiled::CompiledLaw::from_python(&part)?)));
             }
-            None if role == "law" => own.law = Some(Custom::new(Arc::new(law::Brought::from_python(&part)?))),
+            None if role == "law" => {
+                own.law = Some(Custom::new(Arc::new(law::PythonLaw::from_python(&part)?)));
+            }
             None if role == "estimator" => {
-                own.estimator = Some(Custom::new(Arc::new(estimator::Brought::from_python(&part)?)));
+                own.estimator = Some(Custom::new(Arc::new(estimator::PythonEstimator::from_python(&part)?)));
             }
             None if role == "adaptation" => {
-                own.adaptation = Some(Custom::new(Arc::new(adaptation::Brought::from_python(&part)?)));
+                own.adaptation =
+                    Some(Custom::new(Arc::new(adaptation::PythonAdaptation::from_python(&part)?)));
             }
-            None => own.actuators.push((0, Custom::new(Arc::new(actuator::Brought::from_python(&part)?)))),
+            None => {
+                own.actuators.push((0, Custom::new(Arc::new(actuator::PythonActuator::from_python(&part)?))));
+            }
         }
     }
     Ok(own)

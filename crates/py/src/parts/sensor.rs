@@ -16,14 +16,14 @@ use super::reading::{Reading, Truth};
 
 /// A sensor as a scenario has it.
 #[derive(Debug)]
-pub struct Brought {
+pub struct PythonSensor {
     object: Object,
     period: Span,
     angle_noise: f64,
     rate_noise: Option<f64>,
 }
 
-impl Brought {
+impl PythonSensor {
     /// Reads what a sensor says of itself.
     pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
         Ok(Self {
@@ -35,7 +35,7 @@ impl Brought {
     }
 }
 
-impl SensorSpec for Brought {
+impl SensorSpec for PythonSensor {
     fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sensor> {
         let method = Python::attach(|py| {
             let begun = Py::new(py, Draws(seed)).and_then(|draws| self.object.begun(py, (axes, draws)));

@@ -202,7 +202,7 @@ pub fn compare(manoeuvre: &Manoeuvre, common: ComparisonBasis, body: &Planar, ba
         let Alternative { name, command, shaper } = rival;
         let outcome = Manoeuvre { time, peak_torque, command, shaper, ..manoeuvre.clone() }.plan(body);
         let outcome = outcome.map(|plan| AlternativeOutcome {
-            torque: PlanEffort::of_torque(&plan, body),
+            torque: PlanEffort::from_torque(&plan, body),
             residuals: residuals(&plan, body, band),
             plan,
         });

@@ -22,7 +22,7 @@ pub struct PlanEffort {
 
 impl PlanEffort {
     /// Computes the effort of the command.
-    pub fn of_command(plan: &Plan) -> Self {
+    pub fn from_command(plan: &Plan) -> Self {
         let command = &plan.waveform;
         let panel = 4.0 / command.fastest().max(1e-9);
         let value = |middle, t| command.value_on_piece(middle, t);
@@ -30,9 +30,9 @@ impl PlanEffort {
     }
 
     /// Computes the effort of the torque on the hub (N m).
-    pub fn of_torque(plan: &Plan, body: &Planar) -> Self {
+    pub fn from_torque(plan: &Plan, body: &Planar) -> Self {
         match body.drive {
-            CommandedQuantity::Torque => Self::of_command(plan),
+            CommandedQuantity::Torque => Self::from_command(plan),
             CommandedQuantity::Motion => {
                 let history = ModalResponse::new(body, &plan.waveform, 1.0);
                 let panel = (4.0 / fastest(body, &plan.waveform)).max(plan.time / 2e3);

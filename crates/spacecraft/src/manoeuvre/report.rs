@@ -76,8 +76,8 @@ impl PlanReport {
             })
         };
         Self {
-            command: PlanEffort::of_command(plan),
-            torque: PlanEffort::of_torque(plan, body),
+            command: PlanEffort::from_command(plan),
+            torque: PlanEffort::from_torque(plan, body),
             angle_error: angle - plan.angle + measurement[0],
             rate_error: rate - plan.end_rate + measurement[1],
             energy: energy.sum(),

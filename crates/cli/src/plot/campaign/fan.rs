@@ -126,14 +126,14 @@ fn signals(path: &Path) -> Result<Vec<SignalFan>, CliError> {
         signals.push(signal("pointing error", "rad", cycles.over_time(|c| length(c.error_rad)), false));
         signals.push(signal("elastic energy", "J", cycles.over_time(|c| c.elastic_energy_j), false));
         signals.push(signal("propellant", "kg", cycles.over_time(|c| c.jets.fuel_kg), false));
-        signals.extend(of_adaptation(&story));
+        signals.extend(adaptation_fans(&story));
     } else if story.switches() {
         if !story.means.is_empty() {
             let ends = story.means.iter().flat_map(|mean| [(mean.from, mean.value), (mean.to, mean.value)]);
             signals.push(signal("mean envelope", "rad", ends.collect(), true));
         }
         if story.scenario.adaptation.is_some() {
-            signals.extend(of_adaptation(&story));
+            signals.extend(adaptation_fans(&story));
         }
         let counts = story.switchings.iter().enumerate().map(|(index, s)| (s.time, (index + 1) as f64));
         let all = (story.end, story.switchings.len() as f64);
@@ -141,14 +141,14 @@ fn signals(path: &Path) -> Result<Vec<SignalFan>, CliError> {
         signals.push(signal("switchings so far", "", counts, true));
     } else {
         let motion = story.motion(&log, path, 0.0, 0.0)?;
-        signals.extend(of_rotation(&story, &motion));
-        signals.extend(of_adaptation(&story));
+        signals.extend(rotation_fans(&story, &motion));
+        signals.extend(adaptation_fans(&story));
     }
     Ok(signals)
 }
 
 /// Returns the tuned parameter, and the objective if it is not the envelope.
-fn of_adaptation(story: &RunEvents) -> Vec<SignalFan> {
+fn adaptation_fans(story: &RunEvents) -> Vec<SignalFan> {
     let signal = |name: String, unit, line| SignalFan { name, unit, line, held: true };
     let mut signals = Vec::new();
     let Some(adaptation) = &story.scenario.adaptation else { return signals };
@@ -169,7 +169,7 @@ fn last(story: &RunEvents) -> Point {
     (story.end, story.steps.last().map_or(story.start.1, |step| step.gain))
 }
 
-fn of_rotation(story: &RunEvents, motion: &MotionData) -> Vec<SignalFan> {
+fn rotation_fans(story: &RunEvents, motion: &MotionData) -> Vec<SignalFan> {
     let over_time = |values: &mut dyn Iterator<Item = f64>| motion.time.iter().copied().zip(values).collect();
     let mut beyond = motion.angle.iter().zip(&motion.goal).map(|(angle, goal)| angle - goal);
     let mut signals = vec![SignalFan {

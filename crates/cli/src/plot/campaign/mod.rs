@@ -87,7 +87,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
 }
 
 /// Returns figures of a campaign from its columns: of one kind, or the default ones.
-pub fn of_columns(
+pub fn column_figures(
     work: &RowMaker,
     column: &dyn Fn(&str) -> Option<ColumnCells>,
     kind: Option<FigureKind>,
@@ -95,11 +95,11 @@ pub fn of_columns(
 ) -> Result<Vec<Named>, CliError> {
     let path = Path::new(&work.campaign.scenario().name);
     let read = |names: &[&str]| Ok(names.iter().map(|name| column(name)).collect());
-    of_runs(&parts::campaign_runs(work, read, path, metric)?, kind.as_slice(), metric, path)
+    run_figures(&parts::campaign_runs(work, read, path, metric)?, kind.as_slice(), metric, path)
 }
 
 /// Returns the figures of the campaigns in a directory, and of its logs.
-pub fn of_directory(
+pub fn directory_figures(
     directory: &Path,
     kinds: &[FigureKind],
     metric: &[String],
@@ -110,7 +110,7 @@ pub fn of_directory(
     let mut figures = Vec::new();
     if kinds.is_empty() || kinds.iter().any(|kind| *kind != FigureKind::Fan) {
         for runs in &tables {
-            figures.extend(of_runs(runs, kinds, metric, directory)?);
+            figures.extend(run_figures(runs, kinds, metric, directory)?);
         }
     }
     if kinds.is_empty() || kinds.contains(&FigureKind::Fan) {
@@ -121,7 +121,7 @@ pub fn of_directory(
     Ok(figures)
 }
 
-fn of_runs(
+fn run_figures(
     runs: &CampaignRuns,
     kinds: &[FigureKind],
     metric: &[String],

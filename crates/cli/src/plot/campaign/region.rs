@@ -29,7 +29,7 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Option<Figure> {
         let (i, j) = (place(&columns, *x)?, place(&rows, *y)?);
         cells[i * rows.len() + j] = Some(*value);
     }
-    let class = |value: f64| if value.is_finite() { classes.of_value(value) } else { SHADES };
+    let class = |value: f64| if value.is_finite() { classes.colour_index(value) } else { SHADES };
     let (across, up) = (borders(&columns), borders(&rows));
     let mut areas: Vec<Vec<Point>> = vec![Vec::new(); SHADES + 1];
     for (i, column) in cells.chunks(rows.len()).enumerate() {
@@ -87,7 +87,7 @@ impl ColourClasses {
         if high > low { (value - low) / (high - low) } else { 0.5 }
     }
 
-    fn of_value(&self, value: f64) -> usize {
+    fn colour_index(&self, value: f64) -> usize {
         ((self.place(value) * SHADES as f64) as usize).min(SHADES - 1)
     }
 

@@ -20,7 +20,7 @@ impl MassProperties {
     pub fn sum(parts: &[Self]) -> Self {
         let mass: f64 = parts.iter().map(|part| part.mass).sum();
         let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector>() / mass;
-        let about = |part: &Self| part.inertia + of_point_mass(part.mass, &(part.centre - centre));
+        let about = |part: &Self| part.inertia + point_mass_inertia(part.mass, &(part.centre - centre));
         let inertia: Matrix3<f64> = parts.iter().map(about).sum();
         // Rotated tensors are symmetric only within rounding.
         Self { mass, centre, inertia: 0.5 * (inertia + inertia.transpose()) }
@@ -28,6 +28,6 @@ impl MassProperties {
 }
 
 /// Returns the inertia tensor of a point mass (kg) at a position (m).
-pub fn of_point_mass(mass: f64, at: &Vector) -> Matrix3<f64> {
+pub fn point_mass_inertia(mass: f64, at: &Vector) -> Matrix3<f64> {
     mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
 }

@@ -5,7 +5,7 @@ use nalgebra::{DMatrix, Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 use super::appendage::Appendage;
 use super::clamped::{ClampedMode, antisymmetric_part};
-use super::mass::of_point_mass;
+use super::mass::point_mass_inertia;
 use super::spacecraft::Spacecraft;
 use crate::attitude::{Vector, asymmetry, impossible_moments, tensor, vector};
 use crate::body::spatial::NamedPoint;
@@ -177,7 +177,7 @@ fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), ConfigEr
 fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
     let (mass, centre) = (appendage.mass.get(), vector(&appendage.centre));
     let inertia = tensor(&appendage.inertia);
-    let about_root = inertia + of_point_mass(mass, &centre);
+    let about_root = inertia + point_mass_inertia(mass, &centre);
     let own = SymmetricEigen::new(inertia);
     let rounded = AGREEMENT * (mass * centre.norm_squared() + 0.5 * inertia.trace());
     let scales = own.eigenvalues.map(|moment| {
