@@ -52,7 +52,7 @@ pub fn column_figure(
     plot::column_figures(work, column, kind, metrics).map_err(|failure| failure.to_string())
 }
 
-/// Returns named figures of the campaigns in a directory, as [`of_columns`] does, and a `fan` of their logs.
+/// Returns named figures of the campaigns in a directory, as [`column_figure`] does, and a `fan` of their logs.
 ///
 /// # Errors
 /// A directory without a campaign, or a figure or a metric that they do not have.
