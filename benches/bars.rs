@@ -13,8 +13,8 @@ use std::time::{Duration, Instant};
 
 use flexsc_core::batch::{BatchJob, simulate_on};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
+use flexsc_core::numerics::lanes::Processor;
 use flexsc_core::{Scenario, Simulation};
 use reference::{EVENTS, WINDOWS};
 

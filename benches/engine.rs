@@ -11,12 +11,12 @@ use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_m
 use flexsc_core::analysis::sampled_loop::{DiscretePlant, SampledLoop, Scaling, SettlingWindow, map};
 use flexsc_core::batch::{BatchJob, simulate_on};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::estimator::kalman::{FilterContext, FrequencyTracking, Prediction};
-use flexsc_core::lanes::Processor;
+use flexsc_core::control::estimator::kalman::{FilterContext, FrequencyTracking, Prediction};
+use flexsc_core::formats::structure::{HubState, Structure};
 use flexsc_core::metrics::{Metrics, Selection};
-use flexsc_core::random::Seed;
+use flexsc_core::numerics::lanes::Processor;
+use flexsc_core::numerics::random::Seed;
 use flexsc_core::record::{Detail, LogBytes, Record, RunEnd, Trace};
-use flexsc_core::structure::{HubState, Structure};
 use flexsc_core::{Scenario, Simulation};
 use nalgebra::DMatrix;
 use reference::{EVENTS, WINDOWS};

@@ -1,9 +1,9 @@
 //! The random search against an independent one: draw for draw, and over many seeds.
 
 use flexsc_core::Simulation;
-use flexsc_core::adaptation::{AdaptationKind, Decision, RandomSearchState, SearchStep};
 use flexsc_core::campaign::Campaign;
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::control::adaptation::{AdaptationKind, Decision, RandomSearchState, SearchStep};
+use flexsc_core::numerics::time::{Instant, Span};
 
 use crate::study::{close, scenario};
 

@@ -5,11 +5,11 @@
 use std::f64::consts::{PI, TAU};
 
 use flexsc_core::analysis::identification::IdentificationTrial;
-use flexsc_core::estimator::adaptive::{
+use flexsc_core::control::estimator::adaptive::{
     AdaptiveObserver, Gradient, ModeVector, OscillatorModel, Pulse, Recurrence, Tracker, merge,
 };
-use flexsc_core::quantity::{Finite, Frequency, NonNegative};
-use flexsc_core::random::{Seed, Stream};
+use flexsc_core::numerics::quantity::{Finite, Frequency, NonNegative};
+use flexsc_core::numerics::random::{Seed, Stream};
 
 use crate::study::pairs;
 use crate::util::Dir;

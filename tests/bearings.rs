@@ -87,7 +87,7 @@ fn a_run_repeats_whatever_is_looked_at() {
     let times = |trace: &Trace| counts(trace, "time_fs");
     assert_eq!(times(&trace), times(&events));
     let mut often = scenario.clone();
-    often.written.log.period = Some(flexsc_core::time::Span::from_seconds(0.013));
+    often.written.log.period = Some(flexsc_core::numerics::time::Span::from_seconds(0.013));
     assert_eq!(full.to_json(), flown(&often, 0, Detail::Full).0.to_json());
 }
 

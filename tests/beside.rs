@@ -9,8 +9,8 @@ use std::sync::Arc;
 use flexsc_core::Scenario;
 use flexsc_core::batch::{self, BatchJob};
 use flexsc_core::campaign::{Campaign, CampaignRun, Grid, RunOutcome};
-use flexsc_core::lanes::Processor;
 use flexsc_core::metrics::Selection;
+use flexsc_core::numerics::lanes::Processor;
 
 use crate::study::{pairs, scenario};
 

@@ -3,9 +3,9 @@
 //! Golden numbers: tests/golden/damping_oracle.py, NumPy and SciPy.
 
 use flexsc_core::analysis::damping::{Convergence, persistence};
-use flexsc_core::estimator::adaptive::{AdaptiveObserver, Gradient, Pulse, Tracker};
-use flexsc_core::quantity::{Finite, Frequency};
-use flexsc_core::random::Seed;
+use flexsc_core::control::estimator::adaptive::{AdaptiveObserver, Gradient, Pulse, Tracker};
+use flexsc_core::numerics::quantity::{Finite, Frequency};
+use flexsc_core::numerics::random::Seed;
 
 use crate::study::close;
 use crate::util::Dir;

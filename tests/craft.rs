@@ -6,8 +6,8 @@
 
 use std::collections::BTreeMap;
 
-use flexsc_core::attitude::Vector;
-use flexsc_core::body::craft::{AssembledSpacecraft, HubRotor};
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::spacecraft::body::craft::{AssembledSpacecraft, HubRotor};
 use flexsc_core::{Document, Scenario, ScenarioError};
 use nalgebra::{DMatrix, Matrix3, Matrix3xX, matrix, vector};
 

@@ -3,8 +3,8 @@
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
 use flexsc_core::Scenario;
-use flexsc_core::attitude::Vector;
-use flexsc_core::body::craft::{AssembledSpacecraft, HubRotor};
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::spacecraft::body::craft::{AssembledSpacecraft, HubRotor};
 
 use crate::craft::{CRAFT, ONE, craft, golden, near, reference, three};
 use crate::util::Dir;

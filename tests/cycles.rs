@@ -5,7 +5,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
-use flexsc_core::law::{LawKind, RelaySides};
+use flexsc_core::control::law::{LawKind, RelaySides};
 use flexsc_core::metrics::MetricValue;
 
 use crate::study::{close, metrics, numbers, scenario};

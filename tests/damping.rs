@@ -4,9 +4,9 @@
 
 use std::f64::consts::PI;
 
-use flexsc_core::actuator::PulseTiming;
 use flexsc_core::analysis::damping::{Decay, PulsedDamping};
-use flexsc_core::estimator::adaptive::{ModeVector, OscillatorModel};
+use flexsc_core::control::actuator::PulseTiming;
+use flexsc_core::control::estimator::adaptive::{ModeVector, OscillatorModel};
 use flexsc_core::numerics::delay_margin::delay_margin;
 
 use crate::study::{close, pairs};

@@ -1,7 +1,7 @@
 //! The relay of active damping alone, its guards, and bad keys of the relay and of adaptive observers.
 
-use flexsc_core::law::{ActiveDamping, ActiveDampingState, Authority, DampingGuards};
-use flexsc_core::state_estimate::{ElasticRateEstimate, StateEstimate};
+use flexsc_core::control::law::{ActiveDamping, ActiveDampingState, Authority, DampingGuards};
+use flexsc_core::control::state_estimate::{ElasticRateEstimate, StateEstimate};
 
 use crate::study::{close, scenario};
 use crate::util::Dir;

@@ -1,6 +1,6 @@
 //! Modes of three axes whose frequencies drift: against SciPy, in the log, and with filters.
 
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::traces::{nested, traced};

@@ -2,16 +2,16 @@
 
 use std::convert::Infallible;
 
-use flexsc_core::body::Planar;
-use flexsc_core::flow::{SegmentInput, UncoupledSegment};
-use flexsc_core::guard::Guard;
-use flexsc_core::law::{Command, DecisionCause, Setpoint};
-use flexsc_core::motion::AxisState;
-use flexsc_core::motion::crossing::first_crossing;
-use flexsc_core::random::{Seed, Stream};
+use flexsc_core::control::law::{Command, DecisionCause, Setpoint};
+use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::dynamics::AxisState;
+use flexsc_core::dynamics::crossing::first_crossing;
+use flexsc_core::dynamics::guard::Guard;
+use flexsc_core::numerics::random::{Seed, Stream};
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
-use flexsc_core::state_estimate::StateEstimate;
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::spacecraft::flow::{SegmentInput, UncoupledSegment};
 use flexsc_core::{Scenario, Simulation, SimulationError};
 
 use crate::util::SCENARIOS;

@@ -179,7 +179,7 @@ fn where_nothing_is_in_closed_form_no_sample_is_larger() {
 fn worst_residuals_are_the_largest_of_a_much_finer_grid() {
     let scenario = scenario("rotation-cosine", &[]);
     let (plan, body) = (scenario.plan.as_ref().expect("a plan"), scenario.one_angle().expect("one angle"));
-    let report = flexsc_core::manoeuvre::PlanReport::new(plan, body, 0.1);
+    let report = flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan, body, 0.1);
     for (index, residual) in report.residuals.iter().enumerate() {
         let finest = (0..=40_000).map(|i| 0.9 + 0.2 * f64::from(i) / 4e4);
         let largest = finest.map(|factor| plan.residual_at(body, factor)[index]).fold(0.0, f64::max);

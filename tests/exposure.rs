@@ -2,8 +2,8 @@
 
 use nalgebra::Quaternion;
 
-use flexsc_core::attitude::{Vector, rotation, rotation_vector};
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::{ObservationField, Scenario, Simulation};
 
 use crate::spatial::FREE;

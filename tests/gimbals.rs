@@ -3,9 +3,9 @@
 
 use flexsc_core::Simulation;
 use flexsc_core::metrics::MetricValue;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
-use flexsc_core::time::{Instant, Span};
 
 use crate::drawing::Drawing;
 use crate::traces::{column, flown, traced, within};

@@ -2,8 +2,8 @@
 //! settings.
 
 use flexsc_core::metrics::MetricValue;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
-use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::study::pairs;

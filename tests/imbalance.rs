@@ -4,9 +4,9 @@
 use nalgebra::{Complex, DMatrix, DVector, Matrix3, Quaternion};
 
 use flexsc_core::Scenario;
-use flexsc_core::actuator::Wheels;
-use flexsc_core::attitude::Vector;
-use flexsc_core::motion::three_axis::{Bearing, FlexibleBody, Rotor, SegmentLoads, ThreeAxisMotion};
+use flexsc_core::control::actuator::Wheels;
+use flexsc_core::dynamics::three_axis::{Bearing, FlexibleBody, Rotor, SegmentLoads, ThreeAxisMotion};
+use flexsc_core::numerics::attitude::Vector;
 
 const CRAFT: &str = include_str!("golden/craft.toml");
 const MODES: &str = include_str!("golden/turning/modes.csv");
@@ -29,7 +29,7 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
 }
 
 fn wheels(imbalance: &str) -> Wheels {
-    flexsc_core::document::from_text(&format!(
+    flexsc_core::formats::document::from_text(&format!(
         "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\nimbalance = {{ {imbalance} }}"
     ))
     .expect("valid")

@@ -1,5 +1,5 @@
 //! Jets with individual allocation: the least propellant for the demand of the laws. The linear programme itself is
-//! compared with SciPy's in `numerics/simplex.rs`; here its effects are tested.
+//! compared with SciPy's in `crates/numerics/src/simplex.rs`; here its effects are tested.
 
 use flexsc_core::Scenario;
 use flexsc_core::metrics::{MetricValue, Metrics};

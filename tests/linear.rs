@@ -1,7 +1,7 @@
 //! The linear flow against 66-digit arithmetic: `tests/golden/linear`, Taylor series of the matrix exponential from node to
 //! node and strides certified to 1e-55, without eigenvalues. The law is that of the relay study, on each axis.
 
-use flexsc_core::motion::linear::{LinearFlow, SplitPlant};
+use flexsc_core::dynamics::linear::{LinearFlow, SplitPlant};
 use nalgebra::DVector;
 
 use crate::plants::{

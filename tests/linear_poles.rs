@@ -5,10 +5,10 @@ use std::cell::Cell;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use flexsc_core::guard::Guard;
-use flexsc_core::motion::crossing::first_crossing;
-use flexsc_core::motion::linear::{LinearFlow, LinearOutput, LinearPlant, LinearSegment, OutputGuard};
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::dynamics::crossing::first_crossing;
+use flexsc_core::dynamics::guard::Guard;
+use flexsc_core::dynamics::linear::{LinearFlow, LinearOutput, LinearPlant, LinearSegment, OutputGuard};
+use flexsc_core::numerics::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 
 use crate::plants::{Counted, dashpot, filters, forced, golden, off, three_axes, wheel, wheel_start};

@@ -4,7 +4,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{DiscretePlant, Gains, SampledLoop, Scaling, SettlingWindow, map};
-use flexsc_core::law::Differentiation;
+use flexsc_core::control::law::Differentiation;
 
 use crate::study::{close, pairs};
 use crate::util::Dir;

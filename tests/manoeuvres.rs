@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI};
 
-use flexsc_core::manoeuvre::FinalResidual;
+use flexsc_core::spacecraft::manoeuvre::FinalResidual;
 
 use crate::spacecraft::{
     FREQUENCIES, INERTIA, PARTICIPATIONS, body, plan, quarter_turn, report, scenario, text, with,
@@ -75,7 +75,7 @@ fn amplitude(scenario: &flexsc_core::Scenario, mode: usize) -> f64 {
     let mut body = body(scenario).clone();
     body.modes = vec![body.modes[mode]];
     body.outputs[0].modes = vec![body.outputs[0].modes[mode]];
-    let report = flexsc_core::manoeuvre::PlanReport::new(plan(scenario), &body, 0.1);
+    let report = flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan(scenario), &body, 0.1);
     report.residuals[1].nominal
 }
 
@@ -187,8 +187,8 @@ fn the_first_mode_s_amplitude_rises_with_its_frequency_as_the_series_says() {
             let mut body = body(&scenario).clone();
             body.modes = vec![body.modes[0]];
             body.modes[0].frequency =
-                flexsc_core::quantity::Frequency::new(factor * FREQUENCIES[0]).expect("in range");
-            let report = flexsc_core::manoeuvre::PlanReport::new(plan(&scenario), &body, 0.1);
+                flexsc_core::numerics::quantity::Frequency::new(factor * FREQUENCIES[0]).expect("in range");
+            let report = flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan(&scenario), &body, 0.1);
             // The gain stays: the hub's amplitude is k, the last section's the participation.
             report.residuals[0].nominal * PARTICIPATIONS[0].abs() * INERTIA / 9.414_365_255_919_522
         };
@@ -202,9 +202,9 @@ fn a_repeated_zero_takes_the_slope_away() {
         let scenario = quarter_turn(&format!("sine = {{ zeros = [{{ mode = 0, times = {times} }}] }}"));
         let mut body = body(&scenario).clone();
         body.modes[0].frequency =
-            flexsc_core::quantity::Frequency::new(factor * FREQUENCIES[0]).expect("in range");
+            flexsc_core::numerics::quantity::Frequency::new(factor * FREQUENCIES[0]).expect("in range");
         body.modes.truncate(1);
-        flexsc_core::manoeuvre::PlanReport::new(plan(&scenario), &body, 0.1).residuals[0].nominal
+        flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan(&scenario), &body, 0.1).residuals[0].nominal
     };
     // Ten times nearer, the amplitude falls by ten to the number of zeros.
     for (times, fall) in [(1, 10.0), (2, 100.0), (3, 1000.0)] {
@@ -213,9 +213,10 @@ fn a_repeated_zero_takes_the_slope_away() {
     // A shifted zero lies where it says.
     let shifted = quarter_turn("cosine = { zeros = [{ mode = 0, shift = 0.07 }] }");
     let mut body = body(&shifted).clone();
-    body.modes[0].frequency = flexsc_core::quantity::Frequency::new(1.07 * FREQUENCIES[0]).expect("in range");
+    body.modes[0].frequency =
+        flexsc_core::numerics::quantity::Frequency::new(1.07 * FREQUENCIES[0]).expect("in range");
     body.modes.truncate(1);
-    let report = flexsc_core::manoeuvre::PlanReport::new(plan(&shifted), &body, 0.1);
+    let report = flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan(&shifted), &body, 0.1);
     left(report.residuals[0].nominal, 0.0, 1);
 }
 
@@ -272,7 +273,8 @@ fn damped_modes() {
                     let mut rigid = body(&scenario).clone();
                     rigid.modes.clear();
                     rigid.outputs.clear();
-                    let report = flexsc_core::manoeuvre::PlanReport::new(plan(&scenario), &rigid, 0.1);
+                    let report =
+                        flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan(&scenario), &rigid, 0.1);
                     assert!(report.angle_error.abs() < 1e-13 && report.rate_error.abs() < 1e-13);
                 }
             }
@@ -297,7 +299,7 @@ fn damped_modes() {
         let mut body = body(&damped("sine", p, zeta, (0.0, 0.0))).clone();
         body.modes.truncate(p);
         body.outputs[0].modes.truncate(p);
-        let report = flexsc_core::manoeuvre::PlanReport::new(plan(&undamped), &body, 0.1);
+        let report = flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan(&undamped), &body, 0.1);
         close(report.residuals[1].nominal, exact, 1e-8);
     }
 }
@@ -378,8 +380,11 @@ fn a_single_harmonic_of_a_tuned_time() {
                 let mut body = crate::spacecraft::body(&scenario).clone();
                 body.modes = vec![body.modes[tuned.mode]];
                 body.outputs.clear();
-                let report =
-                    flexsc_core::manoeuvre::PlanReport::new(crate::spacecraft::plan(&scenario), &body, 0.1);
+                let report = flexsc_core::spacecraft::manoeuvre::PlanReport::new(
+                    crate::spacecraft::plan(&scenario),
+                    &body,
+                    0.1,
+                );
                 assert!(worst(&report.residuals) < 2e-14, "{kind} mode {}", tuned.mode);
             }
         }

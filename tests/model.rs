@@ -3,7 +3,7 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use flexsc_core::body::{BodyAxes, BodyModel};
+use flexsc_core::spacecraft::body::{BodyAxes, BodyModel};
 use flexsc_core::{Document, Scenario};
 
 const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");

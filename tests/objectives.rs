@@ -3,12 +3,12 @@
 use std::fmt::Write as _;
 use std::sync::Arc;
 
-use flexsc_core::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
-use flexsc_core::custom::Custom;
-use flexsc_core::random::Seed;
+use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
+use flexsc_core::control::custom::Custom;
+use flexsc_core::numerics::random::Seed;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::Trace;
 use flexsc_core::scenario::CustomParts;
-use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::study::{metrics, pairs, scenario};

@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use flexsc_core::random::Seed;
+use flexsc_core::numerics::random::Seed;
 
 use crate::parts::rows;
 use crate::util::{Dir, UNCERTAIN};

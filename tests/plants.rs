@@ -4,13 +4,13 @@ use std::cell::Cell;
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use flexsc_core::guard::Guard;
-use flexsc_core::motion::crossing::{BoundedMotion, first_crossing};
-use flexsc_core::motion::linear::{
+use flexsc_core::dynamics::crossing::{BoundedMotion, first_crossing};
+use flexsc_core::dynamics::guard::Guard;
+use flexsc_core::dynamics::linear::{
     LinearFlow, LinearOutput, LinearPlant, LinearSegment, ModalState, OutputGuard, SecondOrderPlant,
     SplitPlant,
 };
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::numerics::time::{Instant, Span};
 use nalgebra::{DMatrix, DVector, dmatrix, dvector};
 
 /// Half width of the dead zone, hysteresis (rad), strong and weak moment (rad/s²).

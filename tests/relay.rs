@@ -4,8 +4,8 @@
 //! the equations of \[Silaev\].
 
 use flexsc_core::Simulation;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
-use flexsc_core::time::{Instant, Span};
 
 use crate::study::{close, metrics, numbers, pairs, scenario};
 

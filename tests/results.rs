@@ -1,7 +1,7 @@
 //! Results of finite-element programs: what is read from them, and what is refused.
 
-use flexsc_core::body::craft::ClampedMode;
-use flexsc_core::{Document, Scenario, attitude};
+use flexsc_core::spacecraft::body::craft::ClampedMode;
+use flexsc_core::{Document, Scenario, numerics::attitude};
 
 use crate::study::pairs;
 

@@ -5,10 +5,10 @@
 
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
-use flexsc_core::manoeuvre::{CommandCost, ComparisonBasis, compare};
-use flexsc_core::quantity::Positive;
-use flexsc_core::time::Span;
-use flexsc_core::waveform::TermShape;
+use flexsc_core::dynamics::waveform::TermShape;
+use flexsc_core::numerics::quantity::Positive;
+use flexsc_core::numerics::time::Span;
+use flexsc_core::spacecraft::manoeuvre::{CommandCost, ComparisonBasis, compare};
 
 use crate::spacecraft::{INERTIA, body, plan, quarter_turn, report, scenario, text};
 use crate::study::close;
@@ -97,7 +97,10 @@ fn digits(name: &str, value: f64, exact: f64) {
     assert!(fits, "{name}: {value:e} instead of {exact:e}");
 }
 
-fn find<'a>(rows: &'a [CommandCost], name: &str) -> &'a flexsc_core::manoeuvre::AlternativeOutcome {
+fn find<'a>(
+    rows: &'a [CommandCost],
+    name: &str,
+) -> &'a flexsc_core::spacecraft::manoeuvre::AlternativeOutcome {
     let row = rows.iter().find(|row| row.name == name).unwrap_or_else(|| panic!("no row {name}"));
     row.outcome.as_ref().unwrap_or_else(|why| panic!("{name}: {why:?}"))
 }
@@ -215,11 +218,12 @@ fn every_command_keeps_the_rates_before_and_after() {
                 let mut rigid = body(&scenario).clone();
                 rigid.modes.clear();
                 rigid.outputs.clear();
-                let report = flexsc_core::manoeuvre::PlanReport::new(plan(&scenario), &rigid, 0.1);
+                let report =
+                    flexsc_core::spacecraft::manoeuvre::PlanReport::new(plan(&scenario), &rigid, 0.1);
                 let errors = (report.angle_error, report.rate_error);
                 assert!(errors.0.abs() < 1e-12 && errors.1.abs() < 1e-12, "{command} {shaper}: {errors:?}");
                 if command.contains("bang") && shaper.is_empty() {
-                    let amplitude = |term: &flexsc_core::waveform::Term| match &term.shape {
+                    let amplitude = |term: &flexsc_core::dynamics::waveform::Term| match &term.shape {
                         TermShape::Polynomial(c) => c[0].abs(),
                         _ => f64::NAN,
                     };

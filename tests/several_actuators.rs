@@ -2,9 +2,9 @@
 //!
 //! Golden numbers: tests/golden/several_oracle.py, SciPy.
 
-use flexsc_core::actuator::{ActuatorKind, AssignedActuator};
-use flexsc_core::custom::Custom;
-use flexsc_core::one_or_many::OneOrMany;
+use flexsc_core::control::actuator::{ActuatorKind, AssignedActuator};
+use flexsc_core::control::custom::Custom;
+use flexsc_core::control::one_or_many::OneOrMany;
 use flexsc_core::scenario::CustomParts;
 use flexsc_core::{Document, Scenario};
 

@@ -4,8 +4,8 @@
 
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
-use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{Plan, PlanReport};
+use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::spacecraft::manoeuvre::{Plan, PlanReport};
 use flexsc_core::{Document, Scenario, ScenarioError};
 
 /// Moment of inertia (kg m²).

@@ -2,11 +2,11 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
-use flexsc_core::attitude::Vector;
-use flexsc_core::body::spatial::Spatial;
-use flexsc_core::flow::{ElasticModes, RigidBody, RigidState, ThreeAxisState};
-use flexsc_core::quantity::Finite;
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::numerics::quantity::Finite;
 use flexsc_core::record::Detail;
+use flexsc_core::spacecraft::body::spatial::Spatial;
+use flexsc_core::spacecraft::flow::{ElasticModes, RigidBody, RigidState, ThreeAxisState};
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, scenario};

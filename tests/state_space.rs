@@ -2,8 +2,8 @@
 //!
 //! Golden numbers: tests/golden/state_space_oracle.py, NumPy and SciPy.
 
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
-use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use crate::plants::golden;

@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use flexsc_core::law::Command;
+use flexsc_core::control::law::Command;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
-use flexsc_core::time::{Instant, Span};
 use flexsc_core::{ObservationField, Scenario, Simulation, StopAt};
 
 use crate::study::pairs;

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use flexsc_core::campaign::{Campaign, CampaignRun};
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, LogFile, Record, RecordError, Sample, recover};
-use flexsc_core::time::Instant;
 use flexsc_core::{Document, Scenario};
 
 use crate::util::{Dir, UNCERTAIN, end, has_extension, table};

@@ -3,9 +3,9 @@
 use std::f64::consts::PI;
 use std::fmt::Write as _;
 
-use flexsc_core::body::{Body, Planar};
 use flexsc_core::campaign::{Campaign, CampaignRun, Grid};
 use flexsc_core::record::Detail;
+use flexsc_core::spacecraft::body::{Body, Planar};
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, pairs};

@@ -3,15 +3,15 @@
 
 use std::sync::Arc;
 
-use flexsc_core::attitude::{Vector, rotation};
-use flexsc_core::estimator::attitude::{
+use flexsc_core::control::estimator::attitude::{
     AttitudeFilterState, AttitudeMeasurement, DelayedMeasurement, ElasticFilterStates, FilterHistory,
     FilterMode, FilterModes, FrequencyIdentification, GyroNoise,
 };
 use flexsc_core::metrics::{MetricValue, Metrics};
+use flexsc_core::numerics::attitude::{Vector, rotation};
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, Trace};
 use flexsc_core::scenario::Scenario;
-use flexsc_core::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::traces::{flown, within};

@@ -1,9 +1,9 @@
 //! Records do not change a run, and a copy of a run continues as the run itself, with every kind of parts.
 
-use flexsc_core::flow::ThreeAxisState;
-use flexsc_core::motion::{AxisState, MotionPiece};
+use flexsc_core::dynamics::{AxisState, MotionPiece};
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Detail, PieceDemand, Record, RecordError, Sample, Trace};
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::spacecraft::flow::ThreeAxisState;
 use flexsc_core::{Document, Scenario, Simulation};
 
 use crate::axes::{FILTERED, together};

@@ -1,7 +1,7 @@
 //! Waveforms: the exact response of a mode against fine quadrature of its definition.
 
+use flexsc_core::dynamics::waveform::{Term, TermShape, Waveform};
 use flexsc_core::numerics::phasor::Phasor;
-use flexsc_core::waveform::{Term, TermShape, Waveform};
 
 /// The integral of exp(pole (to - t)) u(t), and of (to - t) u(t), by Gauss's rule of three nodes on many panels between
 /// the breaks.

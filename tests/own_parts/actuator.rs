@@ -1,8 +1,8 @@
 //! Custom actuator: a servo that gives torques in whole steps up to a limit, about each axis.
 
-use flexsc_core::actuator::{Actuator, ActuatorSpec, AxisActuatorContext, Demand};
-use flexsc_core::time::Instant;
-use flexsc_core::wrench::Wrench;
+use flexsc_core::control::actuator::{Actuator, ActuatorSpec, AxisActuatorContext, Demand};
+use flexsc_core::numerics::time::Instant;
+use flexsc_core::spacecraft::wrench::Wrench;
 
 /// Servo with its largest torque and its step (N m).
 #[derive(Copy, Clone, Debug)]

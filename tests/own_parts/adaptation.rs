@@ -2,10 +2,10 @@
 
 use std::io;
 
-use flexsc_core::adaptation::{Adaptation, AdaptationSpec, Decision, SearchStep};
-use flexsc_core::custom::PartError;
-use flexsc_core::random::Seed;
-use flexsc_core::time::Instant;
+use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, SearchStep};
+use flexsc_core::control::custom::PartError;
+use flexsc_core::numerics::random::Seed;
+use flexsc_core::numerics::time::Instant;
 
 /// Climber with its step, and its largest value.
 #[derive(Copy, Clone, Debug)]

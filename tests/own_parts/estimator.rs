@@ -1,9 +1,9 @@
 //! Custom estimator: an alpha-beta filter of angle and rate about each axis.
 
-use flexsc_core::estimator::{Estimator, EstimatorContext, EstimatorSpec, SampleContext};
-use flexsc_core::random::Seed;
-use flexsc_core::state_estimate::StateEstimate;
-use flexsc_core::time::Instant;
+use flexsc_core::control::estimator::{Estimator, EstimatorContext, EstimatorSpec, SampleContext};
+use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::numerics::random::Seed;
+use flexsc_core::numerics::time::Instant;
 
 /// Gains by which an innovation corrects angle and rate.
 #[derive(Copy, Clone, Debug)]

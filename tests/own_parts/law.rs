@@ -1,10 +1,10 @@
 //! Custom law: proportional, integral and derivative feedback.
 
-use flexsc_core::law::{
+use flexsc_core::control::law::{
     Authority, Command, ControlOutput, DecisionCause, Guards, Law, LawSpec, Phase, Setpoint,
 };
-use flexsc_core::state_estimate::StateEstimate;
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::numerics::time::{Instant, Span};
 
 /// u = -k_p e - k_i (integral of e) - k_d e', held between samples (N m/rad, N m/(rad s), N m s/rad, s).
 #[derive(Copy, Clone, Debug)]

@@ -8,16 +8,16 @@ mod sensor;
 
 use std::sync::Arc;
 
-use flexsc_core::actuator::{ActuatorKind, ActuatorSpec};
-use flexsc_core::adaptation::AdaptationKind;
 use flexsc_core::campaign::Campaign;
-use flexsc_core::custom::Custom;
-use flexsc_core::estimator::EstimatorKind;
-use flexsc_core::law::LawKind;
-use flexsc_core::one_or_many::OneOrMany;
+use flexsc_core::control::actuator::{ActuatorKind, ActuatorSpec};
+use flexsc_core::control::adaptation::AdaptationKind;
+use flexsc_core::control::custom::Custom;
+use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::control::law::LawKind;
+use flexsc_core::control::one_or_many::OneOrMany;
+use flexsc_core::control::sensor::SensorKind;
 use flexsc_core::record::{Column, Detail, Trace};
 use flexsc_core::scenario::CustomParts;
-use flexsc_core::sensor::SensorKind;
 use flexsc_core::{Document, Scenario, Simulation, SimulationError};
 
 const ONE_ANGLE: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.planar]\ninertia = 100.0\nangle = 2e-3\n\
@@ -93,7 +93,7 @@ const RELAY: &str = "duration = 3000.0\n[law.relay]\ndead_zone = 5e-4\nhysteresi
 fn an_adaptation_from_outside_tunes_and_what_cannot_go_on_ends_the_run() {
     let plain = Scenario::parse("relay.toml", RELAY).expect("a scenario");
     let climbing = |most| {
-        let own: Custom<dyn flexsc_core::adaptation::AdaptationSpec> =
+        let own: Custom<dyn flexsc_core::control::adaptation::AdaptationSpec> =
             Custom::new(Arc::new(adaptation::Climber { step: 0.01, most }));
         plain
             .with_custom_parts(CustomParts { adaptation: Some(own), ..CustomParts::default() })

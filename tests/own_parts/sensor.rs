@@ -1,8 +1,8 @@
 //! Custom sensor: an encoder that measures angles in whole steps, and no rates.
 
-use flexsc_core::random::Seed;
-use flexsc_core::sensor::{Reading, Sensor, SensorSpec, Truth};
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::control::sensor::{Reading, Sensor, SensorSpec, Truth};
+use flexsc_core::numerics::random::Seed;
+use flexsc_core::numerics::time::{Instant, Span};
 
 /// Encoder with its step (rad) and its period (s).
 #[derive(Copy, Clone, Debug)]

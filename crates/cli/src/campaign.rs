@@ -20,7 +20,7 @@ use flexsc_core::SimulationError;
 use flexsc_core::campaign::{
     Campaign, CampaignRun, Directory, Manifest, RowMaker, RunError, RunOutcome, RunRows, Sampling,
 };
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::{Metrics, Selection};
 use flexsc_core::record::RecordError;
 use flexsc_core::statistics::MetricColumns;
@@ -32,7 +32,6 @@ use crate::human::Units;
 use crate::results::print_lines;
 use crate::runs_table::RunsTable;
 use crate::{files, say, stop, summary};
-
 use campaign_record::CampaignRecord;
 pub use campaign_record::SCENARIO;
 pub use options::{CampaignOptions, TableFormat};

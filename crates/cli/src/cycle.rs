@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
-use flexsc_core::law::{LawKind, RelaySides};
+use flexsc_core::control::law::{LawKind, RelaySides};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;

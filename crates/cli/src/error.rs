@@ -5,9 +5,9 @@ use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 
 use anstyle::{AnsiColor, Style};
-use flexsc_core::atomic_file::is_busy;
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::record::LogError;
+use flexsc_core::record::atomic_file::is_busy;
 use flexsc_core::{ScenarioError, SimulationError};
 use thiserror::Error;
 

@@ -4,8 +4,8 @@ use std::path::Path;
 
 use clap::ValueEnum;
 use flexsc_core::campaign::{CampaignRun, ColumnCells, CommandLog, RowMaker};
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Log};
-use flexsc_core::time::Instant;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, colour};
 
 use crate::memory_log;

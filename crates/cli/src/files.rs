@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use flexsc_core::atomic_file;
+use flexsc_core::record::atomic_file;
 
 use crate::error::CliError;
 use crate::stop;

@@ -4,7 +4,7 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use clap::Subcommand;
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::record::{Log, recover};
 use serde_json::json;
 

@@ -3,8 +3,8 @@
 use std::path::Path;
 
 use flexsc_core::campaign::{Campaign, CampaignRun, CommandLog};
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Log, LogBytes, RunEnd};
-use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, SimulationError};
 
 use crate::error::CliError;

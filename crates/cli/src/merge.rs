@@ -5,7 +5,7 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::campaign::{Directory, Merge};
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 
 use crate::campaign::{TableFormat, file, part_files};
 use crate::error::CliError;

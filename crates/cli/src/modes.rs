@@ -8,9 +8,9 @@ use flexsc_core::Scenario;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
-use flexsc_core::attitude::AXES;
-use flexsc_core::body::{BodyAxes, CommandedQuantity};
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
+use flexsc_core::numerics::attitude::AXES;
+use flexsc_core::spacecraft::body::{BodyAxes, CommandedQuantity};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;

@@ -3,9 +3,9 @@
 use std::io::Write;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::motion::MotionPiece;
+use flexsc_core::dynamics::MotionPiece;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Record, RecordError, Sample};
-use flexsc_core::time::{Instant, Span};
 use indicatif::{ProgressBar, ProgressStyle};
 
 use crate::human::seconds;

@@ -5,9 +5,9 @@ use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use flexsc_core::atomic_file::{self, AtomicFile};
 use flexsc_core::campaign::{Campaign, RunOutcome};
 use flexsc_core::metrics::{MetricValue, Metrics};
+use flexsc_core::record::atomic_file::{self, AtomicFile};
 
 use crate::error::CliError;
 

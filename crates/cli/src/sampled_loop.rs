@@ -1,8 +1,8 @@
 //! Sampled loop of a scenario and its settling criterion, which `tune` and `map` share.
 
 use flexsc_core::analysis::sampled_loop::{SampledLoop, Scaling, SettlingWindow};
-use flexsc_core::document::ConfigError;
-use flexsc_core::law::Pd;
+use flexsc_core::control::law::Pd;
+use flexsc_core::formats::document::ConfigError;
 use flexsc_core::{Scenario, ScenarioError};
 
 use crate::confirm_cost::CostConfirmation;

@@ -8,9 +8,9 @@ use std::thread;
 use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::SimulationError;
-use flexsc_core::motion::MotionPiece;
+use flexsc_core::dynamics::MotionPiece;
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Record, RecordError, Sample};
-use flexsc_core::time::Instant;
 
 use crate::error::CliError;
 

@@ -7,9 +7,9 @@ use std::fmt::Write as _;
 use std::io::Write;
 
 use flexsc_core::Scenario;
-use flexsc_core::actuator::{EndState, Saturation};
-use flexsc_core::count::counted;
-use flexsc_core::estimator::EstimatorKind;
+use flexsc_core::control::actuator::{EndState, Saturation};
+use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::{MetricValue, Metrics};
 
 use crate::human::{Units, digits};

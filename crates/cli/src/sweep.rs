@@ -9,7 +9,7 @@ use std::sync::Arc;
 
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, Design, DesignBlock, KeyRange};
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::record::Detail;
 
 use crate::campaign::logs::{self, LogDetail};

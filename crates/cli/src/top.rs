@@ -9,7 +9,7 @@ use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
 use flexsc_core::campaign::{ColumnKind, Directory, ERROR, SECONDS};
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::goal;
 use indicatif::{HumanDuration, MultiProgress, ProgressBar, ProgressStyle};
 use serde_json::json;

@@ -1,11 +1,10 @@
 //! Interval of time: from a start to an end, or to the end of the run.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Time;
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::document::ConfigError;
-use crate::quantity::Time;
-use crate::time::{Instant, Span};
 
 /// The interval of a failure.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -14,8 +14,3 @@ pub mod law;
 pub mod one_or_many;
 pub mod sensor;
 pub mod state_estimate;
-
-use flexsc_formats::{count, document};
-use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};
-use flexsc_output::record;
-use flexsc_spacecraft::{axes, body, environment, flow, manoeuvre, sine, wrench};

@@ -5,13 +5,13 @@
 use std::error::Error;
 use std::sync::Arc;
 
-use flexsc_core::custom::Custom;
-use flexsc_core::law::{
+use flexsc_core::control::custom::Custom;
+use flexsc_core::control::law::{
     Authority, Command, ControlOutput, DecisionCause, Guards, Law, LawKind, LawSpec, Phase, Setpoint,
 };
-use flexsc_core::state_estimate::StateEstimate;
-use flexsc_core::time::{Instant, Span};
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::numerics::time::{Instant, Span};
+use flexsc_core::prelude::*;
 
 /// Flexible body about one axis under a steady torque (N m); the program replaces its law.
 const SCENARIO: &str = "duration = 200.0\n[law.open]\n[body.planar]\ninertia = 100.0\nangle = 2e-3\n\

@@ -5,7 +5,7 @@
 use std::error::Error;
 
 use flexsc_core::metrics::MetricsCollector;
-use flexsc_core::{Scenario, Simulation};
+use flexsc_core::prelude::*;
 
 /// Scenario as TOML; `Scenario::load` reads one from a file.
 const SCENARIO: &str = include_str!("../../../scenarios/relay-fixed.toml");

@@ -4,8 +4,8 @@
 
 use std::error::Error;
 
-use flexsc_core::law::Command;
-use flexsc_core::time::Span;
+use flexsc_core::control::law::Command;
+use flexsc_core::numerics::time::Span;
 use flexsc_core::{ObservationField, ObservationGroup, Scenario, Simulation};
 
 /// Flexible body about one axis whose angle and rate are measured each second, with noise.

@@ -22,13 +22,13 @@ mod workers;
 
 use std::time::Instant as WallInstant;
 
+use flexsc_formats::document::{Document, ScenarioError, key};
+use flexsc_record::{Attachment, Detail, OutputName, Provenance, Record};
 use thiserror::Error;
 use toml::{Table, Value};
 
-use crate::document::{Document, ScenarioError, key};
 use crate::layout::Layout;
 use crate::metrics::{self, Metrics, MetricsCollector, Selection};
-use crate::record::{Attachment, Detail, OutputName, Provenance, Record};
 use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
 

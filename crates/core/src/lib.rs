@@ -2,8 +2,7 @@
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 //!
-//! A [`Scenario`] is the validated input; a [`Simulation`] is the state of one run; a [`record::Record`] receives all
-//! output. Within a run data flows in one direction:
+//! A [`Scenario`] is the validated input; a [`Simulation`] is the state of one run; a [`record::Record`] receives all output. Within a run data flows in one direction:
 //!
 //! ```text
 //! body --truth--> sensor --reading--> estimator --estimate--> law --hold--> actuator --wrench--> body
@@ -14,11 +13,13 @@
 //!
 //! One loop runs one-axis and three-axis bodies (relay runs of one axis may run in the kernel of `flexsc_relay_kernel`
 //! instead, with the same records); each axis has an estimate, a law and a goal. Each role is a trait:
-//! [`sensor::Sensor`], [`estimator::Estimator`], [`law::Law`], [`actuator::Actuator`]. `docs/extending.md` describes
-//! how to add a kind, and `crates/core/examples` has short programs that use this crate.
+//! [`control::sensor::Sensor`], [`control::estimator::Estimator`], [`control::law::Law`],
+//! [`control::actuator::Actuator`]. [`prelude`] has the names that most programs need; the other crates of the engine
+//! are re-exported under their own names. `docs/extending.md` describes how to add a kind, and `crates/core/examples`
+//! has short programs that use this crate.
 //!
 //! ```
-//! use flexsc_core::{Scenario, Simulation, record::{Detail, Trace}};
+//! use flexsc_core::prelude::*;
 //!
 //! let scenario = Scenario::parse("relay.toml", r#"
 //!     duration = 100.0                  # s
@@ -44,6 +45,7 @@ pub mod batch;
 pub mod campaign;
 pub mod layout;
 pub mod metrics;
+pub mod prelude;
 mod relay_setup;
 pub mod scenario;
 pub mod scene;
@@ -51,14 +53,13 @@ mod sim;
 pub mod statistics;
 pub mod uncertain;
 
-pub use flexsc_control::{
-    actuator, adaptation, custom, estimator, interval, law, one_or_many, sensor, state_estimate,
-};
-pub use flexsc_formats::{count, document, structure};
-pub use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};
-pub use flexsc_output::{atomic_file, record};
-pub use flexsc_spacecraft::{axes, body, disturbance, environment, flow, manoeuvre, sine, wrench};
+pub use flexsc_control as control;
+pub use flexsc_dynamics as dynamics;
+pub use flexsc_formats as formats;
+pub use flexsc_numerics as numerics;
+pub use flexsc_record as record;
+pub use flexsc_spacecraft as spacecraft;
 
-pub use document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
+pub use flexsc_formats::document::{Diagnostic, Document, LONGEST, ScenarioError, nearest};
 pub use scenario::Scenario;
 pub use sim::{ObservationField, ObservationGroup, Simulation, SimulationError, StopAt};

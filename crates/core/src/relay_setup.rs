@@ -1,16 +1,17 @@
 //! Runs of the relay law in the relay kernel: which scenarios it supports, their initial setup, and conversions of its
 //! state.
 
-use crate::adaptation::AdaptationKind;
-use crate::body::{CommandedQuantity, Mode, Planar};
-use crate::estimator::{EnvelopeMethod, EstimatorKind};
-use crate::guard::Guard;
-use crate::law::{Guards, LawKind, Phase, Relay, RelaySides};
-use crate::motion::damping::Damped;
-use crate::motion::{self, AxisState};
-use crate::numerics::trig::FARTHEST;
+use flexsc_control::adaptation::AdaptationKind;
+use flexsc_control::estimator::{EnvelopeMethod, EstimatorKind};
+use flexsc_control::law::{Guards, LawKind, Phase, Relay, RelaySides};
+use flexsc_dynamics::damping::Damped;
+use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::{self, AxisState};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::trig::FARTHEST;
+use flexsc_spacecraft::body::{CommandedQuantity, Mode, Planar};
+
 use crate::scenario::Scenario;
-use crate::time::{Instant, Span};
 
 pub use flexsc_relay_kernel::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneShape, LaneState, MOST, RunSetup, SWITCHINGS,
@@ -150,7 +151,7 @@ pub fn apply_crossing(found: &mut FoundCrossing, after: Span, is_first: bool, st
 pub fn apply_state(state: &mut AxisState, sight: &LaneState) {
     (state.rigid_angle, state.rigid_rate) = (sight.angle, sight.rate);
     for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&sight.modes) {
-        *phase = motion::ModeState { displacement: *displacement, quadrature: *quadrature };
+        *phase = flexsc_dynamics::ModeState { displacement: *displacement, quadrature: *quadrature };
     }
 }
 

@@ -8,9 +8,9 @@ use toml::Value;
 
 pub use correlation::Correlated;
 
-use crate::numerics::normal;
-use crate::quantity::{Finite, Positive};
-use crate::random::Stream;
+use flexsc_numerics::normal;
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::random::Stream;
 
 /// The distribution of one key of the scenario.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,7 +1,7 @@
 //! Commands of a stepped run and the instant that it reached: enough to repeat it.
 
 use flexsc_core::campaign::CommandLog;
-use flexsc_core::time::Instant;
+use flexsc_core::numerics::time::Instant;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -1,9 +1,9 @@
 //! Active damping by relays, and the observer that it needs.
 
-use flexsc_core::actuator::PulseTiming;
 use flexsc_core::analysis::damping::{Convergence, PulsedDamping, persistence as least_eigenvalue};
 use flexsc_core::analysis::identification::IdentificationTrial;
-use flexsc_core::quantity::NonNegative;
+use flexsc_core::control::actuator::PulseTiming;
+use flexsc_core::numerics::quantity::NonNegative;
 use numpy::PyReadonlyArray2;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

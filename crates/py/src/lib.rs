@@ -29,14 +29,16 @@ use std::sync::Arc;
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
-use flexsc_core::body::{BodyAxes, Planar};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::law::LawKind;
-use flexsc_core::manoeuvre::{CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare};
+use flexsc_core::control::law::LawKind;
 use flexsc_core::metrics;
-use flexsc_core::quantity::{Fraction, Positive};
+use flexsc_core::numerics::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
-use flexsc_core::{Document, ScenarioError, atomic_file};
+use flexsc_core::spacecraft::body::{BodyAxes, Planar};
+use flexsc_core::spacecraft::manoeuvre::{
+    CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
+};
+use flexsc_core::{Document, ScenarioError, record::atomic_file};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

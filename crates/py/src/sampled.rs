@@ -4,8 +4,8 @@ use flexsc_core::analysis::sampled_loop::{
     Gains, ModelUncertainty, RobustGoal, RobustSearch, SampledLoop, Scaling, SettlingWindow, map, optimize,
     regions,
 };
-use flexsc_core::document::ConfigError;
-use flexsc_core::law::Pd;
+use flexsc_core::control::law::Pd;
+use flexsc_core::formats::document::ConfigError;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use serde_json::json;

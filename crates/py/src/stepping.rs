@@ -3,9 +3,9 @@
 use std::time::Instant as WallInstant;
 
 use flexsc_core::campaign::CommandLog;
-use flexsc_core::law::Command;
+use flexsc_core::control::law::Command;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Record, RecordError, Sample};
-use flexsc_core::time::{Instant, Span};
 use flexsc_core::{ObservationField, ObservationGroup, Simulation, SimulationError, StopAt};
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
@@ -31,7 +31,7 @@ pub fn fields(fields: &[ObservationField]) -> Vec<FieldRow> {
 
 /// The unit of commands to a scenario.
 pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
-    use flexsc_core::actuator::ActuatorKind;
+    use flexsc_core::control::actuator::ActuatorKind;
     match scenario.actuator.only_actuator() {
         Some(ActuatorKind::Wheel(_)) => "",
         _ => scenario.model.commanded_quantity().1,
@@ -40,7 +40,7 @@ pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
 
 /// The largest command about each axis that the actuator of a scenario can execute; infinite without a limit.
 pub fn command_limit(scenario: &flexsc_core::Scenario) -> Vec<f64> {
-    use flexsc_core::actuator::ActuatorKind;
+    use flexsc_core::control::actuator::ActuatorKind;
     let gain = if let Some(ActuatorKind::Wheel(wheel)) = scenario.actuator.only_actuator() {
         wheel.gain.get()
     } else {

@@ -3,12 +3,12 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
-use flexsc_motion::damping::{DampingRule, Undamped};
-use flexsc_motion::lanes::{LaneFloat, Mask, SimdTask, SimdWidth4};
-use flexsc_motion::numerics::exp_branch_free::exp;
-use flexsc_motion::numerics::swing_damped::damped;
-use flexsc_motion::numerics::swing_integral::undamped;
-use flexsc_motion::numerics::trig::sincos;
+use flexsc_dynamics::damping::{DampingRule, Undamped};
+use flexsc_numerics::exp_branch_free::exp;
+use flexsc_numerics::lanes::{LaneFloat, Mask, SimdTask, SimdWidth4};
+use flexsc_numerics::swing_damped::damped;
+use flexsc_numerics::swing_integral::undamped;
+use flexsc_numerics::trig::sincos;
 
 /// Number of phasors per register group.
 const SIDE: usize = SimdWidth4::LANES;

@@ -13,14 +13,15 @@ mod mode;
 mod readout;
 mod refill;
 
+use flexsc_dynamics::damping::DampingRule;
+use flexsc_dynamics::predicted_crossing::{
+    PredictedCrossing, PredictedLevel, PredictedMode, SegmentStart, predict,
+};
+use flexsc_numerics::lanes::{LaneFloat, Mask, SimdWidth4};
+
 use super::envelope_lanes::{self, EnvelopePhasor, PhasorState};
 use super::host::{CyclePhase, FoundCrossing, LaneHost, LaneShape, LaneState};
 use super::lane_time::{LaneTime, nearest_ticks};
-use flexsc_motion::damping::DampingRule;
-use flexsc_motion::lanes::{LaneFloat, Mask, SimdWidth4};
-use flexsc_motion::predicted_crossing::{
-    PredictedCrossing, PredictedLevel, PredictedMode, SegmentStart, predict,
-};
 use mode::LaneMode;
 
 /// Largest number of lanes.

@@ -2,7 +2,7 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
-use flexsc_motion::lanes::LaneFloat;
+use flexsc_numerics::lanes::LaneFloat;
 
 /// Number of femtoseconds in a second.
 const FEMTOSECONDS: f64 = 1e15;

@@ -15,7 +15,7 @@ mod kernel;
 mod lane_time;
 mod undamped;
 
-use flexsc_motion::lanes::Processor;
+use flexsc_numerics::lanes::Processor;
 
 pub use chatter::{SWITCHINGS, shortest_window};
 pub use host::{CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneShape, LaneState, RunSetup};

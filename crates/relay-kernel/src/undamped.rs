@@ -2,8 +2,8 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
-use flexsc_motion::damping::Undamped;
-use flexsc_motion::lanes::{LaneFloat, Processor, SimdTask};
+use flexsc_dynamics::damping::Undamped;
+use flexsc_numerics::lanes::{LaneFloat, Processor, SimdTask};
 
 use crate::host::{LaneHost, LaneShape};
 use crate::kernel::RelayKernel;

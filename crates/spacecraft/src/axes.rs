@@ -2,11 +2,10 @@
 
 use std::borrow::Cow;
 
+use flexsc_formats::document::read_value;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use crate::document::read_value;
 
 /// An axis of a body with three.
 #[derive(Copy, Clone, Debug, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -1,16 +1,16 @@
 //! Disturbances from one time to another: torques, constant and random, and forces at a point, steady or in pulses.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, NonNegative, Time};
+use flexsc_numerics::random::Stream;
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{Vector, vector};
 use crate::axes::Axis;
 use crate::body::Spatial;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Time};
-use crate::random::Stream;
 use crate::sine::Sine;
-use crate::time::{Instant, Span};
 use crate::wrench::{ForceEffect, Wrench};
 
 /// A disturbance: a torque about an axis, or a force at a point.

@@ -16,6 +16,3 @@ pub mod flow;
 pub mod manoeuvre;
 pub mod sine;
 pub mod wrench;
-
-use flexsc_formats::{count, document, structure};
-use flexsc_motion::{self as motion, attitude, guard, lanes, numerics, quantity, random, time, waveform};

@@ -1,10 +1,9 @@
 //! Sine functions of time, as parts of a torque.
 
+use flexsc_dynamics::waveform::{Term, TermShape};
+use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::quantity::{Finite, Positive};
-use crate::waveform::{Term, TermShape};
 
 /// amplitude sin(frequency t + phase), t from the start of the run.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,7 +36,7 @@ impl Sine {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::waveform::Waveform;
+    use flexsc_dynamics::waveform::Waveform;
 
     #[test]
     fn a_term_has_its_values() {

@@ -2,10 +2,11 @@
 
 use std::ops::AddAssign;
 
-use crate::attitude::Vector;
+use flexsc_dynamics::three_axis::{Gimbal, Rotor};
+use flexsc_numerics::attitude::Vector;
+
 use crate::body::Spatial;
 use crate::flow::ActiveWaveform;
-use crate::motion::three_axis::{Gimbal, Rotor};
 use crate::sine::Sine;
 
 /// Torques, forces, rotors and waveform that act on a body from an instant on.

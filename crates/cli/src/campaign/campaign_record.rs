@@ -4,9 +4,9 @@ use std::fs;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use flexsc_core::atomic_file::{self, AtomicFile};
 use flexsc_core::campaign::Campaign;
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
+use flexsc_core::record::atomic_file::{self, AtomicFile};
 use flexsc_core::record::difference;
 
 use super::CampaignJob;

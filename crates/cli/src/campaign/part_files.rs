@@ -9,7 +9,7 @@ use flexsc_core::campaign::{
     Campaign, CampaignRun, CampaignSummary, ColumnCells, Directory, DirectoryError, MANIFEST, Manifest,
     RunError, RunOutcome, RunRows, STATISTICS,
 };
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::Metrics;
 
 use super::points::{self, Points};

@@ -3,7 +3,7 @@
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::{Metrics, goal};
 use flexsc_core::statistics::{QUANTILES, Statistics, wilson};
 

@@ -4,8 +4,8 @@ mod figures;
 
 use std::io::Write;
 
-use flexsc_core::actuator::PulseTiming;
 use flexsc_core::analysis::damping::{DampedMode, PulsedDamping};
+use flexsc_core::control::actuator::PulseTiming;
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 

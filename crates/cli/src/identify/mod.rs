@@ -7,8 +7,8 @@ use std::io::Write;
 use std::str::FromStr;
 
 use flexsc_core::analysis::identification::{CYCLE, IdentificationRow, IdentificationTrial};
-use flexsc_core::count::counted;
-use flexsc_core::quantity::NonNegative;
+use flexsc_core::formats::count::counted;
+use flexsc_core::numerics::quantity::NonNegative;
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 

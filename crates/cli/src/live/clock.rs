@@ -4,7 +4,7 @@ use std::fmt;
 use std::str::FromStr;
 use std::time::{Duration, Instant as WallInstant};
 
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::numerics::time::{Instant, Span};
 
 /// Polling period of a held run.
 pub const LOOK: Duration = Duration::from_millis(50);

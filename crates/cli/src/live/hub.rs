@@ -5,8 +5,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant as WallInstant};
 
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Message, MessageSink, RecordError};
-use flexsc_core::time::Instant;
 
 use super::clock::{Clock, LOOK};
 use super::outbox::OutgoingFrame;

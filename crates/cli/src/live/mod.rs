@@ -23,16 +23,15 @@ use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, MessageEncoder, Record, RecordError, RunEnd, Sample};
-use flexsc_core::time::Instant;
 
+use crate::error::CliError;
+use crate::{say, stop};
 use access::AccessControl;
 use clock::{Clock, LOOK, Speed};
 use hub::{Hub, Publisher};
 use server_state::ServerState;
-
-use crate::error::CliError;
-use crate::{say, stop};
 
 /// Time limit for clients to receive the remaining messages when the server closes.
 const FLUSH: Duration = Duration::from_secs(5);

@@ -2,13 +2,13 @@
 
 use std::collections::BTreeSet;
 
-use flexsc_core::actuator::FiringMethod;
 use flexsc_core::campaign::CampaignRun;
-use flexsc_core::estimator::EstimatorKind;
-use flexsc_core::law::LawKind;
-use flexsc_core::motion::three_axis::Bearing;
+use flexsc_core::control::actuator::FiringMethod;
+use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::control::law::LawKind;
+use flexsc_core::dynamics::three_axis::Bearing;
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Message, MessageEncoder, MessageSink, Provenance, RecordError, TOPICS};
-use flexsc_core::time::Instant;
 use flexsc_core::{Scenario, Simulation};
 
 /// Returns the expected topics of a run as indices into [`TOPICS`]: of its first instant, and of possible later events.
@@ -64,7 +64,7 @@ impl MessageSink for &mut TopicCollector {
 #[cfg(test)]
 mod tests {
     use flexsc_core::campaign::Campaign;
-    use flexsc_core::time::Span;
+    use flexsc_core::numerics::time::Span;
 
     use super::*;
 

@@ -2,8 +2,8 @@
 
 use flexsc_core::campaign::CampaignRun;
 use flexsc_core::metrics::Metrics;
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Record, RecordError, Sample};
-use flexsc_core::time::Instant;
 
 use crate::error::CliError;
 use crate::unavailable::HINT;

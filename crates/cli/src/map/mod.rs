@@ -7,7 +7,7 @@ use std::path::PathBuf;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::sampled_loop::{MapCell, map};
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
 

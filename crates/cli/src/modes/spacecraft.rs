@@ -3,8 +3,8 @@
 use std::io::Write;
 
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
-use flexsc_core::attitude::AXES;
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
+use flexsc_core::numerics::attitude::AXES;
 use serde_json::{Value as Json, json};
 
 use super::{SMALL, Style, frequency, print_influences, print_table, texts};

@@ -2,8 +2,8 @@
 
 use std::io::Write;
 
-use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{CommandCost, ComparisonBasis};
+use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::spacecraft::manoeuvre::{CommandCost, ComparisonBasis};
 use serde_json::Value as Json;
 
 use super::percent;

@@ -3,9 +3,9 @@
 
 use std::borrow::Cow;
 
-use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{BangBang, Manoeuvre, ManoeuvreCommand, Plan, Suppression};
-use flexsc_core::time::Span;
+use flexsc_core::numerics::time::Span;
+use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::spacecraft::manoeuvre::{BangBang, Manoeuvre, ManoeuvreCommand, Plan, Suppression};
 use flexsc_figure::{RGBColor, colour};
 
 /// Largest number of commands.

@@ -8,10 +8,10 @@ mod trajectory;
 
 use std::path::PathBuf;
 
-use flexsc_core::body::Planar;
-use flexsc_core::document::ConfigError;
-use flexsc_core::manoeuvre::{ComparisonBasis, Manoeuvre, PlanReport, compare};
-use flexsc_core::quantity::{Fraction, Positive};
+use flexsc_core::formats::document::ConfigError;
+use flexsc_core::numerics::quantity::{Fraction, Positive};
+use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::spacecraft::manoeuvre::{ComparisonBasis, Manoeuvre, PlanReport, compare};
 use flexsc_core::{Scenario, ScenarioError};
 
 use crate::error::CliError;

@@ -2,8 +2,8 @@
 
 use std::io::Write;
 
-use flexsc_core::body::Planar;
-use flexsc_core::manoeuvre::{Manoeuvre, Plan, PlanReport};
+use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::spacecraft::manoeuvre::{Manoeuvre, Plan, PlanReport};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
 

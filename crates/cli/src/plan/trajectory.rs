@@ -3,10 +3,10 @@
 use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
 
-use flexsc_core::body::{CommandedQuantity, Planar};
-use flexsc_core::flow::{ActiveWaveform, SegmentInput, UncoupledSegment};
-use flexsc_core::manoeuvre::Plan;
-use flexsc_core::motion::{AngleObservation, AxisState};
+use flexsc_core::dynamics::{AngleObservation, AxisState};
+use flexsc_core::spacecraft::body::{CommandedQuantity, Planar};
+use flexsc_core::spacecraft::flow::{ActiveWaveform, SegmentInput, UncoupledSegment};
+use flexsc_core::spacecraft::manoeuvre::Plan;
 
 use crate::number_table::NumberTable;
 

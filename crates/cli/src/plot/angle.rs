@@ -75,7 +75,7 @@ impl SettlingCurve {
     /// Returns `None` without motion, or if no band is given after a manoeuvre, which may end anywhere near its goal.
     fn from_events(story: &RunEvents, times: &[f64], error: &[f64]) -> Option<Self> {
         let from = story.scenario.plan.as_ref().map_or(0.0, |plan| plan.time);
-        let given = story.scenario.reference.band.map(flexsc_core::quantity::Positive::get);
+        let given = story.scenario.reference.band.map(flexsc_core::numerics::quantity::Positive::get);
         let promise = story.scenario.expected_band();
         let promised = if from > 0.0 { None } else { error.first().map(|first| promise.band(first.abs())) };
         let band = given.or(promised).filter(|band| *band > 0.0)?;

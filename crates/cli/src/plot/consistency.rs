@@ -1,7 +1,7 @@
 //! Figure `consistency`: consistency of a filter's covariance with its errors. The normalised innovation squared per
 //! measurement and the normalised estimation error squared per state are both about 1 if they are consistent.
 
-use flexsc_core::estimator::chi_square;
+use flexsc_core::control::estimator::chi_square;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::motion::{DominantModeEstimate, MotionData};

@@ -1,6 +1,6 @@
 //! Figure `angle` for a switching law: the angle at the end of the run, with the dead zone and the switchings.
 
-use flexsc_core::law::{LawKind, RelaySides};
+use flexsc_core::control::law::{LawKind, RelaySides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;

@@ -1,7 +1,7 @@
 //! Figure `deflection` of three axes: the displacement of each point of the structure, such as the tip of a panel, by
 //! the elastic modes, relative to the first point, in axes of the hub.
 
-use flexsc_core::attitude::Vector;
+use flexsc_core::numerics::attitude::Vector;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::run_events::RunEvents;

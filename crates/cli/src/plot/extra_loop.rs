@@ -1,7 +1,7 @@
 //! Figure `extra`: the gain of the extra loop over the run, and the frequency of the dominant mode that schedules it.
 
 use flexsc_core::Scenario;
-use flexsc_core::law::{Extra, LawKind};
+use flexsc_core::control::law::{Extra, LawKind};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;

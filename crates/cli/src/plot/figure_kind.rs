@@ -1,7 +1,7 @@
 //! The kinds of figures, and the conditions for a log to have them.
 
 use clap::ValueEnum;
-use flexsc_core::estimator::EstimatorKind;
+use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_figure::Figure;
 
 use super::motion::MotionData;

@@ -1,6 +1,6 @@
 //! Figure `wheel`: speed and momentum of the flywheel with its limits.
 
-use flexsc_core::actuator::FlywheelRotor;
+use flexsc_core::control::actuator::FlywheelRotor;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;

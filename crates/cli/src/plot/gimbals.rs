@@ -1,7 +1,7 @@
 //! Figure `gimbals` of a spacecraft with control moment gyros: gimbal angles, gimbal rates with their limits, the
 //! singularity measure, and the momentum of the rotors.
 
-use flexsc_core::quantity::Positive;
+use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record::ControlMomentGyros;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 

@@ -1,6 +1,6 @@
 //! Figure `torque` of a rotation: the planned torque, the actuator's torque, the law's part and disturbances.
 
-use flexsc_core::actuator::ActuatorKind;
+use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;

@@ -1,7 +1,7 @@
 //! Motion of a run and the filter's estimates at each sample, from a full log or from a repeated run.
 
+use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Sample};
-use flexsc_core::time::Instant;
 
 use super::columns::{labels, rows, topics};
 use crate::error::CliError;

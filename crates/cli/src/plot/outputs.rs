@@ -12,7 +12,7 @@ const PANELS: usize = 6;
 pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let outputs = story.scenario.model.outputs();
     let skipped = motion.outputs.len().saturating_sub(PANELS);
-    let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::body::Output))| {
+    let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::spacecraft::body::Output))| {
         let x = time(0.0..story.end);
         let (name, unit) = name_and_unit(&output.name, &output.unit);
         let y = FigureAxis::around(&name, unit, values.iter().copied());

@@ -1,6 +1,6 @@
 //! Figure `phase-plane`: rate against angle, with the law's switching lines and switchings.
 
-use flexsc_core::law::{LawKind, Relay, RelaySides};
+use flexsc_core::control::law::{LawKind, Relay, RelaySides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;

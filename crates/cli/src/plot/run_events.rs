@@ -4,8 +4,8 @@
 use std::path::Path;
 
 use flexsc_core::campaign::CommandLog;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Columns, Log};
-use flexsc_core::time::{Instant, Span};
 use flexsc_core::{Scenario, Simulation};
 
 use super::columns::{labels, rows, topics};

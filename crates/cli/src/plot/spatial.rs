@@ -4,13 +4,13 @@
 use std::path::Path;
 
 use flexsc_core::Simulation;
-use flexsc_core::attitude::AXES;
+use flexsc_core::numerics::attitude::AXES;
+use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{
     Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion,
     ElasticEstimates, Hinges, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample,
     ThreeAxisCycle, ThreeAxisMotionSample, Torques, TrackedMode, Tracking, Wheels,
 };
-use flexsc_core::time::{Instant, Span};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
 use super::run_events::{RunEvents, unusable};

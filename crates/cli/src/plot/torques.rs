@@ -1,7 +1,7 @@
 //! Figure `torques` of three axes: about each axis the torque of the actuators with the torque demanded by the law, and
 //! the disturbances with the environment.
 
-use flexsc_core::attitude::AXES;
+use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::record::Torque;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 

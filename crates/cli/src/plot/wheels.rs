@@ -1,10 +1,10 @@
 //! Figure `wheel` of three axes: speed and torque of each wheel with their limits; with friction also the friction
 //! torque and the pointing error.
 
-use flexsc_core::actuator::Wheels;
-use flexsc_core::attitude::AXES;
-use flexsc_core::motion::three_axis::Bearing;
-use flexsc_core::quantity::Positive;
+use flexsc_core::control::actuator::Wheels;
+use flexsc_core::dynamics::three_axis::Bearing;
+use flexsc_core::numerics::attitude::AXES;
+use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::record;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 

@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use flexsc_core::estimator::EstimatorKind;
+use flexsc_core::control::estimator::EstimatorKind;
 
 use super::Summary;
 use crate::human::digits;

@@ -2,10 +2,10 @@
 
 use std::io::Write;
 
-use flexsc_core::attitude::AXES;
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::MetricValue;
-use flexsc_core::quantity::Time;
+use flexsc_core::numerics::attitude::AXES;
+use flexsc_core::numerics::quantity::Time;
 
 use super::Summary;
 use crate::human::digits;

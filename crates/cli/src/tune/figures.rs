@@ -2,7 +2,7 @@
 //! the settling time of the loop.
 
 use flexsc_core::analysis::sampled_loop::{GainRegion, RobustGain};
-use flexsc_core::law::Extra;
+use flexsc_core::control::law::Extra;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, band, colour};
 
 use super::tuning::TuneSetup;

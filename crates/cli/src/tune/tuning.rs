@@ -1,7 +1,7 @@
 //! Input of `flexsc tune`.
 
 use flexsc_core::analysis::sampled_loop::{GainRegion, Gains, SampledLoop, Scaling, SettlingWindow, regions};
-use flexsc_core::law::Extra;
+use flexsc_core::control::law::Extra;
 
 /// Loop to tune, with the tested gains and the criterion.
 pub struct TuneSetup {

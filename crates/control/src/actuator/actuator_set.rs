@@ -1,13 +1,14 @@
 //! Several actuators in one: each executes its share of the demand about each axis, or unloads the wheels or gyros.
 
+use flexsc_dynamics::three_axis::RotorObservation;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{self, WheelMotion};
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::unloading::UnloaderState;
 use super::{Actuator, ActuatorKind, ActuatorTask, Demand, JetCycle, Pulse};
-use crate::attitude::Vector;
 use crate::custom::PartError;
-use crate::motion::three_axis::RotorObservation;
-use crate::record::{self, WheelMotion};
-use crate::time::Instant;
-use crate::wrench::Wrench;
 
 /// Run-time state of several actuators.
 #[derive(Clone, Debug)]
@@ -156,19 +157,19 @@ impl Actuator for ActuatorSet {
         self.each().find_map(|actuator| actuator.wheel(axis, rigid_rate))
     }
 
-    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {
+    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
         self.each().flat_map(|actuator| actuator.wheels(now, rate)).collect()
     }
 
-    fn gimbal_row(&self, now: Instant) -> Option<record::ControlMomentGyros> {
+    fn gimbal_row(&self, now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
         self.each().find_map(|actuator| actuator.gimbal_row(now))
     }
 
-    fn steering_record(&self) -> Option<record::SteeringRecord> {
+    fn steering_record(&self) -> Option<flexsc_record::SteeringRecord> {
         self.each().find_map(Actuator::steering_record)
     }
 
-    fn magnetorquer_row(&self) -> Option<record::Magnetorquers> {
+    fn magnetorquer_row(&self) -> Option<flexsc_record::Magnetorquers> {
         self.each().find_map(Actuator::magnetorquer_row)
     }
 

@@ -2,12 +2,13 @@
 
 use std::borrow::Cow;
 
+use flexsc_formats::document::ConfigError;
+
 use super::failure;
 use super::{
     ActuatorKind, AssignedActuator, ControlMomentGyros, Jets, Magnetorquers, Share, UnloadingTask, Wheel,
     Wheels,
 };
-use crate::document::ConfigError;
 use crate::one_or_many::OneOrMany;
 
 /// Actuator among those of a scenario.

@@ -2,6 +2,7 @@
 
 use std::fmt;
 
+use flexsc_spacecraft::axes::Axis;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, StrDeserializer};
 use serde::de::{Deserialize, Deserializer, Error, MapAccess, Visitor};
@@ -11,7 +12,6 @@ use super::{
     ActuatorKind, ControlMomentGyros, Ideal, Jets, Magnetorquers, Share, Thrusters, UnloadingTask, Wheel,
     WheelUnloading, Wheels, ZeroOrderHold,
 };
-use crate::axes::Axis;
 
 /// Name of the kind that needs no keys.
 const IDEAL: &str = "ideal";

@@ -3,16 +3,17 @@
 use std::fmt;
 use std::sync::Arc;
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::WheelMotion;
+use flexsc_spacecraft::flow::ActiveWaveform;
+use flexsc_spacecraft::sine::Sine;
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::failure::FailureScope;
 use super::faulty::FaultyActuator;
 use super::{Actuator, ActuatorKind, Demand};
-use crate::attitude::Vector;
-use crate::flow::ActiveWaveform;
-use crate::record::WheelMotion;
-use crate::sine::Sine;
-use crate::time::{Instant, Span};
-use crate::waveform::Waveform;
-use crate::wrench::Wrench;
 
 /// Body and manoeuvre data that a single-axis actuator needs.
 #[derive(Clone, Debug)]

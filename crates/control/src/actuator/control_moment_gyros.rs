@@ -1,16 +1,16 @@
 //! Control moment gyros: rotors of constant speed, each in a gimbal whose rate produces the torque.
 
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Failure;
 use super::failure::{ActiveFailures, FailureScope};
 use super::steering::{self, GyroAxes, NullMotion, Robustness, Steering};
-use crate::attitude::Vector;
-use crate::count::counted;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Positive};
-use crate::time::Span;
 
 /// Single-gimbal control moment gyros, identical except for their axes and gimbal angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -4,16 +4,17 @@
 //! motion evaluates them at its stages. The drives read the exact angles, those of failed gimbals too; estimators and
 //! laws are not informed of failures.
 
+use flexsc_dynamics::three_axis::Gimbal;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{self, SteeringRecord};
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::control_moment_gyros::ControlMomentGyros;
 use super::failure::ActiveFailures;
 use super::steering::{self, GyroAxes, Robustness};
 use super::{Actuator, AxisActuatorContext, Demand};
-use crate::attitude::Vector;
-use crate::motion::three_axis::Gimbal;
-use crate::quantity::Positive;
-use crate::record::{self, SteeringRecord};
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 /// Run-time state of the control moment gyros of a body.
 #[derive(Clone, Debug)]
@@ -214,10 +215,10 @@ impl Actuator for ControlMomentGyrosState {
         self.given(&columns, &self.commanded)[axis] / self.settings[axis].inertia
     }
 
-    fn gimbal_row(&self, now: Instant) -> Option<record::ControlMomentGyros> {
+    fn gimbal_row(&self, now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
         let angles = self.angles_at(now);
         let [x, y, z] = self.stored_momentum(now);
-        Some(record::ControlMomentGyros {
+        Some(flexsc_record::ControlMomentGyros {
             singularity: steering::singularity_measure(&steering::torque_directions(&self.axes, &angles)),
             momentum_x_nm_s: x,
             momentum_y_nm_s: y,
@@ -225,7 +226,7 @@ impl Actuator for ControlMomentGyrosState {
             gyros: angles
                 .into_iter()
                 .zip(&self.rates)
-                .map(|(angle_rad, rate)| record::ControlMomentGyro { angle_rad, rate_rad_s: *rate })
+                .map(|(angle_rad, rate)| flexsc_record::ControlMomentGyro { angle_rad, rate_rad_s: *rate })
                 .collect(),
         })
     }

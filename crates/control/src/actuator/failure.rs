@@ -2,15 +2,15 @@
 
 use std::num::NonZeroU32;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, Time};
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::axes::Axis;
+use flexsc_spacecraft::sine::Sine;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::axes::Axis;
-use crate::document::ConfigError;
 use crate::interval::Interval;
-use crate::quantity::{Finite, Time};
-use crate::sine::Sine;
-use crate::time::Instant;
 
 /// Declares a kind of failure: its interval, the component that fails, and further keys.
 macro_rules! kinds {

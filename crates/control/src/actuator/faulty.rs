@@ -2,15 +2,16 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_numerics::quantity::Time;
+use flexsc_numerics::time::Instant;
+use flexsc_record::WheelMotion;
+use flexsc_spacecraft::flow::ActiveWaveform;
+use flexsc_spacecraft::sine::Sine;
+
 use super::AxisActuator;
 use super::failure::{ActiveFailures, Failure, FailureScope};
-use crate::flow::ActiveWaveform;
 use crate::interval::Interval;
-use crate::quantity::Time;
-use crate::record::WheelMotion;
-use crate::sine::Sine;
-use crate::time::Instant;
-use crate::waveform::Waveform;
 
 /// Single-axis actuator with failures, which change its torque; estimators and laws are not informed of them.
 #[derive(Clone, Debug)]

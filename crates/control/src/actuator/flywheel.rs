@@ -2,13 +2,13 @@
 
 use std::collections::VecDeque;
 
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::WheelMotion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuator, AxisActuatorContext, Failure};
-use crate::quantity::{Finite, NonNegative, Positive, Time};
-use crate::record::WheelMotion;
-use crate::time::{Instant, Span};
 
 /// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

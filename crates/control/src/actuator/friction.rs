@@ -1,11 +1,11 @@
 //! Friction in the bearings of wheels, and its compensation by the drives.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{NonNegative, shortest};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::per_wheel::PerWheel;
-use crate::document::ConfigError;
-use crate::quantity::{NonNegative, shortest};
 
 /// Largest ratio of the Coulomb friction to the torque of a motor, which is then stalled ...
 const STALLS: f64 = 10.0;

@@ -2,13 +2,13 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::flow::ActiveWaveform;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuator, AxisActuatorContext, Failure};
-use crate::flow::ActiveWaveform;
-use crate::time::Instant;
-use crate::waveform::Waveform;
 
 /// The ideal actuator.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,16 +1,16 @@
 //! Imbalance of wheels: forces and torques that rotate with them, and their harmonics.
 
+use flexsc_dynamics::three_axis::{FlexibleBody, HarmonicLine};
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
+use flexsc_spacecraft::body::Spatial;
+use flexsc_spacecraft::body::craft::HubRotor;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::per_wheel::PerWheel;
-use crate::attitude::{Vector, vector};
-use crate::body::Spatial;
-use crate::body::craft::HubRotor;
-use crate::count::counted;
-use crate::document::ConfigError;
-use crate::motion::three_axis::{FlexibleBody, HarmonicLine};
-use crate::quantity::{Finite, NonNegative, Positive};
 
 /// Imbalance of wheels: forces and torques on the body at wheel speed Omega and angle th.
 ///
@@ -105,7 +105,7 @@ impl Imbalance {
                 let modes = shapes.iter().zip(&flexible.modes);
                 let of = |((translation, rotation), mode): (
                     &(Vector, Vector),
-                    &crate::motion::three_axis::FreeMode,
+                    &flexsc_dynamics::three_axis::FreeMode,
                 )| {
                     translation.dot(&force[part]) + rotation.dot(&moment[part])
                         - mode.rotation.dot(&torque[part])

@@ -5,13 +5,14 @@
 //! where the columns of B are the torques of the thrusters, and also their forces if these must cancel. An impulse
 //! beyond the capability is scaled down to the largest one in its direction.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::simplex::LinearProgramme;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::wrench::{ForceEffect, Wrench};
+
 use super::valves::Valves;
 use super::{Actuator, Demand, GroupEffect, JetCycle, Jets, PulseWidth, ThrusterEffect};
-use crate::attitude::Vector;
-use crate::document::ConfigError;
-use crate::numerics::simplex::LinearProgramme;
-use crate::time::{Instant, Span};
-use crate::wrench::{ForceEffect, Wrench};
 
 /// Run-time state of individually allocated jets.
 #[derive(Clone, Debug)]
@@ -79,7 +80,8 @@ pub(super) fn largest_torques(
             flow += nozzle.flow * part;
         }
         if sign * push.torque[axis] <= 1e-9 * beyond {
-            let (name, way) = (crate::attitude::AXES[axis], if sign > 0.0 { "plus" } else { "minus" });
+            let (name, way) =
+                (flexsc_numerics::attitude::AXES[axis], if sign > 0.0 { "plus" } else { "minus" });
             let alone = if jets.force_free { " without a force" } else { "" };
             let why = format!("must be able to turn the body to {way} {name}{alone} and about no other axis");
             return Err(ConfigError::new("thrusters", why));

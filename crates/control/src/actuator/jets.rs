@@ -1,15 +1,15 @@
 //! Jets: thrusters at points of a three-axis body, fired in groups about the axes or individually.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{AXES, vector};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
+use flexsc_numerics::time::Span;
+use flexsc_spacecraft::body::spatial::Spatial;
+use flexsc_spacecraft::wrench::ForceEffect;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Actuator, AllocatedJets, Failure, JetsState, PulseWidth, jet_allocation};
-use crate::attitude::{AXES, vector};
-use crate::body::spatial::Spatial;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Positive, Time};
-use crate::time::Span;
-use crate::wrench::ForceEffect;
 
 /// Standard gravity (m/s²), to which the specific impulse refers.
 const G_0: f64 = 9.806_65;

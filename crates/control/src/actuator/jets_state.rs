@@ -1,10 +1,11 @@
 //! Run-time state of jets in groups: demands, queued pulses, current pulses, and propellant.
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::valves::Valves;
 use super::{Actuator, Demand, GroupEffect, JetCycle, Jets, PulseWidth, ThrusterEffect};
-use crate::attitude::Vector;
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 /// Pulse of thrusters, executed or queued.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -3,17 +3,16 @@
 //! A demanded torque T gives the moment B x T/B², whose torque m x B is the part of T perpendicular to the field
 //! (\[Wertz78\]).
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::axes::PerAxis;
+use flexsc_spacecraft::wrench::Wrench;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{ActiveFailures, FailureScope};
 use super::{Actuator, AxisActuatorContext, Demand, Failure};
-use crate::attitude::Vector;
-use crate::axes::PerAxis;
-use crate::quantity::Positive;
-use crate::record;
-use crate::time::Instant;
-use crate::wrench::Wrench;
 
 /// Magnetorquers along the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -149,10 +148,10 @@ impl Actuator for MagnetorquersState {
         self.held_torque(axis) / self.settings[axis].inertia
     }
 
-    fn magnetorquer_row(&self) -> Option<record::Magnetorquers> {
+    fn magnetorquer_row(&self) -> Option<flexsc_record::Magnetorquers> {
         let held = self.held();
-        let axis = |axis: usize| record::Magnetorquer { moment_am2: held[axis] };
-        Some(record::Magnetorquers { axes: [0, 1, 2].map(axis).into() })
+        let axis = |axis: usize| flexsc_record::Magnetorquer { moment_am2: held[axis] };
+        Some(flexsc_record::Magnetorquers { axes: [0, 1, 2].map(axis).into() })
     }
 
     fn copy(&self) -> Box<dyn Actuator> {
@@ -163,10 +162,10 @@ impl Actuator for MagnetorquersState {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::time::Span;
+    use flexsc_numerics::time::Span;
 
     fn start(text: &str) -> MagnetorquersState {
-        let torquers: Magnetorquers = crate::document::from_text(text).unwrap();
+        let torquers: Magnetorquers = flexsc_formats::document::from_text(text).unwrap();
         let setting = |axis| AxisActuatorContext {
             axis,
             inertia: 10.0,

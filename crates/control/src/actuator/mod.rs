@@ -32,16 +32,16 @@ mod zero_order_hold;
 use std::any::Any;
 use std::fmt;
 
+use flexsc_dynamics::three_axis::RotorObservation;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Share, Time};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{self, SteeringRecord, WheelMotion};
+use flexsc_spacecraft::wrench::Wrench;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::Vector;
 use crate::custom::{Custom, PartError};
-use crate::motion::three_axis::RotorObservation;
-use crate::quantity::{Share, Time};
-use crate::record::{self, SteeringRecord, WheelMotion};
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 pub use actuator_set::ActuatorSet;
 pub use allocation_role::{ActuatorTask, AssignedMember};
@@ -183,12 +183,12 @@ pub trait Actuator: fmt::Debug + Send + Sync {
     }
 
     /// Returns the log rows of wheels about their own axes, of a body with this rate (rad/s).
-    fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<record::Wheel> {
+    fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
         Vec::new()
     }
 
     /// Returns the log row of control moment gyros, if the actuator has any.
-    fn gimbal_row(&self, _now: Instant) -> Option<record::ControlMomentGyros> {
+    fn gimbal_row(&self, _now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
         None
     }
 
@@ -198,7 +198,7 @@ pub trait Actuator: fmt::Debug + Send + Sync {
     }
 
     /// Returns the log row of the magnetic moments held by magnetorquers.
-    fn magnetorquer_row(&self) -> Option<record::Magnetorquers> {
+    fn magnetorquer_row(&self) -> Option<flexsc_record::Magnetorquers> {
         None
     }
 

@@ -2,12 +2,11 @@
 
 use std::borrow::Cow;
 
+use flexsc_formats::count::counted;
+use flexsc_formats::document::{ConfigError, read_value};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use crate::count::counted;
-use crate::document::{ConfigError, read_value};
 
 /// One value for all wheels, or one for each.
 #[derive(Clone, Debug, PartialEq)]

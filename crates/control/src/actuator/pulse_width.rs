@@ -1,6 +1,6 @@
 //! Quantisation of pulse lengths of an on-off actuator.
 
-use crate::quantity::NonNegative;
+use flexsc_numerics::quantity::NonNegative;
 
 /// Shortest pulse, and quantum of the pulse length.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]

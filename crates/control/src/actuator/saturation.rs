@@ -1,9 +1,10 @@
 //! Saturation: how often a run has wheels and magnetorquers at their limits, and whether it ends there.
 
+use flexsc_numerics::quantity::Positive;
+use flexsc_record::ThreeAxisCycle;
+
 use super::AssignedActuator;
 use crate::one_or_many::OneOrMany;
-use crate::quantity::Positive;
-use crate::record::ThreeAxisCycle;
 
 /// A value is at its limit if it misses it by this part of it.
 const AT_LIMIT: f64 = 1e-9;

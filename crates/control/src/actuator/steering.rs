@@ -6,12 +6,11 @@
 //! time-varying off-diagonal elements of it move the gimbals out of angles at which the demanded torque is along the
 //! singular direction (\[Wie01\]).
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::Vector;
-use crate::quantity::{Finite, NonNegative, Positive};
 
 /// How the demanded torque becomes gimbal rates.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

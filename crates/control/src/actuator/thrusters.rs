@@ -1,12 +1,12 @@
 //! A pair of thrusters for each direction: one pulse per period, centred in it, with the impulse of a zero-order hold.
 
+use flexsc_numerics::quantity::{NonNegative, Positive, Time};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuator, AxisActuatorContext, Failure, PulseWidth};
-use crate::axes::PerAxis;
-use crate::quantity::{NonNegative, Positive, Time};
-use crate::time::{Instant, Span};
 
 /// A pair of thrusters for each direction, with pulse-width modulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -5,14 +5,14 @@
 //! the part of h perpendicular to B (\[Wertz78\]). The part along the field remains until the field rotates along the
 //! orbit: over an orbit h decreases at the mean rate k (1 - <b b'>), with b the field's direction.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{NonNegative, Positive, Time};
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Actuator, ActuatorKind, Demand, Jets, Magnetorquers};
-use crate::attitude::Vector;
-use crate::document::ConfigError;
-use crate::quantity::{NonNegative, Positive, Time};
-use crate::time::{Instant, Span};
 
 /// How an actuator of a list unloads the wheels of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

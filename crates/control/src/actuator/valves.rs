@@ -1,10 +1,11 @@
 //! Valves of jets: which thrusters are open, their failures, and the propellant flow.
 
+use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::wrench::{ForceEffect, Wrench};
+
 use super::failure::{ActiveFailures, Added, Failure, FailureScope};
 use super::{Jets, Thruster, ThrusterEffect};
-use crate::quantity::Finite;
-use crate::time::Instant;
-use crate::wrench::{ForceEffect, Wrench};
 
 /// Thrusters of a body, each with its failures.
 #[derive(Clone, Debug)]

@@ -1,10 +1,9 @@
 //! Allocation of a three-axis torque to wheels: the sum of axis times torque over the wheels is the demanded torque.
 
+use flexsc_numerics::attitude::Vector;
 use nalgebra::{Cholesky, Matrix3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::Vector;
 
 /// How the demanded torque is distributed over the wheels.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

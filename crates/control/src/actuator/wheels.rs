@@ -1,5 +1,12 @@
 //! Reaction wheels about their own axes, which together give a torque about three axes and store its momentum.
 
+use flexsc_dynamics::three_axis::{Bearing, FlexibleBody};
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
+use flexsc_spacecraft::body::Spatial;
+use flexsc_spacecraft::body::craft::HubRotor;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,13 +15,6 @@ use super::per_wheel::PerWheel;
 use super::unloading::WheelUnloading;
 use super::wheel_allocation::{Allocation, AllocationCriterion};
 use super::{Failure, Friction, Imbalance};
-use crate::attitude::Vector;
-use crate::body::Spatial;
-use crate::body::craft::HubRotor;
-use crate::count::counted;
-use crate::document::ConfigError;
-use crate::motion::three_axis::{Bearing, FlexibleBody};
-use crate::quantity::{Finite, NonNegative, Positive};
 
 /// Reaction wheels, identical except for their axes and initial speeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

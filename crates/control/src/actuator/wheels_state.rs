@@ -4,18 +4,18 @@
 //! whatever the motion of the body (Euler's third equation of a rotor). So it is known exactly at every instant, and
 //! with it the time at which it reaches its limit. The speed Omega also depends on the body's rate.
 
+use flexsc_dynamics::three_axis::{Rotor, RotorObservation};
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::failure::ActiveFailures;
 use super::wheel_allocation::Allocation;
 use super::wheels::{FrictionCompensation, SpeedBias, Wheels};
 use super::{Actuator, AxisActuatorContext, Demand};
-use crate::attitude::Vector;
-use crate::motion::three_axis::{Rotor, RotorObservation};
-use crate::quantity::Positive;
-use crate::random::Seed;
-use crate::record;
 use crate::sensor::{Tachometer, TachometerState};
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 /// Relative distance from its limit at which a wheel with friction counts as being at the limit.
 const AT_LIMIT: f64 = 1e-12;
@@ -339,9 +339,9 @@ impl Actuator for WheelsState {
         torque / self.settings[axis].inertia
     }
 
-    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<record::Wheel> {
+    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
         let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
-        let motion = |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| record::Wheel {
+        let motion = |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| flexsc_record::Wheel {
             speed_rad_s: self
                 .turned
                 .get(index)

@@ -1,11 +1,11 @@
 //! The zero-order hold: in each period, the mean of the waveform and the feedback at the start.
 
+use flexsc_numerics::quantity::Time;
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuator, AxisActuatorContext, Failure};
-use crate::quantity::Time;
-use crate::time::{Instant, Span};
 
 /// A zero-order hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

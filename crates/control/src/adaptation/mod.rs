@@ -6,14 +6,14 @@ mod random_search;
 use std::any::Any;
 use std::fmt;
 
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::custom::{Custom, PartError};
-use crate::random::Seed;
-use crate::time::{Instant, Span};
 
-pub use crate::record::Decision;
+pub use flexsc_record::Decision;
 pub use objective::Objective;
 pub use random_search::{RandomSearch, RandomSearchState, SearchStep};
 

@@ -99,7 +99,7 @@ mod tests {
         }
         for objective in Objective::ALL {
             let text = format!("objective = \"{}\"", objective.key());
-            assert_eq!(crate::document::from_text::<Of>(&text).unwrap().objective, objective);
+            assert_eq!(flexsc_formats::document::from_text::<Of>(&text).unwrap().objective, objective);
             assert_eq!(Objective::from_key(objective.key()), Some(objective));
         }
     }

@@ -5,14 +5,14 @@
 //! falls and reversed when it rises, except for one rise after `memory` falls. From `earliest_freeze` on, the gain
 //! is frozen once the objective has changed by less than `tolerance` in `settled` consecutive windows.
 
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Decision;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Adaptation, Objective};
-use crate::quantity::{Finite, Positive};
-use crate::random::{Seed, Stream};
-use crate::record::Decision;
-use crate::time::{Instant, Span};
 
 /// The constants of the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

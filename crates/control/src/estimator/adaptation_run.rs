@@ -1,10 +1,10 @@
 //! Run-time state of an adaptation, with the law's parameter that it tunes.
 
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::Instant;
+
 use crate::adaptation::{Adaptation, AdaptationKind};
 use crate::custom::PartError;
-use crate::random::Seed;
-use crate::record;
-use crate::time::Instant;
 
 /// Run-time state of an adaptation and the current value of its parameter.
 #[derive(Clone, Debug)]
@@ -24,9 +24,14 @@ impl AdaptationRun {
 
     /// Updates the adaptation with the objective's value over the window that ends at `now`. Returns its step and the
     /// parameter before it.
-    pub fn learn(&mut self, now: Instant, window: u64, measured: f64) -> Option<(record::Adaptation, f64)> {
+    pub fn learn(
+        &mut self,
+        now: Instant,
+        window: u64,
+        measured: f64,
+    ) -> Option<(flexsc_record::Adaptation, f64)> {
         let step = self.search.learn(now, measured)?;
-        let row = record::Adaptation {
+        let row = flexsc_record::Adaptation {
             window,
             decision: step.decision,
             change: step.change,

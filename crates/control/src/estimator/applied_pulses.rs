@@ -1,8 +1,9 @@
 //! Record of the pulses that an actuator has applied about each axis since the last sample.
 
+use flexsc_numerics::time::Instant;
+
 use super::adaptive::Pulse;
 use crate::actuator::Actuator;
-use crate::time::Instant;
 
 /// Pulses applied about each axis since the last sample.
 #[derive(Clone, Debug, Default)]

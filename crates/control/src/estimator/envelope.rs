@@ -7,18 +7,17 @@
 //! On three axes x is the size of the rotation that a free mode causes at the first sensor, and c follows from its
 //! modal force.
 
+use flexsc_dynamics::AxisState;
+use flexsc_numerics::exp_branch_free::exp;
+use flexsc_numerics::phasor::{Complex, Phasor, abs, polar};
+use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_numerics::trig::sincos_any;
+use flexsc_numerics::{swing_damped, swing_integral};
+use flexsc_spacecraft::body::Mode;
+use flexsc_spacecraft::body::spatial::ThreeAxisMode;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::body::Mode;
-use crate::body::spatial::ThreeAxisMode;
-use crate::motion::AxisState;
-use crate::numerics::exp_branch_free::exp;
-use crate::numerics::phasor::{Complex, Phasor, abs, polar};
-use crate::numerics::trig::sincos_any;
-use crate::numerics::{swing_damped, swing_integral};
-use crate::quantity::Finite;
-use crate::time::{Instant, Span};
 
 /// An envelope monitor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,11 +1,12 @@
 //! The envelope monitor: its observer, its windows, and the adaptation that reads their means.
 
+use flexsc_dynamics::AxisState;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{self, ModeEnvelope, WindowMean};
+use flexsc_spacecraft::body::Planar;
+use flexsc_spacecraft::body::spatial::ThreeAxisMode;
+
 use super::{AdaptationRun, Envelope, EnvelopeMonitor};
-use crate::body::Planar;
-use crate::body::spatial::ThreeAxisMode;
-use crate::motion::AxisState;
-use crate::record::{self, ModeEnvelope, WindowMean};
-use crate::time::{Instant, Span};
 
 /// Run-time state of the envelope monitor: observer and windows.
 #[derive(Clone, Debug)]
@@ -27,7 +28,7 @@ pub struct EnvelopeWindow {
     /// Mean of the envelope over the window.
     pub mean: WindowMean,
     /// Step of the adaptation, with the parameter before it; `None` without a step.
-    pub step: Option<(record::Adaptation, f64)>,
+    pub step: Option<(flexsc_record::Adaptation, f64)>,
 }
 
 impl WindowedEnvelope {
@@ -112,8 +113,8 @@ impl WindowedEnvelope {
     }
 
     /// Returns the log row of the envelope at `now`.
-    pub fn envelope(&self, now: Instant) -> record::Envelope {
+    pub fn envelope(&self, now: Instant) -> flexsc_record::Envelope {
         let modes: Vec<_> = self.observer.at(now).map(|envelope_rad| ModeEnvelope { envelope_rad }).collect();
-        record::Envelope { envelope_rad: modes.iter().map(|mode| mode.envelope_rad).sum(), modes }
+        flexsc_record::Envelope { envelope_rad: modes.iter().map(|mode| mode.envelope_rad).sum(), modes }
     }
 }

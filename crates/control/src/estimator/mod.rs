@@ -17,19 +17,18 @@ use std::any::Any;
 use std::borrow::Cow;
 use std::fmt;
 
+use flexsc_dynamics::AxisState;
+use flexsc_numerics::quantity::{NonNegative, Positive};
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::{Drift, Mode, Planar};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::Actuator;
-use crate::body::{Drift, Mode, Planar};
 use crate::custom::{Custom, PartError};
-use crate::motion::AxisState;
-use crate::quantity::{NonNegative, Positive};
-use crate::random::Seed;
-use crate::record;
 use crate::sensor::{Orientation, Reading};
 use crate::state_estimate::{DampingStatus, EstimateNeeds, StateEstimate};
-use crate::time::{Instant, Span};
 
 pub use adaptation_run::AdaptationRun;
 pub use adaptive::Adaptive;
@@ -156,7 +155,12 @@ pub trait Estimator: fmt::Debug + Send + Sync {
     }
 
     /// Returns the filter's log row about `axis` after the last sample, with its error against the true motion.
-    fn estimate_row(&self, _axis: usize, _now: Instant, _truth: &AxisState) -> Option<record::Estimate> {
+    fn estimate_row(
+        &self,
+        _axis: usize,
+        _now: Instant,
+        _truth: &AxisState,
+    ) -> Option<flexsc_record::Estimate> {
         None
     }
 
@@ -167,12 +171,12 @@ pub trait Estimator: fmt::Debug + Send + Sync {
         _now: Instant,
         _truth: &Orientation,
         _bias: [f64; 3],
-    ) -> Option<record::AttitudeEstimate> {
+    ) -> Option<flexsc_record::AttitudeEstimate> {
         None
     }
 
     /// Returns the attitude filter's log row of the elastic modes; `None` if it does not estimate any.
-    fn elastic_row(&self) -> Option<record::ElasticEstimates> {
+    fn elastic_row(&self) -> Option<flexsc_record::ElasticEstimates> {
         None
     }
 
@@ -181,7 +185,7 @@ pub trait Estimator: fmt::Debug + Send + Sync {
         &self,
         _modal_rates: &dyn Fn() -> Vec<f64>,
         _damped: &dyn Fn() -> Vec<DampingStatus>,
-    ) -> Option<record::Tracking> {
+    ) -> Option<flexsc_record::Tracking> {
         None
     }
 

@@ -4,14 +4,14 @@
 //! the control cycles, like the metrics of these bodies; torques are constant between the instants at which the
 //! actuator acts.
 
+use flexsc_dynamics::MotionPiece;
+use flexsc_numerics::polynomial::Polynomial;
+use flexsc_numerics::quadrature;
+use flexsc_numerics::time::{Instant, Span};
+
 use super::adaptation_run::AdaptationRun;
 use crate::adaptation::Objective;
 use crate::law::Setpoint;
-use crate::motion::MotionPiece;
-use crate::numerics::polynomial::Polynomial;
-use crate::numerics::quadrature;
-use crate::record;
-use crate::time::{Instant, Span};
 
 /// Run-time state of the objective meter.
 #[derive(Clone, Debug)]
@@ -42,9 +42,9 @@ pub struct ObjectiveMeter {
 #[derive(Clone, Debug)]
 pub struct ObjectiveWindow {
     /// Log row with the value of the objective.
-    pub row: record::Objective,
+    pub row: flexsc_record::Objective,
     /// Step of the adaptation, with the parameter before it; `None` without a step.
-    pub step: Option<(record::Adaptation, f64)>,
+    pub step: Option<(flexsc_record::Adaptation, f64)>,
 }
 
 /// Motion of one axis over a piece of the trajectory, apart from its angle and torque.
@@ -171,7 +171,7 @@ impl ObjectiveMeter {
             }
             _ => self.sum / over,
         };
-        let row = record::Objective {
+        let row = flexsc_record::Objective {
             window: self.index,
             from_s: self.opened.seconds(),
             to_s: now.seconds(),

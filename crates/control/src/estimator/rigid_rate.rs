@@ -1,14 +1,14 @@
 //! Rigid rate estimator: predicted by the actuator's pulses and a steady torque, corrected slightly by the measured
 //! rates.
 
+use flexsc_numerics::quantity::{Finite, Fraction};
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AppliedPulses, Estimator, SampleContext};
-use crate::axes::PerAxis;
-use crate::quantity::{Finite, Fraction};
 use crate::state_estimate::StateEstimate;
-use crate::time::Instant;
 
 /// w^(n) = w^- + l (y - w^-), w^- = w^(n-1) + du + c^(n-1), c^(n) = c^(n-1) + l²/4 (y - w^-): for what is no pulse a low pass of
 /// T/l seconds, so that the elastic part of the measured rates is mostly left out. It is the observer of \[Timakov14\] with its

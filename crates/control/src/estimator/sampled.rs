@@ -1,13 +1,14 @@
 //! Estimators of single axes that act at each sample: ideal observers and Kalman filters.
 
+use flexsc_dynamics::AxisState;
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{self, ModeEstimate};
+use flexsc_spacecraft::body::Drift;
+
 use super::kalman::{FilterContext, Innovation, KalmanFilter, Prediction};
 use super::{EstimateOutputs, Estimator, EstimatorContext, EstimatorKind, SampleContext};
-use crate::body::Drift;
-use crate::motion::AxisState;
-use crate::random::Seed;
-use crate::record::{self, ModeEstimate};
 use crate::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
-use crate::time::Instant;
 
 /// The estimators of all axes.
 #[derive(Clone, Debug)]
@@ -82,7 +83,7 @@ impl Estimator for AxisEstimators {
         lost
     }
 
-    fn estimate_row(&self, axis: usize, now: Instant, truth: &AxisState) -> Option<record::Estimate> {
+    fn estimate_row(&self, axis: usize, now: Instant, truth: &AxisState) -> Option<flexsc_record::Estimate> {
         self.0[axis].row(now.seconds(), truth)
     }
 
@@ -246,7 +247,7 @@ impl AxisEstimator {
     }
 
     /// Returns the filter's log row at time `t` (s).
-    fn row(&self, t: f64, state: &AxisState) -> Option<record::Estimate> {
+    fn row(&self, t: f64, state: &AxisState) -> Option<flexsc_record::Estimate> {
         let AxisMethod::Filter(filter) = &self.eye else { return None };
         let reported = self.told;
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
@@ -270,7 +271,7 @@ impl AxisEstimator {
         });
         let [states, measurements] = filter.dimensions();
         let nees = if borrowed { filter.lane_nees() } else { filter.nees(&self.truth(t, state, filter)) };
-        Some(record::Estimate {
+        Some(flexsc_record::Estimate {
             dominant: mode as u64,
             frequency_rad_s: filter.dominant().frequency,
             frequency_sd_rad_s: filter.frequency(mode).1,

@@ -3,13 +3,13 @@
 //! In \[Timakov14\] (pages 37 and 48) a relay on the estimated elastic rate acts in the dead zone of the attitude law.
 //! Threshold, hysteresis and guards are our design.
 
+use flexsc_numerics::delay_margin::delay_margin;
+use flexsc_numerics::quantity::{Fraction, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Authority;
 use crate::actuator::PulseTiming;
-use crate::numerics::delay_margin::delay_margin;
-use crate::quantity::{Fraction, Positive};
 use crate::state_estimate::{DampingStatus, ElasticRateEstimate, StateEstimate};
 
 /// Smallest phase factor at which a delayed pulse is worth its propellant.

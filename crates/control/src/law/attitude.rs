@@ -4,6 +4,11 @@
 //! integral of e, applies its filters, and adds the reference's acceleration. The accelerations about three axes are
 //! converted to one torque by the full inertia (\[Wie08\], quaternion feedback).
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{asymmetry, tensor};
+use flexsc_numerics::biquad::Biquad;
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,12 +17,7 @@ use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
     Law, LawSpec, Phase, Setpoint, Tunable,
 };
-use crate::attitude::{asymmetry, tensor};
-use crate::document::ConfigError;
-use crate::numerics::biquad::Biquad;
-use crate::quantity::{Finite, Positive};
 use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
 
 /// The attitude law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -249,7 +249,7 @@ mod tests {
 
     fn start(keys: &str, most: f64) -> Box<dyn Law> {
         let text = format!("period = {PERIOD}\nbandwidth = 0.1\ndamping = 0.8\n{keys}");
-        let law: AttitudeLaw = crate::document::from_text(&text).unwrap();
+        let law: AttitudeLaw = flexsc_formats::document::from_text(&text).unwrap();
         assert_eq!(law.inconsistency(), None);
         let width = PulseWidth::default();
         law.start(&Authority { axis: 0, accelerations: [most; 2], width, delay: 0.0, threshold: 0.0 })
@@ -285,7 +285,7 @@ mod tests {
     fn what_the_reference_accelerates_passes_the_filters_by() {
         let mut law = start("filters = [{ notch = { frequency = 1.1475, depth = 0.05 } }]", f64::INFINITY);
         assert_eq!(command(&mut *law, 0.0, 0.0, 2e-4), 2e-4);
-        let biquad = crate::document::from_text::<AttitudeLaw>(
+        let biquad = flexsc_formats::document::from_text::<AttitudeLaw>(
             "period = 0.25\nbandwidth = 0.1\nfilters = [{ low_pass = { frequency = 20.0 } }]",
         );
         let fault = biquad.unwrap().inconsistency().unwrap();

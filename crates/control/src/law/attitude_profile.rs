@@ -1,14 +1,14 @@
 //! Attitude profile from target to target: steps, slews with limits, or tables, relative to frames that may rotate.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::body::Mode;
+use flexsc_spacecraft::environment::OrbitEnvironment;
+use flexsc_spacecraft::manoeuvre::{AttitudeMotion, AttitudeTable, PlannedSlew, Slew, SlewProfile};
 use nalgebra::Quaternion;
 
 use super::{AttitudeTarget, Frame};
-use crate::body::Mode;
-use crate::document::ConfigError;
-use crate::environment::OrbitEnvironment;
-use crate::manoeuvre::{AttitudeMotion, AttitudeTable, PlannedSlew, Slew, SlewProfile};
-use crate::quantity::Positive;
-use crate::time::Instant;
 
 /// Attitude profile through targets, in the order of their times.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -252,15 +252,15 @@ impl AttitudeTarget {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::attitude::Vector;
-    use crate::time::Span;
+    use flexsc_numerics::attitude::Vector;
+    use flexsc_numerics::time::Span;
 
     fn targets(text: &str) -> Vec<AttitudeTarget> {
         #[derive(serde::Deserialize)]
         struct Of {
             target: Vec<AttitudeTarget>,
         }
-        crate::document::from_text::<Of>(text).unwrap().target
+        flexsc_formats::document::from_text::<Of>(text).unwrap().target
     }
 
     fn at(seconds: f64) -> Instant {
@@ -275,7 +275,7 @@ mod tests {
         let sky = OrbitEnvironment::default();
         assert_eq!(AttitudeProfile::validate(&two, &sky, &[]), None);
         let way = AttitudeProfile::new(&two, &sky, &[]);
-        let yaw = |seconds: f64| crate::attitude::angles(&way.at(at(seconds)).attitude)[2];
+        let yaw = |seconds: f64| flexsc_numerics::attitude::angles(&way.at(at(seconds)).attitude)[2];
         // The rate is 0.02 rad/s after 10 s; 0.4 rad take 30 s.
         for (seconds, exact) in
             [(9.0, 0.0), (10.0, 0.5), (20.0, 0.5), (30.0, 0.6), (35.0, 0.7), (50.0, 0.9), (90.0, 0.9)]
@@ -309,7 +309,7 @@ mod tests {
 
     #[test]
     fn a_target_of_the_orbit_turns_with_it_and_is_reached_from_where_the_body_was() {
-        let environment = crate::document::from_text(
+        let environment = flexsc_formats::document::from_text(
             "orbit = { semi_major_axis = 8e6, eccentricity = 0.1, inclination = 1.2 }\nsun = [1, 2, 3]",
         );
         let sky = OrbitEnvironment::new(&environment.unwrap(), Span::from_seconds(1e4), None);

@@ -4,6 +4,8 @@
 //! -k (dB/dt) x B, which is -k B² times the part of w perpendicular to the field. Each axis needs only its own
 //! component of the field, as a magnetometer measures it.
 
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -11,9 +13,7 @@ use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, Phase, Setpoint,
     Tunable,
 };
-use crate::quantity::Positive;
 use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
 
 /// The B-dot law.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,10 +1,11 @@
 //! Run-time state of the laws of a run, one about each axis, with their current outputs.
 
+use flexsc_dynamics::guard::Guard;
+use flexsc_numerics::time::Instant;
+
 use super::{Authority, Command, ControlOutput, DampingStatus, DecisionCause, Law, LawKind, Phase, Setpoint};
 use crate::custom::PartError;
-use crate::guard::Guard;
 use crate::state_estimate::StateEstimate;
-use crate::time::Instant;
 
 /// Run-time state of the laws of all axes.
 #[derive(Clone, Debug)]

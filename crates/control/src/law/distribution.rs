@@ -1,10 +1,10 @@
 //! Conversion of the laws' commands to demands on the actuator: accelerations become torques J a + w x (J w + h).
 
+use flexsc_numerics::attitude::Vector;
 use nalgebra::Matrix3;
 
 use super::Command;
 use crate::actuator::Demand;
-use crate::attitude::Vector;
 use crate::state_estimate::StateEstimate;
 
 /// Distribution of commands to demands, with the inertia in the model.

@@ -1,12 +1,12 @@
 //! Filters of a law's output: settings in a scenario, and the digital filters at the law's period.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::biquad::Biquad;
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Tunable;
-use crate::document::ConfigError;
-use crate::numerics::biquad::Biquad;
-use crate::quantity::{Finite, NonNegative, Positive};
 
 /// The kinds of filter.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -160,7 +160,7 @@ mod tests {
     use super::*;
 
     fn filter(text: &str) -> Filter {
-        crate::document::from_text(text).unwrap()
+        flexsc_formats::document::from_text(text).unwrap()
     }
 
     fn close(found: [f64; 2], exact: [f64; 2], within: f64) {

@@ -1,14 +1,13 @@
 //! Reference frames of target attitudes: inertial, local orbital, or Sun-pointing.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::attitude::from_axes;
+use flexsc_spacecraft::environment::OrbitEnvironment;
+use flexsc_spacecraft::manoeuvre::AttitudeMotion;
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::Vector;
-use crate::attitude::from_axes;
-use crate::document::ConfigError;
-use crate::environment::OrbitEnvironment;
-use crate::manoeuvre::AttitudeMotion;
 
 /// Frame relative to which a target's attitude is given.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -26,19 +26,19 @@ use std::any::Any;
 use std::fmt;
 use std::ops::Deref;
 
+use flexsc_dynamics::guard::Guard;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::PulseWidth;
 use crate::custom::{Custom, PartError};
-use crate::document::ConfigError;
-use crate::guard::Guard;
-use crate::quantity::Finite;
 pub use crate::state_estimate::EstimateNeeds;
-use crate::state_estimate::{DampingStatus, StateEstimate};
-use crate::time::{Instant, Span};
+use flexsc_numerics::time::{Instant, Span};
 
-pub use crate::record::Phase;
+use crate::state_estimate::{DampingStatus, StateEstimate};
+
 pub use active_damping::{ActiveDamping, ActiveDampingState, DampingGuards};
 pub use attitude::{AttitudeLaw, Integral};
 pub use attitude_profile::AttitudeProfile;
@@ -47,6 +47,7 @@ pub use controllers::{Controllers, Event};
 pub use distribution::TorqueDistribution;
 pub use error_measure::AttitudeErrorMeasure;
 pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
+pub use flexsc_record::Phase;
 pub use frame::Frame;
 pub use open_loop::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};

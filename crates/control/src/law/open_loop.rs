@@ -1,11 +1,11 @@
 //! The open loop: no feedback, so that only the manoeuvre and the disturbances drive the body.
 
+use flexsc_numerics::time::Instant;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Authority, ControlOutput, DecisionCause, EstimateNeeds, Law, LawSpec, Phase, Setpoint};
 use crate::state_estimate::StateEstimate;
-use crate::time::Instant;
 
 /// Open loop.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,6 +3,8 @@
 //! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the
 //! dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
 
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -10,9 +12,7 @@ use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
     Law, LawSpec, Phase, Setpoint, Tunable, TunedNumbers,
 };
-use crate::quantity::{Finite, NonNegative, Positive};
 use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
 
 /// The PD law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,10 +1,10 @@
 //! Separate laws about three axes.
 
+use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Authority, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, Tunable};
-use crate::time::Span;
 
 /// A law of one angle for each of three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

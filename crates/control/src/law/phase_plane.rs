@@ -7,6 +7,11 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::from_yaw_pitch_roll;
+use flexsc_numerics::quantity::{Finite, Fraction, Positive, Time};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::manoeuvre::{AttitudeRow, ManoeuvreCommand as Planned, Shaper, SlewProfile};
 use schemars::JsonSchema;
 use serde::de::Error as _;
 use serde::{Deserialize, Deserializer, Serialize};
@@ -16,12 +21,7 @@ use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, Phase,
     Setpoint, SwitchingLines, Tunable,
 };
-use crate::attitude::from_yaw_pitch_roll;
-use crate::document::ConfigError;
-use crate::manoeuvre::{AttitudeRow, ManoeuvreCommand as Planned, Shaper, SlewProfile};
-use crate::quantity::{Finite, Fraction, Positive, Time};
 use crate::state_estimate::{DampingStatus, StateEstimate};
-use crate::time::{Instant, Span};
 
 /// The phase-plane law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

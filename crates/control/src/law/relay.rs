@@ -5,6 +5,9 @@
 //! motion that is left, until a boundary is reached again. As printed, equation (2) cannot be executed: the
 //! brake's condition has the wrong sign, and its OR and AND clauses are a state machine's memory.
 
+use flexsc_dynamics::guard::Guard;
+use flexsc_numerics::quantity::{Fraction, NonNegative, Positive};
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -12,10 +15,7 @@ use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, Phase, Setpoint,
     Tunable, TunedNumbers,
 };
-use crate::guard::Guard;
-use crate::quantity::{Fraction, NonNegative, Positive};
 use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
 
 /// The relay law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,12 +1,12 @@
 //! The slew to a target that leaves modes at rest: a command planned for them, or a slew with limits through a shaper.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
+use flexsc_spacecraft::body::Mode;
+use flexsc_spacecraft::manoeuvre::{PlannedSlew, RestToRestTask, Slew, SlewProfile, convolve};
 use nalgebra::Quaternion;
 
 use super::AttitudeTarget;
-use crate::body::Mode;
-use crate::document::ConfigError;
-use crate::manoeuvre::{PlannedSlew, RestToRestTask, Slew, SlewProfile, convolve};
-use crate::quantity::Positive;
 
 impl AttitudeTarget {
     /// Returns true if the slew to the target is planned or shaped for modes.
@@ -70,9 +70,9 @@ impl AttitudeTarget {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::attitude::Vector;
-    use crate::attitude::rotation;
-    use crate::quantity::{Finite, Frequency, NonNegative};
+    use flexsc_numerics::attitude::Vector;
+    use flexsc_numerics::attitude::rotation;
+    use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
     fn modes() -> Vec<Mode> {
         let mode = |frequency: f64, damping: f64| {

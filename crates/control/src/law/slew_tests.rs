@@ -1,20 +1,20 @@
 //! Test of a 60 degree slew by law, allocation and wheels on a flexible spacecraft, against a second code:
 //! tests/golden/turning/d.csv without friction, e.csv with friction.
 
+use flexsc_dynamics::three_axis::{
+    Bearing, FlexibleBody, FreeMode, SegmentLoads, SlipDirection, ThreeAxisMotion,
+};
+use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::manoeuvre::{Slew, SlewProfile};
+use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{DMatrix, Matrix3, Quaternion};
 
 use super::{
     AttitudeLaw, AttitudeProfile, Authority, DecisionCause, Law, LawSpec, Setpoint, TorqueDistribution,
 };
 use crate::actuator::{Actuator, AxisActuatorContext, PulseWidth, Wheels, WheelsState};
-use crate::attitude::{Vector, rotation, rotation_vector};
-use crate::manoeuvre::{Slew, SlewProfile};
-use crate::motion::three_axis::{
-    Bearing, FlexibleBody, FreeMode, SegmentLoads, SlipDirection, ThreeAxisMotion,
-};
 use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 const MODES: &str = include_str!("../../../../tests/golden/turning/modes.csv");
 /// Columns: t, attitude, rate, wheel speeds, angle relative to the reference.
@@ -44,7 +44,7 @@ fn craft() -> FlexibleBody {
 }
 
 fn wheels(speed: f64) -> WheelsState {
-    let wheels: Wheels = crate::document::from_text(&format!(
+    let wheels: Wheels = flexsc_formats::document::from_text(&format!(
         "arrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = 0.04\ntorque = 0.4\nspeed_limit = 600.0\n\
          speeds = [{speed}, -{speed}, {speed}, -{speed}]"
     ))
@@ -95,7 +95,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
     let to = rotation(&(Vector::new(1.0, 2.0, 2.0) * (std::f64::consts::FRAC_PI_3 / 3.0)));
     let slew = Slew::new([Quaternion::identity(), to], 2e-4, 8e-3, SlewProfile::Trapezoid);
     let law: AttitudeLaw =
-        crate::document::from_text("period = 0.25\nbandwidth = 0.1\ndamping = 0.8").unwrap();
+        flexsc_formats::document::from_text("period = 0.25\nbandwidth = 0.1\ndamping = 0.8").unwrap();
     let authority = Authority {
         axis: 0,
         accelerations: [f64::INFINITY; 2],
@@ -177,7 +177,8 @@ fn go(turning: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
 fn a_reference_is_seen_in_the_axes_of_the_body() {
     // The rate about x appears about -y on a body a quarter turn about z from it.
     let pose = Slew::instantaneous(Quaternion::identity()).at(0.0);
-    let pose = crate::manoeuvre::AttitudeMotion { rate: Vector::x(), acceleration: Vector::z(), ..pose };
+    let pose =
+        flexsc_spacecraft::manoeuvre::AttitudeMotion { rate: Vector::x(), acceleration: Vector::z(), ..pose };
     let by = Vector::new(0.0, 0.0, std::f64::consts::FRAC_PI_2);
     let [rate, acceleration] = pose.in_body_axes(&by);
     assert!((rate + Vector::y()).norm() < 1e-15 && (acceleration - Vector::z()).norm() < 1e-15);

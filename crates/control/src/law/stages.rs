@@ -1,5 +1,8 @@
 //! Sequence of laws, each from a given time on.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Time;
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -7,10 +10,7 @@ use super::{
     Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, Phase,
     Setpoint, Tunable,
 };
-use crate::document::ConfigError;
-use crate::quantity::Time;
 use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
 
 /// Laws that act one after another.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -182,7 +182,7 @@ mod tests {
         struct Of {
             stages: Stages,
         }
-        crate::document::from_text::<Of>(text).unwrap().stages
+        flexsc_formats::document::from_text::<Of>(text).unwrap().stages
     }
 
     #[test]

@@ -4,6 +4,11 @@
 //! = \[\[k_p, k_d\]\]. Matrices in continuous time are discretised exactly, with the error held over a period, or by
 //! Tustin's rule (\[FranklinPowell98\]).
 
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::exponential::exponential;
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::time::{Instant, Span};
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -12,12 +17,7 @@ use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec, Phase,
     Setpoint, Tunable,
 };
-use crate::count::counted;
-use crate::document::ConfigError;
-use crate::numerics::exponential::exponential;
-use crate::quantity::{Finite, Positive};
 use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
 
 /// Largest number of states.
 const MOST: usize = 64;

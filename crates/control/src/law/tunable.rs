@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 use std::ops::{Bound, RangeBounds};
 
-use crate::quantity::{Fraction, NonNegative, Positive};
+use flexsc_numerics::quantity::{Fraction, NonNegative, Positive};
 
 /// Parameter of a law that may be tuned.
 #[derive(Clone, Debug, PartialEq)]

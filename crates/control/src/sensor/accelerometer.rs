@@ -3,16 +3,16 @@
 
 use std::collections::VecDeque;
 
+use flexsc_formats::document;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, NonNegative, Time};
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{SensorFailure, stream};
-use crate::attitude::Vector;
-use crate::axes::PerAxis;
-use crate::document;
-use crate::quantity::{Finite, NonNegative, Time};
-use crate::random::{Seed, Stream};
-use crate::time::{Instant, Span};
 
 /// An accelerometer on a `[spacecraft]` in free fall. It measures the acceleration of its mounting point due to forces,
 /// rotation and vibration.
@@ -81,7 +81,7 @@ impl Accelerometer {
         if self.along.is_empty() {
             return vec![Vector::x(), Vector::y(), Vector::z()];
         }
-        self.along.iter().map(|along| crate::attitude::vector(along).normalize()).collect()
+        self.along.iter().map(|along| flexsc_numerics::attitude::vector(along).normalize()).collect()
     }
 
     /// Creates the accelerometer's run-time state; `ordinal` counts earlier accelerometers.

@@ -2,9 +2,10 @@
 
 use std::any::Any;
 
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::Span;
+
 use super::Sensor;
-use crate::random::Seed;
-use crate::time::Span;
 
 /// Settings of a sensor that another crate provides.
 pub trait SensorSpec: Send + Sync {

@@ -1,11 +1,11 @@
 //! Exposures of a star tracker, and the mean attitude over them.
 
+use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::time::Span;
 use nalgebra::Quaternion;
 
 use super::SensorKind;
-use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::one_or_many::OneOrMany;
-use crate::time::Span;
 
 /// Attitudes at instants of an exposure, each with its weight.
 #[derive(Clone, Debug, Default)]
@@ -58,7 +58,7 @@ impl OneOrMany<SensorKind> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::numerics::quadrature::nodes;
+    use flexsc_numerics::quadrature::nodes;
 
     /// Returns the mean over pieces between these instants, relative to the attitude at 0, for rotations up to 40
     /// rad/s.

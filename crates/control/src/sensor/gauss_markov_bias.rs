@@ -4,9 +4,10 @@
 //! its mean over D, given both ends, is (b + b') tanh(z)/2z, and normal about that with the variance s² (z - tanh z)/z²
 //! with z = D/2T. Both are exact, and approach those of a random walk for short D.
 
+use flexsc_numerics::random::Stream;
+use flexsc_numerics::time::Instant;
+
 use super::Gyro;
-use crate::random::Stream;
-use crate::time::Instant;
 
 /// Correlated part of a gyro's bias.
 #[derive(Clone, Debug, Default)]
@@ -74,15 +75,15 @@ fn beyond_tanh(x: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Seed;
-    use crate::time::Span;
+    use flexsc_numerics::random::Seed;
+    use flexsc_numerics::time::Span;
 
     #[test]
     fn a_wandering_bias_has_the_variances_of_its_process() {
         // Means over D of the stationary process have the variance 2 s² (T/D)² (D/T - 1 + e^(-D/T)).
         for (period, time) in [(0.25, 20.0), (1.0, 2.0), (5.0, 1.0)] {
             let keys = format!("bias_instability = 3e-5\ncorrelation_time = {time}");
-            let gyro: Gyro = crate::document::from_text(&keys).unwrap();
+            let gyro: Gyro = flexsc_formats::document::from_text(&keys).unwrap();
             let mut noise = Seed { scenario: 3, run: 1 }.stream("wander");
             let (mut wander, count) = (GaussMarkovBias::default(), 400_000);
             let (mut ends, mut means, mut products) = (0.0, 0.0, 0.0);

@@ -2,6 +2,11 @@
 
 use std::collections::VecDeque;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -9,12 +14,7 @@ use super::gauss_markov_bias::GaussMarkovBias;
 use super::latency_queue::with_failures;
 use super::rate_integrator::{self, RateIntegrator};
 use super::{Reading, Sensor, Truth, stream};
-use crate::axes::PerAxis;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Positive, Time};
-use crate::random::{Seed, Stream};
 use crate::sensor;
-use crate::time::{Instant, Span};
 
 /// A gyro. A gyro that samples the rate is read once per cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
 /// rounded (\[Timakov14\]). A gyro with a random walk integrates: its output is the mean rate over each of its periods.

@@ -1,7 +1,8 @@
 //! Ideal sensor: the exact motion.
 
+use flexsc_numerics::time::Instant;
+
 use super::{Reading, Sensor, Truth};
-use crate::time::Instant;
 
 /// Ideal sensor of orientation and rates, at every instant.
 #[derive(Copy, Clone, Debug)]

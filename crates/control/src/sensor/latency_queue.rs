@@ -2,8 +2,9 @@
 
 use std::collections::VecDeque;
 
+use flexsc_numerics::time::{Instant, Span};
+
 use super::{Orientation, Reading, SensorFailure};
-use crate::time::{Instant, Span};
 
 /// Readings delayed by the sensor's latency.
 #[derive(Clone, Debug)]

@@ -1,18 +1,18 @@
 //! A magnetometer: the magnetic field along the body's axes.
 
+use flexsc_formats::document;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, NonNegative, Time};
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::Span;
+use flexsc_spacecraft::axes::PerAxis;
+use flexsc_spacecraft::environment::EnvironmentObservation;
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
 use super::{Sensor, SensorFailure};
-use crate::attitude::Vector;
-use crate::axes::PerAxis;
-use crate::document;
-use crate::environment::EnvironmentObservation;
-use crate::quantity::{Finite, NonNegative, Time};
-use crate::random::Seed;
-use crate::time::Span;
 
 /// A magnetometer on a body with three axes. The body's own magnetorquers do not disturb it.
 ///

@@ -17,18 +17,18 @@ mod vector;
 
 use std::fmt;
 
+use flexsc_formats::document;
+use flexsc_numerics::attitude::{AXES, Vector, rotation, rotation_vector};
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::environment::EnvironmentObservation;
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{AXES, Vector, rotation, rotation_vector};
 use crate::custom::{Custom, PartError};
-use crate::document;
-use crate::environment::EnvironmentObservation;
 use crate::one_or_many::OneOrMany;
-use crate::quantity::Positive;
-use crate::random::{Seed, Stream};
-use crate::time::{Instant, Span};
 
 pub use accelerometer::{Accelerometer, AccelerometerState, MeasuredAcceleration};
 pub use custom_sensor::SensorSpec;

@@ -4,10 +4,11 @@
 //! has the variance s_v²/D + s_u² D/12. That is the exact integral of b' = n_u and y = w + b + n_v over D, with white
 //! n_v and n_u of the densities s_v² and s_u² (\[LeffertsMarkleyShuster82\]).
 
+use flexsc_numerics::random::Stream;
+use flexsc_numerics::time::Instant;
+
 use super::gauss_markov_bias::GaussMarkovBias;
 use super::{Gyro, Truth};
-use crate::random::Stream;
-use crate::time::Instant;
 
 /// Run-time state of the rate integrator.
 #[derive(Clone, Debug)]
@@ -110,14 +111,14 @@ impl RateIntegrator {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Seed;
     use crate::sensor::{Orientation, Sensor};
-    use crate::time::Span;
+    use flexsc_numerics::random::Seed;
+    use flexsc_numerics::time::Span;
 
     const PERIOD: f64 = 0.25;
 
     fn readings(keys: &str, count: usize, rate: [f64; 3]) -> (Vec<[f64; 3]>, Vec<[f64; 3]>) {
-        let gyro: Gyro = crate::document::from_text(&format!("period = {PERIOD}\n{keys}")).unwrap();
+        let gyro: Gyro = flexsc_formats::document::from_text(&format!("period = {PERIOD}\n{keys}")).unwrap();
         assert_eq!(gyro.inconsistency(), None);
         let mut gyro = gyro.start(3, Seed { scenario: 5, run: 0 }, 0);
         let (mut told, mut biases) = (Vec::new(), Vec::new());
@@ -129,7 +130,7 @@ mod tests {
                 rate,
                 rigid: rate,
                 turned: rate.map(|rate| rate * t),
-                sky: crate::environment::EnvironmentObservation::default(),
+                sky: flexsc_spacecraft::environment::EnvironmentObservation::default(),
             };
             let now = Instant::START + Span::from_seconds(t);
             told.push(gyro.read(now, &truth, None).unwrap().rate.unwrap());
@@ -182,7 +183,7 @@ mod tests {
             assert!((found - exact).abs() < 1e-11, "{found} {exact}");
         }
         let refused = |keys: &str| {
-            let gyro: Gyro = crate::document::from_text(keys).unwrap();
+            let gyro: Gyro = flexsc_formats::document::from_text(keys).unwrap();
             gyro.inconsistency().unwrap().to_string()
         };
         assert!(

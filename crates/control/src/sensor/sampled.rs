@@ -1,15 +1,15 @@
 //! A sampled sensor of the angle, or of a three-axis attitude: noise, bias, resolution, faults, and an optional rate
 //! gyro.
 
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::latency_queue::with_failures;
 use super::{Reading, Sensor, Truth, stream};
 use crate::interval::Interval;
-use crate::quantity::{Finite, NonNegative, Positive};
-use crate::random::{Seed, Stream};
-use crate::time::{Instant, Span};
 
 /// A sampled angle sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

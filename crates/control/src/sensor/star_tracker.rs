@@ -1,16 +1,16 @@
 //! A star tracker: the attitude at its exposures or the mean over each, with noise in its own axes and a latency.
 
+use flexsc_formats::document;
+use flexsc_numerics::attitude::{Attitude, Vector, rotation};
+use flexsc_numerics::quantity::{NonNegative, Positive, Time};
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::latency_queue::{LatencyQueue, with_failures};
 use super::{ExposureMean, Orientation, Reading, Sensor, SensorFailure, Truth, stream};
-use crate::attitude::{Attitude, Vector, rotation};
-use crate::document;
-use crate::quantity::{NonNegative, Positive, Time};
-use crate::random::{Seed, Stream};
-use crate::time::{Instant, Span};
 
 /// A star tracker on a body with three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -185,12 +185,13 @@ mod tests {
 
     fn truth(attitude: Quaternion<f64>, elastic: [f64; 3], rate: [f64; 3]) -> Truth {
         let orientation = Orientation::Attitude(attitude);
-        let sky = crate::environment::EnvironmentObservation::default();
+        let sky = flexsc_spacecraft::environment::EnvironmentObservation::default();
         Truth { orientation, elastic, rate, rigid: rate, turned: [0.0; 3], sky }
     }
 
     fn start(keys: &str) -> StarTrackerState {
-        let tracker: StarTracker = crate::document::from_text(&format!("period = 1.0\n{keys}")).unwrap();
+        let tracker: StarTracker =
+            flexsc_formats::document::from_text(&format!("period = 1.0\n{keys}")).unwrap();
         tracker.start(Seed { scenario: 3, run: 0 }, 0)
     }
 
@@ -251,7 +252,7 @@ mod tests {
                 assert_eq!(one.is_some(), other.is_some());
                 if let (Some(one), Some(other)) = (one, other) {
                     // Both have the same noise; only the mean over the exposure differs, except at the start.
-                    let by = crate::attitude::rotation_vector(&attitude(other), &attitude(one));
+                    let by = flexsc_numerics::attitude::rotation_vector(&attitude(other), &attitude(one));
                     let exact = if now == Instant::START { Vector::zeros() } else { smear };
                     assert!((by - exact).norm() < 1e-8, "{by}");
                     told += 1;
@@ -292,7 +293,7 @@ mod tests {
         for k in 0..count {
             let now = Instant::START + Span::from_seconds(f64::from(k));
             let seen = attitude(tracker.read(now, &truth(at, elastic, [0.0; 3]), None).unwrap());
-            let error = crate::attitude::rotation_vector(&(at * rotation(&elastic.into())), &seen);
+            let error = flexsc_numerics::attitude::rotation_vector(&(at * rotation(&elastic.into())), &seen);
             sums += error * error.transpose() / f64::from(count);
         }
         let exact = tracker.tracker.covariance([1e-5, 2e-5, 1e-3]);

@@ -1,18 +1,18 @@
 //! A Sun sensor: the direction to the Sun in the body's axes, if it is visible and within the field of view.
 
+use flexsc_formats::document;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, NonNegative, Time};
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::Span;
+use flexsc_spacecraft::axes::PerAxis;
+use flexsc_spacecraft::environment::EnvironmentObservation;
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
 use super::{Sensor, SensorFailure};
-use crate::attitude::{Vector, vector};
-use crate::axes::PerAxis;
-use crate::document;
-use crate::environment::EnvironmentObservation;
-use crate::quantity::{Finite, NonNegative, Time};
-use crate::random::Seed;
-use crate::time::Span;
 
 /// A Sun sensor on a body with three axes. It measures the direction to the Sun as a unit vector.
 ///
@@ -124,9 +124,9 @@ mod tests {
     use nalgebra::Quaternion;
 
     use super::*;
-    use crate::attitude::rotation;
     use crate::sensor::{Orientation, Truth};
-    use crate::time::Instant;
+    use flexsc_numerics::attitude::rotation;
+    use flexsc_numerics::time::Instant;
 
     fn truth(attitude: Quaternion<f64>, sun: Option<Vector>) -> Truth {
         let sky = EnvironmentObservation { field: Some(Vector::new(2e-5, -1e-5, 3e-5)), sun };
@@ -137,7 +137,8 @@ mod tests {
     #[test]
     fn it_sees_the_sun_within_its_field_of_view_alone() {
         let sensor: SunSensor =
-            crate::document::from_text("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5").unwrap();
+            flexsc_formats::document::from_text("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5")
+                .unwrap();
         let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
         let mut seen = |t: f64, turned: f64, sun: Option<Vector>| {
             let now = Instant::START + Span::from_seconds(t);
@@ -158,7 +159,7 @@ mod tests {
 
     #[test]
     fn noise_is_across_and_errors_are_those_that_are_asked_for() {
-        let sensor: SunSensor = crate::document::from_text("period = 1.0\nnoise = 1e-3").unwrap();
+        let sensor: SunSensor = flexsc_formats::document::from_text("period = 1.0\nnoise = 1e-3").unwrap();
         let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
         let count = 20_000;
         let mut squares = Vector::zeros();
@@ -171,7 +172,7 @@ mod tests {
         }
         // Three standard errors: 3 sqrt(2/n).
         assert!((squares.x / 1e-6 - 1.0).abs() < 0.03 && (squares.y / 1e-6 - 1.0).abs() < 0.03, "{squares}");
-        let magnetometer: crate::sensor::Magnetometer = crate::document::from_text(
+        let magnetometer: crate::sensor::Magnetometer = flexsc_formats::document::from_text(
             "period = 1.0\nlatency = 0.5\nbias = [1e-6, 0, 0]\nscale = 0.01\nmisalignment = [[0, 0, 0], [0.1, 0, 0], [0, 0, 0]]\n\
              resolution = [0, 0, 7e-6]\nfaults = [{ stuck = { from = 2.0, to = 3.0 } }, { silent = { from = 3.0 } }]",
         )

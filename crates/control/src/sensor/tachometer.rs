@@ -3,13 +3,13 @@
 use std::f64::consts::TAU;
 use std::num::NonZeroU32;
 
+use flexsc_numerics::quantity::NonNegative;
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Reading, Sensor, SensorFailure, Truth};
-use crate::quantity::NonNegative;
-use crate::random::{Seed, Stream};
-use crate::time::{Instant, Span};
 
 /// Tachometers, one on each wheel of `[actuator.wheels]`.
 ///
@@ -112,7 +112,7 @@ mod tests {
     use super::*;
 
     fn start(keys: &str) -> TachometerState {
-        let spec: Tachometer = crate::document::from_text(&format!("period = 0.1\n{keys}")).unwrap();
+        let spec: Tachometer = flexsc_formats::document::from_text(&format!("period = 0.1\n{keys}")).unwrap();
         spec.start(vec![10.0], Seed { scenario: 1, run: 0 })
     }
 

@@ -2,17 +2,17 @@
 
 use std::fmt;
 
+use flexsc_formats::document;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, NonNegative};
+use flexsc_numerics::random::{Seed, Stream};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::axes::PerAxis;
+use flexsc_spacecraft::environment::{EnvironmentObservation, to_body};
 use nalgebra::Matrix3;
 
 use super::latency_queue::{LatencyQueue, with_failures};
 use super::{Orientation, Reading, Sensor, SensorFailure, Truth, VectorMeasurement, stream};
-use crate::attitude::Vector;
-use crate::axes::PerAxis;
-use crate::document;
-use crate::environment::{EnvironmentObservation, to_body};
-use crate::quantity::{Finite, NonNegative};
-use crate::random::{Seed, Stream};
-use crate::time::{Instant, Span};
 
 /// Errors of a vector measurement in the sensor's axes: y = M v + bias + noise, then rounded.
 #[derive(Copy, Clone, Debug)]

@@ -5,15 +5,15 @@
 //! has noise and a resolution. The initial estimates have relative errors: each natural frequency by `off[0]`, up or
 //! down, and each influence by `off[1]`.
 
+use flexsc_control::estimator::adaptive::{
+    AdaptiveObserver, Gradient, ModeVector, OscillatorModel, Pulse, Tracker, bounds,
+};
+use flexsc_numerics::quantity::{Finite, Frequency};
+use flexsc_numerics::random::{Seed, Stream};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::damping::Excitation;
-use crate::estimator::adaptive::{
-    AdaptiveObserver, Gradient, ModeVector, OscillatorModel, Pulse, Tracker, bounds,
-};
-use crate::quantity::{Finite, Frequency};
-use crate::random::{Seed, Stream};
 use crate::scenario::Cost;
 
 /// Cycle of the station's computer (s).

@@ -5,14 +5,13 @@
 //! The time of a guard crossing changes so that the angle stays on the guard's level; a brake lasts k_t times the push
 //! before it, so its duration changes k_t times as much.
 
+use flexsc_control::law::Phase;
+use flexsc_dynamics::{self, AxisState};
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Command, Record, RecordError, Sample, Trigger};
+use flexsc_spacecraft::body::Planar;
+use flexsc_spacecraft::flow::{SegmentInput, UncoupledSegment};
 use nalgebra::{DMatrix, RowDVector, Schur};
-
-use crate::body::Planar;
-use crate::flow::{SegmentInput, UncoupledSegment};
-use crate::law::Phase;
-use crate::motion::{self, AxisState};
-use crate::record::{Command, Record, RecordError, Sample, Trigger};
-use crate::time::Instant;
 
 /// Largest number of pushes per cycle that the detector considers.
 const LONGEST: usize = 16;
@@ -132,7 +131,7 @@ impl LimitCycleDetector {
     fn switching(&self, index: usize) -> Switching {
         let (place, size) = (self.place(index), self.states.len() / self.kept.len());
         let numbers = &self.states[size * place..][..size];
-        let mode = |pair: &[f64]| motion::ModeState { displacement: pair[0], quadrature: pair[1] };
+        let mode = |pair: &[f64]| flexsc_dynamics::ModeState { displacement: pair[0], quadrature: pair[1] };
         Switching {
             of: self.kept[place],
             state: AxisState {
@@ -219,7 +218,7 @@ fn symmetric(one: &[Switching]) -> bool {
             .state
             .modes
             .iter()
-            .map(|m| motion::ModeState { displacement: -m.displacement, quadrature: -m.quadrature })
+            .map(|m| flexsc_dynamics::ModeState { displacement: -m.displacement, quadrature: -m.quadrature })
             .collect(),
     };
     same(&mirrored, &first.state)
@@ -259,7 +258,7 @@ fn multipliers(segment: &mut UncoupledSegment, one: &[Switching]) -> Vec<(f64, f
     let mut eigenvalues: Vec<(f64, f64)> = schur
         .complex_eigenvalues()
         .iter()
-        .map(|z| (crate::numerics::phasor::abs(*z), crate::numerics::phasor::arg(*z)))
+        .map(|z| (flexsc_numerics::phasor::abs(*z), flexsc_numerics::phasor::arg(*z)))
         .collect();
     eigenvalues.sort_by(|a, b| b.0.total_cmp(&a.0).then(a.1.total_cmp(&b.1)));
     // The motion off the section dies out within a cycle: one eigenvalue is zero, and has no meaning.

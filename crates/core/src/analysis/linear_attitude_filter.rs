@@ -1,13 +1,13 @@
 //! Attitude filter with settled gains, as part of a linear loop: gain, sensors, and rotation of the sensor mounts by
 //! the modes.
 
+use flexsc_control::estimator::AttitudeFilter;
+use flexsc_control::estimator::attitude::{GainMethod, SensorRole};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::time::Span;
 use serde::Serialize;
 
-use crate::document::ConfigError;
-use crate::estimator::AttitudeFilter;
-use crate::estimator::attitude::{GainMethod, SensorRole};
 use crate::scenario::Scenario;
-use crate::time::Span;
 
 /// Settled attitude filter: from the predicted angle a, a measured attitude z corrects the state by k (z - a).
 #[derive(Clone, Debug, PartialEq, Serialize)]

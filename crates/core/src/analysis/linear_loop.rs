@@ -1,16 +1,16 @@
 //! Linear parts of a loop that cannot be read from a scenario's keys: sampled filters of the laws, and settled
 //! estimators.
 
+use flexsc_control::estimator::kalman::{FilterContext, Kalman, SteadyStateFilter};
+use flexsc_control::estimator::{EstimateOutputs, EstimatorKind};
+use flexsc_control::law::LawKind;
+use flexsc_control::state_estimate::EstimateNeeds;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::random::Seed;
 use serde::Serialize;
 
 use super::linear_attitude_filter::LinearAttitudeFilter;
-use crate::document::ConfigError;
-use crate::estimator::kalman::{FilterContext, Kalman, SteadyStateFilter};
-use crate::estimator::{EstimateOutputs, EstimatorKind};
-use crate::law::LawKind;
-use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::state_estimate::EstimateNeeds;
 
 /// Linear filters and settled estimators of a loop.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -4,16 +4,16 @@
 //! = J w_r, with the rate of the hub w = w_r + phi q' where modes act back on it, and the rotor momentum H
 //! (\[Likins70\]). Environment torques are left out.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{AXES, Vector};
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::body::{BodyAxes, CommandedQuantity, Drift, Planar, Spatial};
+use flexsc_spacecraft::flow::CoupledMatrices;
 use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 
-use crate::attitude::{AXES, Vector};
-use crate::body::{BodyAxes, CommandedQuantity, Drift, Planar, Spatial};
-use crate::document::ConfigError;
-use crate::flow::CoupledMatrices;
-use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::time::Instant;
 
 /// Linear state-space model of a body.
 #[derive(Clone, Debug, PartialEq, Serialize)]

@@ -1,8 +1,8 @@
 //! Modes of a three-axis body as a table: excitation by the jets, and the response that a gyro measures.
 
+use flexsc_spacecraft::body::Spatial;
 use serde::Serialize;
 
-use crate::body::Spatial;
 use crate::scenario::Scenario;
 
 /// Modes of a three-axis body as columns, in the order of the modes.

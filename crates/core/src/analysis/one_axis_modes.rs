@@ -1,8 +1,7 @@
 //! Modes of a one-axis body as a table: the content of `flexsc modes` and of Python's `Scenario.modes`.
 
+use flexsc_spacecraft::body::{CommandedQuantity, Mode, Planar};
 use serde::Serialize;
-
-use crate::body::{CommandedQuantity, Mode, Planar};
 
 /// Modes of a one-axis body as columns, in the order of the modes.
 #[derive(Clone, Debug, PartialEq, Serialize)]
@@ -49,7 +48,7 @@ impl OneAxisModes {
     pub fn from_body(body: &Planar) -> Self {
         let column = |value: &dyn Fn(&Mode) -> f64| -> Vec<f64> { body.modes.iter().map(value).collect() };
         let inertia = body.inertia.get();
-        let weighted = |output: &crate::body::Output| OutputWeights {
+        let weighted = |output: &flexsc_spacecraft::body::Output| OutputWeights {
             name: output.name.clone(),
             unit: output.unit.clone(),
             rigid: output.rigid.get(),

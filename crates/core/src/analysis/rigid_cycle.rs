@@ -4,11 +4,10 @@
 //! (v0 + sqrt(v0² + q²))/q describes the cycle; beta = k_t (1 - k_t)(1 - r). Derived from the corrected law (2) of
 //! \[Silaev\], which refers to relations published elsewhere.
 
+use flexsc_control::law::{Relay, RelaySides};
+use flexsc_spacecraft::body::{Mode, Planar};
 use schemars::JsonSchema;
 use serde::Serialize;
-
-use crate::body::{Mode, Planar};
-use crate::law::{Relay, RelaySides};
 
 /// A limit cycle of the relay law on a rigid body.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, JsonSchema)]

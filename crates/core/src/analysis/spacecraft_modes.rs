@@ -1,12 +1,12 @@
 //! Modes of a spacecraft as tables: effective masses of each appendage's modes, and the response at each point to a
 //! torque on the hub.
 
+use flexsc_dynamics::three_axis::DriveAngles;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_spacecraft::body::craft::AssembledSpacecraft;
 use serde::Serialize;
 
 use super::mode_influence::ModeInfluences;
-use crate::attitude::{Vector, vector};
-use crate::body::craft::AssembledSpacecraft;
-use crate::motion::three_axis::DriveAngles;
 use crate::scenario::{AppendageDrives, Scenario};
 
 /// Number of equal parts of a run at whose ends frequencies are listed.

@@ -6,7 +6,8 @@
 mod relay;
 mod sampled;
 
-use crate::lanes::Processor;
+use flexsc_numerics::lanes::Processor;
+
 use crate::metrics::{Metrics, Selection};
 use crate::scenario::Scenario;
 

@@ -3,23 +3,24 @@
 #[cfg(test)]
 mod tests;
 
+use flexsc_control::estimator::WindowedEnvelope;
+use flexsc_control::law::Phase;
+use flexsc_dynamics::AxisState;
+use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::guard::Guard;
+use flexsc_numerics::lanes::Processor;
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{self, Command, PieceDemand, Record, Sample, Trigger};
+use flexsc_spacecraft::flow::{SegmentInput, UncoupledSegment};
+
 use super::{BatchJob, BatchKernel};
-use crate::estimator::WindowedEnvelope;
-use crate::flow::{SegmentInput, UncoupledSegment};
-use crate::guard::Guard;
-use crate::lanes::Processor;
-use crate::law::Phase;
 use crate::metrics::{Metrics, MetricsCollector};
-use crate::motion::AxisState;
-use crate::motion::crossing::first_crossing;
-use crate::random::Seed;
-use crate::record::{self, Command, PieceDemand, Record, Sample, Trigger};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHost, LaneShape, LaneState, MOST, RunSetup, apply_crossing, apply_state,
     fly_beside, guards, instant, is_supported, lane_setup, lane_shape, law_state,
 };
 use crate::scenario::Scenario;
-use crate::time::{Instant, Span};
 
 /// Number of runs that share the lanes of one call of the kernel, one after the other.
 const RUNS: usize = 128;
@@ -111,7 +112,8 @@ impl LaneHost for LaneRuns<'_> {
                 continue;
             }
             let mut gather = MetricsCollector::for_selection(job.scenario, job.selection);
-            let row = record::Law { state: Phase::Start, torque_nm: law.weak.get(), gain: law.k_t.get() };
+            let row =
+                flexsc_record::Law { state: Phase::Start, torque_nm: law.weak.get(), gain: law.k_t.get() };
             self.listens |= gather.wants_switchings();
             self.looks |= gather.piece_demand() != PieceDemand::None;
             if gather.record(Instant::START, Sample::Begin(&row)).is_err() {

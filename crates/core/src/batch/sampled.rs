@@ -6,16 +6,16 @@
 mod filters;
 mod motions;
 
+use flexsc_control::law::LawKind;
+use flexsc_numerics::lanes::{LaneFloat, Mask, Processor, SimdTask};
+use flexsc_numerics::time::Instant;
+use flexsc_record::{PieceDemand, Record};
+use flexsc_spacecraft::flow::ExternalMotion;
+
 use super::{BatchJob, BatchKernel};
-use crate::flow::ExternalMotion;
-use crate::lanes::{LaneFloat, Mask, Processor, SimdTask};
-use crate::law::LawKind;
 use crate::metrics::{LaneManoeuvreMetrics, LanePiece, Metrics, MetricsCollector};
-use crate::record::{PieceDemand, Record};
 use crate::scenario::Scenario;
 use crate::sim::{AppliedTorque, Simulation};
-use crate::time::Instant;
-
 use motions::LaneMotions;
 
 /// Batch of sampled loops.

@@ -2,7 +2,7 @@
 
 use std::ops::Range;
 
-use crate::random::fnv1a_of;
+use flexsc_numerics::random::fnv1a_of;
 
 /// The name of the note.
 pub const NAME: &str = "flexsc.checksum";

@@ -2,12 +2,13 @@
 
 use std::fmt::Write;
 
+use flexsc_control::law::Command;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Attachment, COMMANDS, Detail, Provenance, Record};
+
 use super::{Campaign, CampaignRun};
-use crate::law::Command;
 use crate::metrics::{Metrics, MetricsCollector};
-use crate::record::{Attachment, COMMANDS, Detail, Provenance, Record};
 use crate::sim::{Simulation, SimulationError};
-use crate::time::Instant;
 
 const HEADER: &str = "time_whole_s,time_fs,x,y,z";
 
@@ -151,7 +152,7 @@ impl CommandLog {
 mod tests {
     use super::*;
     use crate::scenario::Scenario;
-    use crate::time::Span;
+    use flexsc_numerics::time::Span;
 
     const TEXT: &str = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";
 

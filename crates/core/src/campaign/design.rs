@@ -2,11 +2,11 @@
 
 use std::fmt::Write as _;
 
+use flexsc_numerics::random::fnv1a;
 use serde::{Deserialize, Serialize};
 
 use super::Grid;
 use super::sampling::{Dimension, MOST_DIMENSIONS, Sampling};
-use crate::random::fnv1a;
 
 /// Largest number of points of a design.
 pub const MOST_POINTS: u64 = 100_000_000;

@@ -31,14 +31,15 @@ use std::sync::{Mutex, PoisonError};
 use std::thread;
 use std::time::{Duration, SystemTime};
 
+use flexsc_record::Record;
+use flexsc_record::atomic_file::{self, AtomicFile};
+
 use super::error::{DirectoryError, invalid_file, io_error, unreadable};
 use super::manifest::{LARGEST, Manifest};
 use super::parquet::{ParquetFile, parquet_is_built_in};
 use super::part;
 use super::row_maker::{NOTE, RowMaker};
 use super::rows::{ColumnCells, RunRows};
-use crate::atomic_file::{self, AtomicFile};
-use crate::record::Record;
 
 /// Name of the manifest's file.
 pub const MANIFEST: &str = "manifest.toml";

@@ -144,7 +144,7 @@ fn no_flipped_bit_changes_a_number() {
     let directory = Directory::create(&here.0, manifest(0..8), false).expect("made");
     let path = directory.write_part(0..8, 1, ()).expect("written");
     let (before, bytes) = (columns(&directory), fs::read(&path).expect("there"));
-    let mut rng = crate::random::Seed { scenario: 5, run: 0 }.stream("bits");
+    let mut rng = flexsc_numerics::random::Seed { scenario: 5, run: 0 }.stream("bits");
     for _ in 0..500 {
         let (place, bit) = (rng.index(bytes.len()), rng.index(8));
         let mut flipped = bytes.clone();

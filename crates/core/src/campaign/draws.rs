@@ -1,12 +1,12 @@
 //! Draws of a run: the values of its point, and those of the `[uncertain]` keys.
 
+use flexsc_formats::document::key;
+use flexsc_numerics::normal;
+use flexsc_numerics::random::Seed;
 use toml::Value;
 
 use super::Campaign;
 use super::sampling::{Dimension, Sampling};
-use crate::document::key;
-use crate::numerics::normal;
-use crate::random::Seed;
 
 impl Campaign {
     /// Returns the value of each key that varies in a run.

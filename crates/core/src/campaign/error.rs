@@ -3,9 +3,8 @@
 use std::io;
 use std::path::{Path, PathBuf};
 
+use flexsc_formats::document::ScenarioError;
 use thiserror::Error;
-
-use crate::document::ScenarioError;
 
 /// Error of a campaign's directory.
 #[derive(Debug, Error)]

@@ -2,14 +2,14 @@
 
 use std::ops::Range;
 
+use flexsc_formats::document::ScenarioError;
+use flexsc_numerics::random::fnv1a;
+use flexsc_record::difference;
 use serde::{Deserialize, Serialize};
 
 use super::design::Design;
 use super::{Campaign, part};
-use crate::document::ScenarioError;
 use crate::metrics::Selection;
-use crate::random::fnv1a;
-use crate::record::difference;
 use crate::scenario::Scenario;
 
 /// Version of the directory format that this program writes.

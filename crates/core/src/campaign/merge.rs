@@ -3,13 +3,14 @@
 use std::fs;
 use std::ops::Range;
 
+use flexsc_record::atomic_file;
+
 use super::directory::{Directory, MANIFEST};
 use super::error::{DirectoryError, invalid_file, io_error, unreadable};
 use super::manifest::Manifest;
 use super::parquet::ParquetFile;
 use super::part;
 use super::rows::{ColumnCells, RunRows, SECONDS};
-use crate::atomic_file;
 
 /// Runs of a part that are taken from a directory: its place among them, its part, and which runs of it.
 #[derive(Clone, Debug)]

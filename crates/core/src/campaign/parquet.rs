@@ -5,6 +5,7 @@ use std::io::{self, Read};
 use std::path::Path;
 use std::sync::Arc;
 
+use flexsc_record::atomic_file;
 use parquet::basic::{Compression, ConvertedType, LogicalType, Repetition, Type as Physical, ZstdLevel};
 use parquet::column::reader::{ColumnReader, ColumnReaderImpl};
 use parquet::data_type::{ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
@@ -18,7 +19,6 @@ use parquet::schema::types::{ColumnPath, Type, TypePtr};
 use super::checksum;
 use super::contained::contained;
 use super::rows::{ColumnCells, ColumnHeading, ColumnKind, RunRows};
-use crate::atomic_file;
 
 /// Compression level of zstd: higher ones gain nothing for numbers.
 const LEVEL: i32 = 3;

@@ -5,13 +5,14 @@ use std::ops::Range;
 use std::path::Path;
 use std::sync::Arc;
 
+use flexsc_record::{Record, RecordError};
+
 use super::error::{DirectoryError, invalid_file, io_error};
 use super::manifest::Manifest;
 use super::parquet::encode;
 use super::rows::{ColumnHeading, RunRows};
 use super::{Campaign, CampaignRun, RunError, RunOutcome, part};
 use crate::metrics::{Metrics, Selection};
-use crate::record::{Record, RecordError};
 use crate::sim::SimulationError;
 
 /// Metadata name of the campaign to which a part belongs.

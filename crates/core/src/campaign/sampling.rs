@@ -3,11 +3,10 @@
 
 use std::sync::OnceLock;
 
+use flexsc_numerics::random::{Seed, fnv1a};
 use serde::{Deserialize, Serialize};
 use sobol::Sobol;
 use sobol::params::JoeKuoD6;
-
-use crate::random::{Seed, fnv1a};
 
 /// Largest number of dimensions of a Sobol sequence.
 pub const MOST_DIMENSIONS: usize = 100;

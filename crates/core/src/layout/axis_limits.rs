@@ -1,8 +1,9 @@
 //! Axis limits of plots whose values are too small for a viewer's own choice of the axes.
 
+use flexsc_record::{Column, Columns, Log, LogError};
+
 use super::Layout;
 use super::panel::{LayoutPanel, topic};
-use crate::record::{Column, Columns, Log, LogError};
 
 /// Magnitude below which a plot may be flat: the steps of a viewer's vertical axis, and its ends, are multiples of
 /// 0.001 at least.

@@ -10,18 +10,17 @@ mod one_axis;
 mod panel;
 mod spatial;
 
+use flexsc_control::actuator::FiringMethod;
+use flexsc_control::adaptation::{AdaptationKind, Objective};
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_dynamics::three_axis::Bearing;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Detail, Summary};
+use flexsc_spacecraft::body::BodyAxes;
 use serde_json::{Map, Value, json};
 
-use crate::actuator::FiringMethod;
-use crate::adaptation::{AdaptationKind, Objective};
-use crate::body::BodyAxes;
-use crate::estimator::EstimatorKind;
 use crate::metrics::MetricsCollector;
-use crate::motion::three_axis::Bearing;
-use crate::record::{Detail, Summary};
 use crate::scenario::Scenario;
-use crate::time::Instant;
-
 use panel::LayoutPanel;
 
 /// Number of panels above which a layout has tabs.

@@ -1,10 +1,11 @@
 //! Panels of a one-axis body.
 
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::LawKind;
+use flexsc_spacecraft::body::{Output, Planar};
+
 use super::Tab;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
-use crate::body::{Output, Planar};
-use crate::estimator::EstimatorKind;
-use crate::law::LawKind;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
 

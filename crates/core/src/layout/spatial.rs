@@ -1,14 +1,15 @@
 //! Panels of a three-axis body.
 
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::estimator::attitude::ElasticStates;
+use flexsc_control::law::LawKind;
+use flexsc_dynamics::three_axis::Bearing;
+use flexsc_numerics::attitude::AXES;
+use flexsc_spacecraft::body::Spatial;
+
 use super::Tab;
 use super::one_axis::adaptation;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
-use crate::attitude::AXES;
-use crate::body::Spatial;
-use crate::estimator::EstimatorKind;
-use crate::estimator::attitude::ElasticStates;
-use crate::law::LawKind;
-use crate::motion::three_axis::Bearing;
 use crate::scenario::Scenario;
 use crate::scene::Extent;
 

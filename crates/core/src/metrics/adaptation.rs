@@ -1,13 +1,14 @@
 //! Metrics of an adaptation: its objective over the windows, and the gain that it tunes.
 
+use flexsc_control::adaptation::{Decision, Objective};
+use flexsc_numerics::time::Instant;
+use flexsc_record::Sample;
+
 use super::{
     GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, MetricDescription, MetricValue, NamedMetric,
     OBJECTIVE_FINAL, OBJECTIVE_INITIAL, OBJECTIVE_LATE, OBJECTIVE_WINDOWS,
 };
-use crate::adaptation::{Decision, Objective};
-use crate::record::Sample;
 use crate::scenario::Scenario;
-use crate::time::Instant;
 
 /// Descriptions of the objective's metrics, for each unit of an objective.
 static UNITS: [[MetricDescription; 4]; 6] =

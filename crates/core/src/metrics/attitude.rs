@@ -1,13 +1,14 @@
 //! Metrics of an attitude filter: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, Use};
+
 use super::{
     ATTITUDE_ERROR, BIAS_ERROR, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, MetricDescription, MetricValue,
     NEES_MEAN, NIS_INSIDE, NIS_MEAN, NamedMetric,
 };
-use crate::estimator::EstimatorKind;
-use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, Use};
 use crate::scenario::Scenario;
-use crate::time::Instant;
 
 /// Descriptions of the metrics.
 pub(super) const METRICS: &[MetricDescription] =

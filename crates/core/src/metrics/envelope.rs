@@ -1,10 +1,11 @@
 //! Metrics of the envelope over windows, for runs whose law is not the relay law of a one-axis body.
 
+use flexsc_record::WindowMean;
+
 use super::{
     ENVELOPE_FINAL, ENVELOPE_LATE, ENVELOPE_MEAN, MetricDescription, MetricValue, NamedMetric, REDUCTION,
     WINDOW_MEANS,
 };
-use crate::record::WindowMean;
 use crate::scenario::Scenario;
 
 /// Descriptions of the metrics.
@@ -25,7 +26,7 @@ impl EnvelopeMetrics {
     pub fn new(scenario: &Scenario) -> Self {
         Self {
             duration: scenario.duration.seconds(),
-            reference: scenario.reference.envelope.map(crate::quantity::Positive::get),
+            reference: scenario.reference.envelope.map(flexsc_numerics::quantity::Positive::get),
             means: Vec::new(),
             from: Vec::new(),
         }

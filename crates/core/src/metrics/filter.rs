@@ -1,12 +1,13 @@
 //! Metrics of a Kalman filter: its errors, and their consistency with its covariance (\[BarShalom01\]).
 
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Estimate, Lock, Use};
+
 use super::{
     FREQUENCY_ERROR_MAX, FREQUENCY_ERROR_RMS, LOCK_LOST, LOCK_LOST_AT, MetricDescription, MetricValue,
     NEES_MEAN, NIS_INSIDE, NIS_MEAN, NamedMetric,
 };
-use crate::record::{Estimate, Lock, Use};
 use crate::scenario::Scenario;
-use crate::time::Instant;
 
 /// Descriptions of the metrics.
 pub(super) const METRICS: &[MetricDescription] =

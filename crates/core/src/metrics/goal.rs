@@ -1,8 +1,9 @@
 //! Verdict on a run's goal: the run must end inside a band about the goal, without leaving it over the last part of the
 //! time.
 
+use flexsc_numerics::polynomial::Polynomial;
+
 use super::{GOAL, GOAL_BAND, MetricDescription, MetricValue, NamedMetric, REQUIREMENT, TIME_OUTSIDE};
-use crate::numerics::polynomial::Polynomial;
 
 /// Fraction of the time since the goal's start that the run must end with inside the band.
 const LAST: f64 = 0.1;

@@ -11,13 +11,14 @@ mod switchings;
 mod three_axis;
 mod tracking;
 
-use crate::body::BodyAxes;
-use crate::motion::MotionPiece;
-use crate::record::{self, Record, RecordError, Sample};
-use crate::scenario::Scenario;
-use crate::time::Instant;
+use flexsc_dynamics::MotionPiece;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{self, Record, RecordError, Sample};
+use flexsc_spacecraft::body::BodyAxes;
 
-pub use record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};
+use crate::scenario::Scenario;
+
+pub use flexsc_record::metrics::{MetricDescription, MetricValue, Metrics, NamedMetric, NumberWithUnit};
 
 pub use envelope::METRICS as OF_ENVELOPE;
 pub use selection::Selection;
@@ -318,11 +319,11 @@ impl Record for MetricsCollector {
         }
     }
 
-    fn piece_demand(&self) -> record::PieceDemand {
+    fn piece_demand(&self) -> flexsc_record::PieceDemand {
         match &self.kind {
             RunKind::Switchings(switchings) => switchings.piece_demand(),
             RunKind::Rotation(rotation) => rotation.piece_demand(),
-            RunKind::Spatial(_) => record::PieceDemand::None,
+            RunKind::Spatial(_) => flexsc_record::PieceDemand::None,
         }
     }
 

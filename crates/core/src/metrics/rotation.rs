@@ -4,6 +4,13 @@
 
 mod lanes;
 
+use flexsc_control::law::{ErrorBand, LawKind, Setpoint};
+use flexsc_dynamics::MotionPiece;
+use flexsc_numerics::polynomial::Polynomial;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Arrival, PieceDemand, Record, RecordError, Sample};
+use flexsc_spacecraft::body::Planar;
+
 use super::goal::{self, GoalMetrics};
 use super::{
     ANGLE_ERROR_LATE, ANGLE_ERROR_PEAK, ANGLE_RESIDUAL, ARRIVAL_ANGLE, ARRIVAL_RATE, ITAE, MetricDescription,
@@ -12,13 +19,7 @@ use super::{
     RESIDUAL_ENERGY_UNIT_INERTIA, SETTLING_TIME, SPECTRAL_RADIUS, Selection,
 };
 use crate::analysis::sampled_loop::{DiscretePlant, SampledLoop};
-use crate::body::Planar;
-use crate::law::{ErrorBand, LawKind, Setpoint};
-use crate::motion::MotionPiece;
-use crate::numerics::polynomial::Polynomial;
-use crate::record::{Arrival, PieceDemand, Record, RecordError, Sample};
 use crate::scenario::Scenario;
-use crate::time::Instant;
 
 pub use lanes::{LaneManoeuvreMetrics, LanePiece};
 
@@ -156,7 +157,7 @@ impl ManoeuvreMetrics {
                 MetricValue::Number(self.arrival.as_ref().map_or(f64::NAN, value))
             };
             let residuals = self.arrival.iter().flat_map(|arrival| &arrival.outputs);
-            let residual = |(output, seen): (&crate::record::Residual, &CoordinateRange)| NumberWithUnit {
+            let residual = |(output, seen): (&flexsc_record::Residual, &CoordinateRange)| NumberWithUnit {
                 value: output.amplitude,
                 unit: seen.unit.clone(),
             };

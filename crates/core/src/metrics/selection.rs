@@ -1,7 +1,8 @@
 //! Selection of the metrics that are wanted: all, or those that are named.
 
+use flexsc_formats::document::nearest;
+
 use super::{ALL, MetricDescription, Metrics};
-use crate::document::nearest;
 
 /// Metrics in a campaign's table.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]

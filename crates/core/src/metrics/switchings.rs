@@ -1,5 +1,12 @@
 //! Metrics of a relay law's switchings: pushes, impulse, envelope, adaptation, limit cycle.
 
+use flexsc_control::adaptation::Objective;
+use flexsc_control::law::{Phase, Setpoint};
+use flexsc_dynamics::MotionPiece;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{PieceDemand, Record, RecordError, Sample};
+use flexsc_spacecraft::body::Planar;
+
 use super::envelope::EnvelopeMetrics;
 use super::goal::{self, GoalMetrics};
 use super::{
@@ -9,14 +16,8 @@ use super::{
     MetricDescription, MetricValue, NamedMetric, PUSHES_LEFT, PUSHES_RIGHT, REDUCED_IMPULSE, SWITCHINGS,
     Selection,
 };
-use crate::adaptation::Objective;
 use crate::analysis::limit_cycle::LimitCycleDetector;
-use crate::body::Planar;
-use crate::law::{Phase, Setpoint};
-use crate::motion::MotionPiece;
-use crate::record::{PieceDemand, Record, RecordError, Sample};
 use crate::scenario::Scenario;
-use crate::time::{Instant, Span};
 
 /// Collector of the switchings of a relay law, of window means and of the adaptation's steps.
 #[derive(Clone, Debug)]
@@ -223,7 +224,7 @@ impl Record for RelayMetrics {
             }
             Sample::Adaptation(step) => {
                 self.gain.1 = step.gain;
-                if step.decision == crate::adaptation::Decision::Freeze {
+                if step.decision == flexsc_control::adaptation::Decision::Freeze {
                     self.frozen_at = now.seconds();
                 }
             }

@@ -1,5 +1,10 @@
 //! Metrics of a run of a three-axis body: propellant, firings, elastic energy, pointing.
 
+use flexsc_control::actuator::Saturation;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Accelerations, Sliding, SteeringRecord, ThreeAxisCycle, WheelEvent};
+
 use super::goal::{self, GoalMetrics};
 use super::{
     ACCELERATION, ACTUATOR_END, BELOW_1, BELOW_10, ELASTIC_END, ELASTIC_PEAK, ELASTIC_RATE, FIRING_CYCLES,
@@ -9,11 +14,7 @@ use super::{
     TORQUE_ERROR, TORQUE_SHARE, VISIBLE_END, VISIBLE_PEAK, WHEEL_MOMENTUM, WHEEL_SPEED, WHEEL_STOPS,
     ZERO_CROSSINGS,
 };
-use crate::actuator::Saturation;
-use crate::quantity::Positive;
-use crate::record::{Accelerations, Sliding, SteeringRecord, ThreeAxisCycle, WheelEvent};
 use crate::scenario::{Pointing, Scenario};
-use crate::time::Instant;
 
 /// Length of the end of a run over which elastic rates are averaged (s).
 const LATE: f64 = 200.0;

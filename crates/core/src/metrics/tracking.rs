@@ -1,11 +1,12 @@
 //! Metrics of adaptive observers, from their state at the end of a run, and of active damping.
 
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_record::{TrackedMode, Tracking, Watch};
+
 use super::{
     DAMPING_CYCLES, DAMPING_PAUSES, FREQUENCY_ERRORS, FREQUENCY_ESTIMATES, INFLUENCE_ERRORS,
     INFLUENCE_ESTIMATES, MetricValue, NamedMetric, TRACKING_ERROR,
 };
-use crate::estimator::EstimatorKind;
-use crate::record::{TrackedMode, Tracking, Watch};
 use crate::scenario::Scenario;
 
 /// Collector of the cycles of a run.
@@ -28,7 +29,7 @@ impl ObserverMetrics {
 
     /// Records a cycle.
     pub fn see(&mut self, tracking: &Tracking) {
-        let error = |of: &crate::record::ChannelState| of.elastic_rad_s - of.true_elastic_rad_s;
+        let error = |of: &flexsc_record::ChannelState| of.elastic_rad_s - of.true_elastic_rad_s;
         self.square.0 += tracking.channels.iter().map(|of| error(of) * error(of)).sum::<f64>();
         self.square.1 += 1;
         self.cycles += u64::from(tracking.channels.iter().any(|of| of.damping_on_s != 0.0));

@@ -1,12 +1,15 @@
 //! Checks of several actuators: their combination, and whether their shares sum to the whole demand.
 
+use flexsc_control::actuator::{
+    ActuatorKind, ActuatorTask, AssignedActuator, AssignedMember, WheelUnloading,
+};
+use flexsc_control::law::LawKind;
+use flexsc_control::one_or_many::OneOrMany;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::AXES;
+use flexsc_numerics::quantity::Time;
+
 use super::ScenarioSpec;
-use crate::actuator::{ActuatorKind, ActuatorTask, AssignedActuator, AssignedMember, WheelUnloading};
-use crate::attitude::AXES;
-use crate::document::ConfigError;
-use crate::law::LawKind;
-use crate::one_or_many::OneOrMany;
-use crate::quantity::Time;
 
 /// Tolerance of the sum of rounded shares.
 const ROUNDING: f64 = 1e-9;

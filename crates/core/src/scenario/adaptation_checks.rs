@@ -1,11 +1,12 @@
 //! Checks of an adaptation: the parameter that it tunes, and its objective.
 
+use flexsc_control::actuator::ActuatorKind;
+use flexsc_control::adaptation::{AdaptationKind, Objective};
+use flexsc_control::law::{LawKind, Tunable};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Finite;
+
 use super::Scenario;
-use crate::actuator::ActuatorKind;
-use crate::adaptation::{AdaptationKind, Objective};
-use crate::document::ConfigError;
-use crate::law::{LawKind, Tunable};
-use crate::quantity::Finite;
 
 impl Scenario {
     pub(super) fn validate_adaptation(&self) -> Option<ConfigError> {
@@ -65,7 +66,7 @@ impl Scenario {
             return adaptation.window().map(|_| (".window", why.to_owned()));
         }
         let word = objective.key();
-        if adaptation.window().is_none_or(|window| window == crate::time::Span::ZERO) {
+        if adaptation.window().is_none_or(|window| window == flexsc_numerics::time::Span::ZERO) {
             return Some((".window", format!("must be given for the objective `{word}`")));
         }
         let why = match objective {

@@ -3,18 +3,18 @@
 
 use std::sync::Arc;
 
+use flexsc_control::law::Frame;
+use flexsc_control::sensor::SensorKind;
+use flexsc_dynamics::three_axis::{ArticulatedBody, DriveAngles};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::BodyModel;
+use flexsc_spacecraft::body::craft::{Appendage, AppendageDrive, DrivePiece, TrackedObject};
+use flexsc_spacecraft::environment::{OrbitEnvironment, to_body};
 use nalgebra::{Matrix3, Quaternion};
 
 use super::{ResolvedScenario, Scenario, ScenarioSpec};
-use crate::attitude::Vector;
-use crate::body::BodyModel;
-use crate::body::craft::{Appendage, AppendageDrive, DrivePiece, TrackedObject};
-use crate::document::ConfigError;
-use crate::environment::{OrbitEnvironment, to_body};
-use crate::law::Frame;
-use crate::motion::three_axis::{ArticulatedBody, DriveAngles};
-use crate::sensor::SensorKind;
-use crate::time::{Instant, Span};
 
 /// Largest change of a drive angle (rad) before the modes are replaced by those of another angle.
 const APART: f64 = 1.0 / 32.0;
@@ -189,7 +189,7 @@ impl ScenarioSpec {
             sky,
             sun,
             frame,
-            attitude: target.map_or_else(Quaternion::identity, crate::law::AttitudeTarget::attitude),
+            attitude: target.map_or_else(Quaternion::identity, flexsc_control::law::AttitudeTarget::attitude),
             axes: appendage.turned.matrix(),
             about: drive.axis(),
             facing: drive.sun_facing(),

@@ -3,10 +3,11 @@
 use std::path::Path;
 use std::sync::Arc;
 
+use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use flexsc_spacecraft::body::craft::{AssembledSpacecraft, Spacecraft};
+use flexsc_spacecraft::body::{Body, BodyModel};
+
 use super::{Scenario, ScenarioSpec};
-use crate::body::craft::{AssembledSpacecraft, Spacecraft};
-use crate::body::{Body, BodyModel};
-use crate::document::{ConfigError, Document, ScenarioError};
 
 impl ScenarioSpec {
     /// Assembles the model from the description of the body, with modes read from files relative to `directory`. Files

@@ -1,15 +1,16 @@
 //! Authority of the actuators about each axis, and the error bands that laws keep with it.
 
+use flexsc_control::actuator::{ActuatorKind, PulseWidth};
+use flexsc_control::estimator::adaptive;
+use flexsc_control::law::{ActiveDamping, Authority, ErrorBand, LawKind, PhasePlane, error_band};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::rotation_vector;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::body::Spatial;
+
 use super::ScenarioSpec;
 use super::resolved::ResolvedScenario;
-use crate::actuator::{ActuatorKind, PulseWidth};
-use crate::attitude::rotation_vector;
-use crate::body::Spatial;
-use crate::document::ConfigError;
-use crate::estimator::adaptive;
-use crate::law::{ActiveDamping, Authority, ErrorBand, LawKind, PhasePlane, error_band};
-use crate::quantity::Positive;
-use crate::time::Instant;
 
 /// Elastic rate that no structure reaches (rad/s).
 const NO_MOTION: f64 = 1.0;
@@ -89,7 +90,7 @@ impl ResolvedScenario {
         };
         let threshold = damping_threshold(damping, plan, &self.authorities[axis], axis);
         if damping.threshold.is_none() && threshold >= NO_MOTION {
-            let name = if self.axes.len() == 1 { "the law" } else { crate::attitude::AXES[axis] };
+            let name = if self.axes.len() == 1 { "the law" } else { flexsc_numerics::attitude::AXES[axis] };
             return Err(ConfigError::new(
                 key,
                 format!(

@@ -1,12 +1,13 @@
 //! Compatibility of the parts of a scenario; errors give the reason and an alternative.
 
+use flexsc_control::actuator::{ActuatorKind, ActuatorTask};
+use flexsc_control::law::{AttitudeErrorMeasure, AttitudeProfile, AttitudeTarget, LawKind};
+use flexsc_control::sensor::SensorKind;
+use flexsc_formats::document::ConfigError;
+use flexsc_spacecraft::body::BodyModel;
+use flexsc_spacecraft::disturbance::Disturbance;
+
 use super::ScenarioSpec;
-use crate::actuator::{ActuatorKind, ActuatorTask};
-use crate::body::BodyModel;
-use crate::disturbance::Disturbance;
-use crate::document::ConfigError;
-use crate::law::{AttitudeErrorMeasure, AttitudeProfile, AttitudeTarget, LawKind};
-use crate::sensor::SensorKind;
 
 impl ScenarioSpec {
     /// Checks that the parts of the scenario are compatible.

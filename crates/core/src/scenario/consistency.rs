@@ -1,17 +1,18 @@
 //! Consistency of the keys of a scenario with each other.
 
+use flexsc_control::actuator::{ActuatorKind, AssignedMember, Wheel};
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::{AttitudeProfile, AttitudeTarget, Extra, LawKind};
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::document::key;
+use flexsc_numerics::attitude::vector;
+use flexsc_numerics::quantity::Time;
+use flexsc_spacecraft::body::craft::RateLimit;
+use flexsc_spacecraft::body::{BodyAxes, CommandedQuantity, Planar};
+use flexsc_spacecraft::disturbance::{Disturbance, Pulses};
+
 use super::epoch::nanoseconds_since_1970;
 use super::{Scenario, meant};
-use crate::actuator::{ActuatorKind, AssignedMember, Wheel};
-use crate::attitude::vector;
-use crate::body::craft::RateLimit;
-use crate::body::{BodyAxes, CommandedQuantity, Planar};
-use crate::disturbance::{Disturbance, Pulses};
-use crate::document::ConfigError;
-use crate::document::key;
-use crate::estimator::EstimatorKind;
-use crate::law::{AttitudeProfile, AttitudeTarget, Extra, LawKind};
-use crate::quantity::Time;
 
 impl Scenario {
     /// Checks that the keys are consistent with each other.

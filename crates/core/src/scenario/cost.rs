@@ -1,22 +1,23 @@
 //! Estimate of time, memory and disk space before a computation: infeasible scenarios are rejected, expensive ones need
 //! a confirmation.
 
+use flexsc_control::actuator::{ActuatorKind, ActuatorTask, Failure, UnloadingTask};
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::{AttitudeTarget, LawKind, RelaySides};
+use flexsc_control::sensor::SensorKind;
+use flexsc_dynamics::three_axis::{Bearing, SHAKE, Surroundings};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::vector;
+use flexsc_numerics::quantity::NonNegative;
+use flexsc_numerics::time::Span;
+use flexsc_record::Detail;
+use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
+use flexsc_spacecraft::body::Spatial;
+use flexsc_spacecraft::body::spatial::PeriodicTorque;
+use flexsc_spacecraft::flow::LONGEST_TURN;
+
 use super::Scenario;
 use super::pace::{STEP, SWITCHES, TURNS};
-use crate::actuator::{ActuatorKind, ActuatorTask, Failure, UnloadingTask};
-use crate::attitude::vector;
-use crate::body::Spatial;
-use crate::body::spatial::PeriodicTorque;
-use crate::document::ConfigError;
-use crate::estimator::EstimatorKind;
-use crate::flow::LONGEST_TURN;
-use crate::law::{AttitudeTarget, LawKind, RelaySides};
-use crate::motion::three_axis::{Bearing, SHAKE, Surroundings};
-use crate::quantity::NonNegative;
-use crate::record::Detail;
-use crate::sensor::SensorKind;
-use crate::time::Span;
-use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
 
 /// Largest number of steps of one kind in a run; more would take days.
 pub const MOST_STEPS: f64 = 1e12;

@@ -2,12 +2,13 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::linear::LinearFlow;
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::TOO_FAR_APART;
+use flexsc_spacecraft::body::Planar;
+use flexsc_spacecraft::flow::{CoupledFlow, CoupledMatrices};
+
 use super::Scenario;
-use crate::body::Planar;
-use crate::document::ConfigError;
-use crate::flow::{CoupledFlow, CoupledMatrices};
-use crate::motion::linear::LinearFlow;
-use crate::structure::TOO_FAR_APART;
 
 /// Largest number of modes whose coupled motion is decomposed into poles.
 const MOST_COUPLED: usize = 100;

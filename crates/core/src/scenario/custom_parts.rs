@@ -1,15 +1,15 @@
 //! Custom parts of a scenario: set in addition to its text, which cannot contain them, and kept when keys change.
 
+use flexsc_control::actuator::{ActuatorKind, ActuatorSpec, AssignedActuator};
+use flexsc_control::adaptation::{AdaptationKind, AdaptationSpec};
+use flexsc_control::custom::Custom;
+use flexsc_control::estimator::{EstimatorKind, EstimatorSpec};
+use flexsc_control::law::{LawKind, LawSpec};
+use flexsc_control::sensor::{SensorKind, SensorSpec};
+use flexsc_formats::document::{ConfigError, Document, ScenarioError};
 use toml::{Table, Value};
 
 use super::{Scenario, ScenarioSpec};
-use crate::actuator::{ActuatorKind, ActuatorSpec, AssignedActuator};
-use crate::adaptation::{AdaptationKind, AdaptationSpec};
-use crate::custom::Custom;
-use crate::document::{ConfigError, Document, ScenarioError};
-use crate::estimator::{EstimatorKind, EstimatorSpec};
-use crate::law::{LawKind, LawSpec};
-use crate::sensor::{SensorKind, SensorSpec};
 
 /// Placeholders in a text for a custom sensor and for a custom actuator.
 const SENSOR: &str = "continuous";

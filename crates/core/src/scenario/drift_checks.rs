@@ -1,9 +1,10 @@
 //! Checks of a drift: its profiles, and their number.
 
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_spacecraft::body::{Drift, DriftProfile};
+
 use super::Scenario;
-use crate::body::{Drift, DriftProfile};
-use crate::count::counted;
-use crate::document::ConfigError;
 
 impl Scenario {
     pub(super) fn validate_drift(&self) -> Option<ConfigError> {

@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_control::sensor::SensorKind;
+use flexsc_formats::document::ConfigError;
+use flexsc_spacecraft::environment::{OrbitEnvironment, Sun};
+
 use super::ScenarioSpec;
-use crate::document::ConfigError;
-use crate::environment::{OrbitEnvironment, Sun};
-use crate::sensor::SensorKind;
 
 /// Largest number of orbits in a run for which the planet's shadow is computed.
 const MOST_ORBITS: f64 = 1e6;

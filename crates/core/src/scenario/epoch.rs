@@ -2,11 +2,10 @@
 
 use std::fmt;
 
+use flexsc_formats::document::DATE;
 use serde::Deserializer;
 use serde::de::{Error, Visitor};
 use toml::value::Datetime;
-
-use crate::document::DATE;
 
 /// Deserialises a date and time.
 pub fn parse<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<Datetime>, D::Error> {

@@ -1,10 +1,11 @@
 //! Checks of an estimator: its own keys, and its modes.
 
+use flexsc_control::estimator::{EnvelopeMethod, EstimatorKind};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
+use flexsc_spacecraft::body::{Body, CommandedQuantity, Planar};
+
 use super::Scenario;
-use crate::body::{Body, CommandedQuantity, Planar};
-use crate::document::ConfigError;
-use crate::estimator::{EnvelopeMethod, EstimatorKind};
-use crate::quantity::Positive;
 
 /// Largest number of modes in a filter about each of three axes, because its matrices are full.
 const MOST_FILTERED: usize = 24;

@@ -1,10 +1,13 @@
 //! Scenario data for the estimator, the monitor of the envelope and the meter of an objective, before a run.
 
+use flexsc_control::adaptation::{AdaptationKind, Objective};
+use flexsc_control::estimator::{
+    AdaptationRun, EstimatorContext, EstimatorKind, ObjectiveMeter, WindowedEnvelope,
+};
+use flexsc_numerics::random::Seed;
+use flexsc_spacecraft::body::BodyAxes;
+
 use super::{Scenario, ScenarioSpec};
-use crate::adaptation::{AdaptationKind, Objective};
-use crate::body::BodyAxes;
-use crate::estimator::{AdaptationRun, EstimatorContext, EstimatorKind, ObjectiveMeter, WindowedEnvelope};
-use crate::random::Seed;
 
 impl Scenario {
     /// Returns the scenario data that the estimator needs before a run.

@@ -1,12 +1,13 @@
 //! Failures of sensors and actuators: checks, and intervals.
 
+use flexsc_control::actuator::{Failure, FailureScope};
+use flexsc_control::interval::Interval;
+use flexsc_control::law::LawKind;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::AXES;
+use flexsc_spacecraft::body::Planar;
+
 use super::{Scenario, ScenarioSpec};
-use crate::actuator::{Failure, FailureScope};
-use crate::attitude::AXES;
-use crate::body::Planar;
-use crate::document::ConfigError;
-use crate::interval::Interval;
-use crate::law::LawKind;
 
 /// Failure of a part with its interval.
 #[derive(Clone, Debug, PartialEq)]
@@ -57,7 +58,7 @@ impl Scenario {
     /// Checks that the failures are consistent with their sensors and actuators, and with the motion.
     pub(super) fn validate_failures(&self) -> Option<ConfigError> {
         for (number, sensor) in self.sensor.iter().enumerate() {
-            let disorder = |fault: &crate::sensor::SensorFailure| fault.interval().validate();
+            let disorder = |fault: &flexsc_control::sensor::SensorFailure| fault.interval().validate();
             let mut faults = sensor.faults().iter().enumerate();
             if let Some((index, fault)) = faults.find_map(|(index, fault)| Some((index, disorder(fault)?))) {
                 return Some(fault.within(&format!("{}.faults[{index}]", self.sensor_key(number))));

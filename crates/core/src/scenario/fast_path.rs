@@ -1,8 +1,9 @@
 //! Condition for the relay kernel: the law alone moves the body.
 
+use flexsc_control::sensor::SensorKind;
+use flexsc_spacecraft::body::BodyModel;
+
 use super::Scenario;
-use crate::body::BodyModel;
-use crate::sensor::SensorKind;
 
 impl Scenario {
     /// Returns true if only the law moves a one-axis body, in closed form, and its angle is measured at every instant.

@@ -1,11 +1,10 @@
 //! Table `[log]`: sampling period of the motion in a full log, and options of the scene.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::document::ConfigError;
-use crate::quantity::Positive;
-use crate::time::Span;
 
 /// Shortest default period of the frames (s), because viewers show no more.
 const SHORTEST_PERIOD: f64 = 0.04;

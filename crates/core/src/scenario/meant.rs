@@ -1,8 +1,7 @@
 //! Keys of numbers that were probably meant by those that there are not.
 
+use flexsc_formats::document::{key, nearest};
 use toml::{Table, Value};
-
-use crate::document::{key, nearest};
 
 /// Largest number of paths that are compared with a misspelt key: elements of a large matrix are not meant.
 const MOST_PATHS: usize = 20_000;

@@ -30,12 +30,12 @@ use std::ops::Deref;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use crate::body::{Body, BodyModel, Planar};
-use crate::document::{ConfigError, Document, ScenarioError};
-use crate::law::{ErrorBand, LawKind, Setpoint};
-use crate::manoeuvre::Plan;
-use crate::motion::linear::LinearFlow;
-use crate::time::{Instant, Span};
+use flexsc_control::law::{ErrorBand, LawKind, Setpoint};
+use flexsc_dynamics::linear::LinearFlow;
+use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::{Body, BodyModel, Planar};
+use flexsc_spacecraft::manoeuvre::Plan;
 
 pub use appendage_drives::{AppendageDrives, DriveProfiles};
 pub use cost::{Cost, MOST_RUNS};
@@ -211,7 +211,7 @@ impl Scenario {
 
     /// Returns the unit of a key, such as rad/s of `body.planar.rate`; `None` for a dimensionless key.
     pub fn unit_of(&self, key: &str) -> Option<&'static str> {
-        let unit = crate::document::unit_at(units(), key)?;
+        let unit = flexsc_formats::document::unit_at(units(), key)?;
         Some(if unit == "N m" && self.model.has_unit_inertia() { "rad/s²" } else { unit })
     }
 }

@@ -1,11 +1,12 @@
 //! The time that runs take on one core, estimated from what acts in them. `benches/costs.py` compares it with measured times: the
 //! constants are those of an ordinary core, to a factor of two for the shipped scenarios.
 
+use flexsc_control::actuator::FiringMethod;
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::LawKind;
+use flexsc_dynamics::three_axis::Surroundings;
+
 use super::Scenario;
-use crate::actuator::FiringMethod;
-use crate::estimator::EstimatorKind;
-use crate::law::LawKind;
-use crate::motion::three_axis::Surroundings;
 
 /// The key of the steps of a rotation.
 pub const TURNS: &str = "duration";

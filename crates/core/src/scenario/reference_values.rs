@@ -1,10 +1,9 @@
 //! Table `[reference]`: reference values of the metrics.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Positive, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::document::ConfigError;
-use crate::quantity::{Positive, Time};
 
 /// Reference values for the metrics.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

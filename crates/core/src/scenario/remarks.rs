@@ -1,10 +1,10 @@
 //! Remarks on values that are accepted but probably mistakes.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::document::key::bare_or_quoted;
 use toml::{Table, Value};
 
 use super::Scenario;
-use crate::document::ConfigError;
-use crate::document::key::bare_or_quoted;
 
 impl Scenario {
     /// Values that are accepted and probably not meant, each with its key and why.

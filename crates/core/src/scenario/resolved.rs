@@ -1,24 +1,24 @@
 //! Data resolved from all parts of a scenario: one-axis models for laws and estimators, placement, allocation and
 //! authority.
 
-use nalgebra::{Cholesky, Matrix3};
-
-use super::{AppendageDrives, Scenario, ScenarioSpec};
-use crate::actuator::{
+use flexsc_control::actuator::{
     Actuator, ActuatorKind, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext,
     AxisActuators, BackEmfRate, FiringMethod, GroupEffect, GyroAxes, ThrusterEffect,
 };
-use crate::attitude::{Vector, rotation_vector, tensor};
-use crate::body::craft::{HubRotor, Translation};
-use crate::body::{BodyAxes, BodyModel, CommandedQuantity, Mode, Planar, Spatial};
-use crate::document::ConfigError;
-use crate::environment::SurroundingsState;
-use crate::estimator::{EstimatorKind, adaptive, attitude};
-use crate::law::{AttitudeProfile, Authority, TorqueDistribution};
-use crate::motion::three_axis::{Bearing, SharedSteps};
-use crate::quantity::{Finite, Positive};
-use crate::random::Seed;
-use crate::time::{Instant, Span};
+use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
+use flexsc_control::law::{AttitudeProfile, Authority, TorqueDistribution};
+use flexsc_dynamics::three_axis::{Bearing, SharedSteps};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, rotation_vector, tensor};
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::craft::{HubRotor, Translation};
+use flexsc_spacecraft::body::{BodyAxes, BodyModel, CommandedQuantity, Mode, Planar, Spatial};
+use flexsc_spacecraft::environment::SurroundingsState;
+use nalgebra::{Cholesky, Matrix3};
+
+use super::{AppendageDrives, Scenario, ScenarioSpec};
 
 /// Assessment period of a run without a period of its own (s).
 const TICK: f64 = 1.0;
@@ -213,7 +213,7 @@ impl ResolvedScenario {
         let measured = self.measured_rates(body);
         let angles = rotation_vector(&self.profile.target(Instant::START), &body.attitude.get());
         for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
-            let mode = |(index, mode): (usize, &crate::body::spatial::ThreeAxisMode)| {
+            let mode = |(index, mode): (usize, &flexsc_spacecraft::body::spatial::ThreeAxisMode)| {
                 let shape = seen[index];
                 let scaled = |value: Finite| Finite::new(shape * value.get()).unwrap_or_default();
                 let gain = shape * input.forces[index] / input.acceleration;

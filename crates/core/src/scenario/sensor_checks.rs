@@ -1,11 +1,12 @@
 //! Checks of sensors, and of estimators and laws with their inputs.
 
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::EstimateNeeds;
+use flexsc_control::sensor::SensorKind;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::time::Span;
+
 use super::ScenarioSpec;
-use crate::document::ConfigError;
-use crate::estimator::EstimatorKind;
-use crate::law::EstimateNeeds;
-use crate::sensor::SensorKind;
-use crate::time::Span;
 
 impl ScenarioSpec {
     pub(super) fn validate_sensors(&self) -> Option<ConfigError> {

@@ -2,23 +2,23 @@
 
 use std::collections::BTreeMap;
 
+use flexsc_control::actuator::AssignedActuator;
+use flexsc_control::adaptation::AdaptationKind;
+use flexsc_control::estimator::EstimatorKind;
+use flexsc_control::law::{AttitudeTarget, LawKind};
+use flexsc_control::one_or_many::OneOrMany;
+use flexsc_control::sensor::SensorKind;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::craft::{Appendage, Spacecraft};
+use flexsc_spacecraft::body::{Body, Drift};
+use flexsc_spacecraft::disturbance::Disturbance;
+use flexsc_spacecraft::environment::Environment;
+use flexsc_spacecraft::manoeuvre::Manoeuvre;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 use toml::{Table, Value, value::Datetime};
 
 use super::{LogSpec, Reference, epoch};
-use crate::actuator::AssignedActuator;
-use crate::adaptation::AdaptationKind;
-use crate::body::craft::{Appendage, Spacecraft};
-use crate::body::{Body, Drift};
-use crate::disturbance::Disturbance;
-use crate::environment::Environment;
-use crate::estimator::EstimatorKind;
-use crate::law::{AttitudeTarget, LawKind};
-use crate::manoeuvre::Manoeuvre;
-use crate::one_or_many::OneOrMany;
-use crate::sensor::SensorKind;
-use crate::time::{Instant, Span};
 use crate::uncertain::{Correlated, Distribution};
 
 /// A scenario as it is written.
@@ -130,7 +130,7 @@ impl ScenarioSpec {
     pub fn law_key(&self, axis: usize) -> String {
         match &self.law {
             LawKind::PerAxis(laws) => {
-                format!("law.per_axis.{}.{}", crate::attitude::AXES[axis], laws.about(axis).kind())
+                format!("law.per_axis.{}.{}", flexsc_numerics::attitude::AXES[axis], laws.about(axis).kind())
             }
             law => format!("law.{}", law.kind()),
         }

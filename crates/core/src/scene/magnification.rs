@@ -3,16 +3,17 @@
 //! The largest motion is not known before a run. The actuator's authority and the initial state give the order of
 //! magnitude.
 
-use crate::actuator::{ActuatorKind, AssignedMember};
-use crate::attitude::{Vector, from_yaw_pitch_roll};
-use crate::body::spatial::ThreeAxisMode;
-use crate::body::{Mode, Planar, Spatial};
-use crate::disturbance::Disturbance;
-use crate::law::{Frame, LawKind, OutputQuantity};
-use crate::motion::three_axis::HarmonicLine;
-use crate::quantity::{Finite, Positive};
+use flexsc_control::actuator::{ActuatorKind, AssignedMember};
+use flexsc_control::law::{Frame, LawKind, OutputQuantity};
+use flexsc_dynamics::three_axis::HarmonicLine;
+use flexsc_numerics::attitude::{Vector, from_yaw_pitch_roll};
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::time::Instant;
+use flexsc_spacecraft::body::spatial::ThreeAxisMode;
+use flexsc_spacecraft::body::{Mode, Planar, Spatial};
+use flexsc_spacecraft::disturbance::Disturbance;
+
 use crate::scenario::Scenario;
-use crate::time::Instant;
 
 /// Bending and rotation (rad) that the estimated motion has as drawn.
 const BENDING: f64 = 0.35;

@@ -13,11 +13,12 @@ mod primitives;
 mod three_axis;
 mod wheel;
 
-use crate::body::BodyAxes;
-use crate::record::foxglove::{FrameTransforms, SceneUpdate};
-use crate::record::row::LogDate;
+use flexsc_numerics::time::Span;
+use flexsc_record::foxglove::{FrameTransforms, SceneUpdate};
+use flexsc_record::row::LogDate;
+use flexsc_spacecraft::body::BodyAxes;
+
 use crate::scenario::Scenario;
-use crate::time::Span;
 
 pub use one_axis::{OneAxisPose, OneAxisScene};
 pub use three_axis::ThreeAxisScene;

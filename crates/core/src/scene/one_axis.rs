@@ -1,5 +1,13 @@
 //! Scene of a one-axis body: a hub that rotates about z, with panels of sections that bend in the plane.
 
+use flexsc_dynamics::ModeState;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::Span;
+use flexsc_record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
+use flexsc_record::row::LogDate;
+use flexsc_spacecraft::body::Planar;
+
 use super::Extent;
 use super::magnification::{bending, expected_angle, largest_torque, turning};
 use super::panels::ScenePanels;
@@ -9,14 +17,7 @@ use super::primitives::{
     BODY, GOAL, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, line, scene, words,
 };
 use super::wheel::{SceneWheel, disc};
-use crate::attitude::Vector;
-use crate::body::Planar;
-use crate::motion::ModeState;
-use crate::quantity::Positive;
-use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
-use crate::record::row::LogDate;
 use crate::scenario::Scenario;
-use crate::time::Span;
 
 /// Number of steps in which a torque is drawn, and the fraction of the largest torque below which it is drawn as zero.
 const STEPS: f64 = 4.0;

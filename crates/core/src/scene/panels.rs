@@ -1,8 +1,9 @@
 //! Panels of a one-axis body: places of their sections, and their bending.
 
+use flexsc_spacecraft::body::{Body, Planar};
+
 use super::OneAxisPose;
 use super::magnification::expected_displacements;
-use crate::body::{Body, Planar};
 use crate::scenario::Scenario;
 
 /// Sections, total length (m) and root distance (m) of the panels of a body that defines none.

@@ -1,9 +1,10 @@
 //! Plumes of the firing thrusters, logged completely at each change.
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_record::foxglove::{Deleted, Plumes, SceneEntityDeletion, SceneUpdate};
+use flexsc_record::row::LogDate;
+
 use super::primitives::{PLUME, cone, entity};
-use crate::attitude::Vector;
-use crate::record::foxglove::{Deleted, Plumes, SceneEntityDeletion, SceneUpdate};
-use crate::record::row::LogDate;
 
 /// Nozzle: its frame, the origin of its plume, and the direction of the plume.
 #[derive(Clone, Debug, PartialEq)]

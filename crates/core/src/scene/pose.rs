@@ -1,10 +1,9 @@
 //! Poses: rotations and places as viewer messages, rounded to single precision, which the eye cannot distinguish from
 //! double.
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_record::foxglove::{Point3, Pose, Quaternion, Vector3};
 use nalgebra::Quaternion as Rotation;
-
-use crate::attitude::Vector;
-use crate::record::foxglove::{Point3, Pose, Quaternion, Vector3};
 
 fn single(value: f64) -> f64 {
     f64::from(value as f32)

@@ -1,12 +1,13 @@
 //! Primitives of a scene: frames, and the boxes, cones and texts that are fixed to them.
 
-use super::pose::{from_z, place, point, pose, unrotated};
-use crate::attitude::Vector;
-use crate::record::foxglove::{
+use flexsc_numerics::attitude::Vector;
+use flexsc_record::foxglove::{
     ArrowPrimitive, Color, CubePrimitive, CylinderPrimitive, FrameTransform, LinePrimitive, LineType,
     SceneEntity, SceneUpdate, TextPrimitive,
 };
-use crate::record::row::{LogDate, LogSpan};
+use flexsc_record::row::{LogDate, LogSpan};
+
+use super::pose::{from_z, place, point, pose, unrotated};
 
 /// Name of the inertial frame.
 pub const INERTIAL: &str = "inertial";

@@ -3,6 +3,15 @@
 //! The booms bend by a cubic between the mode shapes at their ends. The wings have no mode shapes, and bend against the
 //! rotation of the hub.
 
+use flexsc_control::actuator::GroupPair;
+use flexsc_dynamics::ModeState;
+use flexsc_dynamics::three_axis::ArticulatedPanel;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::time::Span;
+use flexsc_record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
+use flexsc_record::row::LogDate;
+use flexsc_spacecraft::body::Spatial;
 use nalgebra::Quaternion;
 
 use super::Extent;
@@ -12,16 +21,7 @@ use super::pose::{about, attitude, from_z, limited, magnified, place};
 use super::primitives::{
     BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, scene, words,
 };
-use crate::actuator::GroupPair;
-use crate::attitude::{Vector, vector};
-use crate::body::Spatial;
-use crate::motion::ModeState;
-use crate::motion::three_axis::ArticulatedPanel;
-use crate::quantity::Positive;
-use crate::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
-use crate::record::row::LogDate;
 use crate::scenario::Scenario;
-use crate::time::Span;
 
 /// Number of sections of a boom, and of a wing.
 const SECTIONS: usize = 6;
@@ -81,7 +81,7 @@ impl ThreeAxisScene {
         let spec = &scenario.log.scene;
         let jets = scenario.actuator.jets().map(|(jets, _)| jets);
         let thrusters = jets.map_or(&[][..], |jets| &jets.thrusters);
-        let point = |point: &crate::body::spatial::NamedPoint| ScenePoint {
+        let point = |point: &flexsc_spacecraft::body::spatial::NamedPoint| ScenePoint {
             name: point.name.clone(),
             at: vector(&point.position),
             shapes: body.shapes(&point.name),

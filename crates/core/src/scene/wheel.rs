@@ -1,14 +1,15 @@
 //! Wheel of a one-axis body: a disc that rotates by its momentum.
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::Span;
+use flexsc_record::foxglove::SceneEntity;
+use flexsc_record::row::LogDate;
+use flexsc_spacecraft::body::Planar;
+
 use super::OneAxisPose;
 use super::magnification::{expected_rate, slow_down_factor};
 use super::primitives::{MARK, WHEEL, cone, cube, entity};
-use crate::attitude::Vector;
-use crate::body::Planar;
-use crate::record::foxglove::SceneEntity;
-use crate::record::row::LogDate;
 use crate::scenario::Scenario;
-use crate::time::Span;
 
 /// Inertia of a wheel without a rotor model, relative to the body's inertia, as drawn.
 const ROTOR: f64 = 0.02;

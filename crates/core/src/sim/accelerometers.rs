@@ -1,12 +1,13 @@
 //! Accelerometers of a run: neither estimators nor laws read them; their samples go to the record.
 
+use flexsc_control::sensor::{Accelerometer, AccelerometerState, MeasuredAcceleration};
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Acceleration, Accelerations, Record, Sample};
+
 use super::plant::{AccelerometerMount, Plant};
 use super::{Simulation, SimulationError};
-use crate::random::Seed;
-use crate::record::{Acceleration, Accelerations, Record, Sample};
 use crate::scenario::Scenario;
-use crate::sensor::{Accelerometer, AccelerometerState, MeasuredAcceleration};
-use crate::time::Instant;
 
 /// Run-time state of the accelerometers, each with its index among the sensors and its mount.
 #[derive(Clone, Debug)]

@@ -1,12 +1,13 @@
 //! Stepping interface for batches that integrate the motion of many runs: each run senses, estimates and decides
 //! itself.
 
+use flexsc_control::estimator::kalman::KalmanFilter;
+use flexsc_numerics::time::Instant;
+use flexsc_record::Record;
+use flexsc_spacecraft::flow::ExternalMotion;
+
 use super::plant::{AppliedTorque, Plant};
 use super::{Simulation, SimulationError};
-use crate::estimator::kalman::KalmanFilter;
-use crate::flow::ExternalMotion;
-use crate::record::Record;
-use crate::time::Instant;
 
 impl Simulation {
     /// Hands the motion of the body to a batch before the run begins; `None` unless its modes are coupled or drift.

@@ -1,8 +1,9 @@
 //! Control step: the laws that an event concerns decide once, and the actuator executes their commands.
 
+use flexsc_control::law::{DecisionCause, Event};
+use flexsc_record::Record;
+
 use super::{MOST_DECISIONS, Simulation, SimulationError};
-use crate::law::{DecisionCause, Event};
-use crate::record::Record;
 use crate::relay_setup::SWITCHINGS;
 
 impl Simulation {

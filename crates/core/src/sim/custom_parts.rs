@@ -1,7 +1,8 @@
 //! Custom parts in a run: a run ends when one of them fails.
 
+use flexsc_control::estimator::{AdaptationRun, ObjectiveMeter, WindowedEnvelope};
+
 use super::{Simulation, SimulationError};
-use crate::estimator::{AdaptationRun, ObjectiveMeter, WindowedEnvelope};
 
 impl Simulation {
     /// Fails if a custom part cannot go on.

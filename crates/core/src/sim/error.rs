@@ -1,10 +1,9 @@
 //! Errors that end a run before its end.
 
+use flexsc_control::custom::PartError;
+use flexsc_numerics::time::Instant;
+use flexsc_record::RecordError;
 use thiserror::Error;
-
-use crate::custom::PartError;
-use crate::record::RecordError;
-use crate::time::Instant;
 
 /// Error that ends a simulation.
 #[derive(Debug, Error)]

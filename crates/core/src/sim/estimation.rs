@@ -1,9 +1,10 @@
 //! From sensor samples to state estimates, with angles counted from the current target.
 
+use flexsc_control::estimator::SampleContext;
+use flexsc_numerics::time::Instant;
+use flexsc_record::Record;
+
 use super::{Simulation, SimulationError};
-use crate::estimator::SampleContext;
-use crate::record::Record;
-use crate::time::Instant;
 
 impl Simulation {
     /// Reads the sensors that are due and updates the estimates.

@@ -4,14 +4,15 @@
 //! Loads change at segment starts that are not known in advance, so a segment is averaged when it is over. The plant of
 //! the run itself is never moved back.
 
+use flexsc_control::sensor::{ExposureMean, Orientation};
+use flexsc_numerics::quadrature;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Record;
+
 use super::plant::Plant;
 use super::sensors::Sensors;
 use super::{Simulation, SimulationError};
-use crate::numerics::quadrature;
-use crate::record::Record;
 use crate::scenario::Scenario;
-use crate::sensor::{ExposureMean, Orientation};
-use crate::time::{Instant, Span};
 
 /// Exposures of all star trackers of a run.
 #[derive(Clone, Debug)]

@@ -1,10 +1,11 @@
 //! Begin and end of sensor and actuator failures, for log and journal.
 
+use flexsc_numerics::time::Instant;
+use flexsc_record::foxglove::LogLevel;
+use flexsc_record::{Command, FaultEvent, Onset, Record, RecordError, Sample};
+
 use super::Simulation;
-use crate::record::foxglove::LogLevel;
-use crate::record::{Command, FaultEvent, Onset, Record, RecordError, Sample};
 use crate::scenario::{FailureInterval, Scenario};
-use crate::time::Instant;
 
 /// Pending beginnings and ends of failures, latest first.
 #[derive(Clone, Debug)]

@@ -2,14 +2,15 @@
 
 use std::sync::Arc;
 
-use crate::attitude::Vector;
-use crate::law::{AttitudeProfile, Frame, Law, Setpoint};
-use crate::scenario::Scenario;
-use crate::sensor::Orientation;
-use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
-use crate::waveform::Waveform;
+use flexsc_control::law::{AttitudeProfile, Frame, Law, Setpoint};
+use flexsc_control::sensor::Orientation;
+use flexsc_control::state_estimate::StateEstimate;
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
 use nalgebra::Quaternion;
+
+use crate::scenario::Scenario;
 
 /// Reference motion of a scenario.
 #[derive(Clone, Debug)]

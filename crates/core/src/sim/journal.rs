@@ -1,11 +1,12 @@
 //! Journal: a log in sentences of the events of a run.
 
-use crate::adaptation::Decision;
-use crate::record::foxglove::{Log, LogLevel};
-use crate::record::row::LogDate;
-use crate::record::{Record, RecordError, Sample};
+use flexsc_control::adaptation::Decision;
+use flexsc_numerics::time::Instant;
+use flexsc_record::foxglove::{Log, LogLevel};
+use flexsc_record::row::LogDate;
+use flexsc_record::{Record, RecordError, Sample};
+
 use crate::scenario::Scenario;
-use crate::time::Instant;
 
 /// Writer of journal lines with absolute dates.
 #[derive(Copy, Clone, Debug)]

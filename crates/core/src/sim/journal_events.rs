@@ -1,15 +1,16 @@
 //! Detection of state changes for the journal: start and end, targets, arrivals, active damping, trust in estimators.
 
-use crate::attitude::{AXES, angles};
-use crate::law::Frame;
-use crate::record::foxglove::LogLevel;
-use crate::record::row::LogDate;
-use crate::record::{Adaptation, Arrival, Record, RecordError, Sliding, WheelEvent};
+use flexsc_control::law::Frame;
+use flexsc_control::state_estimate::DampingStatus;
+use flexsc_numerics::attitude::{AXES, angles};
+use flexsc_numerics::time::Instant;
+use flexsc_record::foxglove::LogLevel;
+use flexsc_record::row::LogDate;
+use flexsc_record::{Adaptation, Arrival, Record, RecordError, Sliding, WheelEvent};
+use nalgebra::Quaternion;
+
 use crate::scenario::Scenario;
 use crate::sim::journal::{Journal, adaptation_line, opening};
-use crate::state_estimate::DampingStatus;
-use crate::time::Instant;
-use nalgebra::Quaternion;
 
 /// Last reported states, to detect changes for the journal.
 #[derive(Clone, Debug)]

@@ -1,15 +1,16 @@
 //! Loads on the body: the actuator, which executes the laws and the manoeuvre, disturbances, and the environment.
 
-use crate::actuator::Actuator;
-use crate::body::Drift;
-use crate::disturbance::{Disturbance, DisturbanceState};
-use crate::environment::SurroundingsState;
-use crate::law::{Command, TorqueDistribution};
-use crate::random::Seed;
+use flexsc_control::actuator::Actuator;
+use flexsc_control::law::{Command, TorqueDistribution};
+use flexsc_control::state_estimate::StateEstimate;
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::Drift;
+use flexsc_spacecraft::disturbance::{Disturbance, DisturbanceState};
+use flexsc_spacecraft::environment::SurroundingsState;
+use flexsc_spacecraft::wrench::Wrench;
+
 use crate::scenario::Scenario;
-use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 /// Everything that acts on the body.
 #[derive(Clone, Debug)]

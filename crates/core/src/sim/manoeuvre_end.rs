@@ -1,12 +1,13 @@
 //! State at the end of the manoeuvre: distance from the goal and residual vibration.
 
-use crate::body::{CommandedQuantity, Planar};
-use crate::law::Setpoint;
-use crate::motion::AxisState;
-use crate::record::{self, Residual};
+use flexsc_control::law::Setpoint;
+use flexsc_control::sensor::Truth;
+use flexsc_dynamics::AxisState;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{self, Residual};
+use flexsc_spacecraft::body::{CommandedQuantity, Planar};
+
 use crate::scenario::Scenario;
-use crate::sensor::Truth;
-use crate::time::Instant;
 
 /// Pending end of a manoeuvre.
 #[derive(Clone, Debug)]
@@ -25,7 +26,7 @@ impl ManoeuvreEnd {
     }
 
     /// Returns the row of the record for a body in this state.
-    pub fn row(&self, truth: &Truth, state: &AxisState) -> record::Arrival {
+    pub fn row(&self, truth: &Truth, state: &AxisState) -> flexsc_record::Arrival {
         let modes = || self.body.modes.iter().zip(&state.modes);
         let amplitudes: Vec<f64> = modes().map(|(mode, phase)| mode.amplitude(*phase)).collect();
         let visible = if self.body.drive == CommandedQuantity::Torque { 1.0 } else { 0.0 };
@@ -36,7 +37,7 @@ impl ManoeuvreEnd {
                 unit: output.unit.clone(),
             }
         });
-        record::Arrival {
+        flexsc_record::Arrival {
             angle_error_rad: truth.sensor_angles()[0] - self.goal.angle,
             rate_error_rad_s: truth.rate[0] - self.goal.rate,
             angle_residual_rad: visible * amplitudes.iter().sum::<f64>(),

@@ -30,15 +30,16 @@ mod start_finish;
 mod stepping;
 mod wheel_bearings;
 
-use crate::estimator::{self, Estimator, ObjectiveMeter, WindowedEnvelope};
-use crate::law::{Controllers, Event};
-use crate::random::Seed;
-use crate::record::Record;
+use flexsc_control::estimator::{self, Estimator, ObjectiveMeter, WindowedEnvelope};
+use flexsc_control::law::{Controllers, Event};
+use flexsc_control::sensor::Orientation;
+use flexsc_control::state_estimate::StateEstimate;
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Record;
+
 use crate::relay_setup::{self, RunSetup};
 use crate::scenario::Scenario;
-use crate::sensor::Orientation;
-use crate::state_estimate::StateEstimate;
-use crate::time::{Instant, Span};
 
 pub use error::SimulationError;
 use exposures::Exposures;

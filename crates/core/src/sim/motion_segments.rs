@@ -1,9 +1,10 @@
 //! Motion segments: one ends, and the next begins under the loads from the current instant on.
 
+use flexsc_numerics::time::Instant;
+use flexsc_record::Record;
+
 use super::plant::AppliedTorque;
 use super::{Simulation, SimulationError};
-use crate::record::Record;
-use crate::time::Instant;
 
 impl Simulation {
     /// Begins a motion segment under the loads from the current instant on, and finds its first guard crossing.

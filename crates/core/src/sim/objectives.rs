@@ -1,16 +1,17 @@
 //! Inputs of the meter of an adaptation's objective: motion, torque, control cycles, switchings.
 
+use flexsc_control::adaptation::Objective;
+use flexsc_control::estimator::{
+    AdaptationRun, EnvelopeWindow, MotionSample, ObjectiveMeter, ObjectiveWindow, WindowedEnvelope,
+};
+use flexsc_control::law::Phase;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Record, RecordError, Sample};
+
 use super::plant::Plant;
 use super::recorder::Recorder;
 use super::{Simulation, SimulationError};
-use crate::adaptation::Objective;
-use crate::attitude::Vector;
-use crate::estimator::{
-    AdaptationRun, EnvelopeWindow, MotionSample, ObjectiveMeter, ObjectiveWindow, WindowedEnvelope,
-};
-use crate::law::Phase;
-use crate::record::{Record, RecordError, Sample};
-use crate::time::Instant;
 
 impl Simulation {
     /// Declares the tuned parameter to the laws, so that its value is logged from the start on.

@@ -1,12 +1,13 @@
 //! State of a run as a flat vector with names and units: true state, measurements, and estimates.
 
+use flexsc_control::sensor::Truth;
+use flexsc_dynamics::AxisState;
+use flexsc_record::Hinges;
+use flexsc_spacecraft::flow::ThreeAxisState;
+
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
-use crate::flow::ThreeAxisState;
-use crate::motion::AxisState;
-use crate::record::Hinges;
 use crate::scenario::Scenario;
-use crate::sensor::Truth;
 
 /// Origin of the values of a field.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]

@@ -1,5 +1,14 @@
 //! Rows of a run: when they are due, and their content.
 
+use flexsc_control::actuator::Saturation;
+use flexsc_control::law::{DecisionCause, Phase};
+use flexsc_dynamics::three_axis::SlipDirection;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{
+    self, AxisRate, Command, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
+    ThreeAxisCycle, ThreeAxisMotionSample, Torques, Trigger, Wheels,
+};
+
 use super::accelerometers::Accelerometers;
 use super::failures::Failures;
 use super::guidance::Guidance;
@@ -7,16 +16,8 @@ use super::journal_events::JournalEvents;
 use super::manoeuvre_end::ManoeuvreEnd;
 use super::plant::{Plant, ThreeAxisPlant};
 use super::{Simulation, SimulationError};
-use crate::actuator::Saturation;
-use crate::law::{DecisionCause, Phase};
-use crate::motion::three_axis::SlipDirection;
-use crate::record::{
-    self, AxisRate, Command, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
-    ThreeAxisCycle, ThreeAxisMotionSample, Torques, Trigger, Wheels,
-};
 use crate::scenario::Scenario;
 use crate::scene::Scene;
-use crate::time::{Instant, Span};
 
 /// Schedule and memory of everything that a run writes to its record.
 #[derive(Clone, Debug)]
@@ -245,9 +246,9 @@ impl Simulation {
         Ok(axes.map_or(Ok(()), |axes| record.record(now, Sample::Estimates(&Estimates { axes })))?)
     }
 
-    pub(super) fn law_row(&self) -> record::Law {
+    pub(super) fn law_row(&self) -> flexsc_record::Law {
         let law = self.controllers.about(0);
-        record::Law {
+        flexsc_record::Law {
             state: law.state(),
             torque_nm: self.loads.actuator.demanded_torque(0),
             gain: law.tuned_value(),
@@ -264,7 +265,7 @@ impl Simulation {
         let (actuator, rates) = (&self.loads.actuator, [rate.rate_rad_s, rate.rigid_rad_s]);
         let drive = self.recorder.has_torque_rows.then(|| {
             let (angle_rad, rate_rad_s) = self.guidance.manoeuvre_state(now);
-            let torque = record::Torque {
+            let torque = flexsc_record::Torque {
                 feedforward_nm: self.guidance.feedforward(now),
                 feedback_nm: actuator.demanded_torque(0),
                 applied_nm: actuator.applied_torque(now, 0, rates),
@@ -350,7 +351,7 @@ impl Simulation {
         };
         let actuator = &self.loads.actuator;
         let (around, magnetic) = (plant.environment_torque(), plant.magnetic_torque());
-        let torque = |axis: usize| record::Torque {
+        let torque = |axis: usize| flexsc_record::Torque {
             feedforward_nm: 0.0,
             feedback_nm: actuator.demanded_torque(axis),
             applied_nm: magnetic[axis]

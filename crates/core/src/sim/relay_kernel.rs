@@ -3,15 +3,16 @@
 //! Results and records are bit-identical to those of the loop, which takes the run over at the last segment start
 //! before its end.
 
+use flexsc_control::law::Command;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{self, PieceDemand, Record, RecordError, Sample, Trigger};
+
 use super::plant::{AppliedTorque, Plant};
 use super::{Simulation, SimulationError};
-use crate::law::Command;
-use crate::record::{self, PieceDemand, Record, RecordError, Sample, Trigger};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneState, RunSetup, SWITCHINGS, apply_crossing,
     apply_state, fly_alone, guards, instant, law_state, shortest_window,
 };
-use crate::time::Instant;
 
 /// Adapter that runs a single simulation through the relay kernel.
 struct SingleRunHost<'a> {
@@ -122,8 +123,8 @@ impl SingleRunHost<'_> {
         let Plant::OneAxis(plant) = &mut self.run.plant else { return Ok(()) };
         plant.set_state(at, |state| apply_state(state, now));
         let sensed = plant.view(at);
-        let (time_s, time_whole_s, time_fs) = record::Command::times(at);
-        let command = record::Command {
+        let (time_s, time_whole_s, time_fs) = flexsc_record::Command::times(at);
+        let command = flexsc_record::Command {
             time_s,
             time_whole_s,
             time_fs,
@@ -222,9 +223,9 @@ impl LaneHost for SingleRunHost<'_> {
 
 #[cfg(test)]
 mod tests {
-    use crate::record::{Detail, Trace};
-    use crate::time::{Instant, Span};
     use crate::{Scenario, Simulation};
+    use flexsc_numerics::time::{Instant, Span};
+    use flexsc_record::{Detail, Trace};
 
     fn shipped(name: &str, changes: &[(&str, &str)]) -> Scenario {
         let path = format!("{}/../../scenarios/{name}.toml", env!("CARGO_MANIFEST_DIR"));

@@ -1,9 +1,10 @@
 //! Motion at instants chosen by the caller: between events, and exactly at them.
 
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Record, Sample};
+
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
-use crate::record::{Record, Sample};
-use crate::time::{Instant, Span};
 
 const FEMTOSECONDS: i128 = 1_000_000_000_000_000;
 
@@ -72,8 +73,8 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::record::{Columns, Detail, Trace};
     use crate::scenario::Scenario;
+    use flexsc_record::{Columns, Detail, Trace};
 
     const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");
 

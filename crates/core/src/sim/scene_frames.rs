@@ -1,9 +1,10 @@
 //! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
+use flexsc_record::{Hinges, Record, Sample};
+use flexsc_spacecraft::flow::ThreeAxisState;
+
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
-use crate::flow::ThreeAxisState;
-use crate::record::{Hinges, Record, Sample};
 use crate::scenario::Scenario;
 use crate::scene::{OneAxisPose, Scene};
 

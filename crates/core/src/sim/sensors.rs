@@ -1,14 +1,15 @@
 //! Sensors of a run: when each samples, and the latest measurements about each axis.
 
+use flexsc_control::custom::PartError;
+use flexsc_control::sensor::{ExposureMean, Orientation, Reading, Sensor, SensorKind, Truth};
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::random::Seed;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::environment::to_body;
+
 use super::Simulation;
 use super::plant::Plant;
-use crate::attitude::Vector;
-use crate::custom::PartError;
-use crate::environment::to_body;
-use crate::random::Seed;
 use crate::scenario::Scenario;
-use crate::sensor::{ExposureMean, Orientation, Reading, Sensor, SensorKind, Truth};
-use crate::time::{Instant, Span};
 
 /// Run-time state of the sensors.
 #[derive(Clone, Debug)]

@@ -1,8 +1,9 @@
 //! Start and end of a run.
 
+use flexsc_control::law::Event;
+use flexsc_record::Record;
+
 use super::{Simulation, SimulationError};
-use crate::law::Event;
-use crate::record::Record;
 
 impl Simulation {
     /// Begins the run after its first sample: first decision, first motion segment, first rows.

@@ -1,10 +1,11 @@
 //! Runs in pieces: to an instant or to the next event of a kind, stopped between sensing and the response, with
 //! external commands.
 
+use flexsc_control::law::{Command, Event};
+use flexsc_numerics::time::Instant;
+use flexsc_record::Record;
+
 use super::{Simulation, SimulationError};
-use crate::law::{Command, Event};
-use crate::record::Record;
-use crate::time::Instant;
 
 /// Kind of event at which a run can be stopped.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
@@ -24,8 +25,8 @@ impl Simulation {
     /// scenario's actuator executes them. A law's pending decision at the current instant is dropped.
     ///
     /// ```
-    /// use flexsc_core::{Scenario, Simulation, law::Command, time::Instant};
-    /// # use flexsc_core::time::Span;
+    /// use flexsc_core::{Scenario, Simulation, control::law::Command, numerics::time::Instant};
+    /// # use flexsc_core::numerics::time::Span;
     ///
     /// let text = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";
     /// let mut simulation = Simulation::new(&Scenario::parse("steered.toml", text)?, 0);

@@ -1,10 +1,11 @@
 //! Stick and slip events of wheels with bearing friction: detection of chatter, update of their drives, and records.
 
+use flexsc_dynamics::three_axis::RotorObservation;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{self, Command, Record, Sample};
+
 use super::plant::{Plant, ThreeAxisPlant};
 use super::{MOST_DECISIONS, Simulation, SimulationError};
-use crate::motion::three_axis::RotorObservation;
-use crate::record::{self, Command, Record, Sample};
-use crate::time::Instant;
 
 impl Simulation {
     /// Counts an event at `at` at which a wheel sticks or lets go; fails if such events chatter.
@@ -30,8 +31,8 @@ impl Simulation {
     }
 
     /// Returns the bearing rows of the wheels; `None` without bearings.
-    pub(super) fn bearing_rows(&self, plant: &ThreeAxisPlant) -> Option<record::Bearings> {
-        let of = |(wheel, known_rad_s): (RotorObservation, f64)| record::BearingMotion {
+    pub(super) fn bearing_rows(&self, plant: &ThreeAxisPlant) -> Option<flexsc_record::Bearings> {
+        let of = |(wheel, known_rad_s): (RotorObservation, f64)| flexsc_record::BearingMotion {
             sliding: wheel.slip.into(),
             friction_nm: wheel.friction,
             heat_j: wheel.heat,
@@ -43,7 +44,7 @@ impl Simulation {
             .zip(self.loads.actuator.measured_wheel_speeds())
             .map(of)
             .collect();
-        (!wheels.is_empty()).then_some(record::Bearings { wheels })
+        (!wheels.is_empty()).then_some(flexsc_record::Bearings { wheels })
     }
 
     /// Initialises the slip states of the wheels at the start, to detect changes.
@@ -68,7 +69,7 @@ impl Simulation {
             if before == after {
                 continue;
             }
-            let event = record::WheelEvent {
+            let event = flexsc_record::WheelEvent {
                 time_s,
                 time_whole_s,
                 time_fs,

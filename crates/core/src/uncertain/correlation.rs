@@ -1,10 +1,9 @@
 //! Uncertain keys that are drawn together: a Gaussian copula.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::document::ConfigError;
-use crate::quantity::Finite;
 
 /// Bound of the rounding errors of a zero variance (`[[1, 1], [1, 1]]` is accepted).
 const ROUNDING: f64 = 1e-12;
@@ -94,7 +93,7 @@ impl Correlated {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::random::Seed;
+    use flexsc_numerics::random::Seed;
 
     fn from_matrix(matrix: &[&[f64]]) -> Correlated {
         let row =

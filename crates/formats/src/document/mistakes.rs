@@ -85,7 +85,7 @@ fn fitting(why: &str) -> Option<Value> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use flexsc_motion::quantity::Positive;
+    use flexsc_numerics::quantity::Positive;
 
     #[derive(serde::Deserialize)]
     #[serde(rename_all = "snake_case")]

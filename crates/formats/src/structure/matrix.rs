@@ -4,6 +4,7 @@ use std::borrow::Cow;
 use std::fmt;
 use std::path::Path;
 
+use flexsc_numerics::quantity::Finite;
 use nalgebra::DMatrix;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::{Error, SeqAccess, Visitor};
@@ -15,7 +16,6 @@ use super::npz;
 use super::unavailable::npz;
 use super::{csv, matrix_market};
 use crate::document::ConfigError;
-use flexsc_motion::quantity::Finite;
 
 /// Dense matrix, or the path of its file.
 #[derive(Clone, Debug, PartialEq)]

@@ -7,6 +7,7 @@ use std::marker::PhantomData;
 use std::ops::Deref;
 use std::path::Path;
 
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{DeserializeOwned, Error, IntoDeserializer, SeqAccess, Visitor};
@@ -14,7 +15,6 @@ use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::Shape;
 use super::{LARGEST, csv};
-use flexsc_motion::quantity::{Finite, Frequency, NonNegative};
 
 /// Endings of the column names of a point's shape, after the point's name and a dot: three translations, three
 /// rotations.

@@ -1,9 +1,8 @@
 //! Shape of a mode at a point of the structure.
 
+use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use flexsc_motion::quantity::Finite;
 
 /// The shape of a mode at a point.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -2,11 +2,11 @@
 
 use std::any::Any;
 
-use flexsc_core::actuator::{Actuator, ActuatorSpec, AxisActuatorContext as EngineSetting, Demand};
-use flexsc_core::attitude::Vector;
-use flexsc_core::custom::PartError;
-use flexsc_core::time::{Instant as Exact, Span};
-use flexsc_core::wrench::Wrench;
+use flexsc_core::control::actuator::{Actuator, ActuatorSpec, AxisActuatorContext as EngineSetting, Demand};
+use flexsc_core::control::custom::PartError;
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::numerics::time::{Instant as Exact, Span};
+use flexsc_core::spacecraft::wrench::Wrench;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -2,10 +2,10 @@
 
 use std::any::Any;
 
-use flexsc_core::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
-use flexsc_core::custom::PartError;
-use flexsc_core::random::Seed;
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
+use flexsc_core::control::custom::PartError;
+use flexsc_core::numerics::random::Seed;
+use flexsc_core::numerics::time::{Instant, Span};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

@@ -1,9 +1,9 @@
 //! Estimates of an attitude filter written in Python, next to the true values, for the log.
 
-use flexsc_core::attitude::Vector;
-use flexsc_core::estimator::attitude::AttitudeFilterState;
+use flexsc_core::control::estimator::attitude::AttitudeFilterState;
+use flexsc_core::control::sensor::Orientation;
+use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
-use flexsc_core::sensor::Orientation;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -2,13 +2,13 @@
 
 use std::any::Any;
 
-use flexsc_core::custom::PartError;
-use flexsc_core::guard::Guard;
-use flexsc_core::law::{
+use flexsc_core::control::custom::PartError;
+use flexsc_core::control::law::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, Phase, Setpoint,
 };
-use flexsc_core::state_estimate::StateEstimate;
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::dynamics::guard::Guard;
+use flexsc_core::numerics::time::{Instant, Span};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 

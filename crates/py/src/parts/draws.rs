@@ -1,6 +1,6 @@
 //! Random numbers of a run for Python: streams that depend on the scenario's seed and the number of the run alone.
 
-use flexsc_core::random::{Seed, Stream as Engine};
+use flexsc_core::numerics::random::{Seed, Stream as Engine};
 use pyo3::prelude::*;
 
 /// Source of the random numbers of a run.

@@ -2,15 +2,15 @@
 
 use std::any::Any;
 
-use flexsc_core::custom::PartError;
-use flexsc_core::estimator::{
+use flexsc_core::control::custom::PartError;
+use flexsc_core::control::estimator::{
     Estimator, EstimatorContext as EngineKnown, EstimatorSpec, SampleContext as EngineTaken,
 };
-use flexsc_core::random::Seed;
+use flexsc_core::control::sensor::Orientation;
+use flexsc_core::control::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
+use flexsc_core::numerics::random::Seed;
+use flexsc_core::numerics::time::{Instant as Exact, Span};
 use flexsc_core::record::AttitudeEstimate;
-use flexsc_core::sensor::Orientation;
-use flexsc_core::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
-use flexsc_core::time::{Instant as Exact, Span};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 

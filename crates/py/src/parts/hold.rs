@@ -1,8 +1,8 @@
 //! Answers of a law written in Python.
 
-use flexsc_core::guard::Guard;
-use flexsc_core::law::{Command, ControlOutput as Engine, Guards, Phase};
-use flexsc_core::time::Span;
+use flexsc_core::control::law::{Command, ControlOutput as Engine, Guards, Phase};
+use flexsc_core::dynamics::guard::Guard;
+use flexsc_core::numerics::time::Span;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -63,7 +63,7 @@ fn finite(what: &str, value: f64) -> PyResult<f64> {
 
 impl Hold {
     /// The engine's answer of a law that is asked again after a period, if it names no time.
-    pub fn engine_output(&self, now: flexsc_core::time::Instant, period: Option<Span>) -> Engine {
+    pub fn engine_output(&self, now: flexsc_core::numerics::time::Instant, period: Option<Span>) -> Engine {
         let until = self.until.map(|until| until.0).or_else(|| Some(now + self.after.or(period)?));
         let guards = match (self.at_least, self.at_most) {
             (Some(above), Some(below)) => Guards::two(Guard::at_least(above), Guard::at_most(below)),

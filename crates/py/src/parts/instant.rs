@@ -1,6 +1,6 @@
 //! Instants of simulated time, which are counted in femtoseconds, for Python.
 
-use flexsc_core::time::{Instant as Exact, Span};
+use flexsc_core::numerics::time::{Instant as Exact, Span};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyAny;

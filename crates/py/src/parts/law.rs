@@ -4,13 +4,13 @@ use std::any::Any;
 use std::collections::BTreeSet;
 use std::sync::{Mutex, OnceLock, PoisonError};
 
-use flexsc_core::custom::PartError;
-use flexsc_core::law::{
+use flexsc_core::control::custom::PartError;
+use flexsc_core::control::law::{
     Authority as EngineAuthority, ControlOutput as Held, DecisionCause, ErrorBand, Law, LawSpec, Phase,
     Setpoint, Tunable,
 };
-use flexsc_core::state_estimate::{EstimateNeeds, StateEstimate};
-use flexsc_core::time::{Instant as Exact, Span};
+use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
+use flexsc_core::numerics::time::{Instant as Exact, Span};
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 

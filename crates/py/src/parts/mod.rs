@@ -17,7 +17,7 @@ mod sensor;
 use std::any::Any;
 use std::sync::Arc;
 
-use flexsc_core::custom::Custom;
+use flexsc_core::control::custom::Custom;
 use flexsc_core::scenario::CustomParts;
 use pyo3::prelude::*;
 

@@ -3,7 +3,7 @@
 use std::fmt;
 use std::sync::OnceLock;
 
-use flexsc_core::custom::PartError;
+use flexsc_core::control::custom::PartError;
 use pyo3::prelude::*;
 use pyo3::types::PyTuple;
 

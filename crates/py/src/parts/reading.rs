@@ -1,8 +1,8 @@
 //! True values and readings of sensors, for Python.
 
-use flexsc_core::attitude::Vector;
-use flexsc_core::sensor::{Orientation, Reading as Engine, Truth as EngineTruth, VectorMeasurement};
-use flexsc_core::time::Instant as Exact;
+use flexsc_core::control::sensor::{Orientation, Reading as Engine, Truth as EngineTruth, VectorMeasurement};
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::numerics::time::Instant as Exact;
 use nalgebra::Quaternion;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;

@@ -2,10 +2,10 @@
 
 use std::any::Any;
 
-use flexsc_core::custom::PartError;
-use flexsc_core::random::Seed;
-use flexsc_core::sensor::{Reading as EngineReading, Sensor, SensorSpec, Truth as EngineTruth};
-use flexsc_core::time::{Instant, Span};
+use flexsc_core::control::custom::PartError;
+use flexsc_core::control::sensor::{Reading as EngineReading, Sensor, SensorSpec, Truth as EngineTruth};
+use flexsc_core::numerics::random::Seed;
+use flexsc_core::numerics::time::{Instant, Span};
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 

@@ -2,11 +2,12 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
+use flexsc_dynamics::damping::DampingRule;
+use flexsc_numerics::lanes::LaneFloat;
+
 use super::RelayKernel;
 use crate::chatter::{CYCLES, shortest_window};
 use crate::host::LaneHost;
-use flexsc_motion::damping::DampingRule;
-use flexsc_motion::lanes::LaneFloat;
 
 impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     /// Begins a cycle of all lanes, and ends the runs of those that chatter. Returns true if the flight goes on.

@@ -2,9 +2,9 @@
 
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 
-use flexsc_motion::damping::DampingRule;
-use flexsc_motion::lanes::LaneFloat;
-use flexsc_motion::predicted_crossing::PredictedMode;
+use flexsc_dynamics::damping::DampingRule;
+use flexsc_dynamics::predicted_crossing::PredictedMode;
+use flexsc_numerics::lanes::LaneFloat;
 
 /// Mode with its constants, its state at the start of the motion, and its state at the end. Aligned so that its
 /// numbers do not straddle cache lines.

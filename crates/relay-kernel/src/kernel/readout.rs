@@ -3,12 +3,13 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
+use flexsc_dynamics::damping::DampingRule;
+use flexsc_numerics::lanes::{LaneFloat, Mask};
+
 use super::RelayKernel;
 use crate::envelope_lanes::PhasorState;
 use crate::host::{CyclePhase, LaneHandover, LaneHost};
 use crate::lane_time::LaneTime;
-use flexsc_motion::damping::DampingRule;
-use flexsc_motion::lanes::{LaneFloat, Mask};
 
 impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     /// Notifies the host of lanes whose bounds do not keep the angle within the band during the motion that ends.

@@ -3,15 +3,16 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
+use flexsc_dynamics::damping::DampingRule;
+use flexsc_dynamics::predicted_crossing::{FARTHEST_TURN, PredictedMode};
+use flexsc_numerics::lanes::{LaneFloat, SimdWidth4};
+
 use super::mode::LaneMode;
 use super::{MOST, NEVER, ROWS, RelayKernel};
 use crate::chatter::CYCLES;
 use crate::envelope_lanes::{EnvelopePhasor, PhasorState};
 use crate::host::{FoundCrossing, LaneHost, LaneState, RunSetup};
 use crate::lane_time::LaneTime;
-use flexsc_motion::damping::DampingRule;
-use flexsc_motion::lanes::{LaneFloat, SimdWidth4};
-use flexsc_motion::predicted_crossing::{FARTHEST_TURN, PredictedMode};
 
 impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     /// Creates lanes without runs, for bodies and envelopes with the given numbers of modes.

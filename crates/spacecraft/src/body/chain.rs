@@ -9,10 +9,10 @@
 //! with the hub torque Q_0. There is no closed form: the motion is integrated to a tolerance. The steps depend on the
 //! events of the run alone, not on the instants at which the state is read.
 
+use flexsc_formats::structure::Structure;
 use nalgebra::{DMatrix, DVector};
 
 use super::{Mode, Planar};
-use crate::structure::Structure;
 
 /// Equations of motion of a chain.
 #[derive(Clone, Debug, PartialEq)]

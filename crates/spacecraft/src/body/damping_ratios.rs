@@ -3,13 +3,12 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use flexsc_formats::count::counted;
+use flexsc_numerics::quantity::NonNegative;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
-
-use crate::count::counted;
-use crate::quantity::NonNegative;
 
 /// Damping ratios of modes.
 #[derive(Clone, Debug, PartialEq)]

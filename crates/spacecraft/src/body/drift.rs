@@ -1,9 +1,8 @@
 //! Drift of natural frequencies: each is its initial value times a ratio that follows a profile.
 
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::quantity::{Finite, NonNegative, Positive, Time};
 
 /// Number of terms of a Taylor series.
 pub const SERIES: usize = 21;

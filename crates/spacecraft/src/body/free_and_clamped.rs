@@ -1,9 +1,9 @@
 //! Natural frequencies of a body with the hub free and with the hub held, for modes of either kind.
 
+use flexsc_formats::structure::eigenvalues;
 use nalgebra::DMatrix;
 
 use super::{CommandedQuantity, Planar};
-use crate::structure::eigenvalues;
 
 impl Planar {
     /// Returns the natural frequencies (rad/s) of the body that turns freely. With a commanded torque they are those of

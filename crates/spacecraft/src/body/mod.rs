@@ -18,10 +18,9 @@ mod structure_matrices;
 use std::path::Path;
 use std::sync::Arc;
 
+use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::document::ConfigError;
 
 pub use chain::Chain;
 pub use coordinate_weights::CoordinateWeights;

@@ -1,10 +1,9 @@
 //! One elastic mode, x'' + 2 zeta w x' + w² x = k m, as a scenario describes it.
 
+use flexsc_dynamics::ModeState;
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::motion::ModeState;
-use crate::quantity::{Finite, Frequency, NonNegative};
 
 /// An elastic mode (\[Silaev\], equation (1), with damping added).
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -2,9 +2,10 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::three_axis::FlexibleBody;
+use flexsc_numerics::quantity::Finite;
+
 use super::{AssembledSpacecraft, Chain, Mode, Output, Planar, Spatial};
-use crate::motion::three_axis::FlexibleBody;
-use crate::quantity::Finite;
 
 /// Assembled model of a body.
 #[derive(Clone, Debug, PartialEq)]

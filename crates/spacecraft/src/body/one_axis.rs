@@ -4,14 +4,14 @@
 //! equation (1); hybrid coordinates, \[Likins70\]). Under a constant torque the rigid part is a parabola and every mode
 //! turns about its shifted equilibrium, so that no step size is needed.
 
+use flexsc_dynamics::AxisState;
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Mode, Output};
-use crate::count::counted;
-use crate::document::ConfigError;
-use crate::motion::AxisState;
-use crate::quantity::{Finite, Positive};
 
 /// A planar body: one angle and elastic modes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,10 +1,9 @@
 //! Observed coordinates: the effect of the modes at a place of the structure.
 
+use flexsc_dynamics::AxisState;
+use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::motion::AxisState;
-use crate::quantity::Finite;
 
 /// A coordinate that is observed in addition to the hub's angle: y = rigid x_r + sum modes\[i\] x_i.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

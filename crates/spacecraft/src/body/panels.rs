@@ -9,6 +9,9 @@
 //!
 //! and the potential energy 1/2 sum c_k (phi_(k+1) - phi_k)² with the sections' angles phi_k = (v_k - v_(k-1))/l_k.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::Structure;
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Tolerance};
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -16,9 +19,6 @@ use serde::{Deserialize, Serialize};
 use super::output::radians;
 use super::reduction::{ModalReduction, ObservedCoordinate};
 use super::{Chain, CommandedQuantity, DampingRatios, Planar};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Positive, Tolerance};
-use crate::structure::Structure;
 
 /// Largest number of sections of a panel.
 const MOST_SECTIONS: usize = 99;

@@ -4,13 +4,13 @@
 //! x_n. Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, and the torque that moves the
 //! hub as commanded is J (u - sum x_n'').
 
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::{HubState, Structure, TOO_FAR_APART, eigenvalues};
+use flexsc_numerics::quantity::{Finite, Frequency, Positive};
 use nalgebra::DMatrix;
 
 use super::one_axis::HUB_FREE;
 use super::{CommandedQuantity, DampingRatios, Mode, Output, Planar};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Frequency, Positive};
-use crate::structure::{HubState, Structure, TOO_FAR_APART, eigenvalues};
 
 /// Settings of a modal reduction: damping, number of modes to keep, initial state and outputs.
 pub struct ModalReduction<'a> {

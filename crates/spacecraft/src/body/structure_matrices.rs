@@ -1,5 +1,8 @@
 //! A body given by the mass and the stiffness matrix of its structure.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::{Matrix, Structure};
+use flexsc_numerics::quantity::Finite;
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -7,9 +10,6 @@ use serde::{Deserialize, Serialize};
 use super::output::radians;
 use super::reduction::{ModalReduction, ObservedCoordinate};
 use super::{CommandedQuantity, CoordinateWeights, DampingRatios, Planar};
-use crate::document::ConfigError;
-use crate::quantity::Finite;
-use crate::structure::{Matrix, Structure};
 
 /// A body given by its matrices: M q'' + C q' + K q = Q, where one coordinate is the hub's angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -4,14 +4,14 @@
 //! On such an orbit, at the angle u past the ascending node, with inclination i and b = mu/R³, the field in local axes
 //! is b (cos u sin i, -cos i, 2 sin u sin i).
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Attitude, Vector, vector};
+use flexsc_numerics::quantity::{Finite, Positive};
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::{Orbit, to_body};
-use crate::attitude::{Attitude, Vector, vector};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Positive};
 
 /// A magnetic moment in the field of a dipole.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -3,15 +3,15 @@
 //! On a plate of area A and outward normal n that moves at v relative to the air, the force is -rho/2 C A (n.v) v where
 //! n.v > 0, and zero otherwise: a plate with two sides is two plates. The atmosphere turns with the planet.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, Positive};
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::to_body;
 use super::{Kepler, OrbitPosition};
-use crate::attitude::{Vector, vector};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Positive};
 
 /// Drag of the atmosphere.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -101,13 +101,13 @@ impl Drag {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::attitude::rotation as turned;
+    use flexsc_numerics::attitude::rotation as turned;
 
     #[test]
     fn a_plate_is_pushed_back_where_it_meets_the_flow() {
         // Without rotation of the atmosphere: rho/2 C A v² at the plate's arm.
-        let orbit: Kepler = crate::document::from_text("semi_major_axis = 6.8e6").unwrap();
-        let drag: Drag = crate::document::from_text(
+        let orbit: Kepler = flexsc_formats::document::from_text("semi_major_axis = 6.8e6").unwrap();
+        let drag: Drag = flexsc_formats::document::from_text(
             "density = 4e-12\nscale_height = 6e4\nrotation = 0\nplates = [{ area = 2.0, normal = [0, 3, 0], at = [0.1, 0, 0.5] }]",
         )
         .unwrap();

@@ -4,15 +4,15 @@
 //! o' - 1) r. The torque on a body is 3 n² o x J o. The force on a mode that changes the inertia by J1 per unit is n²
 //! (tr J1/2 - 3/2 o' J1 o), which is the integral of its shape times that field. On a Kepler orbit n² is mu/R³.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Attitude, Vector};
+use flexsc_numerics::quantity::Positive;
 use nalgebra::{Matrix3, Quaternion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::{Orbit, to_body};
 use super::{OrbitEnvironment, OrbitPosition};
-use crate::attitude::{Attitude, Vector};
-use crate::document::ConfigError;
-use crate::quantity::Positive;
 
 /// Gravity gradient.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

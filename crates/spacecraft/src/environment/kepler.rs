@@ -7,12 +7,11 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::Vector;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Positive};
 
 /// A Kepler orbit. Inertial axes are those of the planet's equator: z along its axis of rotation.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -243,7 +242,7 @@ mod tests {
     use super::*;
 
     fn orbit(text: &str) -> Kepler {
-        let orbit: Kepler = crate::document::from_text(text).unwrap();
+        let orbit: Kepler = flexsc_formats::document::from_text(text).unwrap();
         assert_eq!(orbit.fault(), None);
         orbit
     }
@@ -335,8 +334,9 @@ mod tests {
 
     #[test]
     fn an_orbit_through_the_planet_is_refused() {
-        let fault =
-            |text: &str| crate::document::from_text::<Kepler>(text).unwrap().fault().unwrap().to_string();
+        let fault = |text: &str| {
+            flexsc_formats::document::from_text::<Kepler>(text).unwrap().fault().unwrap().to_string()
+        };
         assert!(
             fault("semi_major_axis = 7e6\neccentricity = 0.1").starts_with("`semi_major_axis` must keep")
         );

@@ -1,12 +1,12 @@
 //! The magnetic field of a planet: a dipole through its centre, tilted against its axis, that turns with it
 //! (\[Wertz78\]).
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::date::greenwich;
-use crate::attitude::Vector;
-use crate::quantity::{Finite, Positive};
 
 /// A tilted dipole: B = (a/R)³ (3 (g.r) r - g) with r the direction from the planet's centre and g, which points south.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -72,9 +72,9 @@ mod tests {
     fn without_a_tilt_it_is_that_of_the_local_axes() {
         // Expected field: b (cos u sin i, -cos i, 2 sin u sin i) in local axes, at the angle u past the ascending node.
         let field: MagneticField =
-            crate::document::from_text("coefficients = [0, 0, -3e-5]\nradius = 6.4e6").unwrap();
+            flexsc_formats::document::from_text("coefficients = [0, 0, -3e-5]\nradius = 6.4e6").unwrap();
         let (inclination, radius) = (0.9, 7e6);
-        let orbit: Kepler = crate::document::from_text(&format!(
+        let orbit: Kepler = flexsc_formats::document::from_text(&format!(
             "semi_major_axis = {radius}\ninclination = {inclination}\nnode = 0.4\nperigee = 0.3\nanomaly = 0.2"
         ))
         .unwrap();

@@ -14,11 +14,10 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::document::ConfigError;
-use crate::quantity::Finite;
 
 pub use dipole::Dipole;
 pub use drag::{Drag, DragPlate};

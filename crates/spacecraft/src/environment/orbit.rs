@@ -3,10 +3,9 @@
 //! Local axes are z to the planet's centre (nadir), y against the orbit's normal, x along the velocity. They turn at
 //! the orbit's rate about -y.
 
+use flexsc_numerics::attitude::{Attitude, Vector};
+use flexsc_numerics::quantity::Positive;
 use nalgebra::Quaternion;
-
-use crate::attitude::{Attitude, Vector};
-use crate::quantity::Positive;
 
 /// Circular orbit.
 #[derive(Copy, Clone, Debug, PartialEq)]

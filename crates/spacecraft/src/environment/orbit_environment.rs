@@ -1,9 +1,10 @@
 //! Environment that does not depend on the attitude: position on the orbit, magnetic field, Sun, and the planet's
 //! shadow.
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
+
 use super::{Environment, Kepler, MagneticField, OrbitPosition};
-use crate::attitude::Vector;
-use crate::time::{Instant, Span};
 
 /// Orbit, magnetic field and Sun of a run.
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -5,15 +5,15 @@
 //! and r_d diffusely, the force is -P A c ((1 - r_s) s + 2 (r_s c + r_d/3) n), else zero: a plate with two sides is two
 //! plates. Plates do not shade each other.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
+use flexsc_numerics::time::{Instant, Span};
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::orbit::to_body;
-use crate::attitude::{Vector, vector};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Positive, Time};
-use crate::time::{Instant, Span};
 
 /// Pressure of sunlight: one `force` at a point, or `plates`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -161,10 +161,10 @@ fn at(time: Time) -> Instant {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::attitude::rotation;
+    use flexsc_numerics::attitude::rotation;
 
     fn pressed(keys: &str) -> SolarPressure {
-        crate::document::from_text(keys).unwrap()
+        flexsc_formats::document::from_text(keys).unwrap()
     }
 
     #[test]

@@ -3,14 +3,14 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::Finite;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::SeqAccessDeserializer;
 use serde::de::{Error, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 use super::date::{DAY, J2000};
-use crate::attitude::{Vector, vector};
-use crate::quantity::Finite;
 
 /// Word of the scenario for the Sun at the date of the start.
 const EPOCH: &str = "epoch";

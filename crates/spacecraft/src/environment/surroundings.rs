@@ -1,14 +1,14 @@
 //! Run-time state of the environment of one body.
 
+use flexsc_dynamics::three_axis::{Surroundings, ThermalForces};
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::time::Instant;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::dipole::AxialDipole;
 use super::orbit::to_body;
 use super::{Environment, EnvironmentObservation, GravityGradient, Kepler, OrbitEnvironment, SolarPressure};
-use crate::attitude::{Vector, vector};
 use crate::body::craft::Bending;
-use crate::motion::three_axis::{Surroundings, ThermalForces};
-use crate::time::Instant;
 
 /// Environment of a body during a run.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +49,7 @@ impl SurroundingsState {
         let drag = environment.drag.as_ref().zip(sky.orbit());
         let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre));
         let axial = dipole.and_then(super::Dipole::own_field);
-        let own = gradient.and_then(|of| of.orbit_rate).map(crate::quantity::Positive::get);
+        let own = gradient.and_then(|of| of.orbit_rate).map(flexsc_numerics::quantity::Positive::get);
         let turning = environment.magnetic_field.map(|field| field.rotation.get().abs());
         let orbits = [own, axial.map(|of| of.rate), sky.orbit().map(Kepler::fastest)];
         let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + turning.unwrap_or(0.0);

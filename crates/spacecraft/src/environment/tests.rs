@@ -3,14 +3,16 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use flexsc_dynamics::three_axis::{
+    FlexibleBody, FreeMode, Rotor, SegmentLoads, Surroundings, ThreeAxisMotion,
+};
+use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
 
 use super::{Environment, OrbitEnvironment, SurroundingsState};
-use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::body::Spatial;
 use crate::flow::{RigidBody, RigidState};
-use crate::motion::three_axis::{FlexibleBody, FreeMode, Rotor, SegmentLoads, Surroundings, ThreeAxisMotion};
-use crate::time::{Instant, Span};
 
 type Never = std::convert::Infallible;
 
@@ -23,7 +25,7 @@ fn upright() -> Matrix3<f64> {
 }
 
 fn around(text: &str, inertia: &Matrix3<f64>) -> SurroundingsState {
-    let environment: Environment = crate::document::from_text(text).expect("an environment");
+    let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let sky = OrbitEnvironment::new(&environment, Span::from_seconds(1e5), None);
     SurroundingsState::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
 }
@@ -45,7 +47,7 @@ impl One {
     ) -> Self {
         let rows = (0..3).map(|row| format!("{:?}", inertia.row(row).iter().collect::<Vec<_>>()));
         let text = format!("inertia = [{}]", rows.collect::<Vec<_>>().join(", "));
-        let body: Spatial = crate::document::from_text(&text).expect("a body");
+        let body: Spatial = flexsc_formats::document::from_text(&text).expect("a body");
         let rigid = RigidBody::new(&body);
         Self { turn: rigid.start(attitude, rate), rigid, around, t: 0.0 }
     }
@@ -284,7 +286,7 @@ fn the_field_is_that_of_a_dipole_along_the_axis() {
         "dipole = {{ moment = [1.0, -2.0, 0.5], strength = {strength}, inclination = {inclination}, from_node = {node}, \
          orbit_rate = {RATE} }}"
     );
-    let environment: Environment = crate::document::from_text(&text).expect("an environment");
+    let environment: Environment = flexsc_formats::document::from_text(&text).expect("an environment");
     let dipole = environment.dipole.expect("a dipole");
     // Axes of the equator: x to the ascending node, z north; the local axes at the start, expressed in them.
     let (sin_i, cos_i) = libm::sincos(inclination);
@@ -312,7 +314,7 @@ fn the_field_is_that_of_a_dipole_along_the_axis() {
 #[test]
 fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let text = "solar_pressure = { force = [1e-4, 0.0, 0.0], at = [0.1, 0.5, 0.0], shadow = [[10.0, 20.0]] }";
-    let environment: Environment = crate::document::from_text(text).expect("an environment");
+    let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let centre = Vector::new(0.1, 0.3, 0.0);
     let sky = OrbitEnvironment::new(&environment, Span::from_seconds(100.0), None);
     let around = SurroundingsState::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);

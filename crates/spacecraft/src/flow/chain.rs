@@ -1,13 +1,13 @@
 //! Motion of the exact planar chain under one input, integrated to a tolerance, and its Taylor series.
 
+use flexsc_dynamics::polynomial_piece::{REACH, SeriesExpansion};
+use flexsc_dynamics::{AngleObservation, AxisState};
+use flexsc_numerics::extrapolation::{RightHandSide, Trajectory};
+use flexsc_numerics::polynomial::{Series, TERMS};
 use nalgebra::DVector;
 
 use super::waveform_response::{ActiveWaveform, SegmentInput};
 use crate::body::Chain;
-use crate::motion::polynomial_piece::{REACH, SeriesExpansion};
-use crate::motion::{AngleObservation, AxisState};
-use crate::numerics::extrapolation::{RightHandSide, Trajectory};
-use crate::numerics::polynomial::{Series, TERMS};
 
 /// Equations of motion of a chain under one input.
 struct ChainEquations<'a> {

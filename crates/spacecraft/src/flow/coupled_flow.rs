@@ -6,17 +6,17 @@
 
 use std::sync::Arc as Shared;
 
+use flexsc_dynamics::crossing::{Crossing, first_crossing};
+use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::linear::{LinearFlow, LinearOutput, LinearSegment, ModalState, OutputGuard};
+use flexsc_dynamics::polynomial_piece::{self, SeriesExpansion};
+use flexsc_dynamics::{AngleObservation, AxisState};
+use flexsc_numerics::phasor::abs;
+use flexsc_numerics::time::Span;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::{CoupledMatrices, DriftingFlow};
 use crate::body::{Drift, Planar};
-use crate::guard::Guard;
-use crate::motion::crossing::{Crossing, first_crossing};
-use crate::motion::linear::{LinearFlow, LinearOutput, LinearSegment, ModalState, OutputGuard};
-use crate::motion::polynomial_piece::{self, SeriesExpansion};
-use crate::motion::{AngleObservation, AxisState};
-use crate::numerics::phasor::abs;
-use crate::time::Span;
 
 /// Number of cached transitions, the newest last: a run has few different periods.
 const KEPT: usize = 8;

@@ -3,11 +3,11 @@
 //! z = (x_r, x_r', x_1, x_1', x_2, x_2', ...); x_r'' = m - a r z, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i (m - a r
 //! z), where r picks the rate that acts on the wheel (\[Wheel11, Sukhanov\], equations (4) and (6), corrected).
 
+use flexsc_dynamics::linear::{LinearFlow, LinearPlant};
+use flexsc_numerics::exponential::{exponential, exponentials};
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use crate::body::Planar;
-use crate::motion::linear::{LinearFlow, LinearPlant};
-use crate::numerics::exponential::{exponential, exponentials};
 
 /// System matrices of a body at constant frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -101,7 +101,7 @@ mod tests {
     fn the_discrete_system_of_the_third_paper() {
         let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
-        let body = crate::document::from_text(text).expect("valid");
+        let body = flexsc_formats::document::from_text(text).expect("valid");
         let (ad, bd) = CoupledMatrices::new(&body, 1e-4, true, &[1.0; 4]).discrete(0.3);
         // Reference: SciPy's expm of the same system.
         let close = |value: f64, exact: f64| assert!((value / exact - 1.0).abs() < 1e-12, "{value} {exact}");

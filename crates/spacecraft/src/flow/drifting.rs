@@ -1,8 +1,9 @@
 //! Motion of a body whose frequencies drift, by successive steps of its Taylor series.
 
+use flexsc_numerics::polynomial::Series;
+
 use super::taylor_series::{DriftingEquations, RatioSeries, SAFETY};
 use crate::body::{Drift, Planar, SERIES};
-use crate::numerics::polynomial::Series;
 
 /// Largest number of steps of one call.
 const STEPS: u32 = 16;

@@ -1,11 +1,12 @@
 //! Elastic modes of a spatial body whose frequencies drift: each by the Taylor series of its equation, exact to
 //! rounding.
 
+use flexsc_dynamics::ModeState;
+use flexsc_numerics::quantity::Finite;
+
 use super::DriftingFlow;
 use crate::body::spatial::{Spatial, ThreeAxisMode};
 use crate::body::{Drift, Mode, Planar};
-use crate::motion::ModeState;
-use crate::quantity::Finite;
 
 /// Motion of the drifting modes under modal forces that are constant for a while.
 #[derive(Clone, Debug)]

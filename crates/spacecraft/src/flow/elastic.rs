@@ -1,11 +1,12 @@
 //! Elastic modes of a spatial body: exact flow under constant modal forces, energy, and rates at a point.
 
+use flexsc_dynamics::ModeState;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::Finite;
+
 use super::ModeFlow;
-use crate::attitude::Vector;
 use crate::body::Mode;
 use crate::body::spatial::{Spatial, ThreeAxisMode};
-use crate::motion::ModeState;
-use crate::quantity::Finite;
 
 /// Flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
 #[derive(Clone, Debug)]

@@ -1,12 +1,13 @@
 //! Every predicted and certified trip must equal the trip of the certified search.
 
+use flexsc_dynamics::AxisState;
+use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::guard::Guard;
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
+use flexsc_numerics::time::Span;
+
 use super::{SegmentInput, UncoupledSegment};
 use crate::body::{Mode, Planar};
-use crate::guard::Guard;
-use crate::motion::AxisState;
-use crate::motion::crossing::first_crossing;
-use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::time::Span;
 
 /// Eps, gamma and the strong and weak torque of the relay study.
 const LAW: [f64; 4] = [5e-4, 1e-4, 4e-5, 1e-6];

@@ -1,11 +1,12 @@
 //! Exact flow of one elastic mode, for any damping: three regimes, each in closed form.
 
+use flexsc_dynamics::AngleObservation;
+use flexsc_dynamics::damping::Damped;
+use flexsc_numerics::exp_branch_free::exp;
+use flexsc_numerics::phasor::Phasor;
+use flexsc_numerics::trig::sincos_any;
+
 use crate::body::Mode;
-use crate::motion::AngleObservation;
-use crate::motion::damping::Damped;
-use crate::numerics::exp_branch_free::exp;
-use crate::numerics::phasor::Phasor;
-use crate::numerics::trig::sincos_any;
 
 /// Constants of a mode's flow.
 #[derive(Copy, Clone, Debug)]
@@ -149,7 +150,7 @@ fn creep(slow: f64, split: f64, h: f64) -> (f64, f64) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::quantity::{Finite, Frequency, NonNegative};
+    use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
     fn mode(frequency: f64, damping: f64) -> Mode {
         Mode {

@@ -3,11 +3,12 @@
 #![allow(clippy::inline_always, reason = "inside functions with a target feature nothing else is inlined")]
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
+use flexsc_dynamics::ModeState;
+use flexsc_dynamics::damping::{DampingRule, Undamped};
+use flexsc_numerics::lanes::{LaneFloat, SimdTask, SimdWidth4};
+use flexsc_numerics::trig::FARTHEST;
+
 use crate::body::Mode;
-use crate::lanes::{LaneFloat, SimdTask, SimdWidth4};
-use crate::motion::ModeState;
-use crate::motion::damping::{DampingRule, Undamped};
-use crate::numerics::trig::FARTHEST;
 
 /// Number of modes in a group.
 const SIDE: usize = SimdWidth4::LANES;

@@ -2,18 +2,18 @@
 
 mod predicted_crossing;
 
+use flexsc_dynamics::crossing::{BoundedMotion, first_root};
+use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::polynomial_piece::{REACH, SeriesExpansion};
+use flexsc_dynamics::{AngleObservation, AxisState, ModeState};
+use flexsc_numerics::polynomial::TERMS;
+use flexsc_numerics::time::Span;
 use nalgebra::DVector;
 
 use super::mode::ModeFlow;
 use super::modes_simd::ModesSimd;
 use super::waveform_response::{ActiveWaveform, ForcedResponse, SegmentInput};
 use crate::body::{CommandedQuantity, Planar};
-use crate::guard::Guard;
-use crate::motion::crossing::{BoundedMotion, first_root};
-use crate::motion::polynomial_piece::{REACH, SeriesExpansion};
-use crate::motion::{AngleObservation, AxisState, ModeState};
-use crate::numerics::polynomial::TERMS;
-use crate::time::Span;
 use predicted_crossing::CrossingPredictor;
 
 /// Motion under one input, from the state in which it began.

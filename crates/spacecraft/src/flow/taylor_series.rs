@@ -4,8 +4,9 @@
 //! series themselves: each coefficient follows from the previous ones. The series have order 20, and the step keeps
 //! their truncation error at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
 
+use flexsc_numerics::lanes::LaneFloat;
+
 use crate::body::{Drift, Mode, Planar, SERIES};
-use crate::lanes::LaneFloat;
 
 /// Ratio e² of the radius of convergence to the step at which a series of this order truncates the last bit of a
 /// double.

@@ -1,9 +1,10 @@
 //! State of a spatial body.
 
+use flexsc_dynamics::ModeState;
+use flexsc_numerics::attitude::vector;
+
 use super::{ElasticModes, RigidBody, RigidState};
-use crate::attitude::vector;
 use crate::body::Spatial;
-use crate::motion::ModeState;
 
 /// State of a spatial body: rigid motion and modal phases.
 #[derive(Clone, Debug, PartialEq)]

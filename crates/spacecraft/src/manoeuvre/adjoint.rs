@@ -4,13 +4,13 @@
 //! The argument is the remaining part rho = (T - t)/T of the time. The functions are 1, rho - 1/2, and for each zero
 //! the real and the imaginary part of exp(pole T rho), times rho, rho², ... if it is repeated.
 
+use flexsc_dynamics::waveform::{Term, TermShape, Waveform};
+use flexsc_numerics::phasor::Phasor;
+use flexsc_numerics::phi::{exp, moment};
 use nalgebra::{DMatrix, DVector};
 
 use super::suppression::Zero;
 use super::task::RestToRestTask;
-use crate::numerics::phasor::Phasor;
-use crate::numerics::phi::{exp, moment};
-use crate::waveform::{Term, TermShape, Waveform};
 
 /// Function Re(exp(pole rho) sum c\[n\] rho^n).
 struct AdjointFunction {

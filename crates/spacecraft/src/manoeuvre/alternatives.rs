@@ -1,5 +1,8 @@
 //! Alternatives: the commands that a planned manoeuvre is compared with, on the same body.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, Fraction, Positive};
+use flexsc_numerics::time::Span;
 use rayon::prelude::*;
 use serde_json::{Value, json};
 
@@ -12,9 +15,6 @@ use super::shaper::{ExtraInsensitive, ShapedModes, Shaper};
 use super::suppression::{SuppressedMode, Suppression};
 use super::{Manoeuvre, Plan};
 use crate::body::Planar;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Fraction, Positive};
-use crate::time::Span;
 
 /// Largest number of modes that an alternative suppresses.
 const MOST: usize = 8;

@@ -1,13 +1,13 @@
 //! Attitude as a table in time: cubic splines of roll, pitch and yaw, at rest at both ends.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, from_yaw_pitch_roll};
+use flexsc_numerics::quantity::{Finite, Time};
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::AttitudeMotion;
-use crate::attitude::{Vector, from_yaw_pitch_roll};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Time};
 
 /// A row of the table.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

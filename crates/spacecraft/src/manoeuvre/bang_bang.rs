@@ -1,7 +1,8 @@
 //! Bang-bang command: turns a rigid body with the smallest peak, full one way, then full the other.
 
+use flexsc_dynamics::waveform::{Term, TermShape, Waveform};
+
 use super::task::RestToRestTask;
-use crate::waveform::{Term, TermShape, Waveform};
 
 /// Plans the bang-bang command: A before the switching, -A after it.
 /// || With P the impulse and E the excess travel over that of the mean command, A² T² - 4 E A - P² = 0 and the

@@ -1,5 +1,7 @@
 //! Kinds of command that turn a body.
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -8,8 +10,6 @@ use super::suppression::{self, Suppression, Zero};
 use super::task::RestToRestTask;
 use super::{bang_bang, minimum_energy, minimum_peak, polynomial};
 use crate::body::Mode;
-use crate::document::ConfigError;
-use crate::waveform::Waveform;
 
 /// The kinds of command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

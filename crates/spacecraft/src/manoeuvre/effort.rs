@@ -1,11 +1,12 @@
 //! Effort of a manoeuvre: peak, root mean square, and integral of the square.
 
+use flexsc_numerics::quadrature::integral;
+
 use super::Plan;
 use super::modal_response::{ModalResponse, torque};
 use super::peak_search::PeakValue;
 use super::plan::fastest;
 use crate::body::{CommandedQuantity, Planar};
-use crate::numerics::quadrature::integral;
 
 /// Effort of a command or a torque, in its unit.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -1,10 +1,11 @@
 //! Command with the smallest integral of its square.
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_formats::document::ConfigError;
+
 use super::adjoint::Adjoint;
 use super::suppression::Zero;
 use super::task::RestToRestTask;
-use crate::document::ConfigError;
-use crate::waveform::Waveform;
 
 /// Plans the command: the sum of adjoint functions that has the task's products with each.
 pub fn plan(task: &RestToRestTask, zeros: &[Zero]) -> Result<Waveform, ConfigError> {

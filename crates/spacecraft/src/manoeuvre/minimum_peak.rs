@@ -5,6 +5,8 @@
 //! minimise S²/2 - lambda b, where b are the required products, and A is S there. Newton's method with the exact second
 //! derivatives h h^T + 2 S sum g g^T/|f'| over the switchings finds them.
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_formats::document::ConfigError;
 use nalgebra::{DMatrix, DVector};
 
 use super::adjoint::Adjoint;
@@ -12,8 +14,6 @@ use super::bang_bang::pieces;
 use super::minimum_energy::too_short;
 use super::suppression::Zero;
 use super::task::RestToRestTask;
-use crate::document::ConfigError;
-use crate::waveform::Waveform;
 
 /// Largest number of Newton steps; some thirty are needed.
 const STEPS: usize = 400;

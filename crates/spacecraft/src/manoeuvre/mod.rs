@@ -23,13 +23,13 @@ mod suppression;
 mod task;
 mod timing;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, Positive};
+use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Planar;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Positive};
-use crate::time::Span;
 
 pub use alternatives::{
     Alternative, AlternativeOutcome, CommandCost, ComparisonBasis, alternatives, compare,

@@ -1,9 +1,10 @@
 //! Exact response of a body's modes to a planned command.
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_numerics::phasor::Phasor;
+
 use super::suppression::Zero;
 use crate::body::{CommandedQuantity, Planar};
-use crate::numerics::phasor::Phasor;
-use crate::waveform::Waveform;
 
 /// Response of modes that are at rest at the start of a command.
 pub struct ModalResponse<'a> {
@@ -58,7 +59,7 @@ impl<'a> ModalResponse<'a> {
     /// Returns the amplitude of each mode's free vibration from a time (s) on: |x + i x'/w| for an undamped mode (rad).
     pub fn amplitudes(&self, t: f64) -> Vec<f64> {
         let amplitude = |mode: &DrivenMode| {
-            (mode.gain * crate::numerics::phasor::abs(self.command.response(mode.pole, 0.0, t))).abs()
+            (mode.gain * flexsc_numerics::phasor::abs(self.command.response(mode.pole, 0.0, t))).abs()
         };
         self.modes.iter().map(amplitude).collect()
     }

@@ -1,11 +1,12 @@
 //! A planned manoeuvre: the command, and its nominal result.
 
+use flexsc_dynamics::waveform::Waveform;
+
 use super::modal_response::{ModalResponse, torque};
 use super::peak_search::{self, PeakValue};
 use super::residual;
 use super::series::SeriesCoefficients;
 use crate::body::{CommandedQuantity, Planar};
-use crate::waveform::Waveform;
 
 /// Largest part of the peak by which a command differs on both sides of a break without a jump.
 const CONTINUOUS: f64 = 1e-9;

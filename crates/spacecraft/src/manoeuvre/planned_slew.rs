@@ -1,11 +1,11 @@
 //! Slew about one axis with an acceleration that is a waveform: a planned command, or a limited slew through a shaper.
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, rotation};
 use nalgebra::Quaternion;
 
 use super::slew::{AttitudeMotion, eigenaxis};
-use crate::attitude::{Vector, rotation};
-use crate::document::ConfigError;
-use crate::waveform::Waveform;
 
 /// Number of samples from which the largest rate is taken, besides the breaks of the acceleration.
 const PLACES: u32 = 200;

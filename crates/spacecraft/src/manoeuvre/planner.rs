@@ -1,5 +1,7 @@
 //! Planner of a manoeuvre for a given time.
 
+use flexsc_formats::document::ConfigError;
+
 use super::Manoeuvre;
 use super::command::ManoeuvreCommand;
 use super::plan::Plan;
@@ -7,7 +9,6 @@ use super::shaper::{ShaperImpulse, convolve};
 use super::suppression::Zero;
 use super::task::RestToRestTask;
 use crate::body::Planar;
-use crate::document::ConfigError;
 
 /// Validated manoeuvre of a body, to be planned for any time.
 pub struct ManoeuvrePlanner<'a> {

@@ -1,7 +1,8 @@
 //! Commands whose angle is a smooth polynomial of odd degree.
 
+use flexsc_dynamics::waveform::{Term, TermShape, Waveform};
+
 use super::task::RestToRestTask;
-use crate::waveform::{Term, TermShape, Waveform};
 
 /// Degrees that the angle may have.
 pub const DEGREES: [u32; 6] = [3, 5, 7, 9, 11, 13];

@@ -1,5 +1,6 @@
 //! Report of a plan on its body.
 
+use flexsc_dynamics::waveform::TermShape;
 use serde_json::{Value, json};
 
 use super::Plan;
@@ -10,7 +11,6 @@ use super::plan::fastest;
 use super::residual::{FinalResidual, coordinates, residuals};
 use super::timing::{self, SingleHarmonicTime};
 use crate::body::{CommandedQuantity, Planar};
-use crate::waveform::TermShape;
 
 /// Number of modes of the lowest frequencies for which tuned times are reported.
 const TUNED: usize = 3;

@@ -19,10 +19,11 @@
 
 use std::f64::consts::PI;
 
+use flexsc_dynamics::waveform::{Term, TermShape, Waveform};
+use flexsc_numerics::phasor::Phasor;
+
 use super::suppression::Zero;
 use super::task::RestToRestTask;
-use crate::numerics::phasor::Phasor;
-use crate::waveform::{Term, TermShape, Waveform};
 
 /// Amplitudes of a series, in units of the command.
 #[derive(Clone, Debug, Default, PartialEq)]

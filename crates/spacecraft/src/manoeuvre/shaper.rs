@@ -1,13 +1,13 @@
 //! Input shapers: a command is convolved with a few impulses, which suppresses modes (\[SingerSeering90\]).
 
+use flexsc_dynamics::waveform::Waveform;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Fraction;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::suppression::{Zero, index_error};
 use crate::body::Mode;
-use crate::document::ConfigError;
-use crate::quantity::Fraction;
-use crate::waveform::Waveform;
 
 /// The kinds of shaper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,12 +1,12 @@
 //! Slew from one attitude to another about one axis, in closed form (\[Wie08\], eigenaxis rotation).
 
+use flexsc_dynamics::waveform::{Term, TermShape, Waveform};
+use flexsc_numerics::attitude::{Vector, rotation};
 use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::{Vector, rotation};
 use crate::environment::to_body;
-use crate::waveform::{Term, TermShape, Waveform};
 
 /// How the rate of a slew rises to its limit and falls.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]

@@ -1,12 +1,12 @@
 //! Selection of the modes that a command leaves at rest.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::phasor::Phasor;
+use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::body::Mode;
-use crate::document::ConfigError;
-use crate::numerics::phasor::Phasor;
-use crate::quantity::Finite;
 
 /// Largest number of zeros of a command.
 const MOST: usize = 40;

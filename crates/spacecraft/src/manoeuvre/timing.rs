@@ -2,10 +2,11 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity;
+
 use super::plan::Plan;
 use super::planner::ManoeuvrePlanner;
-use crate::document::ConfigError;
-use crate::quantity;
 
 /// Factor by which the search increases the time until the peak is low enough.
 const STRIDE: f64 = 1.02;

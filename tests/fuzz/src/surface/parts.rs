@@ -6,7 +6,7 @@ use std::path::Path;
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, Design, Manifest, RowMaker};
 use flexsc_core::metrics::Selection;
-use flexsc_core::random::fnv1a_of;
+use flexsc_core::numerics::random::fnv1a_of;
 
 use crate::case::Case;
 use crate::chance::Chance;

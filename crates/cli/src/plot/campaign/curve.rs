@@ -1,6 +1,6 @@
 //! Figure `curve`: metrics of a sweep over its key.
 
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::super::readable;

@@ -1,7 +1,7 @@
 //! Figure `distribution`: a metric over the runs of a campaign, as histogram and as empirical distribution, with the
 //! median and the 5 % and 95 % quantiles.
 
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::statistics::quantile;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, round_to_nice};
 

@@ -5,7 +5,7 @@ use std::collections::BTreeMap;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::record::Log;
 use flexsc_core::statistics::quantile;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};

@@ -1,6 +1,6 @@
 //! Figure `region`: a metric of a sweep over two keys, as a map.
 
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_figure::palette::viridis;
 use flexsc_figure::{Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 

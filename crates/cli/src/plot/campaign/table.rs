@@ -4,8 +4,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::atomic_file;
 use flexsc_core::metrics::{self, MetricDescription};
+use flexsc_core::record::atomic_file;
 
 use crate::campaign::SCENARIO;
 use crate::error::CliError;

@@ -3,7 +3,7 @@
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
 
-use flexsc_core::count::counted;
+use flexsc_core::formats::count::counted;
 use flexsc_core::metrics::goal;
 use serde_json::json;
 

@@ -6,7 +6,7 @@ use super::*;
 
 fn start(keys: &str) -> ControlMomentGyrosState {
     let text = format!("arrangement = \"pyramid\"\nmomentum = 15.0\n{keys}");
-    let gyros: ControlMomentGyros = crate::document::from_text(&text).unwrap();
+    let gyros: ControlMomentGyros = flexsc_formats::document::from_text(&text).unwrap();
     let setting = |axis| AxisActuatorContext {
         axis,
         inertia: 100.0,
@@ -173,7 +173,7 @@ fn at_singular_angles_the_torques_that_can_be_are_given_without_null_motion() {
 fn the_largest_torques_are_those_of_the_rate_limit() {
     let most = |keys: &str| {
         let text = format!("arrangement = \"pyramid\"\nmomentum = 15.0\n{keys}");
-        let gyros: ControlMomentGyros = crate::document::from_text(&text).unwrap();
+        let gyros: ControlMomentGyros = flexsc_formats::document::from_text(&text).unwrap();
         let axes = gyros.axes().unwrap();
         [0, 1, 2].map(|axis| gyros.largest_torque(&axes, axis))
     };
@@ -238,9 +238,9 @@ fn axes_that_are_given_make_the_same_pyramid() {
         "momentum = 1.0\ngimbal_axes = [[{sin}, 0, {cos}], [0, {sin}, {cos}], [-{sin}, 0, {cos}], [0, -{sin}, {cos}]]\n\
          spin_axes = [[0, 2, 0], [-1, 0, 0], [0, -1, 0], [1, 0, 0]]"
     );
-    let given: ControlMomentGyros = crate::document::from_text(&text).unwrap();
+    let given: ControlMomentGyros = flexsc_formats::document::from_text(&text).unwrap();
     let named: ControlMomentGyros =
-        crate::document::from_text("momentum = 1.0\narrangement = \"pyramid\"\ncant = 0.9").unwrap();
+        flexsc_formats::document::from_text("momentum = 1.0\narrangement = \"pyramid\"\ncant = 0.9").unwrap();
     for (given, named) in given.axes().unwrap().iter().zip(named.axes().unwrap()) {
         assert!((given.spin - named.spin).norm() < 1e-15 && (given.across - named.across).norm() < 1e-15);
     }
@@ -262,7 +262,7 @@ fn keys_that_do_not_fit_are_refused() {
     ];
     for (keys, key) in cases {
         let gyros: ControlMomentGyros =
-            crate::document::from_text(&format!("momentum = 1.0\n{keys}")).unwrap();
+            flexsc_formats::document::from_text(&format!("momentum = 1.0\n{keys}")).unwrap();
         let fault = gyros.axes().unwrap_err();
         assert_eq!(fault.key, key, "{}", fault.why);
     }

@@ -9,7 +9,7 @@ fn start(keys: &str) -> WheelsState {
         "arrangement = \"pyramid\"\ncant = 0.610_865_238_198_015_3\ninertia = 0.04\n{keys}\n\
          speeds = [200.0, -200.0, 200.0, -200.0]"
     );
-    let wheels: Wheels = crate::document::from_text(&text).unwrap();
+    let wheels: Wheels = flexsc_formats::document::from_text(&text).unwrap();
     let setting = |axis| AxisActuatorContext {
         axis,
         inertia: 1000.0,
@@ -104,7 +104,7 @@ fn a_speed_bias_gives_the_body_nothing() {
 #[test]
 fn what_cannot_be_built_is_refused_with_its_key() {
     let fault = |text: &str| {
-        let wheels: Wheels = crate::document::from_text(&format!("inertia = 0.04\n{text}")).unwrap();
+        let wheels: Wheels = flexsc_formats::document::from_text(&format!("inertia = 0.04\n{text}")).unwrap();
         wheels.allocation().unwrap_err().to_string()
     };
     assert!(fault("").starts_with("`axes` must be given without an `arrangement`"));

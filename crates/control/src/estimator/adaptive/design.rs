@@ -1,9 +1,10 @@
 //! Design of the observer of each axis: true modes, initial values and inputs.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::AXES;
+use flexsc_numerics::quantity::{Finite, Frequency};
+
 use super::{Adaptive, MergedTracker, ObserverForm, Tracker, bounds, merge};
-use crate::attitude::AXES;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Frequency};
 
 /// Design of the observers of all axes, from the scenario and its body.
 #[derive(Clone, Debug, PartialEq)]

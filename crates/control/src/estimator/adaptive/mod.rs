@@ -17,8 +17,8 @@ mod spec;
 mod tests;
 mod tracker;
 
-use crate::document::ConfigError;
-use crate::quantity::{NonNegative, Positive};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{NonNegative, Positive};
 
 pub use crate::actuator::Pulse;
 pub use axis_observer::AxisObserver;

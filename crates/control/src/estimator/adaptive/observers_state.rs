@@ -1,11 +1,12 @@
 //! Run-time state of the adaptive observers: inputs, state estimate, and log row with the true values.
 
+use flexsc_numerics::time::Instant;
+use flexsc_record::{ChannelState, TrackedMode, Tracking};
+
 use super::{AxisObserver, MergedTracker, ModeEstimate, ObserverDesign};
 use crate::estimator::{self, AppliedPulses, SampleContext};
-use crate::record::{ChannelState, TrackedMode, Tracking};
 use crate::state_estimate::DampingStatus;
 use crate::state_estimate::{DominantMode, ElasticRateEstimate, StateEstimate};
-use crate::time::Instant;
 
 /// Adaptive observers of all axes.
 #[derive(Clone, Debug)]

@@ -1,11 +1,11 @@
 //! Settings of the adaptive observers in a scenario, one observer for each axis.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Gradient, Recurrence, Tracker};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative};
 
 /// Relative frequency difference below which modes cannot be distinguished.
 const MERGE: f64 = 0.08;

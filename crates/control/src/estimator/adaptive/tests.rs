@@ -2,8 +2,9 @@
 
 use std::f64::consts::PI;
 
+use flexsc_numerics::quantity::{Finite, Frequency};
+
 use super::*;
-use crate::quantity::{Finite, Frequency};
 
 const CYCLE: f64 = 0.2;
 const ACCELERATION: f64 = 2.05e-5;
@@ -17,7 +18,8 @@ fn tracker(hertz: f64, influence: f64) -> Tracker {
 }
 
 fn gradient(hertz: f64, influence: f64) -> GradientObserver {
-    let wide = [0.1, 10.0].map(|bound| crate::quantity::NonNegative::new(bound).expect("0 or more"));
+    let wide =
+        [0.1, 10.0].map(|bound| flexsc_numerics::quantity::NonNegative::new(bound).expect("0 or more"));
     let spec = Gradient { influence_bounds: wide, ..Gradient::default() };
     spec.observer(&[tracker(hertz, influence)], &[1.0], CYCLE)
 }
@@ -252,11 +254,13 @@ fn predictions_are_what_comes() {
 
 #[test]
 fn still_modes_teach_no_frequency() {
-    let mut noise = crate::random::Seed { scenario: 5, run: 0 }.stream("sensor");
+    let mut noise = flexsc_numerics::random::Seed { scenario: 5, run: 0 }.stream("sensor");
     let noise: Vec<f64> = (0..1500).map(|_| 2e-6 * noise.normal()).collect();
     let drift = |gate: f64| {
-        let spec =
-            Gradient { gate: crate::quantity::Positive::new(gate).expect("positive"), ..Gradient::default() };
+        let spec = Gradient {
+            gate: flexsc_numerics::quantity::Positive::new(gate).expect("positive"),
+            ..Gradient::default()
+        };
         let mut observer = spec.observer(&[tracker(0.25, 2.0)], &[1.0], CYCLE);
         for y in &noise {
             observer.update(*y);

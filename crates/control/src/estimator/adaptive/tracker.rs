@@ -1,11 +1,10 @@
 //! Modes that an observer tracks: those of one measured channel, with close ones merged, each in its own frequency
 //! interval.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, Frequency};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Frequency};
 
 /// Fraction of the Nyquist frequency up to which a frequency can be distinguished from its alias.
 const SAMPLED: f64 = 0.98;
@@ -153,7 +152,7 @@ mod tests {
 
     use super::*;
     use crate::estimator::adaptive::{Gradient, Recurrence};
-    use crate::quantity::NonNegative;
+    use flexsc_numerics::quantity::NonNegative;
 
     const CYCLE: f64 = 0.2;
 
@@ -240,10 +239,10 @@ mod tests {
         assert_eq!(spec.inconsistency(&tracker(0.2, 2.0), CYCLE).expect("wrong").key, "influence_bounds");
         let spec = Gradient { damping: number(1.0), ..Gradient::default() };
         assert_eq!(spec.inconsistency(&[tracker(0.2, 2.0)], 1, CYCLE).expect("wrong").key, "damping");
-        let unknown: Result<Gradient, _> = crate::document::from_text("damping = 0.01\nlg = 0.1");
+        let unknown: Result<Gradient, _> = flexsc_formats::document::from_text("damping = 0.01\nlg = 0.1");
         assert!(unknown.is_err());
         let known: Gradient =
-            crate::document::from_text("damping = 0.01\nelastic_gain = 0.1").expect("known");
+            flexsc_formats::document::from_text("damping = 0.01\nelastic_gain = 0.1").expect("known");
         assert_eq!(known.damping, number(0.01));
     }
 }

@@ -1,10 +1,9 @@
 //! Propagation of the covariance of attitude and bias through an interval in which the body rotates: products of 3x3
 //! blocks, one column in the lanes of a register.
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::lanes::{LaneFloat, SimdTask};
 use nalgebra::Matrix6;
-
-use crate::attitude::Vector;
-use crate::lanes::{LaneFloat, SimdTask};
 
 /// Columns of a matrix with three rows; the fourth lane is unused.
 type BlockColumns = [[f64; 4]; 3];

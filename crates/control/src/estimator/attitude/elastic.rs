@@ -5,16 +5,16 @@
 //! commanded torque T and white noise n. The law reads the motion of the hub, or the rigid motion without phi q and phi
 //! q'.
 
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{NonNegative, Positive};
+use flexsc_spacecraft::body::Spatial;
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::attitude::Vector;
-use crate::body::Spatial;
-use crate::count::counted;
-use crate::document::ConfigError;
 use crate::estimator::EstimateOutputs;
-use crate::quantity::{NonNegative, Positive};
 
 /// Elastic modes as states of the filter.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -7,14 +7,14 @@
 
 use std::sync::Arc;
 
+use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::exponential::exponential;
+use flexsc_numerics::stumpff::stumpff;
+use flexsc_spacecraft::environment::to_body;
 use nalgebra::{Cholesky, DMatrix, DVector, Matrix6, Quaternion};
 
 use super::elastic::FilterModes;
 use super::measurement::{GyroNoise, perpendicular_pair};
-use crate::attitude::{Vector, rotation, rotation_vector};
-use crate::environment::to_body;
-use crate::numerics::exponential::exponential;
-use crate::numerics::stumpff::stumpff;
 use crate::sensor::VectorMeasurement;
 
 /// States of the elastic modes of a filter at one instant.

@@ -7,6 +7,10 @@
 //! x theta, of which a direction has only the part perpendicular to b. Errors stay on the right of Q^: a reset changes
 //! Q^ alone.
 
+use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::lanes::SimdWidth4;
+use flexsc_numerics::stumpff::stumpff;
+use flexsc_spacecraft::environment::to_body;
 use nalgebra::{
     Cholesky, Const, DMatrix, DimSub, Matrix3, Matrix6, Matrix6x3, Quaternion, SMatrix, ToTypenum,
 };
@@ -14,10 +18,6 @@ use nalgebra::{
 use super::covariance_propagation::CovariancePropagation;
 use super::elastic_states::{ElasticFilterStates, ElasticInnovation};
 use super::measurement::{AttitudeMeasurement, GyroNoise, perpendicular_pair};
-use crate::attitude::{Vector, rotation, rotation_vector};
-use crate::environment::to_body;
-use crate::lanes::SimdWidth4;
-use crate::numerics::stumpff::stumpff;
 use crate::sensor::VectorMeasurement;
 
 /// State of the attitude filter at one instant.

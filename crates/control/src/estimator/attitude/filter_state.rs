@@ -1,18 +1,18 @@
 //! Run-time state of the attitude filter: from sensor readings to the state estimate about three axes.
 
+use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use flexsc_numerics::random::Stream;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates};
 use nalgebra::Quaternion;
 
 use super::elastic_states::ElasticFilterStates;
 use super::spec::{AttitudeFilter, FilterSetup, SensorRole};
 use super::{AttitudeFilterState, AttitudeMeasurement, Correction, DelayedMeasurement, FilterHistory};
-use crate::attitude::{Vector, rotation, rotation_vector};
 use crate::estimator::kalman::Prior;
 use crate::estimator::{Estimator, SampleContext};
-use crate::random::Stream;
-use crate::record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates};
 use crate::sensor::{Orientation, Reading};
 use crate::state_estimate::StateEstimate;
-use crate::time::Instant;
 
 /// Run-time state of the attitude filter.
 #[derive(Clone, Debug)]

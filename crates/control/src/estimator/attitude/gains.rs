@@ -3,12 +3,12 @@
 //! For one axis, with theta' = -beta between corrections of period T and theta- before a correction, a correction gives
 //! theta+ = (1 - k) theta-, beta+ = beta - b theta-. The two poles have the product 1 - k and the sum 2 - k + b T.
 
+use flexsc_numerics::quantity::Positive;
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::GyroNoise;
-use crate::quantity::Positive;
 
 /// How the gains are computed.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -97,8 +97,8 @@ impl GainMethod {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::attitude::Vector;
     use crate::estimator::attitude::AttitudeFilterState;
+    use flexsc_numerics::attitude::Vector;
 
     #[test]
     fn steady_gains_are_those_that_the_covariance_has_in_the_end() {

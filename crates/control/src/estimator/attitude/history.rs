@@ -6,12 +6,12 @@
 
 use std::collections::VecDeque;
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{Matrix3, Matrix6x3};
 
 use super::filter::{AttitudeFilterState, Correction};
 use super::measurement::{AttitudeMeasurement, GyroNoise};
-use crate::attitude::Vector;
-use crate::time::{Instant, Span};
 
 /// Measurement that corrects the filter.
 #[derive(Copy, Clone, Debug, PartialEq)]

@@ -1,8 +1,8 @@
 //! Inputs of an attitude filter: the gyro's noise, and the measurements that correct an attitude.
 
+use flexsc_numerics::attitude::Vector;
 use nalgebra::{Quaternion, SMatrix};
 
-use crate::attitude::Vector;
 use crate::sensor::VectorMeasurement;
 
 /// Gyro noise in the filter's model, the same about each axis.

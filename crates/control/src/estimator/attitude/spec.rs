@@ -2,18 +2,18 @@
 
 use std::sync::Arc;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::quantity::{NonNegative, Positive};
+use flexsc_numerics::time::Span;
+use flexsc_spacecraft::body::Spatial;
 use nalgebra::{Matrix3, Matrix6x3};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{ElasticStates, FilterModes, GainMethod, GyroNoise};
-use crate::attitude::Vector;
-use crate::body::Spatial;
-use crate::document::ConfigError;
 use crate::estimator::kalman::Prior;
-use crate::quantity::{NonNegative, Positive};
 use crate::sensor::{Gyro, SensorKind};
-use crate::time::Span;
 
 /// Estimates the attitude and the gyro bias of a body with three axes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,13 +1,13 @@
 //! Test of the attitude filter against a 40-digit reference.
 
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
 use nalgebra::{Matrix3, Quaternion};
 
 use super::filter::{AttitudeFilterState, Correction};
 use super::history::{DelayedMeasurement, FilterHistory};
 use super::measurement::{AttitudeMeasurement, GyroNoise};
-use crate::attitude::Vector;
 use crate::sensor::VectorMeasurement;
-use crate::time::{Instant, Span};
 
 /// Gyro readings, measured attitudes and truth of a made-up run; a filter in forty digits with the covariance of Van Loan,
 /// which lives at exposures (k of `tests/golden/attitude-filter-in.csv`, 0.25 s apart): `tests/golden/attitude_filter_oracle.py`.
@@ -140,12 +140,15 @@ fn a_measurement_waits_for_its_reading_and_not_for_ever() {
 /// Checks that a vector measured with small noise corrects like an attitude whose noise about the vector is infinite.
 #[test]
 fn a_vector_corrects_across_itself_alone() {
-    let truth = crate::attitude::rotation(&Vector::new(0.3, -0.7, 1.1));
+    let truth = flexsc_numerics::attitude::rotation(&Vector::new(0.3, -0.7, 1.1));
     let off = Vector::new(2e-6, -3e-6, 1e-6);
-    let begins =
-        AttitudeFilterState::new(truth * crate::attitude::rotation(&off), Vector::zeros(), [1e-3, 1e-5]);
+    let begins = AttitudeFilterState::new(
+        truth * flexsc_numerics::attitude::rotation(&off),
+        Vector::zeros(),
+        [1e-3, 1e-5],
+    );
     let inertial = Vector::new(2.0, -1.0, 0.5) * 1e-5;
-    let body = crate::environment::to_body(&truth, &inertial);
+    let body = flexsc_spacecraft::environment::to_body(&truth, &inertial);
     let (deviation, along) = (1e-8, body.normalize());
     for is_direction in [false, true] {
         let scale = if is_direction { body.norm() } else { 1.0 };

@@ -11,15 +11,15 @@ mod steady_state;
 #[cfg(test)]
 mod tests;
 
+use flexsc_numerics::quantity::{NonNegative, Positive};
+use flexsc_numerics::random::Stream;
+use flexsc_spacecraft::body::{Mode, Planar};
+use flexsc_spacecraft::flow::CoupledMatrices;
 use nalgebra::DVector;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::EstimateOutputs;
-use crate::body::{Mode, Planar};
-use crate::flow::CoupledMatrices;
-use crate::quantity::{NonNegative, Positive};
-use crate::random::Stream;
 
 pub use filter::{FilterLanes, FilterParameters, Innovation, KalmanFilter, Prediction};
 pub use model::FilterModel;

@@ -4,10 +4,9 @@
 //! (Strang): each half is exact, whatever the damping of the modes, and so is the derivative of the split flow. The
 //! ratios change linearly, and each substep has those of its middle.
 
+use flexsc_spacecraft::body::Mode;
+use flexsc_spacecraft::flow::ModeFlow;
 use nalgebra::DMatrix;
-
-use crate::body::Mode;
-use crate::flow::ModeFlow;
 
 /// Model of the body in a Kalman filter.
 #[derive(Clone, Debug)]
@@ -242,8 +241,8 @@ fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::body::Planar;
-    use crate::flow::CoupledMatrices;
+    use flexsc_spacecraft::body::Planar;
+    use flexsc_spacecraft::flow::CoupledMatrices;
 
     const WIDE: [f64; 2] = [0.1, 3.0];
 
@@ -252,7 +251,7 @@ mod tests {
         let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165, damping = 0.02 }, \
                     { frequency = 2.0, gain = 0.72, damping = 1.5 }]";
-        crate::document::from_text(text).expect("valid")
+        flexsc_formats::document::from_text(text).expect("valid")
     }
 
     const STATE: [f64; 10] = [0.06, -1e-3, 4e-3, 2e-3, -1e-3, 3e-4, 2e-4, -5e-4, 1e-4, 7e-4];

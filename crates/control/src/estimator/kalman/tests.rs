@@ -1,8 +1,9 @@
 //! Tests of the Kalman filters against each other, and with invalid measurements.
 
+use flexsc_formats::document::from_text;
+use flexsc_numerics::random::Seed;
+
 use super::*;
-use crate::document::from_text;
-use crate::random::Seed;
 
 const BODY: &str = "angle = 0.06\nmodes = [{ frequency = 0.3, gain = 1.44 }, { frequency = 0.8, gain = 0.21 }, \
                     { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";

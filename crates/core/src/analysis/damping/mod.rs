@@ -9,11 +9,10 @@ mod excitation;
 mod floquet;
 mod relay_decay;
 
+use flexsc_control::actuator::PulseTiming;
+use flexsc_numerics::delay_margin::delay_margin;
+use flexsc_numerics::quantity::shortest;
 use serde::Serialize;
-
-use crate::actuator::PulseTiming;
-use crate::numerics::delay_margin::delay_margin;
-use crate::quantity::shortest;
 
 pub use convergence::{Convergence, RegionEdge};
 pub use excitation::{Excitation, persistence};

@@ -2,7 +2,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::numerics::quadrature;
+use flexsc_numerics::quadrature;
 
 /// The amplitude V of the elastic rate under a relay that pushes while V exceeds a threshold g:
 /// dV/dt = -r V - s sqrt(1 - (g/V)²).

@@ -1,10 +1,10 @@
 //! Plant of a sampled loop in discrete time at given frequencies: everything that does not depend on the gain.
 
+use flexsc_control::law::Differentiation;
+use flexsc_spacecraft::flow::CoupledMatrices;
 use nalgebra::{DMatrix, DVector};
 
 use super::{ClosedLoop, SampledLoop};
-use crate::flow::CoupledMatrices;
-use crate::law::Differentiation;
 
 /// Plant of a loop in discrete time, z+ = Ad z + sum of B_i u_{k-n-i}.
 #[derive(Clone, Debug)]

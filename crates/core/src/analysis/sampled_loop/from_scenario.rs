@@ -1,12 +1,13 @@
 //! Construction of the sampled loop that a scenario describes.
 
+use flexsc_control::actuator::{ActuatorKind, BackEmfRate, Wheel};
+use flexsc_control::law::{LawKind, Pd};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::Positive;
+use flexsc_spacecraft::body::CommandedQuantity;
+
 use super::{CommandPath, SampledLoop, SettlingWindow};
 use crate::Scenario;
-use crate::actuator::{ActuatorKind, BackEmfRate, Wheel};
-use crate::body::CommandedQuantity;
-use crate::document::ConfigError;
-use crate::law::{LawKind, Pd};
-use crate::quantity::Positive;
 use crate::scenario::Cost;
 
 /// Largest delay (periods): a longer one makes the loop's matrix too large.

@@ -14,9 +14,9 @@ mod robust_gain;
 mod settling;
 mod spectrum;
 
-use crate::actuator::Wheel;
-use crate::body::{Mode, Planar};
-use crate::law::Differentiation;
+use flexsc_control::actuator::Wheel;
+use flexsc_control::law::Differentiation;
+use flexsc_spacecraft::body::{Mode, Planar};
 
 pub use closed::ClosedLoop;
 pub use discrete_plant::DiscretePlant;

@@ -4,11 +4,11 @@
 //! itself, over the corners of a box of frequencies, modal gains, the wheel's gain and its delay, and at the centre of
 //! the box.
 
+use flexsc_numerics::quantity::{Finite, Frequency};
 use rayon::prelude::*;
 use serde::Serialize;
 
 use super::{DiscretePlant, Gains, SampledLoop, Scaling, SettlingWindow};
-use crate::quantity::{Finite, Frequency};
 
 /// Uncertainty of the loop's model.
 #[derive(Copy, Clone, Debug, PartialEq)]

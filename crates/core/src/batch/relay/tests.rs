@@ -2,11 +2,12 @@
 
 use std::path::Path;
 
+use flexsc_numerics::lanes::Processor;
+
 use super::RelayBatch;
 use crate::Scenario;
 use crate::batch::{BatchJob, BatchKernel};
 use crate::campaign::{Campaign, CampaignRun};
-use crate::lanes::Processor;
 use crate::metrics::Selection;
 
 /// Five modes with damping.

@@ -1,8 +1,9 @@
 //! Kalman filters of the runs of a batch: samples are read ahead, and the matrix work is done for all lanes at once.
 
+use flexsc_control::estimator::kalman::{FilterLanes, KalmanFilter};
+use flexsc_numerics::lanes::LaneFloat;
+
 use super::BatchedRun;
-use crate::estimator::kalman::{FilterLanes, KalmanFilter};
-use crate::lanes::LaneFloat;
 use crate::metrics::MetricsCollector;
 
 /// Returns true if all runs have filters, or none has.

@@ -1,11 +1,12 @@
 //! Motions of bodies in lanes, from the start of one segment to the next: with drifting or with constant frequencies.
 
+use flexsc_dynamics::polynomial_piece::REACH;
+use flexsc_numerics::lanes::LaneFloat;
+use flexsc_numerics::polynomial::TERMS;
+use flexsc_spacecraft::body::SERIES;
+use flexsc_spacecraft::flow::{CoupledMatrices, DriftingEquations, RatioSeries, TransitionFlow};
+
 use super::BatchedRun;
-use crate::body::SERIES;
-use crate::flow::{CoupledMatrices, DriftingEquations, RatioSeries, TransitionFlow};
-use crate::lanes::LaneFloat;
-use crate::motion::polynomial_piece::REACH;
-use crate::numerics::polynomial::TERMS;
 
 /// Number of sets of transitions that are kept, the newest last.
 const KEPT: usize = 8;

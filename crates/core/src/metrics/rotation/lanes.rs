@@ -1,11 +1,12 @@
 //! Metrics of the rotations in the lanes of a batch, equal to those of single runs; bounds decide for all lanes at once
 //! where they can.
 
+use flexsc_numerics::lanes::{LaneFloat, Mask};
+use flexsc_numerics::polynomial::TERMS;
+use flexsc_numerics::polynomial_lanes::Polynomials;
+
 use super::{ManoeuvreMetrics, integral};
-use crate::lanes::{LaneFloat, Mask};
 use crate::metrics::MetricsCollector;
-use crate::numerics::polynomial::TERMS;
-use crate::numerics::polynomial_lanes::Polynomials;
 
 /// Piece of motion in each lane that has ended: one stretch of each run.
 #[derive(Debug)]
@@ -144,6 +145,6 @@ fn peak<R: LaneFloat>(of: &Polynomials<R>, floor: R, counts: R::Mask) -> R {
 impl ManoeuvreMetrics {
     /// Returns true if the goal is angle 0 from the start on, and no coordinates are observed.
     pub fn needs_angle_only(&self) -> bool {
-        self.outputs.is_empty() && !self.planned && self.goal == crate::law::Setpoint::default()
+        self.outputs.is_empty() && !self.planned && self.goal == flexsc_control::law::Setpoint::default()
     }
 }

@@ -1,9 +1,9 @@
 //! Tests of the metrics of stretches against an implementation with 66 digits.
 
+use flexsc_dynamics::polynomial_piece::LinearExpansion;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::*;
-use crate::motion::polynomial_piece::LinearExpansion;
 
 /// Metrics of a stretch: largest and smallest value, integral, ITAE, time outside a band, zeros.
 struct Arc {

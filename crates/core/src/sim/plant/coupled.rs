@@ -2,22 +2,22 @@
 
 use std::sync::Arc;
 
-use nalgebra::{Matrix3, Quaternion};
-
-use crate::attitude::{Vector, rotation, vector};
-use crate::body::craft::Translation;
-use crate::body::spatial::{PeriodicTorque, Spatial};
-use crate::environment::SurroundingsState;
-use crate::flow::{ElasticModes, RigidBody, ThreeAxisState};
-use crate::motion::ModeState;
-use crate::motion::three_axis::{
+use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::ModeState;
+use flexsc_dynamics::three_axis::{
     ArticulatedMotion, Bearing, DriveAngles, FlexibleBody, RotorObservation, SegmentLoads, SharedSteps,
     SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
 };
+use flexsc_numerics::attitude::{Vector, rotation, vector};
+use flexsc_spacecraft::body::craft::Translation;
+use flexsc_spacecraft::body::spatial::{PeriodicTorque, Spatial};
+use flexsc_spacecraft::environment::SurroundingsState;
+use flexsc_spacecraft::flow::{ElasticModes, RigidBody, ThreeAxisState};
+use flexsc_spacecraft::sine::Sine;
+use flexsc_spacecraft::wrench::Wrench;
+use nalgebra::{Matrix3, Quaternion};
+
 use crate::scenario::{AppendageDrives, DriveProfiles};
-use crate::sensor::{Orientation, Truth};
-use crate::sine::Sine;
-use crate::wrench::Wrench;
 
 /// Coupled motion, with the data that convert loads and true state between the plant and the integrator.
 #[derive(Clone, Debug)]

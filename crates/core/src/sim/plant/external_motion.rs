@@ -1,6 +1,6 @@
 //! Segment starts of a motion that a batch computes.
 
-use crate::time::Instant;
+use flexsc_numerics::time::Instant;
 
 /// Interface to a motion that a batch computes.
 #[derive(Clone, Debug)]

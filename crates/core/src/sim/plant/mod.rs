@@ -8,18 +8,19 @@ mod three_axis;
 
 use std::borrow::Cow;
 
+use flexsc_control::estimator::WindowedEnvelope;
+use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::AxisState;
+use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::three_axis::RotorObservation;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Record, RecordError};
+use flexsc_spacecraft::body::BodyAxes;
+use flexsc_spacecraft::environment::EnvironmentObservation;
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::SimulationError;
-use crate::body::BodyAxes;
-use crate::environment::EnvironmentObservation;
-use crate::estimator::WindowedEnvelope;
-use crate::guard::Guard;
-use crate::motion::AxisState;
-use crate::motion::three_axis::RotorObservation;
-use crate::record::{Record, RecordError};
 use crate::scenario::Scenario;
-use crate::sensor::{Orientation, Truth};
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 pub use coupled::AccelerometerMount;
 pub use one_axis::{AppliedTorque, OneAxisPlant};

@@ -2,18 +2,19 @@
 
 mod pieces;
 
+use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::{AngleObservation, AxisState};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
+use flexsc_spacecraft::body::{Output, Planar};
+use flexsc_spacecraft::flow::{ChainMotion, CoupledFlow, ExternalMotion, SegmentInput, UncoupledSegment};
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::INITIAL_TRUTH;
 use super::external_motion::ExternalSegment;
-use crate::body::{Output, Planar};
-use crate::flow::{ChainMotion, CoupledFlow, ExternalMotion, SegmentInput, UncoupledSegment};
-use crate::guard::Guard;
-use crate::motion::crossing::first_crossing;
-use crate::motion::{AngleObservation, AxisState};
-use crate::record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use crate::scenario::Scenario;
-use crate::sensor::{Orientation, Truth};
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 /// One-axis body with its motion segment and the next guard crossing.
 #[derive(Clone, Debug)]

@@ -1,20 +1,20 @@
 //! Plant of a three-axis body, advanced from one change of the loads to the next.
 
+use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::three_axis::{FlexibleBody, Rotor, RotorObservation, SlipDirection, Surroundings};
+use flexsc_dynamics::{AxisState, ModeState};
+use flexsc_numerics::attitude::{Vector, rotation_vector};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Record, RecordError};
+use flexsc_spacecraft::body::spatial::PeriodicTorque;
+use flexsc_spacecraft::environment::SurroundingsState;
+use flexsc_spacecraft::flow::{DriftingModes, ElasticModes, RigidBody, ThreeAxisState};
+use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::Quaternion;
 
 use super::INITIAL_TRUTH;
 use super::coupled::{AccelerometerMount, CoupledMotion};
-use crate::attitude::{Vector, rotation_vector};
-use crate::body::spatial::PeriodicTorque;
-use crate::environment::SurroundingsState;
-use crate::flow::{DriftingModes, ElasticModes, RigidBody, ThreeAxisState};
-use crate::motion::three_axis::{FlexibleBody, Rotor, RotorObservation, SlipDirection, Surroundings};
-use crate::motion::{AxisState, ModeState};
-use crate::record::{Record, RecordError};
 use crate::scenario::ResolvedScenario;
-use crate::sensor::{Orientation, Truth};
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 mod fastest_frequency;
 mod free_modes;
@@ -66,7 +66,7 @@ pub struct ThreeAxisPlant {
 impl ThreeAxisPlant {
     /// Creates the plant at the start, without loads; with `flexible`, the modes act back on the rotation.
     pub fn new(
-        body: &crate::body::Spatial,
+        body: &flexsc_spacecraft::body::Spatial,
         flexible: Option<&FlexibleBody>,
         study: &ResolvedScenario,
     ) -> Self {

@@ -2,6 +2,11 @@
 
 use std::borrow::Cow;
 
+use flexsc_dynamics::three_axis::{ArticulatedPanel, PanelMode};
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::mode_table::ModeTable;
+use flexsc_numerics::attitude::{Vector, tensor, vector};
+use flexsc_numerics::quantity::{Finite, Positive};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -13,13 +18,8 @@ use super::fe_results::Units;
 use super::hinge::{Hinge, HingedBody};
 use super::mass::MassProperties;
 use super::thermal::Thermal;
-use crate::attitude::{Vector, tensor, vector};
 use crate::body::DampingRatios;
 use crate::body::spatial::NamedPoint;
-use crate::document::ConfigError;
-use crate::motion::three_axis::{ArticulatedPanel, PanelMode};
-use crate::quantity::{Finite, Positive};
-use crate::structure::mode_table::ModeTable;
 
 /// An appendage, clamped to the hub at its root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

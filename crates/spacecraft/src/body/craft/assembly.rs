@@ -3,6 +3,11 @@
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
+use flexsc_dynamics::three_axis::{ArticulatedBody, ClampedModes, FlexibleBody, FreeMode, FreeModes};
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::Shape;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use nalgebra::{Matrix3, Matrix3xX};
 
 use super::appendage::Appendage;
@@ -13,13 +18,8 @@ use super::spacecraft::Spacecraft;
 use super::thermal;
 use super::validation;
 use super::{AssembledSpacecraft, HubRotor};
-use crate::attitude::{Vector, vector};
 use crate::body::Spatial;
 use crate::body::spatial::{NamedPoint, ThreeAxisMode};
-use crate::document::ConfigError;
-use crate::motion::three_axis::{ArticulatedBody, ClampedModes, FlexibleBody, FreeMode, FreeModes};
-use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::Shape;
 
 /// Clamped mode as a part of the spacecraft.
 #[derive(Clone, Debug, PartialEq)]

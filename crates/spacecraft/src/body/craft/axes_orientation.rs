@@ -3,15 +3,14 @@
 use std::borrow::Cow;
 use std::fmt;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::vector;
+use flexsc_numerics::quantity::Finite;
 use nalgebra::Matrix3;
 use schemars::{JsonSchema, Schema, SchemaGenerator, json_schema};
 use serde::de::value::{MapAccessDeserializer, SeqAccessDeserializer};
 use serde::de::{MapAccess, SeqAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize};
-
-use crate::attitude::vector;
-use crate::document::ConfigError;
-use crate::quantity::Finite;
 
 const EXPECTED: &str = "a turn `{ about = [x, y, z], by = ANGLE }`, or an array of turns";
 

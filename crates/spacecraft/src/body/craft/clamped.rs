@@ -2,14 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use flexsc_formats::structure::Shape;
+use flexsc_formats::structure::mode_table::{ModeCommon, ModeRow};
+use flexsc_numerics::attitude::{Vector, tensor, vector};
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::{Vector, tensor, vector};
-use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::Shape;
-use crate::structure::mode_table::{ModeCommon, ModeRow};
 
 /// A mass-normalised mode of an appendage clamped at its root: the integral of phi_i . phi_j dm is 1 for i = j, else 0.
 ///

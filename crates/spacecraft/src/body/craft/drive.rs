@@ -1,12 +1,11 @@
 //! Drive of an appendage: the axis about which it turns during a run, and its angle as a function of time.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::{Vector, vector};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Positive};
 
 /// A drive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

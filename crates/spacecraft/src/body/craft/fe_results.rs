@@ -2,16 +2,16 @@
 
 use std::path::Path;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::Shape;
+use flexsc_formats::structure::fe::{FileMode, ResultFormat, StructurePoint};
+use flexsc_formats::structure::mode_table::{MOST_MODES, ModeRow};
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Appendage, ClampedMode};
 use crate::body::spatial::NamedPoint;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::Shape;
-use crate::structure::fe::{FileMode, ResultFormat, StructurePoint};
-use crate::structure::mode_table::{MOST_MODES, ModeRow};
 
 /// Relative difference allowed between the masses of the file's structure and of the appendage, for clamped nodes and
 /// attached equipment.

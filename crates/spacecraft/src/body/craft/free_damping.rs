@@ -1,8 +1,7 @@
 //! Damping of free modes, computed from the damping ratios of the clamped modes.
 
+use flexsc_dynamics::three_axis::FreeModes;
 use nalgebra::DMatrix;
-
-use crate::motion::three_axis::FreeModes;
 
 /// Off-diagonal damping coupling below which neglecting it causes only a small error of the response.
 const SMALL: f64 = 0.05;

@@ -1,16 +1,16 @@
 //! Hinge at the root of an appendage, which swings on it as a rigid body, at any angle, against a spring.
 
+use flexsc_dynamics::three_axis;
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::Shape;
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative, Positive};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::clamped::ClampedMode;
-use crate::attitude::{Vector, vector};
 use crate::body::spatial::NamedPoint;
-use crate::document::ConfigError;
-use crate::motion::three_axis;
-use crate::quantity::{Finite, Frequency, NonNegative, Positive};
-use crate::structure::Shape;
 
 /// A hinge: a spring and a damper about one axis at the root.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

@@ -1,8 +1,7 @@
 //! Mass, centre of mass and inertia of rigid parts, and of their sum.
 
+use flexsc_numerics::attitude::Vector;
 use nalgebra::Matrix3;
-
-use crate::attitude::Vector;
 
 /// Mass properties of a rigid part, in the body's axes.
 #[derive(Copy, Clone, Debug, PartialEq)]

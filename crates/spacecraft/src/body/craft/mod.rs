@@ -20,9 +20,10 @@ mod validation;
 
 use std::sync::Arc;
 
-use crate::attitude::Vector;
+use flexsc_dynamics::three_axis::{ArticulatedBody, FlexibleBody};
+use flexsc_numerics::attitude::Vector;
+
 use crate::body::Spatial;
-use crate::motion::three_axis::{ArticulatedBody, FlexibleBody};
 
 pub use appendage::{Appendage, PlateAxis};
 pub use assembly::ClampedModeInBody;

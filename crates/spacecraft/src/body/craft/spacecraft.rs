@@ -1,12 +1,12 @@
 //! Hub of a spacecraft, as a scenario describes it.
 
+use flexsc_numerics::attitude::{Attitude, tensor, vector};
+use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mass::MassProperties;
-use crate::attitude::{Attitude, tensor, vector};
 use crate::body::spatial::NamedPoint;
-use crate::quantity::{Finite, Positive};
 
 /// A spacecraft: the rigid hub, to which appendages are clamped.
 ///

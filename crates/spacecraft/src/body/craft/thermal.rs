@@ -1,13 +1,13 @@
 //! Thermal bending of an appendage in sunlight, as a deflection that its modes approach.
 
+use flexsc_formats::count::counted;
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, Positive};
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Appendage;
-use crate::count::counted;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Positive};
 
 /// Thermal bending.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

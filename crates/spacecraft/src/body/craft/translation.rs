@@ -1,10 +1,10 @@
 //! Translation of a spacecraft under jets and forces: its mass, and the position of its first point.
 
+use flexsc_dynamics::three_axis::BodyView;
+use flexsc_numerics::attitude::{Vector, vector};
 use nalgebra::Quaternion;
 
-use crate::attitude::{Vector, vector};
 use crate::body::spatial::Spatial;
-use crate::motion::three_axis::BodyView;
 
 /// Mass of a spacecraft, and the point of its hub whose position is logged.
 #[derive(Clone, Debug, PartialEq)]

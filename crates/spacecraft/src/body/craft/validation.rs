@@ -1,18 +1,18 @@
 //! Checks for data that no spacecraft can have, each with its key: modes that carry more mass than the appendage has,
 //! lengths in other units.
 
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::document::key::bare_or_quoted;
+use flexsc_formats::structure::eigenvalues;
+use flexsc_formats::structure::mode_table::MOST_MODES;
+use flexsc_numerics::attitude::{Vector, asymmetry, impossible_moments, tensor, vector};
 use nalgebra::{DMatrix, Matrix3, Matrix6, SymmetricEigen, Vector6};
 
 use super::appendage::Appendage;
 use super::clamped::{ClampedMode, antisymmetric_part};
 use super::mass::point_mass_inertia;
 use super::spacecraft::Spacecraft;
-use crate::attitude::{Vector, asymmetry, impossible_moments, tensor, vector};
 use crate::body::spatial::NamedPoint;
-use crate::document::ConfigError;
-use crate::document::key::bare_or_quoted;
-use crate::structure::eigenvalues;
-use crate::structure::mode_table::MOST_MODES;
 
 /// Largest dimension of a part (m): a larger number is not in metres.
 const LARGEST: f64 = 1000.0;

@@ -2,11 +2,10 @@
 
 use std::f64::consts::TAU;
 
+use flexsc_numerics::attitude::{Vector, vector};
+use flexsc_numerics::quantity::{Finite, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::{Vector, vector};
-use crate::quantity::{Finite, Positive};
 
 /// A torque in the body's axes: constant + amplitude sin(2 pi t/period + phase) about each.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]

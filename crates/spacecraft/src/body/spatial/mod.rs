@@ -11,14 +11,13 @@ mod modes;
 
 use std::collections::BTreeMap;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_formats::structure::Shape;
+use flexsc_numerics::attitude::{Attitude, Vector, asymmetry, tensor, vector};
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::attitude::{Attitude, Vector, asymmetry, tensor, vector};
-use crate::document::ConfigError;
-use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::Shape;
 
 pub use disturbance::PeriodicTorque;
 pub use modes::ThreeAxisModes;
@@ -136,7 +135,8 @@ impl Spatial {
         }
         for (index, mode) in self.modes.iter().enumerate() {
             if let Some(name) = mode.shapes.keys().find(|name| self.point(name).is_none()) {
-                let key = format!("modes[{index}].shapes.{}", crate::document::key::bare_or_quoted(name));
+                let key =
+                    format!("modes[{index}].shapes.{}", flexsc_formats::document::key::bare_or_quoted(name));
                 return refused(&key, format!("must be one of the points, {}", self.point_names()));
             }
             if let Some(point) = self.points.iter().find(|point| !mode.shapes.contains_key(&point.name)) {

@@ -2,9 +2,10 @@
 
 use std::collections::BTreeMap;
 
+use flexsc_formats::structure::mode_table::{ModeCommon, ModeRow, ModeTable};
+use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
+
 use super::ThreeAxisMode;
-use crate::quantity::{Finite, Frequency, NonNegative};
-use crate::structure::mode_table::{ModeCommon, ModeRow, ModeTable};
 
 /// Modes of a spatial body, which dereference to a slice; those of a file once it is read.
 pub type ThreeAxisModes = ModeTable<ThreeAxisMode>;

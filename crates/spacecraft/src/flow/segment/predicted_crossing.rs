@@ -1,15 +1,16 @@
 //! Prediction of the first trip of a guard on a segment: predicted, refined and certified without a search.
 
-use super::UncoupledSegment;
-use crate::body::Planar;
-use crate::guard::Guard;
-use crate::motion::crossing::Crossing;
-use crate::motion::damping::{Damped, DampingRule, Undamped};
-use crate::motion::predicted_crossing::{
+use flexsc_dynamics::crossing::Crossing;
+use flexsc_dynamics::damping::{Damped, DampingRule, Undamped};
+use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::predicted_crossing::{
     self, FARTHEST_TURN, PredictedCrossing, PredictedLevel, PredictedMode, SegmentStart,
 };
-use crate::motion::{AngleObservation, AxisState};
-use crate::time::Span;
+use flexsc_dynamics::{AngleObservation, AxisState};
+use flexsc_numerics::time::Span;
+
+use super::UncoupledSegment;
+use crate::body::Planar;
 
 /// Predictor of crossings: the highest frequency (rad/s), and work space for the modes.
 #[derive(Clone, Debug)]

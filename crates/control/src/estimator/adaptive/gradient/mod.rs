@@ -4,12 +4,12 @@
 mod observer;
 mod parameter;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Fraction, NonNegative, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Tracker;
-use crate::document::ConfigError;
-use crate::quantity::{Fraction, NonNegative, Positive};
 
 pub use observer::GradientObserver;
 

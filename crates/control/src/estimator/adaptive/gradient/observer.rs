@@ -1,12 +1,13 @@
 //! Run-time state of the gradient observer.
 
+use flexsc_numerics::quantity::Fraction;
+
 use super::super::oscillator::{ModeVector, OscillatorModel};
 use super::super::residual::MovingResidual;
 use super::super::tracker::{self, Tracker};
 use super::super::{AdaptiveObserver, ModeEstimate, Pulse};
 use super::Gradient;
 use super::parameter::{ChannelState, Parameter};
-use crate::quantity::Fraction;
 
 /// Largest step of ln w, and of an influence relative to its initial value.
 const STEP: f64 = 0.02;

@@ -6,12 +6,12 @@
 
 mod observer;
 
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::Tracker;
-use crate::document::ConfigError;
-use crate::quantity::{Finite, NonNegative, Positive};
 
 pub use observer::RecurrenceObserver;
 

@@ -1,8 +1,9 @@
 //! Steps of a filter whose mean and covariance are computed in a batch with those of other runs.
 
+use flexsc_numerics::lanes::LaneFloat;
+
 use super::lanes::dot;
 use super::{FARTHEST, FilterLanes, Innovation, KalmanFilter};
-use crate::lanes::LaneFloat;
 
 /// Results of a filter's step in a batch.
 #[derive(Copy, Clone, Debug, Default)]

@@ -1,9 +1,10 @@
 //! Extended Kalman filters of several runs in SIMD lanes: the matrix operations, each in the order of a single filter.
 
+use flexsc_numerics::exponential::multiply;
+use flexsc_numerics::lanes::LaneFloat;
+
 use super::{KalmanFilter, Prediction};
 use crate::estimator::kalman::Ranking;
-use crate::lanes::LaneFloat;
-use crate::numerics::exponential::multiply;
 
 /// The filters in the lanes: mean and covariance of each in its lane, in column-major order.
 #[derive(Clone, Debug)]

@@ -1,17 +1,17 @@
 //! Motion of a three-axis body with and without coupling of the modes, through the same plant.
 
+use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::ModeState;
+use flexsc_dynamics::three_axis::{FlexibleBody, FreeMode, Rotor};
+use flexsc_numerics::attitude::{Vector, rotation};
+use flexsc_numerics::gauss_legendre::{NODES, WEIGHTS};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_spacecraft::body::spatial::Spatial;
+use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{Matrix3, Quaternion};
 
-use crate::attitude::{Vector, rotation};
-use crate::body::spatial::Spatial;
-use crate::motion::ModeState;
-use crate::motion::three_axis::{FlexibleBody, FreeMode, Rotor};
-use crate::numerics::gauss_legendre::{NODES, WEIGHTS};
 use crate::scenario::ResolvedScenario;
-use crate::sensor::{Orientation, Truth};
 use crate::sim::plant::ThreeAxisPlant;
-use crate::time::{Instant, Span};
-use crate::wrench::Wrench;
 
 /// Returns a body with two modes, which rotate the hub only if `coupled`, and a bench by a little more.
 fn body(disturbed: bool, coupled: bool) -> Spatial {
@@ -37,16 +37,19 @@ fn body(disturbed: bool, coupled: bool) -> Spatial {
         hub[0],
         hub[1]
     );
-    crate::document::from_text(&text).expect("a body")
+    flexsc_formats::document::from_text(&text).expect("a body")
 }
 
 fn flexible(body: &Spatial) -> FlexibleBody {
-    let mode = |(mode, (_, rotation)): (&crate::body::spatial::ThreeAxisMode, (Vector, Vector))| FreeMode {
-        frequency: mode.frequency.get(),
-        damping: mode.damping.get(),
-        rotation,
-        moments: Matrix3::from_diagonal_element(if rotation.norm() > 0.0 { 0.5 } else { 0.0 }),
-    };
+    let mode =
+        |(mode, (_, rotation)): (&flexsc_spacecraft::body::spatial::ThreeAxisMode, (Vector, Vector))| {
+            FreeMode {
+                frequency: mode.frequency.get(),
+                damping: mode.damping.get(),
+                rotation,
+                moments: Matrix3::from_diagonal_element(if rotation.norm() > 0.0 { 0.5 } else { 0.0 }),
+            }
+        };
     let modes = body.modes.iter().zip(body.shapes("hub")).map(mode).collect();
     FlexibleBody { inertia: body.inertia_tensor(), modes, damping: None }
 }

@@ -1,14 +1,15 @@
 //! One-axis motion as records receive it: piece by piece, in series that are exact to rounding.
 
+use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::{AxisState, MotionPiece, SeriesExpansion};
+use flexsc_numerics::polynomial::{Polynomial, Series, TERMS};
+use flexsc_numerics::time::Instant;
+use flexsc_record::{PieceDemand, Record, RecordError};
+use flexsc_spacecraft::body::Output;
+use flexsc_spacecraft::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
+
 use super::{AppliedTorque, OneAxisFlow, OneAxisPlant};
-use crate::body::Output;
-use crate::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
-use crate::guard::Guard;
-use crate::motion::crossing::first_crossing;
-use crate::motion::{AxisState, MotionPiece, SeriesExpansion};
-use crate::numerics::polynomial::{Polynomial, Series, TERMS};
-use crate::record::{PieceDemand, Record, RecordError};
-use crate::time::Instant;
 
 /// Motion segment that is expanded in series from its start on.
 enum SegmentExpansion<'a> {

@@ -1,8 +1,9 @@
 //! Bound on the frequencies in the motion of a three-axis body, for means over parts of it.
 
+use flexsc_dynamics::three_axis::Surroundings;
+use flexsc_spacecraft::body::spatial::PeriodicTorque;
+
 use super::ThreeAxisPlant;
-use crate::body::spatial::PeriodicTorque;
-use crate::motion::three_axis::Surroundings;
 
 impl ThreeAxisPlant {
     /// Returns an upper bound on the frequencies in the motion at the current instant (rad/s): the sum of the fastest

@@ -1,12 +1,13 @@
 //! Free modes of a three-axis body: drifting ones, and all modes in the form that the monitor of the envelope takes.
 
+use flexsc_dynamics::{AxisState, ModeState};
+use flexsc_numerics::attitude::Vector;
+use flexsc_spacecraft::body::Drift;
+use flexsc_spacecraft::body::spatial::Spatial;
+use flexsc_spacecraft::flow::DriftingModes;
+use flexsc_spacecraft::wrench::Wrench;
+
 use super::ThreeAxisPlant;
-use crate::attitude::Vector;
-use crate::body::Drift;
-use crate::body::spatial::Spatial;
-use crate::flow::DriftingModes;
-use crate::motion::{AxisState, ModeState};
-use crate::wrench::Wrench;
 
 impl ThreeAxisPlant {
     /// Returns the plant with drifting modal frequencies, if `drift` is given.

@@ -1,15 +1,16 @@
 //! Rows of a three-axis body: attitude, energy, position, drives, hinges, modes and orbit.
 
-use super::super::coupled::CoupledMotion;
-use super::ThreeAxisPlant;
-use crate::attitude::Vector;
-use crate::environment::to_body;
-use crate::flow::RigidBody;
-use crate::motion::ModeState;
-use crate::record::{
+use flexsc_dynamics::ModeState;
+use flexsc_numerics::attitude::Vector;
+use flexsc_record::{
     DriveMotion, DrivenMode, DrivesMotion, Energy, HingeMotion, Hinges, Orbit, OrbitAxis, Pointing, Position,
     Vibration, Vibrations,
 };
+use flexsc_spacecraft::environment::to_body;
+use flexsc_spacecraft::flow::RigidBody;
+
+use super::super::coupled::CoupledMotion;
+use super::ThreeAxisPlant;
 
 impl ThreeAxisPlant {
     /// Returns the row of the energies.
@@ -34,7 +35,7 @@ impl ThreeAxisPlant {
     /// Returns the row of the attitude, with its errors (rad) against the target.
     pub fn pointing(&self, error: [f64; 3]) -> Pointing {
         let q = self.attitude();
-        let [roll_rad, pitch_rad, yaw_rad] = crate::attitude::angles(q);
+        let [roll_rad, pitch_rad, yaw_rad] = flexsc_numerics::attitude::angles(q);
         let [roll_error_rad, pitch_error_rad, yaw_error_rad] = error;
         Pointing {
             q_w: q.w,

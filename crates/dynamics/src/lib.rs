@@ -1,0 +1,22 @@
+//! Motion of a flexible body between events, in closed form, and the numerical methods for it.
+//!
+//! This crate is independent of laws, sensors and scenarios: `flexsc-core` combines them.
+//!
+//! - [`AxisState`], [`MotionPiece`], [`crossing`]: modes in closed form, and the certified search for crossings;
+//! - [`linear`]: coupled linear motion by poles and residues; [`three_axis`]: three-axis bodies;
+//! - [`guard`], [`waveform`]: conditions of events, commands as functions of time.
+//!
+//! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
+
+pub mod crossing;
+pub mod damping;
+pub mod guard;
+pub mod linear;
+mod one_axis_state;
+pub mod polynomial_piece;
+pub mod predicted_crossing;
+pub mod three_axis;
+pub mod waveform;
+
+pub use one_axis_state::{AngleObservation, AxisState, ModeState};
+pub use polynomial_piece::{MotionPiece, SeriesExpansion};

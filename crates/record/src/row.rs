@@ -1,0 +1,250 @@
+//! Rows: the fields of a topic listed once, for protobuf schemas, protobuf bytes, columns and CSV.
+
+use crate::enum_label::LoggedEnum;
+
+/// Topic of the log.
+#[derive(Copy, Clone, Debug)]
+pub struct Topic {
+    /// Name with its leading slash.
+    pub name: &'static str,
+    /// Full name of the message: `flexsc.v1.Command`.
+    pub message: &'static str,
+    /// Description of the topic.
+    pub doc: &'static [&'static str],
+    /// Fields, in the order of their protobuf numbers.
+    pub fields: &'static [RowField],
+}
+
+/// Field of a row.
+#[derive(Copy, Clone, Debug)]
+pub struct RowField {
+    /// Name with its unit: `angle_rad`.
+    pub name: &'static str,
+    /// Description of the field.
+    pub doc: &'static [&'static str],
+    /// Kind of value that the field holds.
+    pub kind: FieldKind,
+}
+
+/// Kind of a field's contents.
+#[derive(Copy, Clone, Debug)]
+pub enum FieldKind {
+    /// Floating-point number; NaN if there is no value.
+    Number,
+    /// Integer count.
+    Count,
+    /// Value of an enumeration.
+    Label(&'static LoggedEnum),
+    /// Text value.
+    Text,
+    /// Boolean value.
+    Flag,
+    /// Date or time span, as this message of the package `google.protobuf`.
+    Time(&'static str),
+    /// Nested row.
+    Row(&'static RowMessage),
+    /// Any number of nested rows.
+    Rows(&'static RowMessage),
+}
+
+/// Protobuf message of a row.
+#[derive(Debug)]
+pub struct RowMessage {
+    /// Full name: `flexsc.v1.ModeMotion`.
+    pub name: &'static str,
+    /// Description, line by line.
+    pub doc: &'static [&'static str],
+    /// Fields of the message.
+    pub fields: &'static [RowField],
+}
+
+/// Row with a fixed list of fields.
+pub trait Row {
+    /// Description, line by line.
+    const DOC: &'static [&'static str];
+    /// Fields of the row.
+    const FIELDS: &'static [RowField];
+
+    /// Writes the fields into a sink, in their order.
+    fn put<S: Sink>(&self, sink: &mut S);
+}
+
+/// Row that is a message of a topic.
+pub trait TopicRow: Row {
+    /// Topic of the row.
+    const TOPIC: Topic;
+}
+
+/// Destination of the fields of a row, one after the other.
+pub trait Sink {
+    /// Writes a double.
+    fn number(&mut self, value: f64);
+    /// Writes a count.
+    fn count(&mut self, value: u64);
+    /// Writes the index of an enumeration's value.
+    fn label(&mut self, index: usize, labels: &'static LoggedEnum);
+    /// Writes a text.
+    fn text(&mut self, text: &str);
+    /// Writes a boolean.
+    fn flag(&mut self, value: bool);
+    /// Writes a date (ns since 1970, or since the start of a run without a date) or a time span (ns).
+    fn time(&mut self, nanoseconds: u64);
+    /// Writes a nested row.
+    fn row<R: Row>(&mut self, row: &R);
+    /// Writes nested rows.
+    fn rows<R: Row>(&mut self, rows: &[R]);
+}
+
+/// Type that can be a field.
+pub trait FieldType {
+    /// Kind of the field's contents.
+    const KIND: FieldKind;
+
+    /// Writes the field into a sink.
+    fn put<S: Sink>(&self, sink: &mut S);
+}
+
+impl FieldType for f64 {
+    const KIND: FieldKind = FieldKind::Number;
+    #[inline]
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.number(*self);
+    }
+}
+
+impl FieldType for u64 {
+    const KIND: FieldKind = FieldKind::Count;
+    #[inline]
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.count(*self);
+    }
+}
+
+impl FieldType for String {
+    const KIND: FieldKind = FieldKind::Text;
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.text(self);
+    }
+}
+
+impl FieldType for bool {
+    const KIND: FieldKind = FieldKind::Flag;
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.flag(*self);
+    }
+}
+
+/// Date on the time base of a log: nanoseconds since 1970 UTC, or since the start of a run whose scenario has no date.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct LogDate(pub u64);
+
+impl FieldType for LogDate {
+    const KIND: FieldKind = FieldKind::Time("Timestamp");
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.time(self.0);
+    }
+}
+
+/// Time span in nanoseconds; 0 if unlimited.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub struct LogSpan(pub u64);
+
+impl FieldType for LogSpan {
+    const KIND: FieldKind = FieldKind::Time("Duration");
+    fn put<S: Sink>(&self, sink: &mut S) {
+        sink.time(self.0);
+    }
+}
+
+/// Returns a field's name without the prefix `r#` of Rust keywords.
+pub const fn field_name(name: &'static str) -> &'static str {
+    match name.as_bytes() {
+        [b'r', b'#', ..] => name.split_at(2).1,
+        _ => name,
+    }
+}
+
+/// Declares row types of a package, and topics for the types with a topic name.
+macro_rules! rows {
+    (package $package:literal; $($(#[doc = $doc:literal])* $name:ident $(= $topic:literal)? {
+        $($(#[doc = $field_doc:literal])* $field:ident: $of:ty),+ $(,)?
+    })+) => {
+        $(
+            $(#[doc = $doc])*
+            #[derive(Clone, Debug, PartialEq)]
+            pub struct $name {
+                $($(#[doc = $field_doc])* pub $field: $of),+
+            }
+
+            impl $crate::row::Row for $name {
+                const DOC: &'static [&'static str] = &[$($doc),*];
+                const FIELDS: &'static [$crate::row::RowField] = &[
+                    $($crate::row::RowField {
+                        name: $crate::row::field_name(stringify!($field)),
+                        doc: &[$($field_doc),*],
+                        kind: <$of as $crate::row::FieldType>::KIND,
+                    }),+
+                ];
+
+                #[inline]
+                fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
+                    $($crate::row::FieldType::put(&self.$field, sink);)+
+                }
+            }
+
+            impl $name {
+                const MESSAGE: $crate::row::RowMessage = $crate::row::RowMessage {
+                    name: concat!($package, ".", stringify!($name)),
+                    doc: <$name as $crate::row::Row>::DOC,
+                    fields: <$name as $crate::row::Row>::FIELDS,
+                };
+            }
+
+            impl $crate::row::FieldType for $name {
+                const KIND: $crate::row::FieldKind = $crate::row::FieldKind::Row(&<$name>::MESSAGE);
+                fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
+                    sink.row(self);
+                }
+            }
+
+            impl $crate::row::FieldType for Vec<$name> {
+                const KIND: $crate::row::FieldKind = $crate::row::FieldKind::Rows(&<$name>::MESSAGE);
+                fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
+                    sink.rows(self);
+                }
+            }
+
+            $(impl $crate::row::TopicRow for $name {
+                const TOPIC: $crate::row::Topic = $crate::row::Topic {
+                    name: $topic,
+                    message: concat!($package, ".", stringify!($name)),
+                    doc: <$name as $crate::row::Row>::DOC,
+                    fields: <$name as $crate::row::Row>::FIELDS,
+                };
+            })?
+        )+
+
+        /// Topics declared in this macro call, in their order.
+        pub const DECLARED: &[$crate::row::Topic] = &[
+            $($({
+                const _: &str = $topic;
+                <$name as $crate::row::TopicRow>::TOPIC
+            },)?)+
+        ];
+    };
+}
+
+/// Implements `Cell` for labelled enumerations.
+macro_rules! label_cells {
+    ($($of:ty),+ $(,)?) => {
+        $(impl $crate::row::FieldType for $of {
+            const KIND: $crate::row::FieldKind = $crate::row::FieldKind::Label(&<$of>::LABELS);
+            #[inline]
+            fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
+                sink.label(*self as usize, &<$of>::LABELS);
+            }
+        })+
+    };
+}
+
+pub(crate) use {label_cells, rows};
