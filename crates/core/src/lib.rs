@@ -2,7 +2,8 @@
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 //!
-//! A [`Scenario`] is the validated input; a [`Simulation`] is the state of one run; a [`record::Record`] receives all output. Within a run data flows in one direction:
+//! A [`Scenario`] is the validated input; a [`Simulation`] is the state of one run; a [`record::Record`] receives all
+//! output. Within a run data flows in one direction:
 //!
 //! ```text
 //! body --truth--> sensor --reading--> estimator --estimate--> law --hold--> actuator --wrench--> body
