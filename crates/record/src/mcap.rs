@@ -49,7 +49,8 @@ impl<W: Write + Seek> McapLog<W> {
         let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
         write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
         let of = vec![None; TOPICS.len()];
-        let channels = Channels { writer, of, since_flush: 0, start_ns: from.epoch_ns, from_start: Vec::new() };
+        let channels =
+            Channels { writer, of, since_flush: 0, start_ns: from.epoch_ns, from_start: Vec::new() };
         Ok(Self { log: MessageEncoder::new(channels, from, detail)? })
     }
 

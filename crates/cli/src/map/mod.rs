@@ -21,9 +21,9 @@ use crate::sampled_loop::{SettlingArgs, sampled};
 use crate::{files, print, say, scenario};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct MapArgs {
     #[command(flatten)]
-    pub scenario: scenario::Args,
+    pub scenario: scenario::ScenarioArgs,
     #[command(flatten)]
     settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s)
@@ -61,7 +61,7 @@ pub struct MapResults {
     units: Units,
 }
 
-impl Args {
+impl MapArgs {
     /// Computes the map of a scenario.
     pub fn results(&self, scenario: &Scenario) -> Result<MapResults, CliError> {
         let (of, law) = sampled(scenario)?;
@@ -120,7 +120,7 @@ impl MapResults {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &MapArgs) -> Result<(), CliError> {
     let drawing = |figures: Option<&PathBuf>, format| FigureOutput {
         figures: figures.cloned(),
         format,
