@@ -112,6 +112,9 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
         rows.push(vec![format!("{axis}, {by}"), digits(plus), digits(-minus), String::new()]);
     }
     print_table(&rows, 0);
+    if modes.dampings.is_empty() {
+        return;
+    }
     say!("  influence: elastic rate at the gyro for each rigid rate that {giver} about the same axis");
     let mut rows = vec![texts(&["mode", style.units.frequency().1, "period, s", "damping"])];
     rows[0].extend(AXES.map(str::to_owned));
