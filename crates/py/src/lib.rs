@@ -270,7 +270,7 @@ fn to_mcap(
 fn estimate_json(scenario: &Scenario, runs: u64, log: &str) -> PyResult<String> {
     let detail = detail(log)?;
     let cost = if runs > 1 {
-        let campaign = Campaign::new(scenario.inner.clone(), &scenario.origin, Vec::new());
+        let campaign = Campaign::new(scenario.inner.clone(), &scenario.origin, []);
         let campaign = campaign.map_err(scenario_error)?;
         campaign.cost(runs, detail).map_err(|why| PyValueError::new_err(format!("runs {why}")))?
     } else {
