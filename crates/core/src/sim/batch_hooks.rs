@@ -80,13 +80,15 @@ impl Simulation {
 
     /// Returns the filter, and the mean reduced moment since its last sample (rad/s²).
     pub(crate) fn filter(&mut self) -> Option<(&mut KalmanFilter, Option<f64>)> {
-        self.estimator.batch_filter(self.now)
+        self.estimator.batch()?.batch_filter(self.now)
     }
 
     /// Returns the true values of the filter's state components.
-    pub(crate) fn true_state(&self) -> Vec<f64> {
-        self.estimator.true_filter_state(self.now, &self.plant.about_axis(0, &self.angle_origin))
+    pub(crate) fn true_state(&mut self) -> Vec<f64> {
+        let truth = self.plant.about_axis(0, &self.angle_origin);
+        self.estimator.batch().map_or_else(Vec::new, |filter| filter.true_filter_state(self.now, &truth))
     }
+
     /// Ends the run, if it is at its end.
     ///
     /// # Errors

@@ -70,11 +70,12 @@ impl Simulation {
         } else {
             self.estimator.predict(now, &self.angle_origin, &mut self.estimates);
         }
-        let before = self.controllers.about(0).state();
+        let before = self.controllers.about(0).state().phase;
         let states = self.states();
         let cause = self.ask_laws(event);
         self.count_switchings(states);
-        if !matches!(cause, Some(DecisionCause::Start) | None) && self.controllers.about(0).state() != before
+        if !matches!(cause, Some(DecisionCause::Start) | None)
+            && self.controllers.about(0).state().phase != before
         {
             self.has_switched()?;
         }

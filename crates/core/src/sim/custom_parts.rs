@@ -1,6 +1,7 @@
 //! Custom parts in a run: a run ends when one of them fails.
 
 use flexsc_control::estimator::{AdaptationRun, ObjectiveMeter, WindowedEnvelope};
+use flexsc_control::part::Part;
 
 use super::{Simulation, SimulationError};
 
@@ -14,15 +15,14 @@ impl Simulation {
         let halted = || {
             let monitored = self.monitor.as_ref().and_then(WindowedEnvelope::search);
             let search = monitored.or(self.meter.as_ref().map(ObjectiveMeter::search));
-            let adaptation = search.and_then(AdaptationRun::halted);
-            let all = [
-                ("sensor", self.sensors.halted()),
-                ("estimator", self.estimator.failure()),
-                ("adaptation", adaptation),
-                ("law", self.controllers.halted()),
-                ("actuator", self.loads.actuator.failure()),
+            let all: [(&str, Option<&dyn Part>); 5] = [
+                ("sensor", Some(&self.sensors)),
+                ("estimator", Some(&*self.estimator)),
+                ("adaptation", search.map(AdaptationRun::part)),
+                ("law", Some(&self.controllers)),
+                ("actuator", Some(&*self.loads.actuator)),
             ];
-            all.into_iter().find_map(|(role, halt)| Some((role, halt?)))
+            all.into_iter().find_map(|(role, part)| Some((role, part?.failure()?)))
         };
         match halted() {
             Some((role, source)) => Err(SimulationError::Own { at: self.now, role, source }),

@@ -1,5 +1,6 @@
 //! From sensor samples to state estimates, with angles counted from the current target.
 
+use flexsc_control::actuator::PulsedActuator;
 use flexsc_control::estimator::SampleContext;
 use flexsc_numerics::time::Instant;
 use flexsc_record::Record;
@@ -12,19 +13,23 @@ impl Simulation {
         let now = self.now;
         self.plant.evaluate(now)?;
         let measured = self.sample_read_ahead.take().unwrap_or_else(|| self.read_sensors());
+        let (plant, origin, actuator) = (&self.plant, &self.angle_origin, &self.loads.actuator);
+        let abilities = actuator.capabilities();
+        let mut waveform_impulse = 0.0;
         if self.sensors.next.is_some() {
             let (from, to) = (self.inputs_known_until.seconds(), now.seconds());
-            self.estimator.add_waveform_impulse(self.loads.actuator.waveform_impulse(from, to));
+            waveform_impulse = abilities.waveform.map_or(0.0, |of| of.waveform_impulse(from, to));
             self.inputs_known_until = now;
         }
-        let (plant, origin) = (&self.plant, &self.angle_origin);
         let taken = SampleContext {
             now,
             measured: measured.then_some(&self.sensors.measured[..]),
             readings: &self.sensors.new_readings,
             origin,
             truth: &|axis| plant.about_axis(axis, origin),
-            actuator: &*self.loads.actuator,
+            held_torque: &|axis| actuator.effort(axis).held,
+            pulses: abilities.pulses,
+            waveform_impulse,
             ahead: self.controllers.lead_time(),
         };
         self.estimator.update(&taken, &mut self.estimates);
@@ -34,9 +39,8 @@ impl Simulation {
                 .zip(&changes)
                 .for_each(|(state_estimate, change)| state_estimate.field_rate = *change);
         }
-        for (state_estimate, queued) in
-            self.estimates.iter_mut().zip(self.loads.actuator.queued_rate_change())
-        {
+        let queued = abilities.pulses.map_or([0.0; 3], PulsedActuator::queued_rate_change);
+        for (state_estimate, queued) in self.estimates.iter_mut().zip(queued) {
             state_estimate.queued_rate = queued;
         }
         self.record_estimates(record)

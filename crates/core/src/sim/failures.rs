@@ -57,7 +57,7 @@ impl Simulation {
                 fault: fault.to_owned(),
                 onset,
             };
-            record.record(now, Sample::Fault(&event))?;
+            record.record(now, Sample::Row(&event))?;
             self.recorder.events.failure_changed(now, (level, &part), line, record)?;
         }
         Ok(())

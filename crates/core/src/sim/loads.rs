@@ -1,6 +1,6 @@
 //! Loads on the body: the actuator, which executes the laws and the manoeuvre, disturbances, and the environment.
 
-use flexsc_control::actuator::Actuator;
+use flexsc_control::actuator::{Actuator, ActuatorInput};
 use flexsc_control::law::{Command, TorqueDistribution};
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_numerics::random::Seed;
@@ -76,7 +76,9 @@ impl Loads {
         rigid: [f64; 3],
     ) {
         let actuator = &mut self.actuator;
-        let demands = self.distribution.demands(commands, state_estimates, || actuator.stored_momentum(now));
+        let demands = self
+            .distribution
+            .demands(commands, state_estimates, || actuator.capabilities().stored_momentum(now));
         actuator.command(now, &demands, rigid);
         self.due = self.next_change.into_iter().chain(actuator.due()).min();
     }
@@ -87,7 +89,7 @@ impl Loads {
             self.scheduled_changes.pop();
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
-        self.actuator.update(now, rigid);
+        self.actuator.update(now, ActuatorInput::Due(rigid));
         self.update_due();
     }
 

@@ -23,6 +23,7 @@ mod observation;
 mod plant;
 mod recorder;
 mod relay_kernel;
+mod reports;
 mod run_to;
 mod scene_frames;
 mod sensors;

@@ -1,5 +1,6 @@
 //! Motion segments: one ends, and the next begins under the loads from the current instant on.
 
+use flexsc_control::actuator::AxisEffort;
 use flexsc_numerics::time::Instant;
 use flexsc_record::Record;
 
@@ -16,12 +17,13 @@ impl Simulation {
         self.add_motion(now);
         let (actuator, axes) = (&self.loads.actuator, self.estimates.len());
         if self.has_estimator {
-            let moment = |axis: usize| if axis < axes { actuator.reduced_moment(axis) } else { 0.0 };
+            let moment = |axis: usize| if axis < axes { actuator.effort(axis).reduced_moment } else { 0.0 };
             self.estimator.input_changed(now, [0, 1, 2].map(moment));
         }
         if axes == 1 {
-            let (constant, feedback) = (actuator.held_torque(0), actuator.demanded_torque(0));
-            self.applied = AppliedTorque { constant, feedback, back_emf: actuator.back_emf() };
+            let AxisEffort { held: constant, demanded: feedback, .. } = actuator.effort(0);
+            let back_emf = actuator.capabilities().back_emf;
+            self.applied = AppliedTorque { constant, feedback, back_emf };
         }
         if let Some(monitor) = &mut self.monitor {
             let commanded = || self.loads.actuator_wrench(now);

@@ -28,7 +28,7 @@ impl Simulation {
         let search = self.monitor.as_ref().and_then(WindowedEnvelope::search).map(AdaptationRun::parameter);
         search
             .filter(|(key, _)| *key != "k_t")
-            .map_or_else(|| self.controllers.about(0).tuned_value(), |(_, value)| value)
+            .map_or_else(|| self.controllers.about(0).state().tuned, |(_, value)| value)
     }
 
     /// Adds the one-axis motion up to `now` to the objective.
@@ -37,7 +37,10 @@ impl Simulation {
         if !meter.integrates() || now <= meter.measured {
             return;
         }
-        let speed = |rate: f64| self.loads.actuator.wheel(0, rate).map(|wheel| wheel.speed_rad_s);
+        let speed = |rate: f64| {
+            let rotor = self.loads.actuator.response(now, 0, [rate; 2]).rotor;
+            rotor.map(|wheel| wheel.speed_rad_s)
+        };
         let wheel = speed(0.0).zip(speed(1.0)).map(|(rest, one)| [rest, one - rest]);
         plant.measure([meter.measured, now], &self.applied, |stretch, rigid| {
             meter.add_piece(stretch, &MotionSample { rigid: *rigid, wheel });
@@ -53,14 +56,15 @@ impl Simulation {
         let applied = || {
             let mut torques = [0.0; 3];
             for (axis, torque) in torques.iter_mut().enumerate().take(axes) {
-                *torque = actuator.held_torque(axis);
+                *torque = actuator.effort(axis).held;
             }
             torques
         };
         match meter.objective {
             Objective::TorqueMean if axes > 1 => meter.set_value(now, Vector::from(applied()).norm()),
             Objective::Firings => {
-                meter.add_pulses(now, actuator.jet_cycle().map(|cycle| cycle.pulses), applied());
+                let jets = actuator.capabilities().pulses;
+                meter.add_pulses(now, jets.map(|jets| jets.cycle().pulses), applied());
             }
             _ => {}
         }
@@ -90,11 +94,12 @@ impl Simulation {
             Objective::ElasticRms => norm(truth.elastic),
             Objective::WheelPowerMean => {
                 let (actuator, now) = (&self.loads.actuator, self.now);
-                let all = actuator.wheels(now, truth.rate);
+                let all = actuator.capabilities().wheels(now, truth.rate);
                 let wheels = all.iter().map(|wheel| wheel.torque_nm * wheel.speed_rad_s);
                 let about = |axis: usize| {
-                    let wheel = actuator.wheel(axis, truth.rigid[axis])?;
-                    Some(actuator.held_torque(axis) * wheel.speed_rad_s)
+                    let rates = [truth.rate[axis], truth.rigid[axis]];
+                    let wheel = actuator.response(now, axis, rates).rotor?;
+                    Some(actuator.effort(axis).held * wheel.speed_rad_s)
                 };
                 let alone = if all.is_empty() { 0..3 } else { 0..0 };
                 wheels.chain(alone.filter_map(about)).map(f64::abs).sum()
@@ -111,7 +116,7 @@ impl Simulation {
         if self.meter.as_ref().is_none_or(|meter| meter.objective != Objective::Switchings) {
             return Vec::new();
         }
-        (0..self.estimates.len()).map(|axis| self.controllers.about(axis).state()).collect()
+        (0..self.estimates.len()).map(|axis| self.controllers.about(axis).state().phase).collect()
     }
 
     /// Adds the number of laws whose state differs from `before` to the objective.
@@ -119,7 +124,7 @@ impl Simulation {
         let Some(meter) = self.meter.as_mut().filter(|_| !before.is_empty()) else { return };
         let switched = before.into_iter().enumerate();
         let count =
-            switched.filter(|(axis, before)| self.controllers.about(*axis).state() != *before).count();
+            switched.filter(|(axis, before)| self.controllers.about(*axis).state().phase != *before).count();
         meter.switched(self.now, u32::try_from(count).unwrap_or(u32::MAX));
     }
 
@@ -161,9 +166,9 @@ impl Recorder {
         closed: &EnvelopeWindow,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        record.record(now, Sample::Window(&closed.mean))?;
+        record.record(now, Sample::Row(&closed.mean))?;
         let Some((row, before)) = &closed.step else { return Ok(()) };
-        record.record(now, Sample::Adaptation(row))?;
+        record.record(now, Sample::Row(row))?;
         self.events.adaptation_step(now, row, *before, record)
     }
 
@@ -174,9 +179,9 @@ impl Recorder {
         measured: &ObjectiveWindow,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        record.record(now, Sample::Objective(&measured.row))?;
+        record.record(now, Sample::Row(&measured.row))?;
         let Some((row, before)) = &measured.step else { return Ok(()) };
-        record.record(now, Sample::Adaptation(row))?;
+        record.record(now, Sample::Row(row))?;
         self.events.adaptation_step(now, row, *before, record)
     }
 }

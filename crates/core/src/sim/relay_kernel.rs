@@ -246,7 +246,7 @@ mod tests {
             simulation.run_until(Instant::START + Span::from_seconds(until), &mut trace).expect("a run");
         }
         let topics = ["/command", "/envelope_mean", "/adaptation"].map(|topic| trace.topic(topic).cloned());
-        let sensed = simulation.controllers.about(0).state();
+        let sensed = simulation.controllers.about(0).state().phase;
         format!("{topics:?} {:?} {sensed:?} {:?}", simulation.state(), simulation.estimates)
     }
 

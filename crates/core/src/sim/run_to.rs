@@ -45,14 +45,9 @@ impl Simulation {
     pub fn record_now(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.now;
         self.plant.evaluate(now)?;
-        match &self.plant {
-            Plant::OneAxis(_) => {
-                self.record_motion(record)?;
-                record.record(now, Sample::Law(&self.law_row()))?;
-            }
-            Plant::ThreeAxis(plant) => {
-                record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant)))?;
-            }
+        record.record(now, Sample::Report(&self.period_report()))?;
+        if let Plant::OneAxis(_) = self.plant {
+            record.record(now, Sample::Row(&self.law_row()))?;
         }
         Ok(())
     }

@@ -1,5 +1,6 @@
 //! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
+use flexsc_control::actuator::PulsedActuator;
 use flexsc_record::{Hinges, Record, Sample};
 use flexsc_spacecraft::flow::ThreeAxisState;
 
@@ -19,7 +20,7 @@ impl Simulation {
         let (now, telling) = (self.now, &mut self.recorder);
         match &telling.scene {
             Some(scene) if record.wants_scene() => {
-                record.record(now, Sample::Scene(&scene.parts(telling.events.stamp(now))))?;
+                record.record(now, Sample::Row(&scene.parts(telling.events.stamp(now))))?;
                 telling.next_frames = Some(now);
             }
             _ => telling.scene = None,
@@ -54,9 +55,10 @@ impl Simulation {
                         modes: &state.modes,
                         sections: &sections,
                     };
-                    record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
+                    record.record(now, Sample::Row(scene.frames(stamp, view)))?;
                 }
-                let torque = self.loads.actuator.applied_torque(now, 0, [truth.rate[0], truth.rigid[0]]);
+                let rates = [truth.rate[0], truth.rigid[0]];
+                let torque = self.loads.actuator.response(now, 0, rates).applied;
                 scene.plumes(stamp, torque)
             }
             (Scene::Spatial(scene), Plant::ThreeAxis(plant)) => {
@@ -73,15 +75,15 @@ impl Simulation {
                         }
                         None => scene.frames(stamp, &turn.attitude, modes, &angles),
                     };
-                    record.record(now, Sample::Frames(frames))?;
+                    record.record(now, Sample::Row(frames))?;
                 }
-                let cycle = self.loads.actuator.jet_cycle();
+                let cycle = self.loads.actuator.capabilities().pulses.map(PulsedActuator::cycle);
                 let (burning, open) =
                     cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
                 scene.plumes(stamp, burning, open)
             }
             _ => None,
         };
-        Ok(plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Plumes(&plumes)))?)
+        Ok(plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Row(&plumes)))?)
     }
 }

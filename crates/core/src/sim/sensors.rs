@@ -1,10 +1,13 @@
 //! Sensors of a run: when each samples, and the latest measurements about each axis.
 
+use flexsc_control::actuator::ActuatorInput;
 use flexsc_control::custom::PartError;
+use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::sensor::{ExposureMean, Orientation, Reading, Sensor, SensorKind, Truth};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Report;
 use flexsc_spacecraft::environment::to_body;
 
 use super::Simulation;
@@ -128,14 +131,23 @@ impl Sensors {
         self.schedules[sensor].sensor.close_exposure(exposure);
     }
 
-    /// Returns the error of a custom sensor that cannot go on.
-    pub fn halted(&self) -> Option<PartError> {
-        self.schedules.iter().find_map(|due| due.sensor.failure())
-    }
-
     /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.
     pub fn gyro_bias(&self) -> [f64; 3] {
         self.schedules.iter().find_map(|due| due.sensor.true_bias()).unwrap_or_default()
+    }
+}
+
+impl Part for Sensors {
+    fn due(&self) -> Option<Instant> {
+        self.next
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.schedules.iter().for_each(|due| due.sensor.report(at, report));
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.schedules.iter().find_map(|due| due.sensor.failure())
     }
 }
 
@@ -149,7 +161,7 @@ impl Simulation {
             _ => None,
         };
         if let Some(field) = measured.or_else(here) {
-            self.loads.actuator.set_magnetic_field(field);
+            self.loads.actuator.update(self.now, ActuatorInput::MagneticField(field));
         }
     }
 }

@@ -151,8 +151,9 @@ impl Simulation {
         if occasion != Some(StopAt::Switching) {
             return self.respond(event, record).map(|()| false);
         }
-        let states =
-            |of: &Self| [0, 1, 2].map(|axis| of.controllers.about(axis.min(of.estimates.len() - 1)).state());
+        let states = |of: &Self| {
+            [0, 1, 2].map(|axis| of.controllers.about(axis.min(of.estimates.len() - 1)).state().phase)
+        };
         let before = states(self);
         self.respond(event, record)?;
         Ok(event != Event::Start && states(self) != before)

@@ -1,10 +1,10 @@
 //! Stick and slip events of wheels with bearing friction: detection of chatter, update of their drives, and records.
 
-use flexsc_dynamics::three_axis::RotorObservation;
+use flexsc_control::actuator::ActuatorInput;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Command, Record, Sample};
 
-use super::plant::{Plant, ThreeAxisPlant};
+use super::plant::Plant;
 use super::{MOST_DECISIONS, Simulation, SimulationError};
 
 impl Simulation {
@@ -26,25 +26,8 @@ impl Simulation {
     pub(super) fn update_rotor_states(&mut self, now: Instant) {
         let turned = self.plant.wheel_bearings();
         if !turned.is_empty() {
-            self.loads.actuator.set_rotor_states(now, &turned);
+            self.loads.actuator.update(now, ActuatorInput::Rotors(&turned));
         }
-    }
-
-    /// Returns the bearing rows of the wheels; `None` without bearings.
-    pub(super) fn bearing_rows(&self, plant: &ThreeAxisPlant) -> Option<flexsc_record::Bearings> {
-        let of = |(wheel, known_rad_s): (RotorObservation, f64)| flexsc_record::BearingMotion {
-            sliding: wheel.slip.into(),
-            friction_nm: wheel.friction,
-            heat_j: wheel.heat,
-            known_rad_s,
-        };
-        let wheels: Vec<_> = plant
-            .wheel_bearings()
-            .into_iter()
-            .zip(self.loads.actuator.measured_wheel_speeds())
-            .map(of)
-            .collect();
-        (!wheels.is_empty()).then_some(flexsc_record::Bearings { wheels })
     }
 
     /// Initialises the slip states of the wheels at the start, to detect changes.
@@ -63,7 +46,7 @@ impl Simulation {
             return Ok(());
         }
         let before = std::mem::replace(&mut self.recorder.recorded_slips, slips.to_vec());
-        let wheels = self.loads.actuator.wheels(now, [0.0; 3]);
+        let wheels = self.loads.actuator.capabilities().wheels(now, [0.0; 3]);
         let (time_s, time_whole_s, time_fs) = Command::times(now);
         for (index, (before, after)) in before.iter().zip(plant.bearing_states()).enumerate() {
             if before == after {
@@ -78,7 +61,7 @@ impl Simulation {
                 after: (*after).into(),
                 torque_nm: wheels.get(index).map_or(0.0, |wheel| wheel.torque_nm),
             };
-            record.record(now, Sample::WheelEvent(&event))?;
+            record.record(now, Sample::Row(&event))?;
             self.recorder.events.bearing_changed(now, &event, record)?;
         }
         Ok(())

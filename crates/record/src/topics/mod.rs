@@ -48,6 +48,53 @@ pub const TOPICS: &[Topic] = {
     &ALL
 };
 
+/// Topics whose rows precede those of all others in a report, in their order. The rows of other topics follow in the
+/// order of [`TOPICS`], and those of custom topics come last.
+const REPORT_ORDER: [&str; 21] = [
+    "/attitude",
+    "/rate",
+    "/modes",
+    "/outputs",
+    "/goal",
+    "/torque",
+    "/wheel",
+    "/pointing",
+    "/rates",
+    "/vibrations",
+    "/energy",
+    "/position",
+    "/torques",
+    "/orbit",
+    "/magnetorquers",
+    "/envelope",
+    "/drives",
+    "/hinges",
+    "/bearings",
+    "/control_moment_gyros",
+    "/wheels",
+];
+
+/// Place of each topic's rows in a report, in the order of [`TOPICS`].
+const REPORT_RANKS: [usize; COUNT] = {
+    let mut ranks = [0; COUNT];
+    let mut index = 0;
+    while index < COUNT {
+        ranks[index] = REPORT_ORDER.len() + index;
+        index += 1;
+    }
+    let mut place = 0;
+    while place < REPORT_ORDER.len() {
+        ranks[index_of(REPORT_ORDER[place])] = place;
+        place += 1;
+    }
+    ranks
+};
+
+/// Returns the place of a topic's rows in a report; `None` stands for a custom topic.
+pub fn report_rank(topic: Option<usize>) -> usize {
+    topic.map_or(usize::MAX, |topic| REPORT_RANKS[topic])
+}
+
 /// Returns the index of a topic in [`TOPICS`], at compile time.
 pub const fn index_of(name: &str) -> usize {
     let mut index = 0;
