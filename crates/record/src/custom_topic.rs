@@ -6,12 +6,12 @@ use std::sync::Arc;
 use prost_types::field_descriptor_proto::Type;
 use thiserror::Error;
 
+use super::Detail;
 use super::columns::{Column, Columns};
 use super::proto::{self, Encoder};
 use super::report::LogRow;
 use super::row::Sink;
 use super::topics::TOPICS;
-use super::{Detail, RecordError};
 
 /// Largest number of fields of a custom topic.
 pub const MOST_FIELDS: usize = 64;
@@ -312,17 +312,17 @@ impl CustomTopics {
     ///
     /// # Errors
     /// A topic whose name another one has, or one topic too many.
-    pub fn index(&mut self, topic: &Arc<CustomTopic>) -> Result<(usize, bool), RecordError> {
+    pub fn index(&mut self, topic: &Arc<CustomTopic>) -> Result<(usize, bool), TopicError> {
         if let Some(index) = self.0.iter().position(|known| known.name == topic.name) {
             let known = &self.0[index];
             return if Arc::ptr_eq(known, topic) || known == topic {
                 Ok((index, false))
             } else {
-                Err(TopicError::Conflict(topic.name.clone()).into())
+                Err(TopicError::Conflict(topic.name.clone()))
             };
         }
         if self.0.len() == MOST_TOPICS {
-            return Err(TopicError::TooMany(topic.name.clone()).into());
+            return Err(TopicError::TooMany(topic.name.clone()));
         }
         self.0.push(Arc::clone(topic));
         Ok((self.0.len() - 1, true))

@@ -35,9 +35,8 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     }
     let norm_of = |of: fn(&AxisEstimate) -> f64| -> Vec<Point> {
         cycles
-            .attitude
-            .iter()
-            .map(|(time, row)| (*time, norm([0, 1, 2].map(|axis| of(&row.axes[axis])))))
+            .rows::<AttitudeEstimate>()
+            .map(|(time, row)| (time, norm([0, 1, 2].map(|axis| of(&row.axes[axis])))))
             .collect()
     };
     let layers = vec![

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, LawState,
-    Phase, ReferenceNeeds, Setpoint, Tunable,
+    ReferenceNeeds, Setpoint, Tunable,
 };
 use crate::custom::PartError;
 use crate::part::{Part, ReportContext};
