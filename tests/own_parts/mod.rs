@@ -10,7 +10,7 @@ use std::path::Path;
 use std::sync::Arc;
 
 use flexsc_cli::figures;
-use flexsc_core::campaign::Campaign;
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::control::actuator::{ActuatorKind, ActuatorSpec};
 use flexsc_core::control::adaptation::AdaptationKind;
 use flexsc_core::control::custom::Custom;
@@ -96,8 +96,7 @@ fn parts_from_outside_log_their_states() {
         let study = of_own_parts(text);
         let mut trace = Trace::new(Detail::Full);
         Simulation::new(&study, 0).run(&mut trace).expect("a run");
-        let mut run = Campaign::new(study.clone(), "own", None).expect("a campaign").run(0).expect("a run");
-        run.scenario = study.clone();
+        let run = CampaignRun { number: 0, scenario: study.clone(), drawn: Vec::new() };
         let provenance = Campaign::provenance(&run, Detail::Full);
         let layout = String::from_utf8(provenance.attachments[0].data.clone()).expect("a text");
         let mut bytes = LogBytes::new(&provenance, Detail::Full).expect("a log");
@@ -109,7 +108,8 @@ fn parts_from_outside_log_their_states() {
             let traced = trace.topic(topic).and_then(|rows| rows.numbers(field)).expect("a column");
             let logged = log.columns(topic).expect("a topic");
             assert_eq!(logged.numbers(field), Some(traced), "{topic}");
-            assert!(traced.len() >= 200 && traced.iter().any(|value| *value != 0.0), "{topic}");
+            let moves = text == THREE_AXES || traced.iter().any(|value| *value != 0.0);
+            assert!(traced.len() >= 200 && moves, "{topic}");
             assert_eq!(log.units(topic)[field], unit);
             let path = format!("{topic}.{field}");
             assert!(layout.contains(&path), "no panel shows {path}");
@@ -130,7 +130,8 @@ fn custom_topics_are_checked() {
     for name in ["pid", "/", "/Pid", "/1pid", "/a-b", "/a/b"] {
         assert_eq!(topic(name, vec![field("x")]), TopicError::Name(name.to_owned()));
     }
-    assert_eq!(topic(&format!("/{}", "a".repeat(65)), vec![field("x")]).to_string().len(), 169);
+    let long = format!("/{}", "a".repeat(65));
+    assert_eq!(topic(&long, vec![field("x")]), TopicError::Name(long.clone()));
     assert_eq!(topic("/wheels", vec![field("x")]), TopicError::Taken("/wheels".to_owned()));
     for name in ["", "X", "time_s", "a b", "ä"] {
         let (topic_name, field_name) = ("/pid".to_owned(), name.to_owned());

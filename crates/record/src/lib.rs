@@ -47,16 +47,7 @@ pub use recover::recover;
 pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use three_axis::{SteeringRecord, StoredMomentum, ThreeAxisCycle};
-pub use topics::{
-    Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
-    BearingMotion, Bearings, ChannelState, Command, ControlMomentGyro, ControlMomentGyros, Decision,
-    DriveMotion, DrivenMode, DrivesMotion, ElasticEstimate, ElasticEstimates, Energy, Envelope, Estimate,
-    Estimates, FaultEvent, GoalMotion, HingeMotion, Hinges, Jets, Law, Magnetorquer, Magnetorquers, Metric,
-    MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit,
-    OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding,
-    Summary, TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration,
-    Vibrations, Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
-};
+pub use topics::*;
 pub use trace::Trace;
 
 /// Samples that a simulation reports while it runs.

@@ -259,7 +259,7 @@ macro_rules! rows {
         )+
 
         /// Topics declared in this macro call, in their order.
-        pub const DECLARED: &[$crate::row::Topic] = &[
+        pub(crate) const DECLARED: &[$crate::row::Topic] = &[
             $($({
                 const _: &str = $topic;
                 <$name as $crate::row::TopicRow>::TOPIC

@@ -7,23 +7,32 @@ use flexsc_control::sensor::Orientation;
 use flexsc_control::state_estimate::DampingStatus;
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::three_axis::RotorObservation;
-use flexsc_numerics::time::Instant;
 use flexsc_record::{
-    AxisRate, GoalMotion, Rates, Record, RecordError, Report, Sample, StoredMomentum, ThreeAxisCycle, Torques,
+    AxisRate, GoalMotion, Rates, Record, RecordError, Report, Sample, StoredMomentum, ThreeAxisCycle, Torque,
+    Torques,
 };
 
-use super::Simulation;
-use super::plant::{OneAxisPlant, Plant, ThreeAxisPlant};
-use super::sensors::Sensors;
+use crate::scenario::Scenario;
+use crate::sim::plant::{OneAxisPlant, Plant, ThreeAxisPlant};
+use crate::sim::run_view::RunView;
 
-/// True state of a run for the reports of its parts.
-struct ReportedTruth<'a> {
-    plant: &'a Plant,
-    sensors: &'a Sensors,
-    origin: &'a Orientation,
+/// Rows of the torques that a scenario's logs have.
+#[derive(Copy, Clone, Debug)]
+pub struct TorqueRows {
+    /// True if the torque about one axis consists of more than the switchings of a law.
+    is_detailed: bool,
+    /// True if jets are the only actuator of three axes.
+    jets_only: bool,
 }
 
-impl TrueState for ReportedTruth<'_> {
+impl TorqueRows {
+    /// Returns the rows of a scenario.
+    pub fn new(scenario: &Scenario) -> Self {
+        Self { is_detailed: scenario.has_torque_rows(), jets_only: scenario.study.jets_alone }
+    }
+}
+
+impl TrueState for RunView<'_> {
     fn orientation(&self) -> Orientation {
         self.plant.truth().orientation
     }
@@ -39,7 +48,7 @@ impl TrueState for ReportedTruth<'_> {
     }
 
     fn about_axis(&self, axis: usize) -> Cow<'_, AxisState> {
-        self.plant.about_axis(axis, self.origin)
+        self.plant.about_axis(axis, self.estimation.origin())
     }
 
     fn mode_rates(&self) -> Vec<f64> {
@@ -58,54 +67,43 @@ impl TrueState for ReportedTruth<'_> {
     }
 }
 
-impl Simulation {
-    /// Adds the rows of some parts at the current instant to a report.
-    fn add_reports(
-        &self,
-        occasion: Occasion,
-        damping: &[DampingStatus],
-        parts: &[&dyn Part],
-        report: &mut Report,
-    ) {
-        let truth = ReportedTruth { plant: &self.plant, sensors: &self.sensors, origin: &self.angle_origin };
-        let at =
-            ReportContext { now: self.now, occasion, axes: self.estimates.len(), truth: &truth, damping };
-        parts.iter().for_each(|part| part.report(&at, report));
-    }
-
-    /// Returns the rows of a dense record at the current instant: of the plant, and of every part.
-    pub(super) fn period_report(&self) -> Report {
+impl RunView<'_> {
+    /// Returns the rows of a dense record: of the plant, and of every part.
+    pub fn period_report(&self, torques: TorqueRows) -> Report {
         let mut report = Report::new();
-        match &self.plant {
-            Plant::OneAxis(plant) => self.add_one_axis_rows(plant, &mut report),
-            Plant::ThreeAxis(plant) => self.add_three_axis_rows(plant, &mut report),
+        match self.plant {
+            Plant::OneAxis(plant) => self.add_one_axis_rows(plant, torques, &mut report),
+            Plant::ThreeAxis(plant) => self.add_three_axis_rows(plant, torques, &mut report),
         }
-        if let Some(monitor) = &self.monitor {
+        if let Some(monitor) = &self.estimation.monitor {
             report.add(monitor.envelope(self.now));
         }
+        let adaptation = self.estimation.search().or(self.laws.objective.search());
         let parts: [&dyn Part; 4] =
-            [&self.sensors, &*self.estimator, &self.controllers, &*self.loads.actuator];
+            [self.sensors, &*self.estimation.estimator, self.laws, &*self.loads.actuator];
         self.add_reports(Occasion::Period, &[], &parts, &mut report);
+        if let Some(search) = adaptation {
+            self.add_reports(Occasion::Period, &[], &[search.part()], &mut report);
+        }
         report
     }
 
-    /// Returns the rows of the estimator after the current sample.
-    pub(super) fn sample_report(&self) -> Report {
+    /// Returns the rows of the estimator after a sample.
+    pub fn sample_report(&self) -> Report {
         let mut report = Report::new();
-        self.add_reports(Occasion::Sample, &[], &[&*self.estimator], &mut report);
+        self.add_reports(Occasion::Sample, &[], &[&*self.estimation.estimator], &mut report);
         report
     }
 
     /// Returns the rows of the estimator at the start of a cycle, with this status of active damping about each axis.
-    pub(super) fn estimator_cycle_report(&self, damping: &[DampingStatus]) -> Report {
+    pub fn estimator_cycle_report(&self, damping: &[DampingStatus]) -> Report {
         let mut report = Report::new();
-        self.add_reports(Occasion::Cycle, damping, &[&*self.estimator], &mut report);
+        self.add_reports(Occasion::Cycle, damping, &[&*self.estimation.estimator], &mut report);
         report
     }
 
-    /// Returns the values of a three-axis body and the rows of its actuator at the start of a cycle, with the angles
-    /// from the target (rad).
-    pub(super) fn actuator_cycle_report(&self, plant: &ThreeAxisPlant, error: [f64; 3]) -> Report {
+    /// Returns the values of a three-axis body and the rows of its actuator at the start of a cycle.
+    pub fn actuator_cycle_report(&self, plant: &ThreeAxisPlant) -> Report {
         let (rigid, elastic) = plant.rates();
         let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
         let mut report = Report::new();
@@ -114,7 +112,7 @@ impl Simulation {
             visible_energy_j,
             rigid_rate_rad_s: rigid.into(),
             elastic_rate_rad_s: elastic.into(),
-            error_rad: error,
+            error_rad: self.plant.truth().orientation.error_from(self.estimation.origin()),
             slewing: self.guidance.slews(self.now),
             friction_heat_j: plant.friction_heat(),
         });
@@ -124,17 +122,29 @@ impl Simulation {
         report
     }
 
+    /// Adds the rows of some parts at the current instant to a report.
+    fn add_reports(
+        &self,
+        occasion: Occasion,
+        damping: &[DampingStatus],
+        parts: &[&dyn Part],
+        report: &mut Report,
+    ) {
+        let axes = self.estimation.axis_count();
+        let at = ReportContext { now: self.now, occasion, axes, truth: self, damping };
+        parts.iter().for_each(|part| part.report(&at, report));
+    }
+
     /// Adds the rows of a one-axis plant, of the manoeuvre, and of the torques.
-    fn add_one_axis_rows(&self, plant: &OneAxisPlant, report: &mut Report) {
+    fn add_one_axis_rows(&self, plant: &OneAxisPlant, torques: TorqueRows, report: &mut Report) {
         let now = self.now;
-        let sampled = self.sensors.next.is_some();
         let measured = self.sensors.reading.map_or(0.0, |_| self.sensors.measured[0][0]);
-        let (attitude, rate, modes) = plant.motion(sampled.then_some(measured));
-        if self.recorder.has_torque_rows() {
+        let (attitude, rate, modes) = plant.motion((!self.sensors.is_continuous()).then_some(measured));
+        if torques.is_detailed {
             let rates = [rate.rate_rad_s, rate.rigid_rad_s];
             let (angle_rad, rate_rad_s) = self.guidance.manoeuvre_state(now);
             report.add(GoalMotion { angle_rad, rate_rad_s });
-            report.add(flexsc_record::Torque {
+            report.add(Torque {
                 feedforward_nm: self.guidance.feedforward(now),
                 feedback_nm: self.loads.actuator.effort(0).demanded,
                 applied_nm: self.loads.actuator.response(now, 0, rates).applied,
@@ -148,7 +158,7 @@ impl Simulation {
     }
 
     /// Adds the rows of a three-axis plant and of the torques.
-    fn add_three_axis_rows(&self, plant: &ThreeAxisPlant, report: &mut Report) {
+    fn add_three_axis_rows(&self, plant: &ThreeAxisPlant, torques: TorqueRows, report: &mut Report) {
         let now = self.now;
         let (rigid, elastic) = plant.rates();
         let axis = |axis: usize| AxisRate {
@@ -156,13 +166,13 @@ impl Simulation {
             rigid_rad_s: rigid[axis],
             elastic_rad_s: elastic[axis],
             measured_rad_s: self.sensors.measured[axis][1],
-            believed_rad_s: self.estimates[axis].rate,
+            believed_rad_s: self.estimation.estimates[axis].rate,
         };
         let actuator = &self.loads.actuator;
         let (around, magnetic) = (plant.environment_torque(), plant.magnetic_torque());
         let torque = |axis: usize| {
             let rates = [rigid[axis] + elastic[axis], rigid[axis]];
-            flexsc_record::Torque {
+            Torque {
                 feedforward_nm: 0.0,
                 feedback_nm: actuator.effort(axis).demanded,
                 applied_nm: magnetic[axis] + actuator.response(now, axis, rates).applied,
@@ -173,17 +183,17 @@ impl Simulation {
             }
         };
         // If only jets act, the torques follow from the recorded pulses.
-        if !self.recorder.is_jets_only() || plant.has_environment() {
+        if !torques.jets_only || plant.has_environment() {
             report.add(Torques { axes: [0, 1, 2].map(torque).into() });
         }
-        let error = plant.viewed().orientation.error_from(&self.guidance.origin(now));
+        let error = self.plant.truth().orientation.error_from(&self.guidance.origin(now));
         report.add(plant.pointing(error));
         report.add(Rates { axes: [0, 1, 2].map(axis).into() });
         plant.add_rows(report);
     }
-}
 
-/// Records a report, unless it is empty.
-pub fn record_report(now: Instant, report: &Report, record: &mut dyn Record) -> Result<(), RecordError> {
-    if report.is_empty() { Ok(()) } else { record.record(now, Sample::Report(report)) }
+    /// Records a report of the current instant, unless it is empty.
+    pub fn record_report(&self, report: &Report, record: &mut dyn Record) -> Result<(), RecordError> {
+        if report.is_empty() { Ok(()) } else { record.record(self.now, Sample::Report(report)) }
+    }
 }
