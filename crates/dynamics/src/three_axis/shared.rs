@@ -4,9 +4,10 @@
 
 use std::sync::{Arc, Mutex, OnceLock};
 
-use super::model::{BodyConstants, FlexibleBody};
-use super::pace::StepLevels;
-use super::response::ModeResponse;
+use super::body::FlexibleBody;
+use super::constants::BodyConstants;
+use super::step::ModeResponse;
+use super::step_levels::StepLevels;
 
 /// Number of step lengths whose responses are kept.
 const KEPT: usize = 64;
@@ -19,7 +20,7 @@ pub struct SharedSteps(Arc<OnceLock<(FlexibleBody, Arc<SharedBody>)>>);
 #[derive(Debug)]
 pub(super) struct SharedBody {
     pub model: Arc<BodyConstants>,
-    pub pace: Arc<StepLevels>,
+    pub levels: Arc<StepLevels>,
     /// Cache of the last responses, and the index that is replaced next.
     responses: Mutex<(Vec<StepResponses>, usize)>,
 }
@@ -50,7 +51,7 @@ impl SharedBody {
     fn new(body: &FlexibleBody) -> Self {
         let model = BodyConstants::new(body);
         Self {
-            pace: Arc::new(StepLevels::new(&model)),
+            levels: Arc::new(StepLevels::new(&model)),
             model: Arc::new(model),
             responses: Mutex::new((Vec::new(), 0)),
         }
@@ -58,8 +59,8 @@ impl SharedBody {
 
     /// Returns the responses over a step of `h` (s), from the cache if present.
     pub fn responses(&self, h: f64) -> StepResponses {
-        let Ok(mut kept) = self.responses.lock() else { return StepResponses::new(&self.model, h) };
-        let (all, next) = &mut *kept;
+        let Ok(mut cached) = self.responses.lock() else { return StepResponses::new(&self.model, h) };
+        let (all, next) = &mut *cached;
         if let Some(found) = all.iter().find(|of| of.h.to_bits() == h.to_bits()) {
             return found.clone();
         }

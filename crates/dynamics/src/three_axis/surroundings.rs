@@ -1,5 +1,34 @@
-//! Thermal forces on the modes: their common level approaches a target exponentially, and the target changes
-//! stepwise.
+//! Environment of a body: torque, tidal forces on the modes, and thermal forces.
+//!
+//! The level of a thermal force approaches a target exponentially, and the target changes stepwise.
+
+use flexsc_numerics::attitude::Vector;
+use nalgebra::{Matrix3, Quaternion};
+
+/// Environment that acts on a body.
+pub trait Surroundings {
+    /// Returns the torque in the body's axes (N m) at a time `t` since the start (s), for the attitude of the hub and
+    /// the present inertia of the body (kg m²).
+    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
+
+    /// Returns the tidal tensor (1/s²), whose elementwise product with the change of inertia per unit of a mode sums
+    /// to the force on the mode; `None` without such a force.
+    fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
+
+    /// Returns the thermal forces on the modes.
+    fn thermal_forces(&self) -> &[ThermalForces] {
+        &[]
+    }
+
+    /// Returns an upper bound of the torque's magnitude (N m).
+    fn bound(&self) -> f64;
+
+    /// Returns the rate at which the torque varies by itself, for a body at rest (rad/s).
+    fn frequency(&self) -> f64;
+}
+
+/// Environment, and the time of the start of a segment or step since the start of the run (s).
+pub type TimedSurroundings<'a> = Option<(&'a dyn Surroundings, f64)>;
 
 /// Thermal forces on the modes with one common level and time constant.
 #[derive(Clone, Debug, PartialEq)]

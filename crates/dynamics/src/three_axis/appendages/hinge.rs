@@ -17,7 +17,8 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::Matrix3;
 
-use super::{ArticulatedMotion, Configuration};
+use super::ArticulatedMotion;
+use super::configuration::Configuration;
 
 /// Hinge at the root of a panel.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -69,16 +70,16 @@ impl HingedPanel {
 impl ArticulatedMotion {
     /// Returns an upper bound of the hinge rates (rad/s) during the next step, from q and P/W of the modes and the
     /// momentum Gt of the body (N m s).
-    pub fn rate_bound(&self, modes: &[[f64; 4]], turning: &Vector) -> f64 {
+    pub fn rate_bound(&self, modes: &[[f64; 4]], rigid_momentum: &Vector) -> f64 {
         let (basis, mut mode, mut fastest) = (&self.basis, 0, 0.0_f64);
-        for panel in &self.of.panels {
+        for panel in &self.body.panels {
             if let Some(hinge) = &panel.hinge {
                 let parts = basis.shapes.row(mode);
                 let each = parts.iter().zip(modes).enumerate();
                 let rate: f64 = each
                     .map(|(free, (part, [q, p, ..]))| {
                         let (w, rotation) = (basis.frequencies[free], &basis.rotations[free]);
-                        part.abs() * (w * q.abs() + (w * p + rotation.dot(turning)).abs())
+                        part.abs() * (w * q.abs() + (w * p + rotation.dot(rigid_momentum)).abs())
                     })
                     .sum();
                 fastest = fastest.max(hinge.angle(rate));
@@ -107,18 +108,18 @@ impl Configuration {
 
     /// Changes what hinges have of the body's rate by what these displacements of other modes do to the centre of mass.
     pub(super) fn offset_hinges(&mut self, eta: &[f64]) {
-        let Self { hinges, translations, pushes, rotations, kicks, mass, .. } = self;
+        let Self { hinges, translations, panel_momentum_per_mode, rotations, modal_momenta, mass, .. } = self;
         let (mut offset, mut carried) = (Vector::zeros(), Vector::zeros());
         for (mode, eta) in eta.iter().enumerate() {
             if hinges.iter().all(|hinge| hinge.mode != mode) {
                 offset += translations[mode] * *eta;
-                carried += pushes[mode] * *eta;
+                carried += panel_momentum_per_mode[mode] * *eta;
             }
         }
         for hinge in hinges {
             let t = translations[hinge.mode];
             rotations[hinge.mode] -= offset.cross(&t) / *mass;
-            kicks[hinge.mode] -= t.dot(&carried) / *mass;
+            modal_momenta[hinge.mode] -= t.dot(&carried) / *mass;
         }
     }
 
@@ -128,25 +129,25 @@ impl Configuration {
         if self.hinges.is_empty() {
             return;
         }
-        let (mut moved, mut swung) = (self.push, Vector::zeros());
+        let (mut momentum, mut hinge_momentum) = (self.panel_momentum, Vector::zeros());
         for (t, rate) in self.translations.iter().zip(rates) {
-            moved += t * *rate;
+            momentum += t * *rate;
         }
         for hinge in &self.hinges {
-            swung += self.translations[hinge.mode] * rates[hinge.mode];
+            hinge_momentum += self.translations[hinge.mode] * rates[hinge.mode];
         }
-        for (((t, push), eta), force) in
-            self.translations.iter().zip(&self.pushes).zip(small).zip(&mut *forces)
+        for (((t, per_mode), eta), force) in
+            self.translations.iter().zip(&self.panel_momentum_per_mode).zip(small).zip(&mut *forces)
         {
-            let carried = rate.cross(t) + push;
-            moved += carried * *eta;
-            *force -= swung.dot(&carried) / self.mass;
+            let carried = rate.cross(t) + per_mode;
+            momentum += carried * *eta;
+            *force -= hinge_momentum.dot(&carried) / self.mass;
         }
         for hinge in &self.hinges {
-            let turned = rate + hinge.about * (rates[hinge.mode] / hinge.unit);
-            let root = rate.cross(&hinge.from_centre) - moved / self.mass;
-            let force = root.dot(&turned.cross(&hinge.across))
-                + turned.dot(&hinge.about.cross(&(hinge.inertia * turned)));
+            let panel_rate = rate + hinge.about * (rates[hinge.mode] / hinge.unit);
+            let root = rate.cross(&hinge.from_centre) - momentum / self.mass;
+            let force = root.dot(&panel_rate.cross(&hinge.across))
+                + panel_rate.dot(&hinge.about.cross(&(hinge.inertia * panel_rate)));
             forces[hinge.mode] = force / hinge.unit;
         }
     }

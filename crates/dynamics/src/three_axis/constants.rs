@@ -1,69 +1,11 @@
-//! Properties of a rotating flexible body: inertia, free modes and rotors, and the constants derived from them.
+//! Constants of a body that the integrator derives once: inverse and residual inertia, and mode constants in SIMD order.
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::lanes::{LaneFloat, SimdWidth4};
-use nalgebra::{DMatrix, Matrix3, Quaternion};
+use nalgebra::{DMatrix, Matrix3};
 
-use super::heated::ThermalForces;
+use super::body::{FlexibleBody, FreeMode};
 use super::vectors::Vectors;
-
-/// Free mode of the whole body, in axes that follow its total momentum, mass-normalised.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FreeMode {
-    /// Natural frequency W (rad/s).
-    pub frequency: f64,
-    /// Damping ratio.
-    pub damping: f64,
-    /// Rotation of the hub per unit of the mode (rad/(m sqrt(kg))).
-    pub rotation: Vector,
-    /// Change of the inertia tensor per unit of the mode (sqrt(kg) m).
-    pub moments: Matrix3<f64>,
-}
-
-/// Flexible body in three-axis rotation.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct FlexibleBody {
-    /// Inertia tensor about the centre of mass (kg m²), without the spin inertia of the rotors.
-    pub inertia: Matrix3<f64>,
-    /// Free modes.
-    pub modes: Vec<FreeMode>,
-    /// Damping matrix of all modes (1/s) if its off-diagonal entries matter; its diagonal then replaces the modes'
-    /// damping ratios.
-    pub damping: Option<DMatrix<f64>>,
-}
-
-/// Ideal rotor, with h' = u.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub struct Rotor {
-    /// Spin axis, a unit vector in the body's axes.
-    pub axis: Vector,
-    /// Absolute angular momentum about the axis, including the part due to the body's rate (N m s).
-    pub momentum: f64,
-    /// Torque on the rotor about its axis, of motor and bearing together (N m), constant during a segment.
-    pub torque: f64,
-}
-
-/// Environment that acts on a body.
-pub trait Surroundings {
-    /// Returns the torque in the body's axes (N m) at a time `t` since the start (s), for the attitude of the hub and
-    /// the present inertia of the body (kg m²).
-    fn torque(&self, t: f64, attitude: &Quaternion<f64>, inertia: &Matrix3<f64>) -> Vector;
-
-    /// Returns the tidal tensor (1/s²), whose elementwise product with the change of inertia per unit of a mode sums
-    /// to the force on the mode; `None` without such a force.
-    fn tidal_tensor(&self, t: f64, attitude: &Quaternion<f64>) -> Option<Matrix3<f64>>;
-
-    /// Returns the thermal forces on the modes.
-    fn thermal_forces(&self) -> &[ThermalForces] {
-        &[]
-    }
-
-    /// Returns an upper bound of the torque's magnitude (N m).
-    fn bound(&self) -> f64;
-
-    /// Returns the rate at which the torque varies by itself, for a body at rest (rad/s).
-    fn frequency(&self) -> f64;
-}
 
 /// Constants of a body used by the integrator.
 #[derive(Clone, Debug)]
@@ -80,18 +22,18 @@ pub(super) struct BodyConstants {
     pub mobility: f64,
     pub modes: Vec<ModeConstants>,
     /// Mode constants in groups of four, and padded so that a vector of a mode fills a register.
-    pub abreast: Vec<ModeGroup4>,
-    pub filled: Vec<PaddedMode>,
+    pub groups_of_four: Vec<ModeGroup4>,
+    pub padded: Vec<PaddedMode>,
     /// Off-diagonal part of the damping matrix (1/s).
-    pub beside: Option<DMatrix<f64>>,
+    pub coupled_damping: Option<DMatrix<f64>>,
     /// True if any mode changes the inertia.
-    pub stretches: bool,
+    pub changes_inertia: bool,
     /// Sum of |phi|, |sum phi phi'|, and the largest |J1| of a mode.
-    pub reach: f64,
-    pub bendable: f64,
-    pub stretchable: f64,
+    pub rotation_sum: f64,
+    pub bending_bound: f64,
+    pub inertia_change_bound: f64,
     /// Frequencies of the modes that rotate the hub or change the inertia (rad/s).
-    pub felt: Vec<f64>,
+    pub coupled_frequencies: Vec<f64>,
     /// SIMD instruction set used for the stages of a step.
     pub lanes: SimdWidth4,
 }
@@ -120,7 +62,7 @@ impl ModeGroup4 {
 
     /// Returns the scalar products of the modes' rotations with a vector.
     #[inline(always)]
-    pub fn along<R: LaneFloat>(&self, kind: R, v: &Vector) -> R {
+    pub fn dot_rotation<R: LaneFloat>(&self, kind: R, v: &Vector) -> R {
         let [x, y, z] = &self.rotation;
         Vectors { x: kind.load(x), y: kind.load(y), z: kind.load(z) }.dot_shared(v)
     }
@@ -166,9 +108,9 @@ pub(super) struct ModeConstants {
 
 impl ModeConstants {
     /// Returns the centrifugal force on the mode for the terms of [`centrifugal_terms`] (N/sqrt(kg)).
-    pub fn centrifugal_force(&self, outward: &[f64; 6]) -> f64 {
+    pub fn centrifugal_force(&self, terms: &[f64; 6]) -> f64 {
         let [xx, yy, zz, yz, zx, xy] = self.moments;
-        let [a, b, c, d, e, f] = outward;
+        let [a, b, c, d, e, f] = terms;
         (xx * a + yy * b + zz * c) + (yz * d + zx * e + xy * f)
     }
 
@@ -211,7 +153,7 @@ impl BodyConstants {
         };
         let modes: Vec<ModeConstants> = body.modes.iter().enumerate().map(constants).collect();
         let size = f64::sqrt(body.inertia.norm());
-        let sensed = body
+        let coupled = body
             .modes
             .iter()
             .filter(|mode| mode.rotation.norm() * size > ROUNDING || mode.moments.norm() > ROUNDING * size);
@@ -221,20 +163,20 @@ impl BodyConstants {
             mobility: inverse.norm(),
             inverse,
             bending,
-            abreast: modes.chunks(4).map(ModeGroup4::new).collect(),
-            filled: modes.iter().map(PaddedMode::new).collect(),
+            groups_of_four: modes.chunks(4).map(ModeGroup4::new).collect(),
+            padded: modes.iter().map(PaddedMode::new).collect(),
             modes,
-            beside: body.damping.as_ref().map(|damping| {
-                let mut beside = damping.clone();
-                beside.fill_diagonal(0.0);
-                beside
+            coupled_damping: body.damping.as_ref().map(|damping| {
+                let mut coupling = damping.clone();
+                coupling.fill_diagonal(0.0);
+                coupling
             }),
-            stretches: body.modes.iter().any(|mode| mode.moments.norm() > 0.0),
-            felt: sensed.map(|mode| mode.frequency).collect(),
+            changes_inertia: body.modes.iter().any(|mode| mode.moments.norm() > 0.0),
+            coupled_frequencies: coupled.map(|mode| mode.frequency).collect(),
             lanes: SimdWidth4::best(),
-            reach: body.modes.iter().map(|mode| mode.rotation.norm()).sum(),
-            bendable: bending.norm(),
-            stretchable: body.modes.iter().map(|mode| mode.moments.norm()).fold(0.0, f64::max),
+            rotation_sum: body.modes.iter().map(|mode| mode.rotation.norm()).sum(),
+            bending_bound: bending.norm(),
+            inertia_change_bound: body.modes.iter().map(|mode| mode.moments.norm()).fold(0.0, f64::max),
         }
     }
 
@@ -243,11 +185,14 @@ impl BodyConstants {
     pub fn momentum_and_rate(
         &self,
         momentum: &Vector,
-        elastic: &Vector,
-        changed: &Matrix3<f64>,
+        elastic_rate: &Vector,
+        inertia_change: &Matrix3<f64>,
     ) -> (Vector, Vector) {
-        let rate = solved(&(self.residual_inertia + changed), &(momentum + self.residual_inertia * elastic));
-        (momentum - changed * rate, rate)
+        let rate = solved(
+            &(self.residual_inertia + inertia_change),
+            &(momentum + self.residual_inertia * elastic_rate),
+        );
+        (momentum - inertia_change * rate, rate)
     }
 }
 
@@ -259,17 +204,17 @@ impl BodyConstants {
         &self,
         kind: R,
         momentum: Vectors<R>,
-        elastic: Vectors<R>,
-        changed: &[R; 6],
+        elastic_rate: Vectors<R>,
+        inertia_change: &[R; 6],
     ) -> (Vectors<R>, Vectors<R>) {
         let m = &self.residual_inertia;
-        let xx = kind.splat(m.m11) + changed[0];
-        let yy = kind.splat(m.m22) + changed[1];
-        let zz = kind.splat(m.m33) + changed[2];
-        let yz = kind.splat(m.m32) + changed[3];
-        let zx = kind.splat(m.m31) + changed[4];
-        let xy = kind.splat(m.m21) + changed[5];
-        let v = momentum + elastic.transform(m);
+        let xx = kind.splat(m.m11) + inertia_change[0];
+        let yy = kind.splat(m.m22) + inertia_change[1];
+        let zz = kind.splat(m.m33) + inertia_change[2];
+        let yz = kind.splat(m.m32) + inertia_change[3];
+        let zx = kind.splat(m.m31) + inertia_change[4];
+        let xy = kind.splat(m.m21) + inertia_change[5];
+        let v = momentum + elastic_rate.transform(m);
         // Solution by Cramer's rule.
         let first = Vectors { x: yy * zz - yz * yz, y: yz * zx - xy * zz, z: xy * yz - yy * zx };
         let (second, third, across) = (zz * xx - zx * zx, xx * yy - xy * xy, xy * zx - xx * yz);
@@ -279,7 +224,7 @@ impl BodyConstants {
             y: (first.y * v.x + second * v.y + across * v.z) * one,
             z: (first.z * v.x + across * v.y + third * v.z) * one,
         };
-        (momentum - rate.transform_symmetric(changed), rate)
+        (momentum - rate.transform_symmetric(inertia_change), rate)
     }
 }
 

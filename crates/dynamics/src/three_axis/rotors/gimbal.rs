@@ -7,7 +7,7 @@
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::gauss_legendre::NODES;
 
-use super::vectors::{StoredVectors, vector};
+use crate::three_axis::vectors::{StoredVectors, vector};
 
 /// A rotor of constant momentum in a gimbal.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -38,18 +38,18 @@ impl Gimbal {
 
 /// Returns the total momentum of the gimbals' rotors (N m s) and its rate (N m) at `t` (s) since the start of the
 /// segment; `None` without gimbals.
-pub(super) fn sum(gimbals: &[Gimbal], t: f64) -> Option<(Vector, Vector)> {
+pub fn total_momentum(gimbals: &[Gimbal], t: f64) -> Option<(Vector, Vector)> {
     gimbals.iter().map(|gimbal| gimbal.at(t)).reduce(|sum, of| (sum.0 + of.0, sum.1 + of.1))
 }
 
 /// Returns the largest gimbal rate (rad/s).
-pub(super) fn fastest(gimbals: &[Gimbal]) -> f64 {
+pub fn largest_rate(gimbals: &[Gimbal]) -> f64 {
     gimbals.iter().map(|gimbal| gimbal.rate.abs()).fold(0.0, f64::max)
 }
 
 /// Total momentum of all rotors in gimbals over a step.
 #[derive(Copy, Clone, Debug)]
-pub(super) struct GimbalMomentum {
+pub struct GimbalMomentum {
     /// Momentum at the start of the step (N m s), and its rate (N m).
     pub start: (Vector, Vector),
     /// Momentum at the nodes (N m s); the fourth lane is unused.
@@ -60,10 +60,10 @@ impl GimbalMomentum {
     /// Computes the momentum over a step of `h` (s) that begins `t` (s) after the start of the segment; `None`
     /// without gimbals.
     pub fn over(gimbals: &[Gimbal], t: f64, h: f64) -> Option<Self> {
-        let start = sum(gimbals, t)?;
+        let start = total_momentum(gimbals, t)?;
         let mut nodes = [[0.0; 4]; 3];
         for (lane, node) in NODES.into_iter().enumerate() {
-            let (momentum, _) = sum(gimbals, t + node * h)?;
+            let (momentum, _) = total_momentum(gimbals, t + node * h)?;
             nodes.iter_mut().zip(&momentum).for_each(|(row, part)| row[lane] = *part);
         }
         Some(Self { start, nodes })

@@ -8,7 +8,7 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::Matrix3;
 
-use super::model::Rotor;
+use crate::three_axis::body::Rotor;
 
 /// Bearing friction and imbalance of a rotor.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -84,7 +84,7 @@ impl Bearing {
     }
 
     /// Returns the highest order of the imbalance; 0 without imbalance.
-    pub fn highest(&self) -> f64 {
+    pub fn highest_order(&self) -> f64 {
         self.lines.iter().map(|line| line.order).fold(0.0, f64::max)
     }
 }
@@ -92,14 +92,14 @@ impl Bearing {
 /// State of a rotor: momentum (N m s), angle against the body since the start (rad) and friction heat (J) in `sums`,
 /// and their rounding errors in `lost`.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
-pub(super) struct RotorState {
-    pub sums: Vector,
-    pub lost: Vector,
+pub struct RotorState {
+    pub values: Vector,
+    pub rounding: Vector,
 }
 
 /// Rotors in bearings during a segment.
 #[derive(Copy, Clone)]
-pub(super) struct BearingLoads<'a> {
+pub struct BearingLoads<'a> {
     pub bearings: &'a [Bearing],
     pub rotors: &'a [Rotor],
     pub slips: &'a [SlipDirection],
@@ -107,27 +107,27 @@ pub(super) struct BearingLoads<'a> {
 
 /// Values of the rotors in bearings at the stages of a step.
 #[derive(Clone, Debug, Default)]
-pub(super) struct RotorStage {
+pub struct RotorStage {
     /// Momentum, angle and heat of each rotor at the current stage.
     pub at: Vec<Vector>,
     /// Rates of `at` at the current stage.
-    pub now: Vec<Vector>,
+    pub rates: Vec<Vector>,
     /// Rates of `at` at the nodes of the step.
-    pub rates: Vec<[Vector; 3]>,
+    pub node_rates: Vec<[Vector; 3]>,
     /// Imbalance terms Omega² cos k th and Omega² sin k th of each harmonic of each rotor.
-    pub waves: Vec<[f64; 2]>,
+    pub imbalance_terms: Vec<[f64; 2]>,
 }
 
 impl RotorStage {
     /// Stores the current rates as those at a node of a step of `h` (s); returns the relative change of the momenta.
     pub fn set_rates(&mut self, node: usize, h: f64) -> f64 {
         let mut change = 0.0_f64;
-        for ((rates, now), at) in self.rates.iter_mut().zip(&self.now).zip(&self.at) {
-            let size = at.x.abs() + h * now.x.abs();
+        for ((nodes, rate), at) in self.node_rates.iter_mut().zip(&self.rates).zip(&self.at) {
+            let size = at.x.abs() + h * rate.x.abs();
             if size > 0.0 {
-                change = change.max((now.x - rates[node].x).abs() * h / size);
+                change = change.max((rate.x - nodes[node].x).abs() * h / size);
             }
-            rates[node] = *now;
+            nodes[node] = *rate;
         }
         change
     }
@@ -135,8 +135,8 @@ impl RotorStage {
 
 impl BearingLoads<'_> {
     /// Returns the momentum of the rotors that slip (N m s).
-    pub fn stored(&self, spins: impl Iterator<Item = f64>) -> Vector {
-        let rotors = self.rotors.iter().zip(self.slips).zip(spins);
+    pub fn stored(&self, momenta: impl Iterator<Item = f64>) -> Vector {
+        let rotors = self.rotors.iter().zip(self.slips).zip(momenta);
         rotors
             .filter(|((_, slip), _)| **slip != SlipDirection::Stuck)
             .fold(Vector::zeros(), |sum, ((rotor, _), momentum)| sum + rotor.axis * momentum)
@@ -165,15 +165,15 @@ impl BearingLoads<'_> {
 
     /// Updates the rates of all rotors from `spun.at`, and the imbalance terms, for a body with the angular rate
     /// `rate` (rad/s); returns the torque of the imbalance on the hub (N m).
-    pub fn update_rates(&self, rate: &Vector, spun: &mut RotorStage) -> Vector {
+    pub fn update_rates(&self, rate: &Vector, stage: &mut RotorStage) -> Vector {
         let mut torque = Vector::zeros();
-        spun.waves.clear();
+        stage.imbalance_terms.clear();
         for (index, (bearing, rotor)) in self.bearings.iter().zip(self.rotors).enumerate() {
-            let (at, slip) = (spun.at[index], self.slips[index]);
+            let (at, slip) = (stage.at[index], self.slips[index]);
             let stuck = slip == SlipDirection::Stuck;
             let speed = if stuck { 0.0 } else { self.speed(index, at.x, rate) };
             let friction = bearing.friction(speed, slip);
-            spun.now[index] = if stuck {
+            stage.rates[index] = if stuck {
                 Vector::zeros()
             } else {
                 Vector::new(rotor.torque - friction, speed, friction * speed)
@@ -182,23 +182,26 @@ impl BearingLoads<'_> {
                 let (sin, cos) = libm::sincos(line.order * at.y);
                 let wave = [speed * speed * cos, speed * speed * sin];
                 torque += line.torque[0] * wave[0] + line.torque[1] * wave[1];
-                spun.waves.push(wave);
+                stage.imbalance_terms.push(wave);
             }
         }
         torque
     }
 
     /// Returns the force of the imbalance on a mode (N/sqrt(kg)).
-    pub fn force(&self, mode: usize, waves: &[[f64; 2]]) -> f64 {
+    pub fn force(&self, mode: usize, imbalance_terms: &[[f64; 2]]) -> f64 {
         let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
-        lines.zip(waves).map(|(line, [c, s])| line.forces[0][mode] * c + line.forces[1][mode] * s).sum()
+        lines
+            .zip(imbalance_terms)
+            .map(|(line, [c, s])| line.forces[0][mode] * c + line.forces[1][mode] * s)
+            .sum()
     }
 
     /// Returns the force of the imbalance on the body (N).
-    pub fn imbalance_force(&self, waves: &[[f64; 2]]) -> Vector {
+    pub fn imbalance_force(&self, imbalance_terms: &[[f64; 2]]) -> Vector {
         let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
         lines
-            .zip(waves)
+            .zip(imbalance_terms)
             .fold(Vector::zeros(), |sum, (line, [c, s])| sum + line.force[0] * *c + line.force[1] * *s)
     }
 

@@ -3,9 +3,10 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::{DMatrix, DVector, Matrix3};
 
-use super::{ArticulatedBody, Configuration, DriveAngles};
-use crate::three_axis::free::FreeModes;
-use crate::three_axis::model::{FlexibleBody, FreeMode};
+use super::configuration::Configuration;
+use super::{ArticulatedBody, DriveAngles};
+use crate::three_axis::body::{FlexibleBody, FreeMode};
+use crate::three_axis::free_modes::FreeModes;
 
 /// Free modes at one configuration of the drives.
 #[derive(Clone, Debug)]
@@ -32,24 +33,24 @@ pub struct ModalBasis {
 impl ModalBasis {
     /// Computes the modes at the start of the run, with the drives at their initial angles.
     pub fn initial(of: &ArticulatedBody, angles: &dyn DriveAngles) -> Option<Self> {
-        let mut posed = Configuration::default();
-        of.update(|drive| angles.at(drive, 0.0), &[], &mut posed);
-        let free = posed.free(of)?;
+        let mut configuration = Configuration::default();
+        of.update(|drive| angles.at(drive, 0.0), &[], &mut configuration);
+        let free = configuration.free(of)?;
         let start = inverse(of, &free).transpose();
-        Some(Self::new(of, &posed, free, (posed.centre, start)))
+        Some(Self::new(of, &configuration, free, (configuration.centre, start)))
     }
 
     /// Computes the modes at a time `t` since the start (s), ordered and signed like the modes here.
     pub fn at(&self, of: &ArticulatedBody, angles: &dyn DriveAngles, t: f64) -> Option<Self> {
-        let mut posed = Configuration::default();
-        of.update(|drive| angles.at(drive, t), &[], &mut posed);
-        let free = self.reordered(&posed.free(of)?);
-        Some(Self::new(of, &posed, free, (self.first_centre, self.start.clone())))
+        let mut configuration = Configuration::default();
+        of.update(|drive| angles.at(drive, t), &[], &mut configuration);
+        let free = self.reordered(&configuration.free(of)?);
+        Some(Self::new(of, &configuration, free, (self.first_centre, self.start.clone())))
     }
 
     fn new(
         of: &ArticulatedBody,
-        posed: &Configuration,
+        configuration: &Configuration,
         free: FreeModes,
         (first_centre, start): (Vector, DMatrix<f64>),
     ) -> Self {
@@ -59,7 +60,7 @@ impl ModalBasis {
             DMatrix::from_fn(own.len(), own.len(), |row, column| own[row] * free.shapes[(row, column)]);
         let moments = (0..own.len()).map(|column| {
             let shape = free.shapes.column(column);
-            posed
+            configuration
                 .moments
                 .iter()
                 .zip(shape.iter())
@@ -67,7 +68,7 @@ impl ModalBasis {
         });
         let damping = free.shapes.tr_mul(&damped);
         Self {
-            inertia: posed.inertia,
+            inertia: configuration.inertia,
             first_centre,
             moments: moments.collect(),
             damping: 0.5 * (&damping + damping.transpose()),

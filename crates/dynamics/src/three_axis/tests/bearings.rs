@@ -3,7 +3,7 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::{Matrix3, Quaternion};
 
-use super::{
+use crate::three_axis::{
     Bearing, FlexibleBody, FreeMode, Rotor, RotorObservation, SegmentLoads, SlipDirection, ThreeAxisMotion,
 };
 
@@ -37,7 +37,7 @@ fn bearing(coulomb: f64, breakaway: f64) -> Bearing {
 
 /// Simulation of a body with rotors, with records of motor work and slip changes.
 struct Run {
-    turning: ThreeAxisMotion,
+    motion: ThreeAxisMotion,
     rotors: Vec<Rotor>,
     /// Work of the motors (J).
     work: f64,
@@ -49,35 +49,34 @@ struct Run {
 impl Run {
     fn new(body: &FlexibleBody, rate: Vector, bearing: &Bearing, speeds: &[f64]) -> Self {
         let modes = [[1e-3, 2e-3]; 3];
-        let mut turning =
-            ThreeAxisMotion::new(body, Quaternion::identity(), rate, &modes[..body.modes.len()]);
-        turning.set_bearings(vec![bearing.clone(); speeds.len()]);
-        let hub = turning.seen().rate;
+        let mut motion = ThreeAxisMotion::new(body, Quaternion::identity(), rate, &modes[..body.modes.len()]);
+        motion.set_bearings(vec![bearing.clone(); speeds.len()]);
+        let hub = motion.view().rate;
         let rotor = |(axis, speed): (Vector, &f64)| Rotor {
             axis,
             momentum: INERTIA * (speed + axis.dot(&hub)),
             torque: 0.0,
         };
         let rotors = axes().into_iter().zip(speeds).map(rotor).collect();
-        Self { turning, rotors, work: 0.0, events: Vec::new(), t: 0.0 }
+        Self { motion, rotors, work: 0.0, events: Vec::new(), t: 0.0 }
     }
 
     fn turned(&self) -> Vec<RotorObservation> {
-        self.turning.rotor_observations(None)
+        self.motion.rotor_observations(None)
     }
 
     fn go(&mut self, torques: &[f64], h: f64) {
         for (rotor, torque) in self.rotors.iter_mut().zip(torques) {
             rotor.torque = *torque;
         }
-        let acting = SegmentLoads { rotors: self.rotors.clone(), ..SegmentLoads::default() };
+        let loads = SegmentLoads { rotors: self.rotors.clone(), ..SegmentLoads::default() };
         let mut left = h;
-        self.depart(&acting);
+        self.begin_segment(&loads);
         let began: Vec<f64> = self.turned().iter().map(|wheel| wheel.angle).collect();
-        while let Some(at) = self.turning.advance(left, None, || Ok::<(), ()>(())).unwrap() {
-            self.turning.reach(at, None);
+        while let Some(at) = self.motion.advance(left, None, || Ok::<(), ()>(())).unwrap() {
+            self.motion.stop_at_event(at, None);
             (left, self.t) = (left - at, self.t + at);
-            self.depart(&acting);
+            self.begin_segment(&loads);
         }
         self.t += left;
         for ((wheel, began), torque) in self.turned().iter().zip(began).zip(torques) {
@@ -85,11 +84,11 @@ impl Run {
         }
     }
 
-    fn depart(&mut self, acting: &SegmentLoads) {
-        let before = self.turning.slip_states().to_vec();
-        self.turning.depart(acting);
-        self.turning.resolve_stick_slip(None);
-        for (wheel, (before, after)) in before.iter().zip(self.turning.slip_states()).enumerate() {
+    fn begin_segment(&mut self, loads: &SegmentLoads) {
+        let before = self.motion.slip_states().to_vec();
+        self.motion.begin_segment(loads);
+        self.motion.resolve_stick_slip(None);
+        for (wheel, (before, after)) in before.iter().zip(self.motion.slip_states()).enumerate() {
             if before != after {
                 self.events.push((self.t, wheel, *after));
             }
@@ -97,15 +96,15 @@ impl Run {
     }
 
     fn momentum(&self) -> Vector {
-        let seen = self.turning.seen();
-        (seen.attitude * Quaternion::from_imag(seen.momentum) * seen.attitude.conjugate()).vector().into()
+        let view = self.motion.view();
+        (view.attitude * Quaternion::from_imag(view.momentum) * view.attitude.conjugate()).vector().into()
     }
 
     /// Returns the energy of body, modes and rotors (J).
     fn energy(&self) -> f64 {
         let spins =
             self.turned().iter().map(|wheel| wheel.momentum * wheel.momentum / (2.0 * INERTIA)).sum::<f64>();
-        self.turning.seen().rotational + self.turning.energies().sum::<f64>() + spins
+        self.motion.view().rotational_energy + self.motion.energies().sum::<f64>() + spins
     }
 
     fn heat(&self) -> f64 {
@@ -159,7 +158,7 @@ fn a_rotor_runs_down_and_sticks() {
     assert!((at - stops).abs() < 1e-12, "{at} {stops}");
     // Its momentum is now in the body, which turns with it.
     let turns = INERTIA * 10.0 * axes()[0] / (200.0 + INERTIA);
-    assert!((run.turning.seen().rate - turns).norm() < 1e-16);
+    assert!((run.motion.view().rate - turns).norm() < 1e-16);
     assert_eq!(run.turned()[0].speed, 0.0);
     assert!((run.heat() - 0.5 * INERTIA * 100.0 / (1.0 + INERTIA / 200.0)).abs() < 1e-13, "{}", run.heat());
     // Below the breakaway torque it stays; above it, it slips in the driven direction.
@@ -233,25 +232,25 @@ fn looking_moves_no_event() {
             &bearing(0.01, 0.012),
             &[1.0, -2.0, 0.5, 0.0],
         );
-        let acting = |run: &mut Run, torque: f64| {
+        let loads = |run: &mut Run, torque: f64| {
             run.rotors.iter_mut().for_each(|rotor| rotor.torque = torque);
             SegmentLoads { rotors: run.rotors.clone(), ..SegmentLoads::default() }
         };
-        let acting = acting(&mut run, -0.03);
-        run.depart(&acting);
+        let loads = loads(&mut run, -0.03);
+        run.begin_segment(&loads);
         let mut from = 0.0;
         loop {
             for look in looks.iter().filter(|look| **look > from) {
-                if run.turning.advance(look - from, None, || Ok::<(), ()>(())).unwrap().is_some() {
+                if run.motion.advance(look - from, None, || Ok::<(), ()>(())).unwrap().is_some() {
                     break;
                 }
             }
-            let Some(at) = run.turning.advance(5.0 - from, None, || Ok::<(), ()>(())).unwrap() else { break };
-            run.turning.reach(at, None);
+            let Some(at) = run.motion.advance(5.0 - from, None, || Ok::<(), ()>(())).unwrap() else { break };
+            run.motion.stop_at_event(at, None);
             (from, run.t) = (from + at, run.t + at);
-            run.depart(&acting);
+            run.begin_segment(&loads);
         }
-        (run.events.clone(), run.turned(), run.turning.seen().clone())
+        (run.events.clone(), run.turned(), run.motion.view().clone())
     };
     let quiet = run(&[]);
     assert!(quiet.0.len() >= 2, "{:?}", quiet.0);
