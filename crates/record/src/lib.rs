@@ -20,6 +20,7 @@ mod proto;
 mod provenance_check;
 mod recover;
 pub mod row;
+mod scene_source;
 mod states;
 mod summary;
 mod three_axis;
@@ -40,6 +41,7 @@ pub use mcap::{LogBytes, LogFile};
 pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Provenance, RunEnd};
 pub use provenance_check::{ExistingLog, difference, existing_log};
 pub use recover::recover;
+pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use three_axis::{SteeringRecord, ThreeAxisCycle, ThreeAxisMotionSample};
 pub use topics::{
@@ -192,9 +194,9 @@ pub trait Record {
         Ok(())
     }
 
-    /// Returns true if the record needs the scene, which a simulation has only if it was requested.
-    fn wants_scene(&self) -> bool {
-        false
+    /// Returns the scene that the run records for viewers; `None` if the record supplies none. Called at the start.
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        None
     }
 
     /// Records a sample.

@@ -172,10 +172,6 @@ impl<M: MessageSink> Record for MessageEncoder<M> {
         self.detail >= Detail::Full
     }
 
-    fn wants_scene(&self) -> bool {
-        self.detail >= Detail::Scene
-    }
-
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         // The sample may be meant for a record of more detail.
         if sample.detail() > self.detail { Ok(()) } else { self.rows().take_sample_rows(now, sample) }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, Phase, Setpoint,
-    Tunable, TunedNumbers,
+    TorqueConditions, Tunable, TunedNumbers,
 };
 use crate::state_estimate::StateEstimate;
 
@@ -93,6 +93,14 @@ impl LawSpec for Relay {
     /// on.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Absolute(self.dead_zone.get() + self.hysteresis.get())
+    }
+
+    fn dead_zone(&self) -> f64 {
+        self.dead_zone.get()
+    }
+
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.torque_per_command * self.strong.get()
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -6,7 +6,7 @@ use flexsc_dynamics::three_axis::SlipDirection;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{
     self, AxisRate, Command, Estimates, GoalMotion, Jets, Motion, Rates, Record, RecordError, Sample,
-    ThreeAxisCycle, ThreeAxisMotionSample, Torques, Trigger, Wheels,
+    SceneSource, ThreeAxisCycle, ThreeAxisMotionSample, Torques, Trigger, Wheels,
 };
 
 use super::accelerometers::Accelerometers;
@@ -17,7 +17,6 @@ use super::manoeuvre_end::ManoeuvreEnd;
 use super::plant::{Plant, ThreeAxisPlant};
 use super::{Simulation, SimulationError};
 use crate::scenario::Scenario;
-use crate::scene::Scene;
 
 /// Schedule and memory of everything that a run writes to its record.
 #[derive(Clone, Debug)]
@@ -25,7 +24,7 @@ pub struct Recorder {
     /// Detector of state changes for the journal.
     pub events: JournalEvents,
     /// Scene of the run; `None` if it is not drawn.
-    pub scene: Option<Box<Scene>>,
+    pub scene: Option<Box<dyn SceneSource>>,
     /// Instant at which the frames of the scene are due next.
     pub next_frames: Option<Instant>,
     /// Period of the rows of a dense record.
@@ -87,11 +86,6 @@ impl Recorder {
             jets_only: scenario.study.jets_alone,
             stage: JournalStage::Before,
         }
-    }
-
-    /// Enables drawing of the scenario's scene.
-    pub fn draw(&mut self, scenario: &Scenario) {
-        self.scene = Some(Box::new(Scene::new(scenario)));
     }
 
     /// Opens the journal once; returns true if this call opened it.

@@ -1,28 +1,19 @@
 //! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
-use flexsc_record::{Hinges, Record, Sample};
+use flexsc_record::{Hinges, OneAxisPose, Record, Sample, ScenePose, SceneThrust, ThreeAxisPose};
 use flexsc_spacecraft::flow::ThreeAxisState;
 
 use super::plant::Plant;
 use super::{Simulation, SimulationError};
-use crate::scenario::Scenario;
-use crate::scene::{OneAxisPose, Scene};
 
 impl Simulation {
-    /// Enables drawing of the scene for records that want it; to be called before the run begins.
-    pub fn enable_scene(&mut self, scenario: &Scenario) {
-        self.recorder.draw(scenario);
-    }
-
-    /// Records the parts of the scene; discards a scene that no record wants.
+    /// Records the parts of the scene that the record supplies, if any.
     pub(super) fn record_scene(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let (now, telling) = (self.now, &mut self.recorder);
-        match &telling.scene {
-            Some(scene) if record.wants_scene() => {
-                record.record(now, Sample::Scene(&scene.parts(telling.events.stamp(now))))?;
-                telling.next_frames = Some(now);
-            }
-            _ => telling.scene = None,
+        telling.scene = record.scene();
+        if let Some(scene) = &telling.scene {
+            record.record(now, Sample::Scene(&scene.parts(telling.events.stamp(now))))?;
+            telling.next_frames = Some(now);
         }
         Ok(())
     }
@@ -41,47 +32,46 @@ impl Simulation {
             self.recorder.next_frames = Some(now + scene.period());
         }
         let truth = self.plant.truth();
-        let plumes = match (&mut **scene, &self.plant) {
-            (Scene::Planar(scene), Plant::OneAxis(plant)) => {
+        let thrust = match &self.plant {
+            Plant::OneAxis(plant) => {
                 let state = plant.state();
                 if frames {
                     let sections = plant.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
                     let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
-                    let view = OneAxisPose {
+                    let pose = OneAxisPose {
                         time: now.seconds(),
                         angle: truth.sensor_angles()[0],
                         rigid_angle: state.rigid_angle,
                         modes: &state.modes,
                         sections: &sections,
                     };
-                    record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
+                    record.record(now, Sample::Frames(scene.frames(stamp, ScenePose::OneAxis(pose))))?;
                 }
-                let torque = self.loads.actuator.applied_torque(now, 0, [truth.rate[0], truth.rigid[0]]);
-                scene.plumes(stamp, torque)
+                let rates = [truth.rate[0], truth.rigid[0]];
+                SceneThrust::Torque(self.loads.actuator.applied_torque(now, 0, rates))
             }
-            (Scene::Spatial(scene), Plant::ThreeAxis(plant)) => {
+            Plant::ThreeAxis(plant) => {
                 if frames {
                     let ThreeAxisState { turn, modes } = plant.state();
-                    let mut angles: Vec<f64> = plant
-                        .drives()
-                        .map_or_else(Vec::new, |of| of.drives.iter().map(|drive| drive.angle_rad).collect());
-                    let frames = match plant.hinges() {
-                        // Hinges move by any angle; with hinges, modes are not drawn.
+                    let drives = plant.drives().map_or_else(Vec::new, |of| of.drives);
+                    let mut angles: Vec<f64> = drives.iter().map(|drive| drive.angle_rad).collect();
+                    // Hinges move by any angle; with hinges, modes are not drawn.
+                    let (attitude, modes) = match plant.hinges() {
                         Some(Hinges { hinges }) => {
                             angles.extend(hinges.iter().map(|hinge| hinge.angle_rad));
-                            scene.frames(stamp, plant.attitude(), &[], &angles)
+                            (plant.attitude(), &[][..])
                         }
-                        None => scene.frames(stamp, &turn.attitude, modes, &angles),
+                        None => (&turn.attitude, &modes[..]),
                     };
-                    record.record(now, Sample::Frames(frames))?;
+                    let pose = ScenePose::ThreeAxis(ThreeAxisPose { attitude, modes, angles: &angles });
+                    record.record(now, Sample::Frames(scene.frames(stamp, pose)))?;
                 }
                 let cycle = self.loads.actuator.jet_cycle();
-                let (burning, open) =
-                    cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
-                scene.plumes(stamp, burning, open)
+                let (signs, open) = cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
+                SceneThrust::Jets { signs, open }
             }
-            _ => None,
         };
+        let plumes = scene.plumes(stamp, thrust);
         Ok(plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Plumes(&plumes)))?)
     }
 }

@@ -1,6 +1,6 @@
 //! Axis limits of plots whose values are too small for a viewer's own choice of the axes.
 
-use flexsc_record::{Column, Columns, Log, LogError};
+use flexsc_core::record::{Column, Columns, Log, LogError};
 
 use super::Layout;
 use super::panel::{LayoutPanel, topic};

@@ -1,8 +1,8 @@
 //! Plumes of the firing thrusters, logged completely at each change.
 
-use flexsc_numerics::attitude::Vector;
-use flexsc_record::foxglove::{Deleted, Plumes, SceneEntityDeletion, SceneUpdate};
-use flexsc_record::row::LogDate;
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::record::foxglove::{Deleted, Plumes, SceneEntityDeletion, SceneUpdate};
+use flexsc_core::record::row::LogDate;
 
 use super::primitives::{PLUME, cone, entity};
 

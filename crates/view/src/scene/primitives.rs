@@ -1,11 +1,11 @@
 //! Primitives of a scene: frames, and the boxes, cones and texts that are fixed to them.
 
-use flexsc_numerics::attitude::Vector;
-use flexsc_record::foxglove::{
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::record::foxglove::{
     ArrowPrimitive, Color, CubePrimitive, CylinderPrimitive, FrameTransform, LinePrimitive, LineType,
     SceneEntity, SceneUpdate, TextPrimitive,
 };
-use flexsc_record::row::{LogDate, LogSpan};
+use flexsc_core::record::row::{LogDate, LogSpan};
 
 use super::pose::{from_z, place, point, pose, unrotated};
 

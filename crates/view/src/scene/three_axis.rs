@@ -3,16 +3,17 @@
 //! The booms bend by a cubic between the mode shapes at their ends. The wings have no mode shapes, and bend against the
 //! rotation of the hub.
 
-use flexsc_control::actuator::GroupPair;
-use flexsc_dynamics::ModeState;
-use flexsc_dynamics::three_axis::ArticulatedPanel;
-use flexsc_numerics::attitude::{Vector, vector};
-use flexsc_numerics::quantity::Positive;
-use flexsc_numerics::time::Span;
-use flexsc_record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
-use flexsc_record::row::LogDate;
-use flexsc_spacecraft::body::Spatial;
-use nalgebra::Quaternion;
+use flexsc_core::Scenario;
+use flexsc_core::control::actuator::GroupPair;
+use flexsc_core::dynamics::ModeState;
+use flexsc_core::dynamics::three_axis::ArticulatedPanel;
+use flexsc_core::numerics::attitude::{Vector, vector};
+use flexsc_core::numerics::quantity::Positive;
+use flexsc_core::numerics::time::Span;
+use flexsc_core::record::ThreeAxisPose;
+use flexsc_core::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneUpdate};
+use flexsc_core::record::row::LogDate;
+use flexsc_core::spacecraft::body::Spatial;
 
 use super::Extent;
 use super::magnification::{bending, expected_attitude_angle, expected_modal_displacements, turning};
@@ -21,7 +22,6 @@ use super::pose::{about, attitude, from_z, limited, magnified, place};
 use super::primitives::{
     BODY, BOOM, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, scene, words,
 };
-use crate::scenario::Scenario;
 
 /// Number of sections of a boom, and of a wing.
 const SECTIONS: usize = 6;
@@ -70,7 +70,8 @@ pub struct ThreeAxisScene {
     /// Nozzles that fire for plus and for minus about each axis.
     groups: [[Vec<usize>; 2]; 3],
     plumes: ActivePlumes,
-    frames: FrameTransforms,
+    /// Frames at the last pose.
+    pub frames: FrameTransforms,
     /// Angle index (a drive, or one of the hinges after the drives) and rotation axis of each wing.
     turned: [Option<(usize, Vector)>; 2],
 }
@@ -81,7 +82,7 @@ impl ThreeAxisScene {
         let spec = &scenario.log.scene;
         let jets = scenario.actuator.jets().map(|(jets, _)| jets);
         let thrusters = jets.map_or(&[][..], |jets| &jets.thrusters);
-        let point = |point: &flexsc_spacecraft::body::spatial::NamedPoint| ScenePoint {
+        let point = |point: &flexsc_core::spacecraft::body::spatial::NamedPoint| ScenePoint {
             name: point.name.clone(),
             at: vector(&point.position),
             shapes: body.shapes(&point.name),
@@ -199,14 +200,9 @@ impl ThreeAxisScene {
         scene(entities)
     }
 
-    /// Updates the frames to an attitude, states of the modes, and angles of drives and hinges (rad).
-    pub fn frames(
-        &mut self,
-        stamp: LogDate,
-        q: &Quaternion<f64>,
-        modes: &[ModeState],
-        angles: &[f64],
-    ) -> &FrameTransforms {
+    /// Updates the frames to a pose of the body.
+    pub fn set_pose(&mut self, stamp: LogDate, pose: ThreeAxisPose<'_>) {
+        let ThreeAxisPose { attitude: q, modes, angles } = pose;
         let moved: Vec<_> = self.points.iter().map(|point| self.drawn(point, modes)).collect();
         let still = (Vector::zeros(), Vector::zeros());
         let near = self.points.iter().zip(&moved).find(|(point, _)| !point.is_distant());
@@ -243,7 +239,6 @@ impl ThreeAxisScene {
         for (frame, turned) in chained.iter_mut().zip(turned) {
             (frame.timestamp, frame.rotation) = (stamp, attitude(turned));
         }
-        &self.frames
     }
 
     /// Returns translation (m) and rotation (rad) of a point as drawn.

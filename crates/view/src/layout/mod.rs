@@ -10,17 +10,17 @@ mod one_axis;
 mod panel;
 mod spatial;
 
-use flexsc_control::actuator::FiringMethod;
-use flexsc_control::adaptation::{AdaptationKind, Objective};
-use flexsc_control::estimator::EstimatorKind;
-use flexsc_dynamics::three_axis::Bearing;
-use flexsc_numerics::time::Instant;
-use flexsc_record::{Detail, Summary};
-use flexsc_spacecraft::body::BodyAxes;
+use flexsc_core::Scenario;
+use flexsc_core::control::actuator::FiringMethod;
+use flexsc_core::control::adaptation::{AdaptationKind, Objective};
+use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::dynamics::three_axis::Bearing;
+use flexsc_core::metrics::MetricsCollector;
+use flexsc_core::numerics::time::Instant;
+use flexsc_core::record::{Detail, Summary};
+use flexsc_core::spacecraft::body::BodyAxes;
 use serde_json::{Map, Value, json};
 
-use crate::metrics::MetricsCollector;
-use crate::scenario::Scenario;
 use panel::LayoutPanel;
 
 /// Number of panels above which a layout has tabs.

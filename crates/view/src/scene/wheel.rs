@@ -1,15 +1,15 @@
 //! Wheel of a one-axis body: a disc that rotates by its momentum.
 
-use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::time::Span;
-use flexsc_record::foxglove::SceneEntity;
-use flexsc_record::row::LogDate;
-use flexsc_spacecraft::body::Planar;
+use flexsc_core::Scenario;
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::numerics::time::Span;
+use flexsc_core::record::OneAxisPose;
+use flexsc_core::record::foxglove::SceneEntity;
+use flexsc_core::record::row::LogDate;
+use flexsc_core::spacecraft::body::Planar;
 
-use super::OneAxisPose;
 use super::magnification::{expected_rate, slow_down_factor};
 use super::primitives::{MARK, WHEEL, cone, cube, entity};
-use crate::scenario::Scenario;
 
 /// Inertia of a wheel without a rotor model, relative to the body's inertia, as drawn.
 const ROTOR: f64 = 0.02;

@@ -1,12 +1,12 @@
 //! Panels of a one-axis body.
 
-use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::LawKind;
-use flexsc_spacecraft::body::{Output, Planar};
+use flexsc_core::Scenario;
+use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::control::law::LawKind;
+use flexsc_core::spacecraft::body::{Output, Planar};
 
 use super::Tab;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
-use crate::scenario::Scenario;
 use crate::scene::Extent;
 
 /// Returns true if a scenario has a filter that acts at samples.

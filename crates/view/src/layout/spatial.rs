@@ -1,16 +1,16 @@
 //! Panels of a three-axis body.
 
-use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::estimator::attitude::ElasticStates;
-use flexsc_control::law::LawKind;
-use flexsc_dynamics::three_axis::Bearing;
-use flexsc_numerics::attitude::AXES;
-use flexsc_spacecraft::body::Spatial;
+use flexsc_core::Scenario;
+use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::control::estimator::attitude::ElasticStates;
+use flexsc_core::control::law::LawKind;
+use flexsc_core::dynamics::three_axis::Bearing;
+use flexsc_core::numerics::attitude::AXES;
+use flexsc_core::spacecraft::body::Spatial;
 
 use super::Tab;
 use super::one_axis::adaptation;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
-use crate::scenario::Scenario;
 use crate::scene::Extent;
 
 /// No plot has the energies of more modes.

@@ -1,8 +1,8 @@
 //! Poses: rotations and places as viewer messages, rounded to single precision, which the eye cannot distinguish from
 //! double.
 
-use flexsc_numerics::attitude::Vector;
-use flexsc_record::foxglove::{Point3, Pose, Quaternion, Vector3};
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::record::foxglove::{Point3, Pose, Quaternion, Vector3};
 use nalgebra::Quaternion as Rotation;
 
 fn single(value: f64) -> f64 {

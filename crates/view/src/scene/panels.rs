@@ -1,10 +1,10 @@
 //! Panels of a one-axis body: places of their sections, and their bending.
 
-use flexsc_spacecraft::body::{Body, Planar};
+use flexsc_core::Scenario;
+use flexsc_core::record::OneAxisPose;
+use flexsc_core::spacecraft::body::{Body, Planar};
 
-use super::OneAxisPose;
 use super::magnification::expected_displacements;
-use crate::scenario::Scenario;
 
 /// Sections, total length (m) and root distance (m) of the panels of a body that defines none.
 const SECTIONS: usize = 8;

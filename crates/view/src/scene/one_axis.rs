@@ -1,12 +1,13 @@
 //! Scene of a one-axis body: a hub that rotates about z, with panels of sections that bend in the plane.
 
-use flexsc_dynamics::ModeState;
-use flexsc_numerics::attitude::Vector;
-use flexsc_numerics::quantity::Positive;
-use flexsc_numerics::time::Span;
-use flexsc_record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
-use flexsc_record::row::LogDate;
-use flexsc_spacecraft::body::Planar;
+use flexsc_core::Scenario;
+use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::numerics::quantity::Positive;
+use flexsc_core::numerics::time::Span;
+use flexsc_core::record::OneAxisPose;
+use flexsc_core::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
+use flexsc_core::record::row::LogDate;
+use flexsc_core::spacecraft::body::Planar;
 
 use super::Extent;
 use super::magnification::{bending, expected_angle, largest_torque, turning};
@@ -17,26 +18,10 @@ use super::primitives::{
     BODY, GOAL, HUB, INERTIAL, NOZZLE, PANEL, axes, cone, cube, entity, frame, line, scene, words,
 };
 use super::wheel::{SceneWheel, disc};
-use crate::scenario::Scenario;
 
 /// Number of steps in which a torque is drawn, and the fraction of the largest torque below which it is drawn as zero.
 const STEPS: f64 = 4.0;
 const LEAST: f64 = 0.01;
-
-/// Current pose of the body.
-#[derive(Copy, Clone, Debug)]
-pub struct OneAxisPose<'a> {
-    /// Time since the start (s).
-    pub time: f64,
-    /// Angle of the hub, elastic part included (rad).
-    pub angle: f64,
-    /// Angle of the body as if it were rigid (rad).
-    pub rigid_angle: f64,
-    /// States of the modes.
-    pub modes: &'a [ModeState],
-    /// Angles of the sections relative to the hub (rad); empty for a body without sections.
-    pub sections: &'a [f64],
-}
 
 /// Scene of a one-axis body.
 #[derive(Clone, Debug)]
@@ -51,7 +36,8 @@ pub struct OneAxisScene {
     plumes: Option<ActivePlumes>,
     /// Largest torque since the start (N m).
     largest: f64,
-    frames: FrameTransforms,
+    /// Frames at the last pose.
+    pub frames: FrameTransforms,
 }
 
 impl OneAxisScene {
@@ -162,17 +148,17 @@ impl OneAxisScene {
     }
 
     /// Updates the frames to a pose of the body.
-    pub fn frames(&mut self, stamp: LogDate, view: OneAxisPose<'_>) -> &FrameTransforms {
-        let bent = self.panels.angles(self.bending, view);
+    pub fn set_pose(&mut self, stamp: LogDate, pose: OneAxisPose<'_>) {
+        let bent = self.panels.angles(self.bending, pose);
         let azimuths: Vec<f64> = (0..self.panels.count).map(|panel| self.panels.azimuth(panel)).collect();
-        let turned = self.wheel.as_ref().map(|wheel| wheel.angle(view));
+        let turned = self.wheel.as_ref().map(|wheel| wheel.angle(pose));
         let mut frames = self.frames.transforms.iter_mut();
         let mut turn = |by: f64| {
             if let Some(frame) = frames.next() {
                 (frame.timestamp, frame.rotation) = (stamp, attitude(&about_z(by)));
             }
         };
-        turn(self.turning * view.angle);
+        turn(self.turning * pose.angle);
         turned.into_iter().for_each(&mut turn);
         for azimuth in azimuths {
             let mut before = -azimuth;
@@ -181,7 +167,6 @@ impl OneAxisScene {
                 before = *angle;
             }
         }
-        &self.frames
     }
 
     /// Returns the plumes under a torque (N m) if they have changed.

@@ -3,17 +3,16 @@
 //! The largest motion is not known before a run. The actuator's authority and the initial state give the order of
 //! magnitude.
 
-use flexsc_control::actuator::{ActuatorKind, AssignedMember};
-use flexsc_control::law::{Frame, LawKind, OutputQuantity};
-use flexsc_dynamics::three_axis::HarmonicLine;
-use flexsc_numerics::attitude::{Vector, from_yaw_pitch_roll};
-use flexsc_numerics::quantity::{Finite, Positive};
-use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::spatial::ThreeAxisMode;
-use flexsc_spacecraft::body::{Mode, Planar, Spatial};
-use flexsc_spacecraft::disturbance::Disturbance;
-
-use crate::scenario::Scenario;
+use flexsc_core::Scenario;
+use flexsc_core::control::actuator::AssignedMember;
+use flexsc_core::control::law::{Frame, TorqueConditions};
+use flexsc_core::dynamics::three_axis::HarmonicLine;
+use flexsc_core::numerics::attitude::{Vector, from_yaw_pitch_roll};
+use flexsc_core::numerics::quantity::{Finite, Positive};
+use flexsc_core::numerics::time::Instant;
+use flexsc_core::spacecraft::body::spatial::ThreeAxisMode;
+use flexsc_core::spacecraft::body::{Mode, Planar, Spatial};
+use flexsc_core::spacecraft::disturbance::Disturbance;
 
 /// Bending and rotation (rad) that the estimated motion has as drawn.
 const BENDING: f64 = 0.35;
@@ -59,24 +58,18 @@ pub fn slow_down_factor(step: f64) -> f64 {
 /// Returns the estimated rotation of a one-axis body (rad).
 pub fn expected_angle(scenario: &Scenario, body: &Planar) -> f64 {
     let start = body.angle.get();
-    let zone = match &scenario.law {
-        LawKind::Relay(relay) => relay.dead_zone.get(),
-        _ => 0.0,
-    };
+    let zone = scenario.law.dead_zone();
     start.abs().max(scenario.goal().angle.abs()).max(zone)
 }
 
 /// Returns the estimated largest rate of a one-axis body (rad/s).
 pub fn expected_rate(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| 2.0 * scenario.goal().angle.abs() / plan.time);
-    let by_law = match (&scenario.law, scenario.actuator.flywheel()) {
-        // Rate of the free oscillation in which the proportional gain is the spring.
-        (LawKind::Pd(pd), Some((wheel, _))) => {
-            expected_angle(scenario, body)
-                * f64::sqrt(pd.k_p.get() * wheel.gain.get() / body.commanded_inertia())
-        }
-        _ => 0.0,
-    };
+    // Rate of the free oscillation in which the proportional gain is the spring.
+    let by_law = scenario.actuator.flywheel().map_or(0.0, |(wheel, _)| {
+        expected_angle(scenario, body)
+            * f64::sqrt(scenario.law.stiffness() * wheel.gain.get() / body.commanded_inertia())
+    });
     body.rate.get().abs().max(planned).max(by_law)
 }
 
@@ -116,26 +109,21 @@ pub fn expected_displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
 /// Returns the estimated largest torque (N m; rad/s² if the motion is commanded).
 pub fn largest_torque(scenario: &Scenario, body: &Planar) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| plan.peak().value.abs());
-    let by_law = match &scenario.law {
-        LawKind::Relay(relay) => relay.strong.get(),
-        LawKind::Pd(pd) if scenario.plan.is_none() => pd.k_p.get() * body.angle.get().abs(),
-        LawKind::StateSpace(law) if scenario.plan.is_none() => {
-            let unit = match law.command {
-                OutputQuantity::Torque => 1.0,
-                OutputQuantity::Acceleration => body.commanded_inertia(),
-            };
-            unit * law.first_command(body.angle.get())
-        }
-        LawKind::Attitude(law) if scenario.plan.is_none() => {
-            law.first_torque(body.angle.get(), body.commanded_inertia())
-        }
-        _ => 0.0,
+    // A law that does not switch follows the plan, and hardly adds to its torque.
+    let by_law = if scenario.plan.is_none() || scenario.law.is_switching() {
+        scenario.law.expected_torque(&TorqueConditions {
+            angle: body.angle.get().abs(),
+            inertia: body.commanded_inertia(),
+            torque_per_command: 1.0,
+            jets: 0.0,
+            magnetorquers: 0.0,
+            profile_acceleration: None,
+            detailed: false,
+        })
+    } else {
+        0.0
     };
-    let of = |member: AssignedMember<'_>| match &*member.kind {
-        ActuatorKind::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.execute_command(by_law)),
-        ActuatorKind::Thrusters(thrusters) => thrusters.torque.about(0).get(),
-        _ => planned.max(by_law),
-    };
+    let of = |member: AssignedMember<'_>| member.kind.expected_torque(planned, by_law);
     scenario.actuator.members().into_iter().map(of).fold(0.0, f64::max)
 }
 
@@ -143,50 +131,25 @@ pub fn largest_torque(scenario: &Scenario, body: &Planar) -> f64 {
 fn spatial_torque(scenario: &Scenario, body: &Spatial, axis: usize) -> f64 {
     let members = scenario.actuator.members();
     let serving = members.iter().find(|member| member.share(axis) > 0.0);
-    let unit = serving.map_or(1.0, |member| match &*member.kind {
-        ActuatorKind::Wheel(wheel) => wheel.gain.get(),
-        _ => 1.0,
+    let study = &scenario.study;
+    let inertia = study.axes[axis].inertia.get();
+    let most = study.authorities[axis].accelerations[0] * inertia;
+    // A manoeuvre along a profile commands its acceleration, not the whole angle at once.
+    let profile = scenario.targets().iter().map(|target| target.acceleration.map(Positive::get));
+    let magnetorquers = scenario.actuator.magnetorquers().map_or(0.0, |(torquers, _)| {
+        let field = study.surroundings.as_ref().map_or(0.0, |around| around.sky().field_bound());
+        torquers.largest_moment() * field
     });
-    let study = &scenario.study;
-    let most = study.authorities[axis].accelerations[0] * study.axes[axis].inertia.get();
-    by_law(scenario, body, axis, scenario.law.about(axis), (unit, most)).min(most)
-}
-
-/// Returns the estimated largest torque (N m) that a law commands; `unit` is the torque per unit of its command, `most`
-/// the actuator's limit.
-fn by_law(scenario: &Scenario, body: &Spatial, axis: usize, law: &LawKind, (unit, most): (f64, f64)) -> f64 {
-    let study = &scenario.study;
-    match law {
-        LawKind::Relay(relay) => unit * relay.strong.get(),
-        LawKind::Pd(pd) => {
-            let limit = pd.limit.map_or(f64::INFINITY, Positive::get);
-            unit * limit.min(pd.k_p.get() * expected_attitude_angle(scenario, body))
-        }
-        LawKind::Attitude(law) => {
-            let inertia = study.axes[axis].inertia.get();
-            // A manoeuvre along a profile commands its acceleration, not the whole angle at once.
-            let led = scenario.targets().iter().map(|target| target.acceleration.map(Positive::get));
-            match led.reduce(|most, next| Some(most?.max(next?))).flatten() {
-                Some(acceleration) => inertia * acceleration,
-                None => law.first_torque(expected_attitude_angle(scenario, body), inertia),
-            }
-        }
-        LawKind::StateSpace(law) => match law.command {
-            OutputQuantity::Torque => unit * law.first_command(expected_attitude_angle(scenario, body)),
-            OutputQuantity::Acceleration => {
-                study.axes[axis].inertia.get() * law.first_command(expected_attitude_angle(scenario, body))
-            }
-        },
-        LawKind::PhasePlane(_) => most,
-        LawKind::Stages(laws) => {
-            laws.laws().map(|law| by_law(scenario, body, axis, law, (unit, most))).fold(0.0, f64::max)
-        }
-        LawKind::BDot(_) => scenario.actuator.magnetorquers().map_or(0.0, |(torquers, _)| {
-            let field = study.surroundings.as_ref().map_or(0.0, |around| around.sky().field_bound());
-            torquers.largest_moment() * field
-        }),
-        LawKind::Open(_) | LawKind::PerAxis(_) | LawKind::Own(_) => 0.0,
-    }
+    let conditions = TorqueConditions {
+        angle: expected_attitude_angle(scenario, body),
+        inertia,
+        torque_per_command: serving.map_or(1.0, |member| member.kind.torque_per_command()),
+        jets: most,
+        magnetorquers,
+        profile_acceleration: profile.reduce(|most, next| Some(most?.max(next?))).flatten(),
+        detailed: true,
+    };
+    scenario.law.about(axis).expected_torque(&conditions).min(most)
 }
 
 /// Returns the estimated displacements of the modes of a three-axis body (m sqrt(kg)), under the jets, the torque of
