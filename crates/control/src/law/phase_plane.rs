@@ -19,7 +19,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
 use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, LawState,
-    Phase, ReferenceNeeds, Setpoint, SwitchingLines, Tunable,
+    Phase, ReferenceNeeds, Setpoint, SwitchingLines, TorqueConditions, Tunable,
 };
 use crate::part::Part;
 use crate::state_estimate::{DampingStatus, StateEstimate};
@@ -175,6 +175,10 @@ impl PhasePlane {
 }
 
 impl LawSpec for PhasePlane {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.jets
+    }
+
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
         Box::new(PhasePlaneState {
             damping: self
