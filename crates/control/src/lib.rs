@@ -11,6 +11,8 @@ pub mod custom;
 pub mod estimator;
 pub mod interval;
 pub mod law;
+pub mod offers;
 pub mod one_or_many;
+pub mod requirement;
 pub mod sensor;
 pub mod state_estimate;

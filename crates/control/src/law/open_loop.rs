@@ -5,6 +5,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Authority, ControlOutput, DecisionCause, EstimateNeeds, Law, LawSpec, Phase, Setpoint};
+use crate::offers::LawOffers;
 use crate::state_estimate::StateEstimate;
 
 /// Open loop.
@@ -19,6 +20,10 @@ impl LawSpec for Open {
 
     fn needs(&self) -> EstimateNeeds {
         EstimateNeeds::Nothing
+    }
+
+    fn offers(&self) -> LawOffers {
+        LawOffers { is_open: true, ..LawOffers::new(None, self.needs()) }
     }
 }
 

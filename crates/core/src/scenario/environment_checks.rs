@@ -1,8 +1,7 @@
-//! Checks of parts that need the environment: orbit, magnetic field and Sun.
+//! Checks of the environment: orbit and Sun.
 
 use std::f64::consts::TAU;
 
-use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
 use flexsc_spacecraft::environment::{OrbitEnvironment, Sun};
 
@@ -36,35 +35,5 @@ impl ScenarioSpec {
     pub fn orbit_environment(&self) -> OrbitEnvironment {
         let of = |environment| OrbitEnvironment::new(environment, self.duration, self.date_ns());
         self.environment.as_ref().map(of).unwrap_or_default()
-    }
-
-    /// Returns the error of a B-dot law without a magnetometer or magnetorquers.
-    pub(super) fn validate_b_dot(&self) -> Option<ConfigError> {
-        let why = if !self.sensor.iter().any(SensorKind::measures_field) {
-            "reads the field of a `[sensor.magnetometer]`, and there is none"
-        } else if self.actuator.magnetorquers().is_none() {
-            "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them"
-        } else {
-            return None;
-        };
-        Some(ConfigError::new("", why))
-    }
-
-    /// Returns the error of a vector sensor whose field or Sun is missing.
-    pub(super) fn validate_vector_sensors(&self, sensor: &SensorKind) -> Option<ConfigError> {
-        let around = self.environment.as_ref();
-        match sensor {
-            SensorKind::Magnetometer(_) => {
-                let why = "measures the field of `[environment.magnetic_field]`, and there is none";
-                let dark = around.is_none_or(|around| around.magnetic_field.is_none());
-                dark.then(|| ConfigError::new("", why))
-            }
-            SensorKind::SunSensor(_) => {
-                let why = "measures the direction to `environment.sun`, and there is none";
-                let dark = around.is_none_or(|around| around.sun.is_none());
-                dark.then(|| ConfigError::new("", why))
-            }
-            _ => None,
-        }
     }
 }
