@@ -15,6 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Adaptation, Objective};
 use crate::law::Tunable;
+use crate::part::Part;
 
 /// The constants of the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -182,6 +183,8 @@ impl RandomSearchRun {
         Self { search, draws: seed.stream("adaptation") }
     }
 }
+
+impl Part for RandomSearchRun {}
 
 impl Adaptation for RandomSearchRun {
     fn learn(&mut self, now: Instant, mean: f64) -> Option<SearchStep> {

@@ -9,6 +9,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{AppliedPulses, Estimator, SampleContext};
 use crate::offers::Offers;
+use crate::part::Part;
 use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
@@ -66,13 +67,15 @@ impl RigidRateState {
     }
 }
 
+impl Part for RigidRateState {}
+
 impl Estimator for RigidRateState {
     fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
         self.given.input_changed(now, moments);
     }
 
     fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let pulses = self.given.take(taken.now, taken.actuator);
+        let pulses = self.given.take(taken.now, taken.pulses);
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             let own = pulses.iter().filter(|pulse| pulse.input == axis);
             let pushed = own.map(|pulse| pulse.acceleration * pulse.duration).sum();

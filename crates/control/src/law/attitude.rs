@@ -15,9 +15,10 @@ use serde::{Deserialize, Serialize};
 use super::filter::Filter;
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, Phase, Setpoint, Tunable,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, Tunable,
 };
 use crate::offers::{LawPlace, Offers};
+use crate::part::Part;
 use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
@@ -202,6 +203,8 @@ impl AttitudeLawState {
     }
 }
 
+impl Part for AttitudeLawState {}
+
 impl Law for AttitudeLawState {
     fn decide(
         &mut self,
@@ -223,21 +226,17 @@ impl Law for AttitudeLawState {
         }
     }
 
-    fn state(&self) -> Phase {
-        Phase::Feedback
+    fn state(&self) -> LawState<'_> {
+        LawState::with_tuned(Phase::Feedback, self.tuned)
     }
 
-    /// Returns true, because the reference has an acceleration to follow.
-    fn tracks_manoeuvre(&self) -> bool {
-        true
+    fn reference_needs(&self) -> ReferenceNeeds {
+        // The reference has an acceleration to follow.
+        ReferenceNeeds { tracks_manoeuvre: true, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned
     }
 
     fn tune(&mut self, key: &str, value: f64) {

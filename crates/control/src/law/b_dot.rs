@@ -10,10 +10,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, Phase, Setpoint,
-    Tunable,
+    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, LawState, Phase,
+    Setpoint, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
+use crate::part::Part;
 use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
@@ -79,6 +80,8 @@ struct BDotState {
     tuned: f64,
 }
 
+impl Part for BDotState {}
+
 impl Law for BDotState {
     fn decide(
         &mut self,
@@ -94,16 +97,12 @@ impl Law for BDotState {
         }
     }
 
-    fn state(&self) -> Phase {
-        Phase::Detumbling
+    fn state(&self) -> LawState<'_> {
+        LawState::with_tuned(Phase::Detumbling, self.tuned)
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(*self)
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned
     }
 
     fn tune(&mut self, key: &str, value: f64) {

@@ -15,6 +15,7 @@ use super::latency_queue::with_failures;
 use super::rate_integrator::{self, RateIntegrator};
 use super::{Reading, Sensor, Truth, stream};
 use crate::offers::Offers;
+use crate::part::Part;
 use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 use crate::sensor;
 
@@ -240,6 +241,8 @@ impl Gyro {
         f64::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 }
+
+impl Part for GyroState {}
 
 impl Sensor for GyroState {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {

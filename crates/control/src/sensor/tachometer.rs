@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{Reading, Sensor, SensorFailure, Truth};
 use crate::offers::Offers;
+use crate::part::Part;
 use crate::requirement::{ROTATION, Requirements, Rule};
 
 /// Tachometers, one on each wheel of `[actuator.wheels]`.
@@ -117,6 +118,8 @@ impl TachometerState {
 /// Placeholder for sensors that do not measure the body's motion.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct NoMeasurement;
+
+impl Part for NoMeasurement {}
 
 impl Sensor for NoMeasurement {
     fn read(&mut self, _: Instant, _: &Truth, _: Option<&Reading>) -> Option<Reading> {

@@ -16,6 +16,7 @@ mod epoch;
 mod estimator_context;
 mod failures;
 mod fast_path;
+mod file_name;
 mod log;
 mod meant;
 mod pace;
@@ -126,6 +127,9 @@ impl Scenario {
         let offers = written.offers(&model);
         let unmet = written.unmet_requirements(&offers);
         written.validate_compatibility(&model, &offers, &unmet)?;
+        if let Some(conflict) = written.custom_parts().topic_conflict() {
+            return Err(conflict);
+        }
         let study = ResolvedScenario::resolve(&written, &model, &unmet)?;
         let mut scenario = Self { written, model, plan: None, linear: None, study };
         scenario.validate(&offers, &unmet)?;
