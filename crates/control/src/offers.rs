@@ -127,8 +127,6 @@ pub struct SensorOffers {
     pub is_continuous: bool,
     /// True if a sensor measures the magnetic field.
     pub magnetic_field: bool,
-    /// True if a sensor measures the speeds of wheels.
-    pub has_tachometer: bool,
     /// Shortest sampling period, under the law; `None` if all sensors are continuous.
     pub period: Option<Span>,
     /// Standard deviation of the measured angle (rad), including quantisation.

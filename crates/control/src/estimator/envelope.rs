@@ -85,19 +85,14 @@ impl Envelope {
     /// Adds the requirement of modes below critical damping: of the monitor's model, or of the body.
     fn require_oscillation(&self, body: &BodyOffers, needs: &mut Requirements) {
         let why = |ratio: f64| format!("must be below 1 for a mode to have an envelope, got {ratio}");
-        let own = self.modes.as_ref().map(|modes| modes.iter().map(|mode| mode.damping.get()).enumerate());
-        match own {
-            Some(mut modes) => {
-                if let Some((index, ratio)) = modes.find(|(_, ratio)| *ratio >= 1.0) {
-                    let key = format!("modes[{index}].damping");
-                    needs.require_with(Rule::EnvelopeModes, false, &key, || why(ratio));
-                }
+        if let Some(modes) = &self.modes {
+            let mut ratios = modes.iter().map(|mode| mode.damping.get()).enumerate();
+            if let Some((index, ratio)) = ratios.find(|(_, ratio)| *ratio >= 1.0) {
+                let key = format!("modes[{index}].damping");
+                needs.require_with(Rule::EnvelopeModes, false, &key, || why(ratio));
             }
-            None => {
-                if let Some((key, ratio)) = &body.overdamped {
-                    needs.require_elsewhere(Rule::EnvelopeModes, false, key, &why(*ratio));
-                }
-            }
+        } else if let Some((key, ratio)) = &body.overdamped {
+            needs.require_elsewhere(Rule::EnvelopeModes, false, key, &why(*ratio));
         }
     }
 }

@@ -72,7 +72,6 @@ impl OneOrMany<SensorKind> {
             motion_sensors: self.motion_sensors(),
             is_continuous: self.iter().any(SensorKind::is_continuous),
             magnetic_field: self.iter().any(SensorKind::measures_field),
-            has_tachometer: self.tachometer().is_some(),
             period: self.period(law),
             angle_noise: self.angle_noise(),
         }

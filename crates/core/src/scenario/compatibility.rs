@@ -144,17 +144,8 @@ impl ScenarioSpec {
     }
 
     fn validate_one_axis_disturbances(&self) -> Option<ConfigError> {
-        if self.axis_count() == 3 {
-            return None;
-        }
-        let forced = |disturbance: &Disturbance| disturbance.force.is_some() || disturbance.point.is_some();
-        if let Some(index) = self.disturbance.iter().position(forced) {
-            let why = "acts on a body with three axes: use a `torque` for a body with one angle";
-            return Some(ConfigError::new(format!("disturbance[{index}].force"), why));
-        }
-        let about = self.disturbance.iter().position(|disturbance| disturbance.about.is_some())?;
-        let why = "names one of three axes, and the body has one angle";
-        Some(ConfigError::new(format!("disturbance[{about}].about"), why))
+        let list = Some(&self.disturbance).filter(|_| self.axis_count() == 1)?;
+        Disturbance::validate_one_axis(list).map(|fault| fault.within("disturbance"))
     }
 
     /// Checks that a three-axis body has no tables for one axis, and that its disturbances have a direction.

@@ -6,10 +6,9 @@ use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
-use flexsc_numerics::quantity::Time;
 use flexsc_spacecraft::body::craft::RateLimit;
 use flexsc_spacecraft::body::{BodyAxes, Planar};
-use flexsc_spacecraft::disturbance::{Disturbance, Pulses};
+use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::epoch::nanoseconds_since_1970;
 use super::{Scenario, file_name, meant};
@@ -182,27 +181,8 @@ impl Scenario {
 
     /// Checks the order of times, and times against their periods.
     fn timing_inconsistency(&self, unmet: &Requirements) -> Option<ConfigError> {
-        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
-        let ordered = |d: &Disturbance| d.to.is_none_or(|to| d.from < to);
-        if let Some(index) = self.disturbance.iter().position(|d| !ordered(d)) {
-            let Disturbance { from, to, .. } = &self.disturbance[index];
-            let (from, to) = (from.get(), to.map_or(f64::NAN, Time::get));
-            return at(
-                &format!("disturbance[{index}].to"),
-                format!("must be later than `from`, {from} s, got {to}"),
-            );
-        }
-        let heldless = |d: &Disturbance| d.noise.get() > 0.0 && d.period.is_none();
-        if let Some(index) = self.disturbance.iter().position(heldless) {
-            let why = "must be given: how long (s) each draw of the noise is held".to_owned();
-            return at(&format!("disturbance[{index}].period"), why);
-        }
-        for (index, disturbance) in self.disturbance.iter().enumerate() {
-            if let Some(Pulses { period, on }) = disturbance.pulse.filter(|pulse| pulse.on >= pulse.period) {
-                let (period, on) = (period.seconds(), on.seconds());
-                let why = format!("must be shorter than the period of {period} s, got {on}");
-                return at(&format!("disturbance[{index}].pulse.on"), why);
-            }
+        if let Some(fault) = Disturbance::validate_times(&self.disturbance) {
+            return Some(fault.within("disturbance"));
         }
         self.validate_failures().or_else(|| unmet.first(Rule::PulseLength))
     }
