@@ -29,7 +29,6 @@ use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::control::law::LawKind;
 use flexsc_core::metrics;
 use flexsc_core::numerics::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
@@ -292,7 +291,7 @@ fn estimate_json(scenario: &Scenario, runs: u64, log: &str) -> PyResult<String> 
 #[pyfunction]
 fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
     let body = scenario.inner.one_angle().map_err(scenario_error)?;
-    let LawKind::Relay(law) = &scenario.inner.law else {
+    let Some(law) = scenario.inner.law.relay() else {
         let why = format!("{}: limit cycles are computed for a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };

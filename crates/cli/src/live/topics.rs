@@ -5,7 +5,6 @@ use std::collections::BTreeSet;
 use flexsc_core::campaign::CampaignRun;
 use flexsc_core::control::actuator::FiringMethod;
 use flexsc_core::control::estimator::EstimatorKind;
-use flexsc_core::control::law::LawKind;
 use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Message, MessageEncoder, MessageSink, Provenance, RecordError, TOPICS};
@@ -31,7 +30,7 @@ pub fn expected(run: &CampaignRun, from: &Provenance, scene: &Scene) -> BTreeSet
 fn later(scenario: &Scenario) -> Vec<&'static str> {
     let envelope = scenario.estimator.as_ref().and_then(EstimatorKind::envelope);
     let topics = [
-        ("/command", scenario.axis_count() == 1 && !matches!(scenario.law, LawKind::Open(_))),
+        ("/command", scenario.axis_count() == 1 && !scenario.law.offers().is_open),
         ("/envelope_mean", envelope.is_some()),
         ("/objective", scenario.adaptation.as_ref().is_some_and(|adaptation| adaptation.window().is_some())),
         ("/adaptation", scenario.adaptation.is_some()),

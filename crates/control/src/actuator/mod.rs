@@ -19,8 +19,10 @@ mod jets;
 mod jets_state;
 mod magnetorquers;
 mod per_wheel;
+mod placement;
 mod pulse_timing;
 mod pulse_width;
+mod requirements;
 mod saturation;
 mod steering;
 mod thrusters;
@@ -62,6 +64,7 @@ pub use jets::{FiringMethod, GroupEffect, GroupPair, Jets, Thruster, ThrusterEff
 pub use jets_state::{JetsState, Pulse};
 pub use magnetorquers::{Magnetorquers, MagnetorquersState};
 pub use per_wheel::PerWheel;
+pub use placement::{ActuatorAuthority, ActuatorPlacement, LinearDrive};
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use saturation::{EndState, Saturation};

@@ -17,7 +17,9 @@ use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
     Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
+use crate::offers::{LawPlace, Offers};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
 /// The attitude law.
@@ -117,6 +119,16 @@ impl LawSpec for AttitudeLaw {
 
     fn needs(&self) -> EstimateNeeds {
         EstimateNeeds::Motion
+    }
+
+    fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        needs.require(
+            Rule::Law,
+            self.inertia.is_none() || offers.body.axes == 3 && !place.is_per_axis,
+            "inertia",
+            "is the tensor for one law about three axes: it needs a `[law.attitude]` for all of them",
+        );
+        super::requirements::require_measure(self.error, offers, needs);
     }
 
     fn tunable(&self) -> Vec<Tunable> {

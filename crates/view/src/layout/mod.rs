@@ -169,7 +169,7 @@ fn topics(scenario: &Scenario) -> Vec<(&'static str, Detail)> {
         for topic in ["/pointing", "/rates", "/vibrations", "/energy"] {
             add(true, topic, Full);
         }
-        add(matches!(estimator, Some(EstimatorKind::Adaptive(_))), "/tracking", Full);
+        add(estimator.is_some_and(|estimator| estimator.adaptive().is_some()), "/tracking", Full);
         add(scenario.study.translation.is_some(), "/position", Full);
         let window = estimator.and_then(EstimatorKind::envelope).map(|envelope| envelope.window);
         let closes = window.is_some_and(|window| window <= scenario.duration);

@@ -2,7 +2,6 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::estimator::EstimatorKind;
-use flexsc_core::control::law::LawKind;
 use flexsc_core::spacecraft::body::{Output, Planar};
 
 use super::Tab;
@@ -12,17 +11,12 @@ use crate::scene::Extent;
 /// Returns true if a scenario has a filter that acts at samples.
 pub fn filters(scenario: &Scenario) -> bool {
     let estimator = scenario.estimator.as_ref();
-    estimator.is_some_and(|estimator| {
-        matches!(
-            estimator,
-            EstimatorKind::Kalman(_) | EstimatorKind::ExtendedKalman(_) | EstimatorKind::UnscentedKalman(_)
-        )
-    })
+    estimator.is_some_and(EstimatorKind::filters_measurements)
 }
 
 /// Returns true if the law feeds back after a manoeuvre, or if there is no manoeuvre.
 pub fn feeds_back(scenario: &Scenario) -> bool {
-    matches!(scenario.law, LawKind::Pd(_))
+    scenario.law.pd().is_some()
 }
 
 /// Returns the tabs of a scenario.
@@ -70,7 +64,7 @@ fn angles(scenario: &Scenario) -> Vec<PlotLine> {
         lines.push(line("/attitude.measured_rad", "measured"));
     }
     lines.push(line("/goal.angle_rad", "goal"));
-    if let LawKind::Relay(relay) = &scenario.law {
+    if let Some(relay) = scenario.law.relay() {
         let zone = relay.dead_zone.get();
         lines.push(line("/command.angle_rad", "switchings").dots());
         lines.push(line(zone.to_string(), "+ dead zone"));

@@ -3,7 +3,6 @@
 use flexsc_core::Scenario;
 use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::control::estimator::attitude::ElasticStates;
-use flexsc_core::control::law::LawKind;
 use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::spacecraft::body::Spatial;
@@ -217,10 +216,7 @@ fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
 
 fn errors(scenario: &Scenario) -> Vec<PlotLine> {
     let errors = AXES.iter().map(|axis| line(format!("/pointing.{axis}_error_rad"), *axis));
-    let zone = match scenario.law.about(0) {
-        LawKind::PhasePlane(law) => Some(law.dead_zone.get()),
-        _ => None,
-    };
+    let zone = scenario.law.about(0).coasting_zone();
     let ends = zone.into_iter().flat_map(|zone| [("+ dead zone", zone), ("- dead zone", -zone)]);
     errors.chain(ends.map(|(label, value)| line(value.to_string(), label))).collect()
 }

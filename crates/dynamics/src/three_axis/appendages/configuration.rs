@@ -58,7 +58,7 @@ fn rotation_of(n: &Matrix3<f64>) -> Vector {
 }
 
 /// Returns the inertia tensor of a point mass at a position.
-fn of_point(mass: f64, at: &Vector) -> Matrix3<f64> {
+fn point_inertia(mass: f64, at: &Vector) -> Matrix3<f64> {
     mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
 }
 
@@ -90,7 +90,7 @@ impl ArticulatedBody {
             panel_momentum += about.cross(&moment) * *rate;
         }
         centre /= mass;
-        let mut inertia = hub_inertia + of_point(*hub_mass, &(hub_centre - centre));
+        let mut inertia = hub_inertia + point_inertia(*hub_mass, &(hub_centre - centre));
         let (mut momentum, mut twice_energy) = (Vector::zeros(), -panel_momentum.norm_squared() / mass);
         let Configuration {
             translations,
@@ -114,8 +114,8 @@ impl ArticulatedBody {
             let from_centre = panel.root - centre;
             let arm = axes * panel.centre;
             let own = axes * panel.inertia * axes.transpose();
-            inertia += own + of_point(panel.mass, &(from_centre + arm));
-            let about_root = own + of_point(panel.mass, &arm);
+            inertia += own + point_inertia(panel.mass, &(from_centre + arm));
+            let about_root = own + point_inertia(panel.mass, &arm);
             momentum += (from_centre.cross(&about.cross(&(arm * panel.mass))) + about_root * about) * *rate;
             twice_energy += rate * rate * about.dot(&(about_root * about));
             if let Some(hinge) = &panel.hinge {
