@@ -12,7 +12,7 @@ use super::message::{Message, MessageEncoder, MessageSink};
 use super::metrics::Metrics;
 use super::row::TopicRow;
 use super::topics::index_of;
-use super::{Attachment, Detail, Provenance, Record, RecordError, RunEnd, Sample, Summary, TOPICS};
+use super::{Attachment, Detail, LogTopic, Provenance, Record, RecordError, RunEnd, Sample, Summary, TOPICS};
 use crate::atomic_file::AtomicFile;
 
 /// Number of messages after which a chunk is closed: the largest number lost with a killed run.
@@ -75,7 +75,7 @@ impl<W: Write + Seek> McapLog<W> {
 /// Channels of a file, created with their first message.
 struct Channels<W: Write + Seek> {
     writer: Writer<W>,
-    /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`].
+    /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`] and then of the custom topics.
     of: Vec<Option<(u16, u32)>>,
     since_flush: u64,
     /// Start of the run (ns past 1970 UTC).
@@ -103,18 +103,27 @@ impl<W: Write + Seek> Channels<W> {
     }
 
     fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
-        if let Some(channel) = self.of[index] {
-            return Ok(channel);
+        match self.of[index] {
+            Some(channel) => Ok(channel),
+            None => self.add_channel(LogTopic::Declared(index)),
         }
-        let topic = &TOPICS[index];
-        let schema = self.writer.add_schema(topic.message, "protobuf", &topic.schema());
-        let none = BTreeMap::new();
-        let id = self.writer.add_channel(schema.map_err(failure)?, topic.name, "protobuf", &none);
+    }
+
+    fn add_channel(&mut self, topic: LogTopic<'_>) -> Result<(u16, u32), RecordError> {
+        let schema = self.writer.add_schema(topic.message(), "protobuf", &topic.schema());
+        let (schema, metadata) = (schema.map_err(failure)?, topic.channel_metadata());
+        let id = self.writer.add_channel(schema, topic.name(), "protobuf", &metadata);
         Ok((id.map_err(failure)?, 0))
     }
 }
 
 impl<W: Write + Seek> MessageSink for Channels<W> {
+    fn declare(&mut self, _: usize, topic: LogTopic<'_>) -> Result<(), RecordError> {
+        let channel = self.add_channel(topic)?;
+        self.of.push(Some(channel));
+        Ok(())
+    }
+
     fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         if message.topic == FROM_START {
             self.from_start.push(message.data.to_owned());

@@ -14,6 +14,7 @@ mod estimate;
 mod extra_loop;
 mod failures;
 mod figure_kind;
+mod figure_name;
 mod filter_lock;
 mod flywheel;
 mod frequency;
@@ -36,6 +37,7 @@ mod spatial;
 mod stale_check;
 mod time_range;
 mod title;
+mod topic;
 mod torque;
 mod torques;
 mod wheels;
@@ -43,7 +45,6 @@ mod wheels;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use flexsc_core::record::Log;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_to_nice};
 
@@ -51,6 +52,8 @@ use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
 pub use campaign::{column_figures, directory_figures};
 pub use figure_kind::FigureKind;
+pub use figure_name::FigureName;
+use figure_name::FigureNameParser;
 use motion::MotionData;
 use run_events::RunEvents;
 use spatial::CycleData;
@@ -70,8 +73,8 @@ pub struct PlotArgs {
     #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
     /// Figures to draw [default: all of a log; the usual ones of a campaign]
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
-    what: Vec<FigureKind>,
+    #[arg(long, value_parser = FigureNameParser, value_delimiter = ',', value_name = "FIGURES")]
+    what: Vec<FigureName>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum)]
     format: Option<FigureFormat>,
@@ -111,7 +114,7 @@ impl PlotArgs {
 
 impl PlotArgs {
     /// Returns the figures of a log over the requested time.
-    fn figures_of(&self, path: &Path, asked: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+    fn figures_of(&self, path: &Path, asked: &[FigureName]) -> Result<Vec<(String, Figure)>, CliError> {
         let log = Log::open(path)?;
         if !self.json {
             stale_check::warn_if_stale(&log, path);
@@ -120,7 +123,7 @@ impl PlotArgs {
     }
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
-    fn together(&self) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+    fn together(&self) -> Result<Vec<(String, Figure)>, CliError> {
         let paths: Vec<&PathBuf> = std::iter::once(&self.path).chain(&self.others).collect();
         let all =
             paths.iter().map(|path| self.figures_of(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
@@ -135,7 +138,7 @@ impl PlotArgs {
         };
         let mut figures = Vec::new();
         let mut runs: Vec<_> = all.into_iter().map(Vec::into_iter).map(Iterator::collect::<Vec<_>>).collect();
-        let kinds: Vec<FigureKind> = runs[0].iter().map(|(what, _)| *what).collect();
+        let kinds: Vec<String> = runs[0].iter().map(|(what, _)| what.clone()).collect();
         for what in kinds {
             let mut of_kind = Vec::new();
             for (run, figures) in runs.iter_mut().enumerate() {
@@ -144,7 +147,7 @@ impl PlotArgs {
                 }
             }
             if of_kind.len() == paths.len() {
-                let title = what.name().replace('-', " ");
+                let title = what.replace('-', " ");
                 figures.extend(overlay::overlaid(&title, &of_kind).map(|figure| (what, figure)));
             }
         }
@@ -161,7 +164,7 @@ impl PlotArgs {
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, CliError> {
-    let what = FigureKind::from_str(name, false).map_err(CliError::Arguments)?;
+    let what = FigureName::parse(name).map_err(CliError::Arguments)?;
     let drawn = drawn(log, path, &[what])?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
@@ -196,12 +199,12 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
     let figures =
         if args.others.is_empty() { args.figures_of(&args.path, &args.what)? } else { args.together()? };
-    let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{}", what.name()), figure));
+    let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{what}"), figure));
     target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }
 
 /// Returns figures of a log: the named ones, or all that it has.
-fn drawn(log: &Log, path: &Path, asked: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+fn drawn(log: &Log, path: &Path, asked: &[FigureName]) -> Result<Vec<(String, Figure)>, CliError> {
     drawn_over(log, path, asked, (None, None))
 }
 
@@ -209,12 +212,21 @@ fn drawn(log: &Log, path: &Path, asked: &[FigureKind]) -> Result<Vec<(FigureKind
 fn drawn_over(
     log: &Log,
     path: &Path,
-    asked: &[FigureKind],
+    asked: &[FigureName],
     (from, to): (Option<f64>, Option<f64>),
-) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+) -> Result<Vec<(String, Figure)>, CliError> {
+    let (kinds, topics) = FigureName::split(asked);
+    let of_topic = |topic: &str| Ok((topic.replace('/', "topic-"), topic::figure(log, path, topic)?));
+    let figures = topics.into_iter().map(of_topic).collect::<Result<Vec<_>, CliError>>()?;
+    if kinds.is_empty() && !figures.is_empty() {
+        let end = figures.iter().flat_map(|(_, figure)| &figure.panels).map(|panel| panel.x.range.end);
+        let shown = time_range::resolve(from, to, end.fold(0.0, f64::max))?;
+        let crop = |figure| shown.iter().fold(figure, time_range::crop);
+        return Ok(figures.into_iter().map(|(name, figure)| (name, crop(figure))).collect());
+    }
     let mut story = RunEvents::read(log, path)?;
     story.shown = time_range::resolve(from, to, story.end)?;
-    let chosen = figure_kind::select(asked, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
+    let chosen = figure_kind::select(&kinds, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
         let path = path.display();
         CliError::Arguments(format!(
             "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
@@ -248,9 +260,11 @@ fn drawn_over(
             Some(shown) => time_range::crop(figure, shown),
             None => figure,
         };
-        Some((what, failures::shaded(figure, &story)))
+        Some((what.name(), failures::shaded(figure, &story)))
     });
-    Ok(drawn.collect())
+    let crop = |figure| story.shown.iter().fold(figure, time_range::crop);
+    let topics = figures.into_iter().map(|(name, figure)| (name, crop(figure)));
+    Ok(drawn.chain(topics).collect())
 }
 
 /// Returns the unit of the torque: of an acceleration for a body without inertia.

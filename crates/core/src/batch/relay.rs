@@ -189,9 +189,9 @@ impl LaneHost for LaneRuns<'_> {
         let Some(monitor) = &mut lane.monitor else { return gain };
         let now = instant(at);
         let closed = monitor.close_with(now, integral, gain);
-        lane.is_alone |= lane.gather.record(now, Sample::Window(&closed.mean)).is_err();
+        lane.is_alone |= lane.gather.record(now, Sample::Row(&closed.mean)).is_err();
         let Some((row, _)) = &closed.step else { return gain };
-        lane.is_alone |= lane.gather.record(now, Sample::Adaptation(row)).is_err();
+        lane.is_alone |= lane.gather.record(now, Sample::Row(row)).is_err();
         row.gain
     }
 

@@ -126,6 +126,9 @@ impl Scenario {
     /// the manoeuvre.
     fn fitted(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
         written.validate_compatibility(&model)?;
+        if let Some(conflict) = written.custom_parts().topic_conflict() {
+            return Err(conflict);
+        }
         let study = ResolvedScenario::resolve(&written, &model)?;
         let mut scenario = Self { written, model, plan: None, linear: None, study };
         scenario.validate()?;

@@ -75,7 +75,7 @@ impl Simulation {
     }
 
     /// Returns the true values of the filter's state components.
-    pub(crate) fn true_state(&self) -> Vec<f64> {
+    pub(crate) fn true_state(&mut self) -> Vec<f64> {
         self.estimation.true_filter_state(self.clock.now(), &self.plant)
     }
 

@@ -3,10 +3,11 @@
 use flexsc_control::custom::PartError;
 use flexsc_control::estimator::ObjectiveWindow;
 use flexsc_control::law::{Command, Controllers, DecisionCause, Event, Law, Phase};
+use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::state_estimate::{DampingStatus, StateEstimate};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Record, RecordError};
+use flexsc_record::{Record, RecordError, Report};
 
 use super::guidance::Guidance;
 use super::loads::Loads;
@@ -59,7 +60,7 @@ impl ControlLaws {
 
     /// Returns the next instant at which a law decides by itself, a guard trips, or a window of the objective closes.
     #[inline]
-    pub fn due(&self) -> Option<Instant> {
+    pub fn next_event(&self) -> Option<Instant> {
         let crossing = self.crossing.map(|(at, _)| at);
         [crossing, self.laws.next_timeout(), self.objective.closes()].into_iter().flatten().min()
     }
@@ -186,17 +187,17 @@ impl ControlLaws {
 
     /// Returns the state of the first law.
     pub fn state(&self) -> Phase {
-        self.laws.about(0).state()
+        self.laws.about(0).state().phase
     }
 
     /// Returns the states of the laws about the first `axes` axes.
     pub fn states(&self, axes: usize) -> Vec<Phase> {
-        (0..axes).map(|axis| self.laws.about(axis).state()).collect()
+        (0..axes).map(|axis| self.laws.about(axis).state().phase).collect()
     }
 
     /// Returns the value of the first law's tuned parameter.
     pub fn tuned_value(&self) -> f64 {
-        self.laws.about(0).tuned_value()
+        self.laws.about(0).state().tuned
     }
 
     /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
@@ -208,9 +209,18 @@ impl ControlLaws {
     pub fn damping_status(&self) -> Vec<DampingStatus> {
         self.laws.damping_status()
     }
+}
 
-    /// Returns the error of a custom law that cannot go on.
-    pub fn halted(&self) -> Option<PartError> {
-        self.laws.halted()
+impl Part for ControlLaws {
+    fn due(&self) -> Option<Instant> {
+        self.laws.due()
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.laws.report(at, report);
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.laws.failure()
     }
 }

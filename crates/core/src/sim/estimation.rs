@@ -1,7 +1,7 @@
 //! Estimation: from sensor samples to state estimates, with angles counted from the current target, and the monitor of
 //! the envelope.
 
-use flexsc_control::custom::PartError;
+use flexsc_control::actuator::PulsedActuator;
 use flexsc_control::estimator::kalman::KalmanFilter;
 use flexsc_control::estimator::{
     self, AdaptationRun, EnvelopeWindow, Estimator, SampleContext, WindowedEnvelope,
@@ -97,9 +97,11 @@ impl Estimation {
         loads: &Loads,
         lead_time: f64,
     ) {
+        let abilities = loads.actuator.capabilities();
+        let mut waveform_impulse = 0.0;
         if !sensors.is_continuous() {
             let (from, to) = (self.inputs_known_until.seconds(), now.seconds());
-            self.estimator.add_waveform_impulse(loads.actuator.waveform_impulse(from, to));
+            waveform_impulse = abilities.waveform.map_or(0.0, |of| of.waveform_impulse(from, to));
             self.inputs_known_until = now;
         }
         let origin = &self.origin;
@@ -109,7 +111,9 @@ impl Estimation {
             readings: &sensors.new_readings,
             origin,
             truth: &|axis| plant.about_axis(axis, origin),
-            actuator: &*loads.actuator,
+            held_torque: &|axis| loads.actuator.effort(axis).held,
+            pulses: abilities.pulses,
+            waveform_impulse,
             ahead: lead_time,
         };
         self.estimator.update(&taken, &mut self.estimates);
@@ -117,7 +121,8 @@ impl Estimation {
             let each = self.estimates.iter_mut().zip(&changes);
             each.for_each(|(estimate, change)| estimate.field_rate = *change);
         }
-        for (estimate, queued) in self.estimates.iter_mut().zip(loads.actuator.queued_rate_change()) {
+        let queued = abilities.pulses.map_or([0.0; 3], PulsedActuator::queued_rate_change);
+        for (estimate, queued) in self.estimates.iter_mut().zip(queued) {
             estimate.queued_rate = queued;
         }
     }
@@ -140,7 +145,7 @@ impl Estimation {
     pub fn begin_segment(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
         if self.has_estimator {
             let (actuator, axes) = (&loads.actuator, self.estimates.len());
-            let moment = |axis: usize| if axis < axes { actuator.reduced_moment(axis) } else { 0.0 };
+            let moment = |axis: usize| if axis < axes { actuator.effort(axis).reduced_moment } else { 0.0 };
             self.estimator.input_changed(now, [0, 1, 2].map(moment));
         }
         if let Some(monitor) = &mut self.monitor {
@@ -178,18 +183,14 @@ impl Estimation {
         self.monitor.as_ref().and_then(WindowedEnvelope::search)
     }
 
-    /// Returns the error of a custom estimator that cannot go on.
-    pub fn failure(&self) -> Option<PartError> {
-        self.estimator.failure()
-    }
-
     /// Returns the filter of a one-axis body, and the mean reduced moment since its last sample (rad/s²).
     pub fn batch_filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
-        self.estimator.batch_filter(now)
+        self.estimator.batch()?.batch_filter(now)
     }
 
     /// Returns the true values of the filter's state components.
-    pub fn true_filter_state(&self, now: Instant, plant: &Plant) -> Vec<f64> {
-        self.estimator.true_filter_state(now, &plant.about_axis(0, &self.origin))
+    pub fn true_filter_state(&mut self, now: Instant, plant: &Plant) -> Vec<f64> {
+        let truth = plant.about_axis(0, &self.origin);
+        self.estimator.batch().map_or_else(Vec::new, |filter| filter.true_filter_state(now, &truth))
     }
 }

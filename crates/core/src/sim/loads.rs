@@ -1,6 +1,6 @@
 //! Loads on the body: the actuator, which executes the laws and the manoeuvre, disturbances, and the environment.
 
-use flexsc_control::actuator::Actuator;
+use flexsc_control::actuator::{Actuator, ActuatorInput, AxisEffort};
 use flexsc_control::law::{Command, TorqueDistribution};
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_numerics::attitude::Vector;
@@ -81,7 +81,9 @@ impl Loads {
         rigid: [f64; 3],
     ) {
         let actuator = &mut self.actuator;
-        let demands = self.distribution.demands(commands, state_estimates, || actuator.stored_momentum(now));
+        let demands = self
+            .distribution
+            .demands(commands, state_estimates, || actuator.capabilities().stored_momentum(now));
         actuator.command(now, &demands, rigid);
         self.due = self.next_change.into_iter().chain(actuator.due()).min();
     }
@@ -92,14 +94,14 @@ impl Loads {
             self.scheduled_changes.pop();
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
-        self.actuator.update(now, rigid);
+        self.actuator.update(now, ActuatorInput::Due(rigid));
         self.update_due();
     }
 
     /// Sets the magnetic field in body axes (T) in the actuator, if there is one.
-    pub fn set_magnetic_field(&mut self, field: Option<Vector>) {
+    pub fn set_magnetic_field(&mut self, now: Instant, field: Option<Vector>) {
         if let Some(field) = field {
-            self.actuator.set_magnetic_field(field);
+            self.actuator.update(now, ActuatorInput::MagneticField(field));
         }
     }
 
@@ -107,14 +109,15 @@ impl Loads {
     pub fn update_rotor_states(&mut self, now: Instant, plant: &Plant) {
         let rotors = plant.wheel_bearings();
         if !rotors.is_empty() {
-            self.actuator.set_rotor_states(now, &rotors);
+            self.actuator.update(now, ActuatorInput::Rotors(&rotors));
         }
     }
 
     /// Sets the torques on a one-axis body during the motion segment that begins.
     pub fn set_applied_torque(&mut self) {
-        let (constant, feedback) = (self.actuator.held_torque(0), self.actuator.demanded_torque(0));
-        self.applied = AppliedTorque { constant, feedback, back_emf: self.actuator.back_emf() };
+        let AxisEffort { held: constant, demanded: feedback, .. } = self.actuator.effort(0);
+        let back_emf = self.actuator.capabilities().back_emf;
+        self.applied = AppliedTorque { constant, feedback, back_emf };
     }
 
     /// Returns the wrench of all loads from `now` on.

@@ -25,6 +25,7 @@ mod stepping;
 
 use flexsc_control::estimator::AdaptationRun;
 use flexsc_control::law::Event;
+use flexsc_control::part::Part;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
@@ -123,9 +124,9 @@ impl Simulation {
     #[inline]
     fn next_due(&self) -> Instant {
         let due = [
-            self.laws.due(),
+            self.laws.next_event(),
             self.loads.due,
-            self.sensors.due(),
+            self.sensors.next_event(),
             self.estimation.window_closes(),
             self.clock.next_cycle(),
             self.recorder.due(),
@@ -181,7 +182,7 @@ impl Simulation {
         }
         // 8. Bearings, disturbances and the actuator's own periods: a new segment.
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
-            self.loads.set_magnetic_field(self.sensors.magnetic_field(self.plant.truth()));
+            self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
             self.loads.serve(now, self.plant.truth().rigid);
             self.begin_segment(record)?;
         }
@@ -224,7 +225,7 @@ impl Simulation {
     /// Hands the laws' commands to the actuator.
     fn command_actuator(&mut self) {
         let truth = self.plant.truth();
-        self.loads.set_magnetic_field(self.sensors.magnetic_field(truth));
+        self.loads.set_magnetic_field(self.clock.now(), self.sensors.magnetic_field(truth));
         let (outputs, estimates) = (self.laws.outputs(), &self.estimation.estimates);
         self.loads.command(self.clock.now(), outputs, estimates, truth.rigid);
     }
@@ -269,14 +270,14 @@ impl Simulation {
             return Ok(());
         }
         let search = self.estimation.search().or(self.laws.objective.search());
-        let all = [
-            ("sensor", self.sensors.halted()),
-            ("estimator", self.estimation.failure()),
-            ("adaptation", search.and_then(AdaptationRun::halted)),
-            ("law", self.laws.halted()),
-            ("actuator", self.loads.actuator.failure()),
+        let all: [(&str, Option<&dyn Part>); 5] = [
+            ("sensor", Some(&self.sensors)),
+            ("estimator", Some(&*self.estimation.estimator)),
+            ("adaptation", search.map(AdaptationRun::part)),
+            ("law", Some(&self.laws)),
+            ("actuator", Some(&*self.loads.actuator)),
         ];
-        let failed = all.into_iter().find_map(|(role, failure)| Some((role, failure?)));
+        let failed = all.into_iter().find_map(|(role, part)| Some((role, part?.failure()?)));
         match failed {
             Some((role, source)) => Err(SimulationError::Own { at: self.clock.now(), role, source }),
             None => Ok(()),

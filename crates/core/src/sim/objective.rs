@@ -44,7 +44,10 @@ impl AdaptationObjective {
         if !meter.integrates() || now <= meter.measured {
             return;
         }
-        let speed = |rate: f64| loads.actuator.wheel(0, rate).map(|wheel| wheel.speed_rad_s);
+        let speed = |rate: f64| {
+            let rotor = loads.actuator.response(now, 0, [rate; 2]).rotor;
+            rotor.map(|wheel| wheel.speed_rad_s)
+        };
         let wheel = speed(0.0).zip(speed(1.0)).map(|(rest, one)| [rest, one - rest]);
         plant.measure([meter.measured, now], &loads.applied, |stretch, rigid| {
             meter.add_piece(stretch, &MotionSample { rigid: *rigid, wheel });
@@ -58,14 +61,15 @@ impl AdaptationObjective {
         let applied = || {
             let mut torques = [0.0; 3];
             for (axis, torque) in torques.iter_mut().enumerate().take(axes) {
-                *torque = loads.actuator.held_torque(axis);
+                *torque = loads.actuator.effort(axis).held;
             }
             torques
         };
         match meter.objective {
             Objective::TorqueMean if axes > 1 => meter.set_value(now, Vector::from(applied()).norm()),
             Objective::Firings => {
-                meter.add_pulses(now, loads.actuator.jet_cycle().map(|cycle| cycle.pulses), applied());
+                let jets = loads.actuator.capabilities().pulses;
+                meter.add_pulses(now, jets.map(|jets| jets.cycle().pulses), applied());
             }
             _ => {}
         }
@@ -95,11 +99,12 @@ impl AdaptationObjective {
             }
             Objective::ElasticRms => norm(truth.elastic),
             Objective::WheelPowerMean => {
-                let all = loads.actuator.wheels(now, truth.rate);
+                let all = loads.actuator.capabilities().wheels(now, truth.rate);
                 let wheels = all.iter().map(|wheel| wheel.torque_nm * wheel.speed_rad_s);
                 let about = |axis: usize| {
-                    let wheel = loads.actuator.wheel(axis, truth.rigid[axis])?;
-                    Some(loads.actuator.held_torque(axis) * wheel.speed_rad_s)
+                    let rates = [truth.rate[axis], truth.rigid[axis]];
+                    let wheel = loads.actuator.response(now, axis, rates).rotor?;
+                    Some(loads.actuator.effort(axis).held * wheel.speed_rad_s)
                 };
                 let alone = if all.is_empty() { 0..3 } else { 0..0 };
                 wheels.chain(alone.filter_map(about)).map(f64::abs).sum()

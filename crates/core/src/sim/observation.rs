@@ -1,7 +1,7 @@
 //! State of a run as a flat vector with names and units: true state, measurements, and estimates.
 
 use flexsc_control::sensor::Truth;
-use flexsc_record::Hinges;
+use flexsc_record::{ControlMomentGyros, Hinges};
 
 use super::plant::Plant;
 use super::run_view::RunView;
@@ -71,14 +71,14 @@ impl RunView<'_> {
         };
         let actuator = &self.loads.actuator;
         let wheels = match self.plant {
-            Plant::OneAxis(_) => usize::from(actuator.wheel(0, 0.0).is_some()),
-            Plant::ThreeAxis(_) => actuator.wheels(self.now, [0.0; 3]).len(),
+            Plant::OneAxis(_) => usize::from(actuator.response(self.now, 0, [0.0; 2]).rotor.is_some()),
+            Plant::ThreeAxis(_) => actuator.capabilities().wheels(self.now, [0.0; 3]).len(),
         };
         if wheels > 0 {
             let count = (self.estimation.axis_count() > 1).then_some(wheels);
             fields.push(state(if count.is_some() { "wheel_speeds" } else { "wheel_speed" }, "rad/s", count));
         }
-        if let Some(gimbals) = actuator.gimbal_row(self.now) {
+        if let Some(gimbals) = self.gyros() {
             let count = Some(gimbals.gyros.len());
             fields.push(state("gimbal_angles", "rad", count));
             fields.push(state("gimbal_rates", "rad/s", count));
@@ -110,7 +110,9 @@ impl RunView<'_> {
                 row.write_all(state.modes.iter().map(|mode| mode.displacement));
                 row.write_all(plant.mode_rates());
                 row.write(&[self.torque(0, truth)]);
-                row.write_all(self.loads.actuator.wheel(0, truth.rigid[0]).map(|wheel| wheel.speed_rad_s));
+                let rates = [truth.rate[0], truth.rigid[0]];
+                let rotor = self.loads.actuator.response(now, 0, rates).rotor;
+                row.write_all(rotor.map(|wheel| wheel.speed_rad_s));
             }
             Plant::ThreeAxis(plant) => {
                 let q = plant.attitude();
@@ -122,9 +124,9 @@ impl RunView<'_> {
                 row.write_all(plant.mode_rates());
                 let magnetic = plant.magnetic_torque();
                 row.write(&[0, 1, 2].map(|axis| magnetic[axis] + self.torque(axis, truth)));
-                let wheels = self.loads.actuator.wheels(now, truth.rate);
+                let wheels = self.loads.actuator.capabilities().wheels(now, truth.rate);
                 row.write_all(wheels.iter().map(|wheel| wheel.speed_rad_s));
-                if let Some(gimbals) = self.loads.actuator.gimbal_row(now) {
+                if let Some(gimbals) = self.gyros() {
                     row.write_all(gimbals.gyros.iter().map(|gyro| gyro.angle_rad));
                     row.write_all(gimbals.gyros.iter().map(|gyro| gyro.rate_rad_s));
                 }
@@ -158,9 +160,14 @@ impl RunView<'_> {
         if let Plant::ThreeAxis(plant) = self.plant { plant.hinges() } else { None }
     }
 
+    /// Returns the row of the control moment gyros; `None` without any.
+    fn gyros(&self) -> Option<ControlMomentGyros> {
+        self.loads.actuator.capabilities().momentum?.gyros(self.now)
+    }
+
     /// Returns the torque that the actuator applies about an axis (N m).
     fn torque(&self, axis: usize, truth: &Truth) -> f64 {
-        self.loads.actuator.applied_torque(self.now, axis, [truth.rate[axis], truth.rigid[axis]])
+        self.loads.actuator.response(self.now, axis, [truth.rate[axis], truth.rigid[axis]]).applied
     }
 }
 

@@ -1,11 +1,13 @@
 //! Sensors of a run: when each samples, and the latest measurements about each axis.
 
 use flexsc_control::custom::PartError;
+use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::sensor::{ExposureMean, Orientation, Reading, Sensor, SensorKind, Truth};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
+use flexsc_record::Report;
 use flexsc_spacecraft::environment::to_body;
 
 use super::SimulationError;
@@ -96,7 +98,7 @@ impl Sensors {
 
     /// Returns the next instant at which a sensor samples, or an exposure opens or closes.
     #[inline]
-    pub fn due(&self) -> Option<Instant> {
+    pub fn next_event(&self) -> Option<Instant> {
         self.next.into_iter().chain(self.exposures.due()).min()
     }
 
@@ -186,11 +188,6 @@ impl Sensors {
         any
     }
 
-    /// Returns the error of a custom sensor that cannot go on.
-    pub fn halted(&self) -> Option<PartError> {
-        self.schedules.iter().find_map(|due| due.sensor.failure())
-    }
-
     /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.
     pub fn gyro_bias(&self) -> [f64; 3] {
         self.schedules.iter().find_map(|due| due.sensor.true_bias()).unwrap_or_default()
@@ -204,6 +201,20 @@ impl Sensors {
             (Orientation::Attitude(attitude), Some(field)) => Some(to_body(&attitude, &field)),
             _ => None,
         })
+    }
+}
+
+impl Part for Sensors {
+    fn due(&self) -> Option<Instant> {
+        self.next
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.schedules.iter().for_each(|due| due.sensor.report(at, report));
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.schedules.iter().find_map(|due| due.sensor.failure())
     }
 }
 

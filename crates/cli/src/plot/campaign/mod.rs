@@ -18,6 +18,7 @@ use flexsc_figure::{Figure, Named};
 
 use super::PlotArgs;
 use super::figure_kind::{FigureKind, select};
+use super::figure_name::FigureName;
 use crate::campaign::MAIN;
 use crate::error::CliError;
 use crate::figure_files::FigureTarget;
@@ -35,8 +36,13 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let files = files(directory)?;
     let mut tables = table::read(directory, &files)?;
     tables.extend(parts::read(directory, &files, &args.metric)?);
-    let fans = if args.what.is_empty() || args.what.contains(&FigureKind::Fan) {
-        fan::logs(directory, &files, tables.is_empty() || !args.what.is_empty())?
+    let (asked, topics) = FigureName::split(&args.what);
+    if let Some(topic) = topics.first() {
+        let path = directory.display();
+        return Err(CliError::Arguments(format!("--what: {topic} is for logs, and {path} is a directory")));
+    }
+    let fans = if asked.is_empty() || asked.contains(&FigureKind::Fan) {
+        fan::logs(directory, &files, tables.is_empty() || !asked.is_empty())?
     } else {
         BTreeMap::new()
     };
@@ -50,7 +56,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     }
     let mut there: Vec<FigureKind> = tables.iter().flat_map(drawable).collect();
     there.extend((!fans.is_empty()).then_some(FigureKind::Fan));
-    let all = select(&args.what, &there).map_err(|(missing, there)| {
+    let all = select(&asked, &there).map_err(|(missing, there)| {
         let path = directory.display();
         CliError::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
     })?;
@@ -58,7 +64,7 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     for runs in &tables {
         let metrics = metrics(&args.metric, &args.path, runs)?;
         let natural = natural(runs);
-        let wanted = |what: &&FigureKind| !args.what.is_empty() || natural.contains(what);
+        let wanted = |what: &&FigureKind| !asked.is_empty() || natural.contains(what);
         for what in drawable(runs).iter().filter(|what| all.contains(what)).filter(wanted) {
             figures.extend(drawn(*what, runs, &metrics));
         }

@@ -96,6 +96,11 @@ impl OneAxisPlant {
         self.frequencies.iter().zip(&self.state.modes).map(|(w, phase)| w * phase.quadrature)
     }
 
+    /// Returns the rate, elastic part included, and the rigid rate (rad/s) at the current instant.
+    pub fn rates(&self) -> [f64; 2] {
+        [self.sight.rate, self.state.rigid_rate]
+    }
+
     /// Integrates motions without a closed form up to `now`, unless the record fails, so that evaluating the body there
     /// is cheap.
     pub fn approach(&mut self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {

@@ -3,7 +3,7 @@
 use flexsc_control::sensor::{Accelerometer, AccelerometerState, MeasuredAcceleration};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Acceleration, Accelerations, Record, RecordError, Sample};
+use flexsc_record::{Accelerations, Record, RecordError, Sample};
 
 use crate::scenario::Scenario;
 use crate::sim::plant::{AccelerometerMount, Plant};
@@ -44,13 +44,8 @@ impl Accelerometers {
                 sensor.sample(now, &plant.specific_force(mount));
             }
             while let Some(felt) = sensor.take_due(now) {
-                let axis = |felt: &MeasuredAcceleration| Acceleration {
-                    measured_m_s2: felt.measured,
-                    true_m_s2: felt.exact,
-                    bias_m_s2: felt.bias,
-                };
-                let row = Accelerations { sensor: *index as u64, axes: felt.iter().map(axis).collect() };
-                record.record(now, Sample::Accelerations(&row))?;
+                let axes = felt.iter().map(MeasuredAcceleration::row).collect();
+                record.record(now, Sample::Row(&Accelerations { sensor: *index as u64, axes }))?;
             }
         }
         Ok(())

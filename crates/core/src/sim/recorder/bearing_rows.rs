@@ -1,8 +1,7 @@
-//! Rows of wheels with bearing friction: their motion, and the instants at which they stick, slip or pass through zero
-//! speed.
+//! Rows of the instants at which wheels with bearing friction stick, slip or pass through zero speed.
 
-use flexsc_dynamics::three_axis::{RotorObservation, SlipDirection};
-use flexsc_record::{BearingMotion, Bearings, Command, Record, RecordError, Sample, WheelEvent};
+use flexsc_dynamics::three_axis::SlipDirection;
+use flexsc_record::{Command, Record, RecordError, Sample, WheelEvent};
 
 use super::journal_events::JournalEvents;
 use crate::sim::plant::Plant;
@@ -34,7 +33,7 @@ impl BearingRows {
             return Ok(());
         }
         let before = std::mem::replace(&mut self.0, slips.to_vec());
-        let wheels = run.loads.actuator.wheels(run.now, [0.0; 3]);
+        let wheels = run.loads.actuator.capabilities().wheels(run.now, [0.0; 3]);
         let (time_s, time_whole_s, time_fs) = Command::times(run.now);
         for (index, (before, after)) in before.iter().zip(slips).enumerate() {
             if before == after {
@@ -49,22 +48,9 @@ impl BearingRows {
                 after: (*after).into(),
                 torque_nm: wheels.get(index).map_or(0.0, |wheel| wheel.torque_nm),
             };
-            record.record(run.now, Sample::WheelEvent(&event))?;
+            record.record(run.now, Sample::Row(&event))?;
             journal.bearing_changed(run.now, &event, record)?;
         }
         Ok(())
     }
-}
-
-/// Returns the bearing rows of the wheels; `None` without bearings.
-pub fn bearing_rows(run: &RunView<'_>) -> Option<Bearings> {
-    let motion = |(wheel, known_rad_s): (RotorObservation, f64)| BearingMotion {
-        sliding: wheel.slip.into(),
-        friction_nm: wheel.friction,
-        heat_j: wheel.heat,
-        known_rad_s,
-    };
-    let known = run.loads.actuator.measured_wheel_speeds();
-    let wheels: Vec<_> = run.plant.wheel_bearings().into_iter().zip(known).map(motion).collect();
-    (!wheels.is_empty()).then_some(Bearings { wheels })
 }

@@ -59,7 +59,7 @@ impl Failures {
                 fault: fault.to_owned(),
                 onset,
             };
-            record.record(now, Sample::Fault(&event))?;
+            record.record(now, Sample::Row(&event))?;
             journal.failure_changed(now, (level, &part), line, record)?;
         }
         Ok(())

@@ -3,14 +3,13 @@
 mod accelerometers;
 mod bearing_rows;
 mod cycle_rows;
-mod estimate_rows;
 mod failures;
 mod journal;
 mod journal_events;
 mod manoeuvre_end;
 mod motion_rows;
+mod reports;
 mod scene_frames;
-mod spatial_motion;
 
 use flexsc_control::estimator::{EnvelopeWindow, ObjectiveWindow};
 use flexsc_numerics::time::{Instant, Span};
@@ -160,7 +159,7 @@ impl Recorder {
             estimation.axis_count(),
             record,
         )?;
-        estimate_rows::record_estimates(run, record)
+        if record.wants_estimates() { run.record_report(&run.sample_report(), record) } else { Ok(()) }
     }
 
     /// Records the end of the manoeuvre, if it is at the current instant.
@@ -172,7 +171,7 @@ impl Recorder {
         let now = run.now;
         let Some(end) = self.manoeuvre_end.take_if(|end| end.at == now) else { return Ok(()) };
         let row = end.row(run.plant.truth(), &run.plant.about_axis(0, run.estimation.origin()));
-        record.record(now, Sample::Arrival(&row))?;
+        record.record(now, Sample::Row(&row))?;
         self.journal.manoeuvre_ended(now, &row, record)
     }
 
@@ -184,9 +183,9 @@ impl Recorder {
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let Some(closed) = closed else { return Ok(()) };
-        record.record(now, Sample::Window(&closed.mean))?;
+        record.record(now, Sample::Row(&closed.mean))?;
         let Some((row, before)) = &closed.step else { return Ok(()) };
-        record.record(now, Sample::Adaptation(row))?;
+        record.record(now, Sample::Row(row))?;
         self.journal.adaptation_step(now, row, *before, record)
     }
 
@@ -198,9 +197,9 @@ impl Recorder {
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let Some(measured) = measured else { return Ok(()) };
-        record.record(now, Sample::Objective(&measured.row))?;
+        record.record(now, Sample::Row(&measured.row))?;
         let Some((row, before)) = &measured.step else { return Ok(()) };
-        record.record(now, Sample::Adaptation(row))?;
+        record.record(now, Sample::Row(row))?;
         self.journal.adaptation_step(now, row, *before, record)
     }
 }

@@ -2,12 +2,12 @@
 
 use flexsc_control::law::DecisionCause;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{Command, GoalMotion, Law, Motion, Record, RecordError, Sample, Torque, Trigger};
+use flexsc_record::{Command, Law, Record, RecordError, Sample, Trigger};
 
-use super::spatial_motion::spatial_motion;
+use super::reports::TorqueRows;
 use crate::scenario::Scenario;
 use crate::sim::controllers::LawDecision;
-use crate::sim::plant::{OneAxisPlant, Plant};
+use crate::sim::plant::Plant;
 use crate::sim::run_view::RunView;
 
 /// Schedule and memory of the rows of the motion.
@@ -19,10 +19,7 @@ pub struct MotionRows {
     next_law: Instant,
     /// Torques of the pulses of thrusters that were on at the last row (N m).
     firing: [f64; 3],
-    /// True if the torque consists of more than the switchings of a law.
-    has_torque_rows: bool,
-    /// True if jets are the only actuator.
-    jets_only: bool,
+    torques: TorqueRows,
 }
 
 impl MotionRows {
@@ -33,8 +30,7 @@ impl MotionRows {
             next: None,
             next_law: Instant::START,
             firing: [0.0; 3],
-            has_torque_rows: scenario.has_torque_rows(),
-            jets_only: scenario.study.jets_alone,
+            torques: TorqueRows::new(scenario),
         }
     }
 
@@ -66,7 +62,10 @@ impl MotionRows {
         let now = run.now;
         let Some(due) = self.next else { return Ok(()) };
         // A pulse that begins or ends has a row of its own, or a log could miss it.
-        let firing = [0, 1, 2].map(|axis| run.loads.actuator.firing(axis));
+        let mut firing = [0.0; 3];
+        for (axis, firing) in firing.iter_mut().enumerate().take(run.estimation.axis_count()) {
+            *firing = run.loads.actuator.effort(axis).firing;
+        }
         let pulses = std::mem::replace(&mut self.firing, firing) != firing;
         if due == now {
             self.next = Some(now + self.period);
@@ -75,7 +74,7 @@ impl MotionRows {
             self.record_motion(run, record)?;
             if due == now && now >= self.next_law {
                 if let Plant::OneAxis(_) = run.plant {
-                    record.record(now, Sample::Law(&law_row(run)))?;
+                    record.record(now, Sample::Row(&law_row(run)))?;
                 }
                 self.next_law += Span::from_seconds(1.0);
             }
@@ -87,7 +86,7 @@ impl MotionRows {
     pub fn record_now(&self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
         self.record_motion(run, record)?;
         if let Plant::OneAxis(_) = run.plant {
-            record.record(run.now, Sample::Law(&law_row(run)))?;
+            record.record(run.now, Sample::Row(&law_row(run)))?;
         }
         Ok(())
     }
@@ -113,7 +112,7 @@ impl MotionRows {
             time_fs,
             state: after,
             cause: if cause == Some(DecisionCause::Timeout) { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm: run.loads.actuator.demanded_torque(0),
+            torque_nm: run.loads.actuator.effort(0).demanded,
             angle_rad: truth.sensor_angles()[0],
             rate_rad_s: truth.rate[0],
             gain: run.laws.tuned_value(),
@@ -127,36 +126,7 @@ impl MotionRows {
 
     /// Records the motion at the current instant.
     fn record_motion(&self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
-        match run.plant {
-            Plant::OneAxis(plant) => {
-                record.record(run.now, Sample::Motion(&self.one_axis_motion(run, plant)))
-            }
-            Plant::ThreeAxis(plant) => {
-                let row = spatial_motion(run, plant, self.jets_only);
-                record.record(run.now, Sample::SpatialMotion(&row))
-            }
-        }
-    }
-
-    /// Returns the rows of a one-axis motion at the current instant.
-    fn one_axis_motion(&self, run: &RunView<'_>, plant: &OneAxisPlant) -> Motion {
-        let now = run.now;
-        let measured = run.sensors.reading.map_or(0.0, |_| run.sensors.measured[0][0]);
-        let (attitude, rate, modes) = plant.motion((!run.sensors.is_continuous()).then_some(measured));
-        let envelope = run.estimation.monitor.as_ref().map(|monitor| monitor.envelope(now));
-        let (actuator, rates) = (&run.loads.actuator, [rate.rate_rad_s, rate.rigid_rad_s]);
-        let drive = self.has_torque_rows.then(|| {
-            let (angle_rad, rate_rad_s) = run.guidance.manoeuvre_state(now);
-            let torque = Torque {
-                feedforward_nm: run.guidance.feedforward(now),
-                feedback_nm: actuator.demanded_torque(0),
-                applied_nm: actuator.applied_torque(now, 0, rates),
-                disturbance_nm: run.loads.disturbance(now, 0),
-            };
-            (GoalMotion { angle_rad, rate_rad_s }, torque)
-        });
-        let wheel = actuator.wheel(0, rate.rigid_rad_s);
-        Motion { attitude, rate, modes, outputs: plant.outputs(), drive, wheel, envelope }
+        run.record_report(&run.period_report(self.torques), record)
     }
 }
 
@@ -164,7 +134,7 @@ impl MotionRows {
 fn law_row(run: &RunView<'_>) -> Law {
     Law {
         state: run.laws.state(),
-        torque_nm: run.loads.actuator.demanded_torque(0),
+        torque_nm: run.loads.actuator.effort(0).demanded,
         gain: run.laws.tuned_value(),
     }
 }

@@ -1,5 +1,6 @@
 //! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
+use flexsc_control::actuator::PulsedActuator;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Hinges, Record, RecordError, Sample};
 use flexsc_spacecraft::flow::ThreeAxisState;
@@ -43,7 +44,7 @@ impl SceneFrames {
     ) -> Result<(), RecordError> {
         match &self.scene {
             Some(scene) if record.wants_scene() => {
-                record.record(now, Sample::Scene(&scene.parts(journal.stamp(now))))?;
+                record.record(now, Sample::Row(&scene.parts(journal.stamp(now))))?;
                 self.next = Some(now);
             }
             _ => self.scene = None,
@@ -79,9 +80,10 @@ impl SceneFrames {
                         modes: &state.modes,
                         sections: &sections,
                     };
-                    record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
+                    record.record(now, Sample::Row(scene.frames(stamp, view)))?;
                 }
-                let torque = run.loads.actuator.applied_torque(now, 0, [truth.rate[0], truth.rigid[0]]);
+                let rates = [truth.rate[0], truth.rigid[0]];
+                let torque = run.loads.actuator.response(now, 0, rates).applied;
                 scene.plumes(stamp, torque)
             }
             (Scene::Spatial(scene), Plant::ThreeAxis(plant)) => {
@@ -98,15 +100,15 @@ impl SceneFrames {
                         }
                         None => scene.frames(stamp, &turn.attitude, modes, &angles),
                     };
-                    record.record(now, Sample::Frames(frames))?;
+                    record.record(now, Sample::Row(frames))?;
                 }
-                let cycle = run.loads.actuator.jet_cycle();
+                let cycle = run.loads.actuator.capabilities().pulses.map(PulsedActuator::cycle);
                 let (burning, open) =
                     cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
                 scene.plumes(stamp, burning, open)
             }
             _ => None,
         };
-        plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Plumes(&plumes)))
+        plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Row(&plumes)))
     }
 }
