@@ -8,7 +8,7 @@ use flexsc_spacecraft::flow::ThreeAxisState;
 use super::journal_events::JournalEvents;
 use crate::scenario::Scenario;
 use crate::scene::{OneAxisPose, Scene};
-use crate::sim::plant::Plant;
+use crate::sim::plant::FlowQuantities;
 use crate::sim::run_view::RunView;
 
 /// Scene of a run with the schedule of its frames.
@@ -67,11 +67,11 @@ impl SceneFrames {
             self.next = Some(now + scene.period());
         }
         let truth = run.plant.truth();
-        let plumes = match (&mut **scene, run.plant) {
-            (Scene::Planar(scene), Plant::OneAxis(plant)) => {
-                let state = plant.state();
+        let plumes = match (&mut **scene, run.plant.quantities()) {
+            (Scene::Planar(scene), FlowQuantities::OneAxis(motion)) => {
+                let state = &motion.body().state;
                 if frames {
-                    let sections = plant.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
+                    let sections = motion.output_row().map_or_else(Vec::new, |outputs| outputs.outputs);
                     let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
                     let view = OneAxisPose {
                         time: now.seconds(),
@@ -86,17 +86,17 @@ impl SceneFrames {
                 let torque = run.loads.actuator.response(now, 0, rates).applied;
                 scene.plumes(stamp, torque)
             }
-            (Scene::Spatial(scene), Plant::ThreeAxis(plant)) => {
+            (Scene::Spatial(scene), FlowQuantities::ThreeAxis(motion)) => {
                 if frames {
-                    let ThreeAxisState { turn, modes } = plant.state();
-                    let mut angles: Vec<f64> = plant
+                    let ThreeAxisState { turn, modes } = &motion.body().state;
+                    let mut angles: Vec<f64> = motion
                         .drives()
                         .map_or_else(Vec::new, |of| of.drives.iter().map(|drive| drive.angle_rad).collect());
-                    let frames = match plant.hinges() {
+                    let frames = match motion.hinges() {
                         // Hinges move by any angle; with hinges, modes are not drawn.
                         Some(Hinges { hinges }) => {
                             angles.extend(hinges.iter().map(|hinge| hinge.angle_rad));
-                            scene.frames(stamp, plant.attitude(), &[], &angles)
+                            scene.frames(stamp, motion.attitude(), &[], &angles)
                         }
                         None => scene.frames(stamp, &turn.attitude, modes, &angles),
                     };
