@@ -247,9 +247,15 @@ impl CoupledMotion {
     }
 
     /// Returns the torque of the environment and the body's own disturbance at the current instant `t` (s), in hub axes
-    /// (N m).
-    pub fn environment_torque(&self, t: f64) -> Vector {
-        self.outside.surrounding(t, self.attitude(), &self.motion.inertia())
+    /// (N m); `None` if there is neither.
+    pub fn environment_torque(&self, t: f64) -> Option<Vector> {
+        let acts = self.outside.around.is_some() || self.outside.own.is_some();
+        acts.then(|| self.outside.surrounding(t, self.attitude(), &self.motion.inertia()))
+    }
+
+    /// Returns the environment of the body; `None` without one.
+    pub fn surroundings(&self) -> Option<&SurroundingsState> {
+        self.outside.around.as_ref()
     }
 
     /// Begins a motion segment at the current instant, `began` seconds after the start, under the loads from now on.

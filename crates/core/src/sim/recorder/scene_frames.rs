@@ -8,7 +8,7 @@ use flexsc_record::{
 use flexsc_spacecraft::flow::ThreeAxisState;
 
 use super::journal_events::JournalEvents;
-use crate::sim::plant::Plant;
+use crate::sim::plant::FlowQuantities;
 use crate::sim::run_view::RunView;
 
 /// Scene of a run with the schedule of its frames.
@@ -60,11 +60,11 @@ impl SceneFrames {
             self.next = Some(now + scene.period());
         }
         let truth = run.plant.truth();
-        let thrust = match run.plant {
-            Plant::OneAxis(plant) => {
-                let state = plant.state();
+        let thrust = match run.plant.quantities() {
+            FlowQuantities::OneAxis(motion) => {
+                let state = &motion.body().state;
                 if frames {
-                    let sections = plant.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
+                    let sections = motion.output_row().map_or_else(Vec::new, |outputs| outputs.outputs);
                     let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
                     let pose = OneAxisPose {
                         time: now.seconds(),
@@ -78,16 +78,16 @@ impl SceneFrames {
                 let rates = [truth.rate[0], truth.rigid[0]];
                 SceneThrust::Torque(run.loads.actuator.response(now, 0, rates).applied)
             }
-            Plant::ThreeAxis(plant) => {
+            FlowQuantities::ThreeAxis(motion) => {
                 if frames {
-                    let ThreeAxisState { turn, modes } = plant.state();
-                    let drives = plant.drives().map_or_else(Vec::new, |of| of.drives);
+                    let ThreeAxisState { turn, modes } = &motion.body().state;
+                    let drives = motion.drives().map_or_else(Vec::new, |of| of.drives);
                     let mut angles: Vec<f64> = drives.iter().map(|drive| drive.angle_rad).collect();
                     // Hinges move by any angle; with hinges, modes are not drawn.
-                    let (attitude, modes) = match plant.hinges() {
+                    let (attitude, modes) = match motion.hinges() {
                         Some(Hinges { hinges }) => {
                             angles.extend(hinges.iter().map(|hinge| hinge.angle_rad));
-                            (plant.attitude(), &[][..])
+                            (motion.attitude(), &[][..])
                         }
                         None => (&turn.attitude, &modes[..]),
                     };
