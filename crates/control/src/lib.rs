@@ -12,6 +12,7 @@ pub mod estimator;
 pub mod interval;
 pub mod law;
 pub mod one_or_many;
+pub mod orientation;
 pub mod part;
 pub mod sensor;
 pub mod state_estimate;

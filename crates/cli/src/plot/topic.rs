@@ -14,7 +14,7 @@ use crate::error::CliError;
 const COLOURS: [RGBColor; 5] = [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
 /// Largest number of panels and of lines in a panel.
 const MOST: usize = 12;
-/// Columns of indices, by which rows of one topic are told apart.
+/// Columns of indices, that distinguish the rows of one topic.
 const INDICES: [&str; 3] = ["axis", "sensor", "wheel"];
 /// Endings of the engine's field names with their units.
 const UNITS: [(&str, &str); 20] = [
