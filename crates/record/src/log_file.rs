@@ -182,6 +182,16 @@ impl Log {
         Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, units, scenario, commands })
     }
 
+    /// Returns the path of the log, as messages call it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns the bytes of the file.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
+    }
+
     /// Returns the topics of the log.
     pub fn topics(&self) -> &[String] {
         &self.topics

@@ -10,11 +10,16 @@ use mcap::{McapError, WriteOptions, Writer};
 
 use super::message::{Message, MessageEncoder, MessageSink};
 use super::metrics::Metrics;
-use super::{Attachment, Detail, LogTopic, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
+use super::row::TopicRow;
+use super::topics::index_of;
+use super::{Attachment, Detail, LogTopic, Provenance, Record, RecordError, RunEnd, Sample, Summary, TOPICS};
 use crate::atomic_file::AtomicFile;
 
 /// Number of messages after which a chunk is closed: the largest number lost with a killed run.
 const MESSAGES_PER_FLUSH: u64 = 2000;
+
+/// Topic that is dated at the start of the run, because viewers show the last message before the instant of playback.
+const FROM_START: usize = index_of(Summary::TOPIC.name);
 
 /// Log of a run, written while it runs.
 struct McapLog<W: Write + Seek> {
@@ -43,13 +48,17 @@ impl<W: Write + Seek> McapLog<W> {
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
         let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
         write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
-        let channels = Channels { writer, of: vec![None; TOPICS.len()], since_flush: 0 };
+        let of = vec![None; TOPICS.len()];
+        let channels =
+            Channels { writer, of, since_flush: 0, start_ns: from.epoch_ns, from_start: Vec::new() };
         Ok(Self { log: MessageEncoder::new(channels, from, detail)? })
     }
 
     /// Writes the metrics, the end of the run, and the file's summary.
     fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
-        let (Channels { mut writer, .. }, last) = self.log.finish(metrics, end)?;
+        let (mut channels, last) = self.log.finish(metrics, end)?;
+        channels.write_from_start()?;
+        let mut writer = channels.writer;
         let end = match end {
             RunEnd::Complete => "complete",
             RunEnd::Interrupted => "interrupted",
@@ -69,9 +78,30 @@ struct Channels<W: Write + Seek> {
     /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`] and then of the custom topics.
     of: Vec<Option<(u16, u32)>>,
     since_flush: u64,
+    /// Start of the run (ns past 1970 UTC).
+    start_ns: u64,
+    /// Messages of the topic [`FROM_START`], kept until the end of the file.
+    from_start: Vec<Vec<u8>>,
 }
 
 impl<W: Write + Seek> Channels<W> {
+    /// Writes the messages that are dated at the start. They have a chunk of their own: in one with the last rows, its
+    /// span of time would be the whole run, and viewers would read it first.
+    fn write_from_start(&mut self) -> Result<(), RecordError> {
+        self.writer.flush().map_err(failure)?;
+        for data in std::mem::take(&mut self.from_start) {
+            self.write(FROM_START, self.start_ns, &data)?;
+        }
+        Ok(())
+    }
+
+    fn write(&mut self, topic: usize, log_time: u64, data: &[u8]) -> Result<(), RecordError> {
+        let (channel_id, sequence) = self.channel(topic)?;
+        self.of[topic] = Some((channel_id, sequence.wrapping_add(1)));
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
+        self.writer.write_to_known_channel(&header, data).map_err(failure)
+    }
+
     fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
         match self.of[index] {
             Some(channel) => Ok(channel),
@@ -95,11 +125,11 @@ impl<W: Write + Seek> MessageSink for Channels<W> {
     }
 
     fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
-        let (channel_id, sequence) = self.channel(message.topic)?;
-        self.of[message.topic] = Some((channel_id, sequence.wrapping_add(1)));
-        let log_time = message.time_ns;
-        let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
-        self.writer.write_to_known_channel(&header, message.data).map_err(failure)?;
+        if message.topic == FROM_START {
+            self.from_start.push(message.data.to_owned());
+            return Ok(());
+        }
+        self.write(message.topic, message.time_ns, message.data)?;
         self.since_flush += 1;
         // Flush only after a message: a chunk without one would start at time 0 in a viewer.
         if self.since_flush == MESSAGES_PER_FLUSH {

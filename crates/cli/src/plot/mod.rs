@@ -61,7 +61,7 @@ pub use title::readable;
 use title::{short, title};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct PlotArgs {
     /// Log file, or directory of a campaign
     #[arg(value_name = "LOG|DIR")]
     path: PathBuf,
@@ -104,7 +104,7 @@ pub struct Args {
     json: bool,
 }
 
-impl Args {
+impl PlotArgs {
     /// Returns the style of the figures with their size.
     fn style(&self) -> Result<Style, CliError> {
         Style::new(self.width, self.font)
@@ -112,9 +112,9 @@ impl Args {
     }
 }
 
-impl Args {
+impl PlotArgs {
     /// Returns the figures of a log over the requested time.
-    fn own(&self, path: &Path, asked: &[FigureName]) -> Result<Vec<(String, Figure)>, CliError> {
+    fn figures_of(&self, path: &Path, asked: &[FigureName]) -> Result<Vec<(String, Figure)>, CliError> {
         let log = Log::open(path)?;
         if !self.json {
             stale_check::warn_if_stale(&log, path);
@@ -125,7 +125,8 @@ impl Args {
     /// Returns the figures that all logs have in common, the lines of all logs in each.
     fn together(&self) -> Result<Vec<(String, Figure)>, CliError> {
         let paths: Vec<&PathBuf> = std::iter::once(&self.path).chain(&self.others).collect();
-        let all = paths.iter().map(|path| self.own(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
+        let all =
+            paths.iter().map(|path| self.figures_of(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
         let names: Vec<String> = paths
             .iter()
             .map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
@@ -140,9 +141,9 @@ impl Args {
         let kinds: Vec<String> = runs[0].iter().map(|(what, _)| what.clone()).collect();
         for what in kinds {
             let mut of_kind = Vec::new();
-            for (run, own) in runs.iter_mut().enumerate() {
-                if let Some(place) = own.iter().position(|(other, _)| *other == what) {
-                    of_kind.push((name(run), own.swap_remove(place).1));
+            for (run, figures) in runs.iter_mut().enumerate() {
+                if let Some(place) = figures.iter().position(|(other, _)| *other == what) {
+                    of_kind.push((name(run), figures.swap_remove(place).1));
                 }
             }
             if of_kind.len() == paths.len() {
@@ -174,7 +175,7 @@ pub fn there(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliError> {
     Ok(FigureKind::all_in(&RunEvents::read(log, path)?))
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     if args.path.is_dir() {
         let of_logs = [
             ("more than one path", !args.others.is_empty()),
@@ -196,7 +197,8 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let logs: Vec<&Path> = std::iter::once(&args.path).chain(&args.others).map(PathBuf::as_path).collect();
     let target = FigureTarget::new(args.out.as_deref().unwrap_or(beside), args.format, &logs, args.force)?;
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
-    let figures = if args.others.is_empty() { args.own(&args.path, &args.what)? } else { args.together()? };
+    let figures =
+        if args.others.is_empty() { args.figures_of(&args.path, &args.what)? } else { args.together()? };
     let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{what}"), figure));
     target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }

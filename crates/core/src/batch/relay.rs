@@ -102,7 +102,7 @@ impl LaneHost for LaneRuns<'_> {
 
     fn next_run(&mut self, lane: usize) -> Option<&RunSetup> {
         if let Some(ended) = self.lanes[lane].take() {
-            let is_whole = !ended.is_alone && ended.state.is_finite();
+            let is_whole = !ended.is_alone && ended.state.is_bounded();
             self.found[ended.index] = is_whole.then(|| ended.gather.finish(ended.scenario));
         }
         while let Some(job) = self.jobs.get(self.next) {
@@ -147,7 +147,7 @@ impl LaneHost for LaneRuns<'_> {
         let guards = guards(&lane.setup, place, from.side);
         let horizon = (Instant::START + lane.scenario.duration).since(instant(from.at));
         let trip = first_crossing(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
-        lane.is_alone |= !lane.state.is_finite();
+        lane.is_alone |= !lane.state.is_bounded();
         let Ok(Some(trip)) = trip else { return false };
         apply_crossing(found, trip.after, trip.guard == 0, &lane.state);
         true

@@ -17,6 +17,7 @@ mod estimator_checks;
 mod estimator_context;
 mod failures;
 mod fast_path;
+mod file_name;
 mod log;
 mod meant;
 mod pace;

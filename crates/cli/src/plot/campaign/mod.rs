@@ -16,7 +16,7 @@ use std::path::Path;
 use flexsc_core::campaign::{ColumnCells, RowMaker};
 use flexsc_figure::{Figure, Named};
 
-use super::Args;
+use super::PlotArgs;
 use super::figure_kind::{FigureKind, select};
 use super::figure_name::FigureName;
 use crate::campaign::MAIN;
@@ -30,7 +30,7 @@ const MOST: usize = 4;
 /// Number of worst runs that are listed for each metric.
 const WORST: usize = 3;
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let directory = args.path.as_path();
     let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
     let files = files(directory)?;

@@ -5,7 +5,7 @@ mod pieces;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::{AngleObservation, AxisState};
+use flexsc_dynamics::{AngleObservation, AxisState, is_bounded};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use flexsc_spacecraft::body::{Output, Planar};
@@ -147,7 +147,7 @@ impl OneAxisPlant {
     /// Advances the body to `now` and returns its true state; `None` if the motion is no longer finite.
     pub fn evaluate(&mut self, now: Instant) -> Option<&Truth> {
         let AngleObservation { angle, rate, .. } = self.view(now);
-        if !(angle.is_finite() && rate.is_finite()) {
+        if !(is_bounded(angle) && is_bounded(rate)) {
             return None;
         }
         let truth = &mut self.truth;
