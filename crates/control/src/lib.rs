@@ -13,6 +13,7 @@ pub mod interval;
 pub mod law;
 pub mod offers;
 pub mod one_or_many;
+pub mod orientation;
 pub mod part;
 pub mod requirement;
 pub mod sensor;

@@ -5,6 +5,7 @@
 pub mod atomic_file;
 mod columns;
 mod composite;
+mod custom_row;
 pub mod custom_topic;
 mod decoder;
 pub mod description;
@@ -12,6 +13,7 @@ mod descriptor;
 pub mod enum_label;
 pub mod foxglove;
 mod log_file;
+mod log_topic;
 mod mcap;
 mod mcap_reader;
 mod memory_budget;
@@ -39,8 +41,10 @@ use flexsc_numerics::time::Instant;
 use thiserror::Error;
 
 pub use columns::{Column, Columns};
-pub use custom_topic::{CustomField, CustomRow, CustomTopic, LogTopic, TopicError};
+pub use custom_row::CustomRow;
+pub use custom_topic::{CustomField, CustomTopic, TopicError};
 pub use log_file::{Log, LogError};
+pub use log_topic::LogTopic;
 pub use mcap::{LogBytes, LogFile};
 pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Provenance, RunEnd};
 pub use provenance_check::{ExistingLog, difference, existing_log};

@@ -13,7 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{ActiveFailures, FailureScope};
-use super::{Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Demand, Failure};
+use super::{Actuator, ActuatorEvent, AxisActuatorContext, AxisEffort, AxisResponse, Demand, Failure};
 use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::{Occasion, Part, ReportContext};
 use crate::requirement::{Requirements, Rule};
@@ -156,17 +156,17 @@ impl Actuator for MagnetorquersState {
         onto.moment += self.held();
     }
 
-    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
-        match input {
-            ActuatorInput::MagneticField(field) => self.field = Some(field),
-            ActuatorInput::Due(_) => {
+    fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
+        match event {
+            ActuatorEvent::MagneticField(field) => self.field = Some(field),
+            ActuatorEvent::Due(_) => {
                 for (failing, moment) in self.failing.iter_mut().zip(&self.moment) {
                     if let Some(failing) = failing {
                         failing.update(now, *moment);
                     }
                 }
             }
-            ActuatorInput::CounterTorque(_) | ActuatorInput::Rotors(_) => {}
+            ActuatorEvent::CounterTorque(_) | ActuatorEvent::Rotors(_) => {}
         }
     }
 
@@ -215,14 +215,14 @@ mod tests {
         let (field, torque) = (Vector::new(2e-5, -1e-5, 3e-5), Vector::new(1e-4, 2e-4, -1e-4));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         assert_eq!(torquers.given(), Vector::zeros(), "no field is known");
-        torquers.update(Instant::START, ActuatorInput::MagneticField(field));
+        torquers.update(Instant::START, ActuatorEvent::MagneticField(field));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         let along = field.normalize();
         let exact = torque - along * along.dot(&torque);
         assert!((torquers.given() - exact).norm() < 1e-18);
         // Ten times the torque exceeds the limit: all of it is scaled down.
         let mut weak = start("moment = [4.0, 100.0, 100.0]");
-        weak.update(Instant::START, ActuatorInput::MagneticField(field));
+        weak.update(Instant::START, ActuatorEvent::MagneticField(field));
         weak.command(Instant::START, &(torque * 10.0).data.0[0].map(Demand::Torque), [0.0; 3]);
         assert!((weak.moment.x.abs() - 4.0).abs() < 1e-14);
         assert!(weak.given().cross(&exact).norm() < 1e-18 && weak.given().dot(&exact) > 0.0);

@@ -53,7 +53,7 @@ pub use axis_actuators::{
 pub use capabilities::{Capabilities, JetCycle, MomentumStorage, PulsedActuator, WaveformActuator};
 pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
 pub use control_moment_gyros_state::ControlMomentGyrosState;
-pub use effort::{ActuatorInput, AxisEffort, AxisResponse};
+pub use effort::{ActuatorEvent, AxisEffort, AxisResponse};
 pub use failure::{Failure, FailureScope};
 pub use flywheel::{BackEmfRate, FlywheelRotor, Wheel};
 pub use friction::Friction;
@@ -133,8 +133,8 @@ pub trait Actuator: Part {
     /// Sets the demands about the axes from `now` on, of a body with these rigid rates (rad/s).
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]);
 
-    /// Applies an input other than a command at `now`.
-    fn update(&mut self, _now: Instant, _input: ActuatorInput<'_>) {}
+    /// Responds to an event other than a command at `now`.
+    fn update(&mut self, _now: Instant, _event: ActuatorEvent<'_>) {}
 
     /// Adds the actuator's output from `now` on to `onto`.
     fn apply(&self, now: Instant, onto: &mut Wrench);

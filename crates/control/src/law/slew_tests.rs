@@ -14,7 +14,7 @@ use super::{
     AttitudeLaw, AttitudeProfile, Authority, DecisionCause, Law, LawSpec, Setpoint, TorqueDistribution,
 };
 use crate::actuator::{
-    Actuator, ActuatorInput, AxisActuatorContext, MomentumStorage, PulseWidth, Wheels, WheelsState,
+    Actuator, ActuatorEvent, AxisActuatorContext, MomentumStorage, PulseWidth, Wheels, WheelsState,
 };
 use crate::state_estimate::StateEstimate;
 
@@ -166,7 +166,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
             }
         }
         let rotors = turning.rotor_observations(None);
-        wheels.update(now + Span::from_seconds(PERIOD), ActuatorInput::Rotors(&rotors));
+        wheels.update(now + Span::from_seconds(PERIOD), ActuatorEvent::Rotors(&rotors));
     }
     assert_eq!(met, table.len());
     events

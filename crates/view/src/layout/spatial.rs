@@ -5,11 +5,13 @@ use flexsc_core::control::estimator::EstimatorKind;
 use flexsc_core::control::estimator::attitude::ElasticStates;
 use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::numerics::attitude::AXES;
+use flexsc_core::record::row::TopicRow;
+use flexsc_core::record::{ControlMomentGyros, Hinges, Wheels};
 use flexsc_core::spacecraft::body::Spatial;
 
-use super::Tab;
 use super::one_axis::adaptation;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
+use super::{Tab, declared};
 use crate::scene::Extent;
 
 /// No plot has the energies of more modes.
@@ -54,9 +56,13 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
         motion.push(LayoutPanel::plot("accelerations", title, (0..count).map(axis).collect()));
     }
     if scenario.study.wheels.is_some() {
-        motion.push(plot("wheels", "Speeds of the wheels (rad/s)", wheels(scenario)));
+        let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len());
+        motion.extend(declared::panels(&Wheels::TOPIC, count));
     }
-    motion.extend(gimbals(scenario));
+    let gimbals = scenario.study.gimbals.len();
+    if gimbals > 0 {
+        motion.extend(declared::panels(&ControlMomentGyros::TOPIC, gimbals));
+    }
     if scenario.study.translation.is_some() {
         let along = ["x", "y", "z"].map(|axis| line(format!("/position.{axis}_m"), axis));
         motion.push(plot("position", "Position (m)", along.into()));
@@ -111,42 +117,18 @@ pub fn tabs(scenario: &Scenario, body: &Spatial) -> Vec<Tab> {
 
 /// Returns the panels with the angles of drives and hinges.
 fn turning(scenario: &Scenario) -> Vec<LayoutPanel> {
-    let lines = |topic: &str, name: &str, count: usize| -> Vec<PlotLine> {
-        let of = |index: usize| {
-            line(format!("/{topic}.{topic}[{index}].angle_rad"), format!("{name} {}", index + 1))
-        };
-        (0..count.min(MOST_LINES)).map(of).collect()
-    };
     let mut panels = Vec::new();
     if let Some(drives) = scenario.study.articulation() {
-        let angles = lines("drives", "drive", drives.courses.count());
+        let angle =
+            |index: usize| line(format!("/drives.drives[{index}].angle_rad"), format!("drive {}", index + 1));
+        let angles = (0..drives.courses.count().min(MOST_LINES)).map(angle).collect();
         panels.push(LayoutPanel::plot("drives", "Angles of the drives (rad)", angles));
     }
     let hinges = scenario.study.hinges();
     if hinges > 0 {
-        panels.push(LayoutPanel::plot(
-            "hinges",
-            "Angles of the hinges (rad)",
-            lines("hinges", "hinge", hinges),
-        ));
+        panels.extend(declared::panels(&Hinges::TOPIC, hinges));
     }
     panels
-}
-
-/// Returns the panels of control moment gyros; empty without any.
-fn gimbals(scenario: &Scenario) -> Vec<LayoutPanel> {
-    if scenario.study.gimbals.is_empty() {
-        return Vec::new();
-    }
-    let of = |gyro: usize| {
-        line(format!("/control_moment_gyros.gyros[{gyro}].angle_rad"), format!("gimbal {}", gyro + 1))
-    };
-    let angles = (0..scenario.study.gimbals.len().min(MOST_LINES)).map(of).collect();
-    let measure = vec![line("/control_moment_gyros.singularity", "measure")];
-    vec![
-        LayoutPanel::plot("gimbals", "Angles of the gimbals (rad)", angles),
-        LayoutPanel::plot("singularity", "Singularity measure of the gimbals", measure),
-    ]
 }
 
 /// Arranges the panels of the motion and of the modes in tabs.
@@ -204,14 +186,6 @@ fn filter() -> Vec<LayoutPanel> {
         ),
         LayoutPanel::plot("consistency", "NEES and NIS (1 if consistent)", consistency),
     ]
-}
-
-/// Returns the lines of the wheel speeds.
-fn wheels(scenario: &Scenario) -> Vec<PlotLine> {
-    let count = scenario.study.wheels.as_ref().map_or(0, |wheels| wheels.axes().len()).min(MOST_LINES);
-    (0..count)
-        .map(|wheel| line(format!("/wheels.wheels[{wheel}].speed_rad_s"), format!("wheel {}", wheel + 1)))
-        .collect()
 }
 
 fn errors(scenario: &Scenario) -> Vec<PlotLine> {
