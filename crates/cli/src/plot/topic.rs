@@ -70,7 +70,7 @@ pub fn figure(log: &Log, path: &Path, topic: &str) -> Result<Figure, CliError> {
         let single = if let [line] = &lines[..] { line.name.clone() } else { String::new() };
         let mut y = FigureAxis::around(&single, "", values);
         if !unit.is_empty() {
-            y.name = format!("{single} ({unit})").trim_start().to_owned();
+            format!("{single} ({unit})").trim_start().clone_into(&mut y.name);
         }
         let x = time(start..end);
         let is_alone = !single.is_empty();

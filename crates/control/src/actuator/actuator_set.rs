@@ -116,7 +116,7 @@ impl Part for ActuatorSet {
     }
 
     fn failure(&self) -> Option<PartError> {
-        self.each().find_map(|actuator| actuator.failure())
+        self.each().find_map(Part::failure)
     }
 }
 

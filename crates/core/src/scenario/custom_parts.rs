@@ -202,10 +202,10 @@ impl CustomParts {
 
     /// Returns the topics that the parts declare, each with the role of the part.
     fn declared_topics(&self) -> impl Iterator<Item = (&'static str, &Arc<CustomTopic>)> {
-        let law = self.law.iter().flat_map(|law| law.topics()).map(|topic| ("law", topic));
+        let law = self.law.iter().flat_map(Custom::topics).map(|topic| ("law", topic));
         let sensors = self.sensors.iter().flat_map(|(_, sensor)| sensor.topics());
-        let estimator = self.estimator.iter().flat_map(|estimator| estimator.topics());
-        let adaptation = self.adaptation.iter().flat_map(|adaptation| adaptation.topics());
+        let estimator = self.estimator.iter().flat_map(Custom::topics);
+        let adaptation = self.adaptation.iter().flat_map(Custom::topics);
         let actuators = self.actuators.iter().flat_map(|(_, actuator)| actuator.topics());
         law.chain(sensors.map(|topic| ("sensor", topic)))
             .chain(estimator.map(|topic| ("estimator", topic)))

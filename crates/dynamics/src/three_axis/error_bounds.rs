@@ -6,6 +6,7 @@
 
 use super::constants::tensor;
 use super::motion::ThreeAxisMotion;
+use super::rotors::{BearingLoads, HarmonicLine};
 use super::surroundings::TimedSurroundings;
 
 /// Bounds of derivatives over a step.
@@ -103,22 +104,7 @@ impl ThreeAxisMotion {
         });
         let tide = 2.0 * tide.map_or(0.0, |tide| tide.norm());
         let each = || rotors.bearings.iter().zip(rotors.rotors).zip(&assumed.speeds);
-        let mut imbalance = Vec::new();
-        let mut imbalance_torque = [0.0; 3];
-        for ((bearing, rotor), speed) in each() {
-            let change = (rotor.torque.abs() + bearing.coulomb + bearing.viscous * speed) / bearing.inertia;
-            for line in &bearing.lines {
-                let [k, s] = [line.order, *speed];
-                let wave = [
-                    s * s,
-                    k * s * s * s + 2.0 * s * change,
-                    k * k * s * s * s * s + 5.0 * k * s * s * change + 2.0 * change * change,
-                ];
-                let size = line.torque[0].norm() + line.torque[1].norm();
-                imbalance_torque.iter_mut().zip(wave).for_each(|(sum, wave)| *sum += size * wave);
-                imbalance.push((line, wave));
-            }
-        }
+        let (imbalance, imbalance_torque) = imbalance_waves(&rotors, &assumed.speeds);
         let torque = [
             constant + bound + imbalance_torque[0],
             bound * slow + imbalance_torque[1],
@@ -209,4 +195,29 @@ impl ThreeAxisMotion {
         let friction = each().zip(&u1).map(|(((of, _), _), u)| u / of.inertia).collect();
         (Bounds { second: w2, third, friction }, reached_values)
     }
+}
+
+/// Returns the harmonics of the imbalance of rotors at given speeds (rad/s), each with the bounds of its force per unit
+/// and of two derivatives of it, and the bounds of the torque of all (N m) and of its derivatives.
+fn imbalance_waves<'a>(
+    rotors: &BearingLoads<'a>,
+    speeds: &[f64],
+) -> (Vec<(&'a HarmonicLine, [f64; 3])>, [f64; 3]) {
+    let mut imbalance = Vec::new();
+    let mut torque = [0.0; 3];
+    for ((bearing, rotor), speed) in rotors.bearings.iter().zip(rotors.rotors).zip(speeds) {
+        let change = (rotor.torque.abs() + bearing.coulomb + bearing.viscous * speed) / bearing.inertia;
+        for line in &bearing.lines {
+            let [k, s] = [line.order, *speed];
+            let wave = [
+                s * s,
+                k * s * s * s + 2.0 * s * change,
+                k * k * s * s * s * s + 5.0 * k * s * s * change + 2.0 * change * change,
+            ];
+            let size = line.torque[0].norm() + line.torque[1].norm();
+            torque.iter_mut().zip(wave).for_each(|(sum, wave)| *sum += size * wave);
+            imbalance.push((line, wave));
+        }
+    }
+    (imbalance, torque)
 }
