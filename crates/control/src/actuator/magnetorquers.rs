@@ -14,7 +14,9 @@ use serde::{Deserialize, Serialize};
 
 use super::failure::{ActiveFailures, FailureScope};
 use super::{Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Demand, Failure};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::{Occasion, Part, ReportContext};
+use crate::requirement::{Requirements, Rule};
 
 /// Magnetorquers along the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,6 +30,26 @@ pub struct Magnetorquers {
 }
 
 impl Magnetorquers {
+    /// Returns the offers of the torquers to the other parts of a scenario.
+    pub(super) fn offers() -> ActuatorOffers {
+        ActuatorOffers { turns_with_field: true, ..ActuatorOffers::default() }
+    }
+
+    /// Adds the requirements of the torquers on the other parts of a scenario.
+    pub(super) fn requires(place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        // With wheels about three axes, the wheels are reported.
+        if !offers.lists_actuator(|actuator| actuator.has_reaction_wheels) {
+            offers.require_three_axes(needs, Rule::MagnetorquerAxes, "", "");
+        }
+        place.require_single(needs, "they act along all three axes: write one `magnetorquers`");
+        needs.require(
+            Rule::MagneticField,
+            offers.environment.magnetic_field,
+            "",
+            "need the field of `[environment.magnetic_field]`, and there is none",
+        );
+    }
+
     /// Creates the torquers before their first command.
     pub fn start(&self, settings: &[AxisActuatorContext]) -> MagnetorquersState {
         MagnetorquersState {

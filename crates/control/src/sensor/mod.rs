@@ -9,6 +9,7 @@ mod ideal;
 mod latency_queue;
 mod magnetometer;
 mod rate_integrator;
+mod requirements;
 mod sampled;
 mod star_tracker;
 mod sun_sensor;

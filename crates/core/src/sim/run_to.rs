@@ -90,11 +90,6 @@ impl Simulation {
         Ok(())
     }
 
-    /// Enables drawing of the scene for records that want it; to be called before the run begins.
-    pub fn enable_scene(&mut self, scenario: &Scenario) {
-        self.recorder.draw(scenario);
-    }
-
     /// Returns the instant of the dense log's row that is nearest to `at`.
     fn nearest_row_instant(&self, at: Instant) -> Instant {
         let femtoseconds = |instant: Instant| {

@@ -51,7 +51,7 @@ fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<ConfigEr
     for (key, value) in uncertain.iter_mut() {
         let (ends, Value::Table(kinds)) = (ends_at(schema, key), value) else { continue };
         // Of a key that there is not, that is the mistake.
-        if !ends.iter().any(|node| of_type(node.schema, "number")) {
+        if !ends.iter().any(|node| has_type(node.schema, "number")) {
             continue;
         }
         for (kind, numbers) in kinds.iter_mut() {
@@ -90,7 +90,7 @@ fn each_in_si(value: &mut Value, path: &str, ends: &[Node<'_>], faults: &mut Vec
 /// Returns the unit of a key by its path, such as `body.planar.modes[0].frequency`.
 pub fn unit_at<'a>(schema: &'a Json, key: &str) -> Option<&'a str> {
     let ends = ends_at(schema, key);
-    ends.iter().filter(|node| of_type(node.schema, "number")).find_map(|node| node.unit)
+    ends.iter().filter(|node| has_type(node.schema, "number")).find_map(|node| node.unit)
 }
 
 /// Returns the schema nodes that a key may have, by its path.
@@ -131,7 +131,7 @@ fn convert(value: &mut Value, path: &str, nodes: &[Node<'_>], schema: &Json, fau
         Value::String(text) => {
             let Some((number, unit)) = split(text) else { return };
             let ends = flat(schema, nodes);
-            let is = |name: &str| ends.iter().any(|node| of_type(node.schema, name));
+            let is = |name: &str| ends.iter().any(|node| has_type(node.schema, name));
             if is("string") || !is("number") {
                 return;
             }
@@ -245,7 +245,7 @@ fn unit_of(schema: &Json) -> Option<&str> {
     places.into_iter().next()
 }
 
-fn of_type(schema: &Json, name: &str) -> bool {
+fn has_type(schema: &Json, name: &str) -> bool {
     match schema.get("type") {
         Some(Json::String(of)) => of == name,
         Some(Json::Array(of)) => of.iter().any(|of| of == name),

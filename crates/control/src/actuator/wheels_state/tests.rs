@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::actuator::MomentumStorage;
+use crate::part::Part as _;
 
 const PERIOD: f64 = 0.25;
 

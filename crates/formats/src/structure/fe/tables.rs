@@ -132,7 +132,7 @@ impl ParticipationTable {
 ///
 /// # Errors
 /// Modes without factors, and tables that contradict each other.
-pub fn of_factors(
+pub fn modes_from_factors(
     natural: &[NaturalFrequency],
     factors: &ParticipationTable,
     masses: &ParticipationTable,
@@ -157,7 +157,7 @@ pub fn of_factors(
 ///
 /// # Errors
 /// A mode with two directions, with what to ask the solver for.
-pub fn of_masses(
+pub fn modes_from_masses(
     natural: &[NaturalFrequency],
     masses: &ParticipationTable,
     ask: &str,
