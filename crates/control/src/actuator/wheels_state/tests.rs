@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::actuator::MomentumStorage;
-use crate::part::Part as _;
+use crate::part::Part;
 
 const PERIOD: f64 = 0.25;
 
