@@ -37,6 +37,8 @@ use flexsc_core::spacecraft::manoeuvre::{
     CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
 };
 use flexsc_core::{Document, ScenarioError, record::atomic_file};
+use flexsc_view::scene::Scene;
+use flexsc_view::with_layout;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -257,8 +259,11 @@ fn to_mcap(
     let Commands { given, until } = Commands::from_stepped(stepped);
     let (place, is_own) = (path.clone(), scenario.inner.has_custom_parts());
     let written = aside(py, move |stop| {
-        let mut file = LogFile::create(&place, &given.provenance(&run, detail), detail)?;
-        let metrics = parts::known_thread(is_own, || given.simulate(&run, until, (&mut file, stop)))?;
+        let provenance = with_layout(given.provenance(&run), &run.scenario, detail);
+        let mut file = LogFile::create(&place, &provenance, detail)?;
+        let scene = Scene::for_detail(&run.scenario, detail);
+        let metrics =
+            parts::known_thread(is_own, || given.simulate(&run, until, ((&mut file, scene), stop)))?;
         Ok(file.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
     })?;
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))

@@ -22,6 +22,7 @@ mod provenance_check;
 mod recover;
 mod report;
 pub mod row;
+mod scene_source;
 mod states;
 mod summary;
 mod three_axis;
@@ -45,6 +46,7 @@ pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Pr
 pub use provenance_check::{ExistingLog, difference, existing_log};
 pub use recover::recover;
 pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
+pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use three_axis::{SteeringRecord, StoredMomentum, ThreeAxisCycle};
 pub use topics::*;
@@ -125,9 +127,9 @@ pub trait Record {
         Ok(())
     }
 
-    /// Returns true if the record needs the scene, which a simulation has only if it was requested.
-    fn wants_scene(&self) -> bool {
-        false
+    /// Returns the scene that the run records for viewers; `None` if the record supplies none. Called at the start.
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        None
     }
 
     /// Records a sample.

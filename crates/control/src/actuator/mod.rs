@@ -189,6 +189,20 @@ impl ActuatorKind {
         }
     }
 
+    /// Returns the torque per unit of a torque command (N m).
+    pub fn torque_per_command(&self) -> f64 {
+        if let Self::Wheel(wheel) = self { wheel.gain.get() } else { 1.0 }
+    }
+
+    /// Returns the largest torque (N m) for the largest planned torque (N m) and the largest command of the law.
+    pub fn expected_torque(&self, planned: f64, command: f64) -> f64 {
+        match self {
+            Self::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.execute_command(command)),
+            Self::Thrusters(thrusters) => thrusters.torque.about(0).get(),
+            _ => planned.max(command),
+        }
+    }
+
     /// Returns the actuator's failures.
     pub fn failures(&self) -> &[Failure] {
         match self {

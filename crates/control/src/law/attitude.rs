@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 use super::filter::Filter;
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, Tunable,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
 use crate::offers::{LawPlace, Offers};
 use crate::part::Part;
@@ -66,12 +66,6 @@ fn damping() -> Positive {
 }
 
 impl AttitudeLaw {
-    /// Returns the size of the torque (N m) on a body at rest with this angle error (rad) and inertia (kg m²).
-    pub fn first_torque(&self, angle: f64, inertia: f64) -> f64 {
-        let wn = self.bandwidth.get();
-        inertia * wn * wn * angle.abs()
-    }
-
     /// Checks the settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<ConfigError> {
         if let Some(inertia) = &self.inertia {
@@ -114,6 +108,13 @@ impl LawSpec for AttitudeLaw {
     /// Returns the usual 5 % of a step.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Fraction(0.05)
+    }
+
+    /// Returns the torque on a body at rest; along a profile, whose angle error is small, the torque of its acceleration.
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        let (inertia, wn) = (conditions.inertia, self.bandwidth.get());
+        let at_rest = inertia * wn * wn * conditions.angle.abs();
+        conditions.profile_acceleration.map_or(at_rest, |acceleration| inertia * acceleration)
     }
 
     fn needs(&self) -> EstimateNeeds {

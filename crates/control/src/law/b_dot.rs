@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, LawState, Phase,
-    Setpoint, Tunable,
+    Setpoint, TorqueConditions, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
@@ -45,6 +45,10 @@ pub(super) fn require_field(key: &str, offers: &Offers, needs: &mut Requirements
 }
 
 impl LawSpec for BDot {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.magnetorquers
+    }
+
     fn start(&self, _: &Authority) -> Box<dyn Law> {
         Box::new(BDotState { law: *self, gain: self.gain.get(), tuned: f64::NAN })
     }

@@ -23,6 +23,7 @@ mod slew_tests;
 mod stages;
 mod state_space;
 mod switching_lines;
+mod torque_conditions;
 mod tunable;
 
 use std::any::Any;
@@ -62,6 +63,7 @@ pub use relay::{Relay, RelaySides};
 pub use stages::{Stage, Stages};
 pub use state_space::{OutputQuantity, StateSpace, TimeDomain};
 pub use switching_lines::{SwitchingLines, error_band};
+pub use torque_conditions::TorqueConditions;
 pub use tunable::{Tunable, TunedNumbers};
 
 /// The kinds of law.
@@ -109,6 +111,21 @@ pub trait LawSpec {
     /// Returns the error band about the setpoint within which the law is expected to stay.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::None
+    }
+
+    /// Returns the half width of the zone without torque (rad); 0 without a zone.
+    fn dead_zone(&self) -> f64 {
+        0.0
+    }
+
+    /// Returns the torque command per angle error (1/rad); 0 if the law is no spring.
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+
+    /// Returns an estimate of the largest torque (N m) that the law commands.
+    fn expected_torque(&self, _conditions: &TorqueConditions) -> f64 {
+        0.0
     }
 
     /// Returns the half width (rad) of the band about the target that the law keeps with an actuator authority, if it depends

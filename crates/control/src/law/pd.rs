@@ -11,7 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, Tunable, TunedNumbers,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable, TunedNumbers,
 };
 use crate::offers::{LawPlace, Offers};
 use crate::part::Part;
@@ -139,6 +139,15 @@ impl LawSpec for Pd {
     /// Returns the usual 5 % of a step.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Fraction(0.05)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.k_p.get()
+    }
+
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        let limit = self.limit.filter(|_| conditions.detailed).map_or(f64::INFINITY, Positive::get);
+        conditions.torque_per_command * limit.min(self.k_p.get() * conditions.angle)
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {

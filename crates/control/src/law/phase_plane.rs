@@ -19,7 +19,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
 use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, LawState,
-    Phase, ReferenceNeeds, Setpoint, SwitchingLines, Tunable, error_band,
+    Phase, ReferenceNeeds, Setpoint, SwitchingLines, TorqueConditions, Tunable, error_band,
 };
 use crate::offers::{LawOffers, LawPlace, Offers, TorqueLimit};
 use crate::part::Part;
@@ -208,6 +208,10 @@ impl PhasePlane {
 }
 
 impl LawSpec for PhasePlane {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.jets
+    }
+
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
         Box::new(PhasePlaneState {
             damping: self

@@ -14,7 +14,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, LawState, Phase,
-    Setpoint, Tunable, TunedNumbers,
+    Setpoint, TorqueConditions, Tunable, TunedNumbers,
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
@@ -150,6 +150,14 @@ impl LawSpec for Relay {
     /// on.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Absolute(self.dead_zone.get() + self.hysteresis.get())
+    }
+
+    fn dead_zone(&self) -> f64 {
+        self.dead_zone.get()
+    }
+
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.torque_per_command * self.strong.get()
     }
 
     fn tunable(&self) -> Vec<Tunable> {

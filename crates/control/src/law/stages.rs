@@ -10,7 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::b_dot::require_field;
 use super::{
     Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, LawState,
-    ReferenceNeeds, Setpoint, Tunable,
+    ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
 use crate::custom::PartError;
 use crate::offers::{LawPlace, Offers};
@@ -89,6 +89,11 @@ impl Stages {
 }
 
 impl LawSpec for Stages {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        let laws = self.laws().filter(|_| conditions.detailed);
+        laws.map(|law| law.expected_torque(conditions)).fold(0.0, f64::max)
+    }
+
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
         let stages = self.0.iter().map(|stage| (stage.begins(), stage.law.start(authority)));
         let places = (0..self.0.len()).map(|index| self.place(index)).collect();

@@ -4,7 +4,7 @@
 use flexsc_control::actuator::{ActuatorTask, Failure, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::AttitudeTarget;
-use flexsc_dynamics::three_axis::{Bearing, SHAKE, Surroundings};
+use flexsc_dynamics::three_axis::{Bearing, IMBALANCE_PHASE, Surroundings};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::vector;
 use flexsc_numerics::quantity::NonNegative;
@@ -355,8 +355,8 @@ impl Scenario {
     /// without wheels.
     fn imbalance_step(&self) -> f64 {
         let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
-        let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
-        SHAKE / (highest * wheels.largest_initial_speed())
+        let highest = self.study.bearings.iter().map(Bearing::highest_order).fold(0.0, f64::max);
+        IMBALANCE_PHASE / (highest * wheels.largest_initial_speed())
     }
 
     /// Returns the periodic messages of a log of the given detail: the key and the number of messages of each.

@@ -40,7 +40,7 @@ impl AdaptationObjective {
 
     /// Adds the one-axis motion up to `now`.
     pub fn add_motion(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
-        let (Some(meter), Plant::OneAxis(plant)) = (&mut self.0, plant) else { return };
+        let Some(meter) = &mut self.0 else { return };
         if !meter.integrates() || now <= meter.measured {
             return;
         }
@@ -49,7 +49,7 @@ impl AdaptationObjective {
             rotor.map(|wheel| wheel.speed_rad_s)
         };
         let wheel = speed(0.0).zip(speed(1.0)).map(|(rest, one)| [rest, one - rest]);
-        plant.measure([meter.measured, now], &loads.applied, |stretch, rigid| {
+        plant.expand([meter.measured, now], &loads.applied, &mut |stretch, rigid| {
             meter.add_piece(stretch, &MotionSample { rigid: *rigid, wheel });
         });
         meter.measured = now;

@@ -32,17 +32,17 @@ impl Translation {
     }
 
     /// Returns the point's position, in inertial axes from the centre of mass at the start (m), and its velocity (m/s).
-    pub fn position(&self, seen: &BodyView) -> [Vector; 2] {
+    pub fn position(&self, view: &BodyView) -> [Vector; 2] {
         let sum = |of: &[f64]| -> Vector {
             self.shifts.iter().zip(of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
         };
-        let bent = || [sum(&seen.displacements), sum(&seen.rates)];
-        let [moved, speed] = seen.shift.unwrap_or_else(bent);
+        let bent = || [sum(&view.displacements), sum(&view.rates)];
+        let [moved, speed] = view.shift.unwrap_or_else(bent);
         let arm = self.at + moved;
-        let rate = seen.rate.cross(&arm) + speed;
-        let q = seen.attitude;
+        let rate = view.rate.cross(&arm) + speed;
+        let q = view.attitude;
         let inertial = |v: Vector| (q * Quaternion::from_imag(v) * q.conjugate()).vector().into_owned();
-        let [position, velocity] = seen.moved;
+        let [position, velocity] = view.com;
         [position + inertial(arm), velocity + inertial(rate)]
     }
 }
