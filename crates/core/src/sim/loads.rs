@@ -3,6 +3,7 @@
 use flexsc_control::actuator::Actuator;
 use flexsc_control::law::{Command, TorqueDistribution};
 use flexsc_control::state_estimate::StateEstimate;
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::Drift;
@@ -10,6 +11,7 @@ use flexsc_spacecraft::disturbance::{Disturbance, DisturbanceState};
 use flexsc_spacecraft::environment::SurroundingsState;
 use flexsc_spacecraft::wrench::Wrench;
 
+use super::plant::{AppliedTorque, Plant};
 use crate::scenario::Scenario;
 
 /// Everything that acts on the body.
@@ -27,6 +29,8 @@ pub struct Loads {
     /// Next instant at which a load changes without a command.
     pub due: Option<Instant>,
     wrench: Wrench,
+    /// Torques during the current motion segment of a one-axis body.
+    pub applied: AppliedTorque,
 }
 
 impl Loads {
@@ -55,6 +59,7 @@ impl Loads {
             next_change: None,
             due: None,
             wrench: Wrench::default(),
+            applied: AppliedTorque::default(),
         };
         drive.update_due();
         drive
@@ -89,6 +94,27 @@ impl Loads {
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
         self.actuator.update(now, rigid);
         self.update_due();
+    }
+
+    /// Sets the magnetic field in body axes (T) in the actuator, if there is one.
+    pub fn set_magnetic_field(&mut self, field: Option<Vector>) {
+        if let Some(field) = field {
+            self.actuator.set_magnetic_field(field);
+        }
+    }
+
+    /// Copies the speeds and momenta of wheels in bearings from the motion into the actuator.
+    pub fn update_rotor_states(&mut self, now: Instant, plant: &Plant) {
+        let rotors = plant.wheel_bearings();
+        if !rotors.is_empty() {
+            self.actuator.set_rotor_states(now, &rotors);
+        }
+    }
+
+    /// Sets the torques on a one-axis body during the motion segment that begins.
+    pub fn set_applied_torque(&mut self) {
+        let (constant, feedback) = (self.actuator.held_torque(0), self.actuator.demanded_torque(0));
+        self.applied = AppliedTorque { constant, feedback, back_emf: self.actuator.back_emf() };
     }
 
     /// Returns the wrench of all loads from `now` on.

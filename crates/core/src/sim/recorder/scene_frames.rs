@@ -1,38 +1,65 @@
 //! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
-use flexsc_record::{Hinges, OneAxisPose, Record, Sample, ScenePose, SceneThrust, ThreeAxisPose};
+use flexsc_numerics::time::Instant;
+use flexsc_record::{
+    Hinges, OneAxisPose, Record, RecordError, Sample, ScenePose, SceneSource, SceneThrust, ThreeAxisPose,
+};
 use flexsc_spacecraft::flow::ThreeAxisState;
 
-use super::plant::Plant;
-use super::{Simulation, SimulationError};
+use super::journal_events::JournalEvents;
+use crate::sim::plant::Plant;
+use crate::sim::run_view::RunView;
 
-impl Simulation {
+/// Scene of a run with the schedule of its frames.
+#[derive(Clone, Debug, Default)]
+pub struct SceneFrames {
+    /// Scene that the record supplies; `None` if the run is not drawn.
+    scene: Option<Box<dyn SceneSource>>,
+    next: Option<Instant>,
+}
+
+impl SceneFrames {
+    /// Returns true if the scene is drawn.
+    pub fn is_drawn(&self) -> bool {
+        self.scene.is_some()
+    }
+
+    /// Returns the instant at which frames are due next.
+    pub fn due(&self) -> Option<Instant> {
+        self.next
+    }
+
     /// Records the parts of the scene that the record supplies, if any.
-    pub(super) fn record_scene(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (now, telling) = (self.now, &mut self.recorder);
-        telling.scene = record.scene();
-        if let Some(scene) = &telling.scene {
-            record.record(now, Sample::Scene(&scene.parts(telling.events.stamp(now))))?;
-            telling.next_frames = Some(now);
+    pub fn record_scene(
+        &mut self,
+        now: Instant,
+        journal: &JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        self.scene = record.scene();
+        if let Some(scene) = &self.scene {
+            record.record(now, Sample::Scene(&scene.parts(journal.stamp(now))))?;
+            self.next = Some(now);
         }
         Ok(())
     }
 
     /// Records the frames that are due and the plumes that have changed.
-    pub(super) fn record_frames(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if self.recorder.scene.is_none() {
-            return Ok(());
-        }
-        let now = self.now;
-        let stamp = self.recorder.events.stamp(now);
-        self.plant.evaluate(now)?;
-        let frames = self.recorder.next_frames == Some(now);
-        let Some(scene) = &mut self.recorder.scene else { return Ok(()) };
+    pub fn record_due(
+        &mut self,
+        run: &RunView<'_>,
+        journal: &JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let now = run.now;
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let stamp = journal.stamp(now);
+        let frames = self.next == Some(now);
         if frames {
-            self.recorder.next_frames = Some(now + scene.period());
+            self.next = Some(now + scene.period());
         }
-        let truth = self.plant.truth();
-        let thrust = match &self.plant {
+        let truth = run.plant.truth();
+        let thrust = match run.plant {
             Plant::OneAxis(plant) => {
                 let state = plant.state();
                 if frames {
@@ -48,7 +75,7 @@ impl Simulation {
                     record.record(now, Sample::Frames(scene.frames(stamp, ScenePose::OneAxis(pose))))?;
                 }
                 let rates = [truth.rate[0], truth.rigid[0]];
-                SceneThrust::Torque(self.loads.actuator.applied_torque(now, 0, rates))
+                SceneThrust::Torque(run.loads.actuator.applied_torque(now, 0, rates))
             }
             Plant::ThreeAxis(plant) => {
                 if frames {
@@ -66,12 +93,12 @@ impl Simulation {
                     let pose = ScenePose::ThreeAxis(ThreeAxisPose { attitude, modes, angles: &angles });
                     record.record(now, Sample::Frames(scene.frames(stamp, pose)))?;
                 }
-                let cycle = self.loads.actuator.jet_cycle();
+                let cycle = run.loads.actuator.jet_cycle();
                 let (signs, open) = cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
                 SceneThrust::Jets { signs, open }
             }
         };
         let plumes = scene.plumes(stamp, thrust);
-        Ok(plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Plumes(&plumes)))?)
+        plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Plumes(&plumes)))
     }
 }
