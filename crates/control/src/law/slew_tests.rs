@@ -91,8 +91,8 @@ fn the_same_with_friction() {
 /// Runs the slew against a table of the second code; returns the times at which wheels stopped.
 fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let craft = craft();
-    let mut turning = ThreeAxisMotion::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
-    turning.set_bearings(bearings);
+    let mut motion = ThreeAxisMotion::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
+    motion.set_bearings(bearings);
     let mut events = Vec::new();
     let to = rotation(&(Vector::new(1.0, 2.0, 2.0) * (std::f64::consts::FRAC_PI_3 / 3.0)));
     let slew = Slew::new([Quaternion::identity(), to], 2e-4, 8e-3, SlewProfile::Trapezoid);
@@ -111,7 +111,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
     let mut met = 0;
     for k in 0..=920 {
         let (t, now) = (PERIOD * f64::from(k), Instant::START + Span::from_seconds(PERIOD * f64::from(k)));
-        let (attitude, rate) = (turning.seen().attitude, turning.seen().rate);
+        let (attitude, rate) = (motion.view().attitude, motion.view().rate);
         let pose = slew.at(t);
         let angles = rotation_vector(&pose.attitude, &attitude);
         if let Some(row) = table.iter().find(|row| row[0] == t) {
@@ -149,31 +149,31 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
         let mut wrench = Wrench::default();
         wheels.apply(now, &mut wrench);
         let acting = SegmentLoads { rotors: wrench.rotors, ..SegmentLoads::default() };
-        turning.depart(&acting);
-        turning.resolve_stick_slip(None);
+        motion.begin_segment(&acting);
+        motion.resolve_stick_slip(None);
         let mut began = 0.0;
-        while let Some(at) = go(&mut turning, PERIOD - began) {
+        while let Some(at) = go(&mut motion, PERIOD - began) {
             let before: Vec<SlipDirection> =
-                turning.rotor_observations(None).iter().map(|wheel| wheel.slip).collect();
-            turning.reach(at, None);
+                motion.rotor_observations(None).iter().map(|wheel| wheel.slip).collect();
+            motion.stop_at_event(at, None);
             began += at;
-            turning.depart(&acting);
-            turning.resolve_stick_slip(None);
-            for (wheel, (turned, before)) in turning.rotor_observations(None).iter().zip(before).enumerate() {
+            motion.begin_segment(&acting);
+            motion.resolve_stick_slip(None);
+            for (wheel, (turned, before)) in motion.rotor_observations(None).iter().zip(before).enumerate() {
                 if turned.slip != before {
                     events.push((t + began, wheel, turned.slip));
                 }
             }
         }
-        let rotors = turning.rotor_observations(None);
+        let rotors = motion.rotor_observations(None);
         wheels.update(now + Span::from_seconds(PERIOD), ActuatorEvent::Rotors(&rotors));
     }
     assert_eq!(met, table.len());
     events
 }
 
-fn go(turning: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
-    turning.advance(t, None, || Ok::<(), std::convert::Infallible>(())).unwrap()
+fn go(motion: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
+    motion.advance(t, None, || Ok::<(), std::convert::Infallible>(())).unwrap()
 }
 
 #[test]

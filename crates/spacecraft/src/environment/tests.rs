@@ -227,24 +227,24 @@ fn a_bent_body_keeps_its_energy_in_the_axes_of_the_orbit() {
     let body = flexible();
     let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &body.inertia);
     let start = rotation(&Vector::new(0.9, -0.4, 1.3));
-    let mut turning =
+    let mut motion =
         ThreeAxisMotion::new(&body, start, Vector::new(4e-3, 1e-3, -2e-3), &[[0.5, 0.0], [0.0, 0.02]]);
     let momentum = 2.0;
-    turning.depart(&SegmentLoads {
+    motion.begin_segment(&SegmentLoads {
         rotors: vec![Rotor { axis: Vector::new(0.6, 0.0, 0.8), momentum, torque: 0.0 }],
         ..SegmentLoads::default()
     });
-    let of = |turning: &ThreeAxisMotion, t: f64| {
-        let seen = turning.seen();
-        let energy = seen.rotational + turning.energies().sum::<f64>();
-        let energy = integral(energy, &seen.attitude, &seen.momentum, &turning.inertia(), t);
-        (energy, 0.5 * seen.rate.dot(&seen.momentum))
+    let of = |motion: &ThreeAxisMotion, t: f64| {
+        let view = motion.view();
+        let energy = view.rotational_energy + motion.energies().sum::<f64>();
+        let energy = integral(energy, &view.attitude, &view.momentum, &motion.inertia(), t);
+        (energy, 0.5 * view.rate.dot(&view.momentum))
     };
-    let (before, _) = of(&turning, 0.0);
+    let (before, _) = of(&motion, 0.0);
     for k in 1..=10 {
         let t = 200.0 * f64::from(k);
-        turning.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
-        let (now, scale) = of(&turning, t);
+        motion.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        let (now, scale) = of(&motion, t);
         assert!((now - before).abs() < 1e-11 * scale.abs(), "{k} {:e} of {scale:e}", now - before);
     }
 }
@@ -267,13 +267,13 @@ fn a_torque_that_is_constant_in_inertial_axes_adds_to_the_momentum_as_time_does(
     }
     let (body, start) = (flexible(), Quaternion::identity());
     let around = around(text, &body.inertia);
-    let mut turning = ThreeAxisMotion::new(&body, start, rate, &[[0.5, 0.0], [0.0, 0.02]]);
-    let seen = turning.seen();
-    let before = in_space(seen.attitude, seen.momentum);
+    let mut motion = ThreeAxisMotion::new(&body, start, rate, &[[0.5, 0.0], [0.0, 0.02]]);
+    let view = motion.view();
+    let before = in_space(view.attitude, view.momentum);
     for t in [100.0, 1000.0, 3000.0] {
-        turning.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
-        let seen = turning.seen();
-        let now = in_space(seen.attitude, seen.momentum);
+        motion.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        let view = motion.view();
+        let now = in_space(view.attitude, view.momentum);
         let off = (now - before - torque * t).norm() / now.norm();
         assert!(off < 1e-14, "{t} {off:e}");
     }
