@@ -3,12 +3,13 @@
 
 use std::hash::{DefaultHasher, Hash, Hasher};
 
+use flexsc_core::control::actuator::JetCycle;
 use flexsc_core::metrics::{MetricValue, Metrics, MetricsCollector};
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{
-    Column, Columns, Detail, Motion, Record, RecordError, Sample, ThreeAxisCycle, ThreeAxisMotionSample,
-    Trace,
+    Column, Columns, Detail, Energy, Magnetorquers, Modes, Orbit, Pointing, Rate, Record, RecordError,
+    Report, Sample, StoredMomentum, ThreeAxisCycle, Torque, Torques, Trace,
 };
 use flexsc_core::{ObservationField, Scenario, Simulation};
 use nalgebra::{Matrix3, Quaternion};
@@ -63,6 +64,8 @@ struct Rows {
     pulses: Vec<Pulse>,
     /// Instants (s) of control cycles, with the rigid rates (rad/s) and the momentum of the rotors (N m s).
     cycles: Vec<(f64, Vector, Vector)>,
+    /// Number of pulses of jets since the start.
+    fired: u64,
     /// Torque of a one-axis law without actuator since its last switching (N m).
     switched: f64,
 }
@@ -77,21 +80,22 @@ pub struct Flown {
 }
 
 impl Rows {
-    fn add_one_axis(&mut self, t: f64, motion: &Motion) {
-        let torque = motion.drive.as_ref().map(|(_, torque)| torque.applied_nm);
+    fn add_one_axis(&mut self, t: f64, rate: &Rate, report: &Report) {
+        let torque = report.get::<Torque>().map(|torque| torque.applied_nm);
+        let modes = report.get::<Modes>().map_or(&[][..], |modes| &modes.modes);
         self.one.push(OneAxisRow {
             t,
-            rigid_rate: motion.rate.rigid_rad_s,
+            rigid_rate: rate.rigid_rad_s,
             applied: torque.unwrap_or(self.switched),
-            modes: motion.modes.modes.iter().map(|mode| [mode.displacement_rad, mode.rate_rad_s]).collect(),
+            modes: modes.iter().map(|mode| [mode.displacement_rad, mode.rate_rad_s]).collect(),
         });
     }
 
-    fn add_three_axes(&mut self, t: f64, motion: &ThreeAxisMotionSample) {
-        let (pointing, energy) = (&motion.pointing, &motion.energy);
-        let applied = |axis: usize| motion.torques.as_ref().map_or(0.0, |all| all.axes[axis].applied_nm);
-        let moment = |axis: usize| motion.magnetorquers.as_ref().map_or(0.0, |all| all.axes[axis].moment_am2);
-        let field = |axis: usize| motion.orbit.as_ref().map_or(0.0, |orbit| orbit.axes[axis].field_t);
+    fn add_three_axes(&mut self, t: f64, pointing: &Pointing, report: &Report) {
+        let energy = report.get::<Energy>().expect("energies beside an attitude");
+        let applied = |axis: usize| report.get::<Torques>().map_or(0.0, |all| all.axes[axis].applied_nm);
+        let moment = |axis: usize| report.get::<Magnetorquers>().map_or(0.0, |all| all.axes[axis].moment_am2);
+        let field = |axis: usize| report.get::<Orbit>().map_or(0.0, |orbit| orbit.axes[axis].field_t);
         self.three.push(ThreeAxisRow {
             t,
             attitude: Quaternion::new(pointing.q_w, pointing.q_x, pointing.q_y, pointing.q_z),
@@ -103,16 +107,18 @@ impl Rows {
         });
     }
 
-    fn add_cycle(&mut self, t: f64, cycle: &ThreeAxisCycle) {
-        self.cycles.push((t, cycle.rigid_rate_rad_s.into(), cycle.stored_nm_s.into()));
-        if cycle.pulses == 0 {
+    fn add_cycle(&mut self, t: f64, cycle: &ThreeAxisCycle, report: &Report) {
+        let stored = report.get::<StoredMomentum>().copied().unwrap_or_default();
+        self.cycles.push((t, cycle.rigid_rate_rad_s.into(), stored.0.into()));
+        let Some(jets) = report.get::<JetCycle>() else { return };
+        // Jets may have cycles of their own, which are longer.
+        if std::mem::replace(&mut self.fired, jets.pulses) == jets.pulses {
             return;
         }
-        let groups = [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s];
         let grouped =
-            groups.iter().enumerate().map(|(axis, on)| (2 * axis + usize::from(*on < 0.0), on.abs()));
-        let each = cycle.thrusters.iter().copied().enumerate();
-        let fired: Vec<_> = if cycle.thrusters.is_empty() { grouped.collect() } else { each.collect() };
+            jets.on.iter().enumerate().map(|(axis, on)| (2 * axis + usize::from(*on < 0.0), on.abs()));
+        let each = jets.each.iter().copied().enumerate();
+        let fired: Vec<_> = if jets.each.is_empty() { grouped.collect() } else { each.collect() };
         self.pulses
             .extend(fired.into_iter().filter(|(_, on)| *on > 0.0).map(|(index, on)| (t, t + on, index)));
     }
@@ -128,10 +134,16 @@ impl Record for Rows {
         match sample {
             Sample::Begin(law) => self.switched = law.torque_nm,
             Sample::Switching(command, _) => self.switched = command.torque_nm,
-            Sample::Motion(motion) => self.add_one_axis(t, motion),
-            Sample::SpatialMotion(motion) => self.add_three_axes(t, motion),
-            Sample::Cycle(cycle) => self.add_cycle(t, cycle),
-            _ => {}
+            Sample::Row(_) => {}
+            Sample::Report(report) => {
+                if let Some(cycle) = report.get() {
+                    self.add_cycle(t, cycle, report);
+                } else if let Some(pointing) = report.get() {
+                    self.add_three_axes(t, pointing, report);
+                } else if let Some(rate) = report.get() {
+                    self.add_one_axis(t, rate, report);
+                }
+            }
         }
         Ok(())
     }
