@@ -17,6 +17,7 @@ mod figures;
 mod instants;
 mod linear;
 mod log;
+mod mcap_log;
 mod parts;
 mod sampled;
 mod stepping;
@@ -31,14 +32,12 @@ use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics;
 use flexsc_core::numerics::quantity::{Fraction, Positive};
-use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
+use flexsc_core::record::{self, Detail, Trace};
 use flexsc_core::spacecraft::body::{BodyAxes, Planar};
 use flexsc_core::spacecraft::manoeuvre::{
     CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
 };
 use flexsc_core::{Document, ScenarioError, record::atomic_file};
-use flexsc_view::scene::Scene;
-use flexsc_view::with_layout;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -76,6 +75,8 @@ mod _native {
     #[pymodule_export]
     use super::log::Log;
     #[pymodule_export]
+    use super::mcap_log::to_mcap;
+    #[pymodule_export]
     use super::parts::{
         Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
         Truth, beside_parts, parts_of, text_beside_parts, with_parts,
@@ -87,7 +88,7 @@ mod _native {
     #[pymodule_export]
     use super::{
         Scenario, estimate_json, examples, main, meanings_json, metrics_json, plan_json, plan_torque,
-        rigid_cycles_json, rivals_json, schema_json, simulate, to_mcap, topics_json, write,
+        rigid_cycles_json, rivals_json, schema_json, simulate, topics_json, write,
     };
     #[pymodule_export]
     #[allow(non_upper_case_globals)]
@@ -246,29 +247,6 @@ fn simulate<'py>(
 }
 
 #[pyfunction]
-fn to_mcap(
-    py: Python<'_>,
-    scenario: &Scenario,
-    run: u64,
-    log: &str,
-    path: PathBuf,
-    stepped: Option<&Commands>,
-) -> PyResult<u64> {
-    let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
-    let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
-    let Commands { given, until } = Commands::from_stepped(stepped);
-    let (place, is_own) = (path.clone(), scenario.inner.has_custom_parts());
-    let written = aside(py, move |stop| {
-        let provenance = with_layout(given.provenance(&run), &run.scenario, detail);
-        let mut file = LogFile::create(&place, &provenance, detail)?;
-        let scene = Scene::for_detail(&run.scenario, detail);
-        let metrics =
-            parts::known_thread(is_own, || given.simulate(&run, until, ((&mut file, scene), stop)))?;
-        Ok(file.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
-    })?;
-    written.map_err(|error| error::unwritten(&path, scenario.name(), error))
-}
-
 /// The estimated work of runs as a campaign has them, or of one run whose log of this detail stays in memory.
 #[pyfunction]
 fn estimate_json(scenario: &Scenario, runs: u64, log: &str) -> PyResult<String> {

@@ -197,7 +197,7 @@ impl BodyConstants {
 }
 
 impl BodyConstants {
-    /// Returns Gt and the hub's rate as [`BodyConstants::rates`] does, in lanes, for changes xx, yy, zz, yz, zx and xy of the
+    /// Returns Gt and the hub's rate as [`BodyConstants::momentum_and_rate`] does, in lanes, for changes xx, yy, zz, yz, zx and xy of the
     /// inertia.
     #[inline(always)]
     pub fn momentum_and_rate_lanes<R: LaneFloat>(

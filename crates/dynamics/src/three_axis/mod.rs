@@ -52,7 +52,7 @@
 //! 2. `step/`: one step: `mod.rs`, `mode_response.rs`, `predictor.rs`, `iterate.rs` (all nodes at once, SIMD),
 //!    `iterate_scalar.rs` (node by node, for rotors in bearings and moving appendages), `modal_forces.rs`,
 //!    `attitude_nodes.rs`, `convergence.rs`.
-//! 3. `motion.rs`: segments and the grid of steps; `step_levels.rs` and `step_size.rs`: how long a step is; `shared.rs`:
+//! 3. `motion.rs`: segments, with their loads in `segment_loads.rs`, and the grid of steps; `step_levels.rs` and `step_size.rs`: how long a step is; `shared.rs`:
 //!    what the runs of a campaign share; `accelerations.rs`: the right-hand side at an instant.
 //! 4. `rotors/`: bearings with friction and imbalance, stick-slip and its search (with `error_bounds.rs`), gimbals.
 //! 5. `appendages/`: panels on drives and hinges, whose angles change all coefficients.
@@ -67,6 +67,7 @@ mod error_bounds;
 mod free_modes;
 mod motion;
 mod rotors;
+mod segment_loads;
 mod shared;
 mod small_rotation;
 mod state;
@@ -84,8 +85,9 @@ pub use appendages::{
 };
 pub use body::{FlexibleBody, FreeMode, Rotor};
 pub use free_modes::{ClampedModes, FreeModes};
-pub use motion::{SegmentLoads, StepCounts, ThreeAxisMotion};
+pub use motion::{StepCounts, ThreeAxisMotion};
 pub use rotors::{Bearing, Gimbal, HarmonicLine, RotorObservation, SlipDirection};
+pub use segment_loads::SegmentLoads;
 pub use shared::SharedSteps;
 pub use state::BodyView;
 pub use step_levels::IMBALANCE_PHASE;

@@ -10,7 +10,8 @@ use nalgebra::Matrix3;
 
 use super::bearing::{BearingLoads, RotorState, SlipDirection};
 use crate::three_axis::constants::tensor;
-use crate::three_axis::motion::{SegmentLoads, ThreeAxisMotion};
+use crate::three_axis::motion::ThreeAxisMotion;
+use crate::three_axis::segment_loads::SegmentLoads;
 use crate::three_axis::small_rotation::SmallRotation;
 use crate::three_axis::state::BodyView;
 use crate::three_axis::surroundings::TimedSurroundings;
