@@ -246,7 +246,6 @@ fn simulate<'py>(
     Ok((columns::metrics_to_dict(py, &metrics)?, topics))
 }
 
-#[pyfunction]
 /// The estimated work of runs as a campaign has them, or of one run whose log of this detail stays in memory.
 #[pyfunction]
 fn estimate_json(scenario: &Scenario, runs: u64, log: &str) -> PyResult<String> {
