@@ -15,7 +15,7 @@ use super::{ElasticStates, FilterModes, GainMethod, GyroNoise};
 use crate::estimator::kalman::Prior;
 use crate::offers::Offers;
 use crate::requirement::{Requirements, Rule};
-use crate::sensor::{Gyro, SensorKind};
+use crate::sensor::{Gyro, ReferenceNoise, SensorKind};
 
 /// Estimates the attitude and the gyro bias of a body with three axes.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -135,10 +135,7 @@ impl AttitudeFilter {
         cycle: Option<Span>,
         mounted: Option<SensorMounts<'_>>,
     ) -> Result<FilterSetup, ConfigError> {
-        let gyro = sensors.iter().enumerate().find_map(|(index, sensor)| match sensor {
-            SensorKind::Gyro(gyro) => Some((index, gyro)),
-            _ => None,
-        });
+        let gyro = sensors.iter().enumerate().find_map(|(index, sensor)| Some((index, sensor.gyro()?)));
         let Some((read, gyro)) = gyro else {
             return Err(ConfigError::new(
                 "",
@@ -215,29 +212,13 @@ impl AttitudeFilter {
                 Err(ConfigError::new("attitude_noise", why))
             }
         };
-        match sensor {
-            SensorKind::StarTracker(tracker) => {
-                let noise = known(tracker.noise.map(NonNegative::get));
-                Some((tracker.latency(), noise.map(|noise| tracker.covariance(noise))))
-            }
-            SensorKind::Sampled(sampled) => {
-                let squares = |noise: [f64; 3]| Vector::from(noise.map(|noise| noise * noise));
-                let noise = known([sampled.angle_noise(); 3]);
-                Some((Span::ZERO, noise.map(|noise| Matrix3::from_diagonal(&squares(noise)))))
-            }
-            SensorKind::Magnetometer(magnetometer) => {
-                let noise = vector(self.field_noise, magnetometer.covariance(), "field_noise");
-                Some((magnetometer.latency(), noise))
-            }
-            SensorKind::SunSensor(sensor) => {
-                Some((sensor.latency(), vector(self.sun_noise, sensor.covariance(), "sun_noise")))
-            }
-            SensorKind::Continuous
-            | SensorKind::Gyro(_)
-            | SensorKind::Tachometer(_)
-            | SensorKind::Accelerometer(_)
-            | SensorKind::Own(_) => None,
-        }
+        let (latency, reference) = sensor.reference()?;
+        let noise = match reference {
+            ReferenceNoise::Attitude(own) => known(own).map(|noise| sensor.attitude_covariance(noise)),
+            ReferenceNoise::MagneticField(own) => vector(self.field_noise, own, "field_noise"),
+            ReferenceNoise::Sun(own) => vector(self.sun_noise, own, "sun_noise"),
+        };
+        Some((latency, noise))
     }
 
     /// Returns the gyro's noise; white noise of sampled rates is converted to an angle random walk.
