@@ -81,7 +81,7 @@ mod tests {
     use super::*;
 
     /// Arguments and the nearest doubles of their exponentials, by mpmath.
-    const ORACLE: &str = include_str!("../../../../tests/golden/decay.csv");
+    const ORACLE: &str = include_str!("../../../tests/golden/decay.csv");
 
     #[test]
     fn exponentials_are_within_a_unit_in_the_last_place() {

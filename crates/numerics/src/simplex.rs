@@ -205,7 +205,7 @@ mod tests {
     /// Compares with SciPy's `linprog`: tests/golden/jets_oracle.py.
     #[test]
     fn it_finds_what_scipy_finds() {
-        let text = include_str!("../../../../tests/golden/jets.csv");
+        let text = include_str!("../../../tests/golden/jets.csv");
         let (mut cases, mut short) = (0, 0);
         for line in text.lines().filter(|line| !line.starts_with('#')) {
             let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();

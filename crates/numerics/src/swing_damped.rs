@@ -231,7 +231,7 @@ mod tests {
     use super::*;
 
     /// Reference values by `tests/golden/swing_damped_oracle.py`.
-    const ORACLE: &str = include_str!("../../../../tests/golden/swing_damped.csv");
+    const ORACLE: &str = include_str!("../../../tests/golden/swing_damped.csv");
 
     /// Returns the deviation after the time `t`.
     fn later([re, im]: [f64; 2], decay: f64, frequency: f64, t: f64) -> [f64; 2] {

@@ -62,7 +62,7 @@ mod tests {
     use crate::phasor::{Complex, polar};
 
     /// Reference values by `tests/golden/swing_oracle.py`.
-    const ORACLE: &str = include_str!("../../../../tests/golden/swing.csv");
+    const ORACLE: &str = include_str!("../../../tests/golden/swing.csv");
 
     /// Returns the integral, with W rotated to its other end.
     fn over(c: f64, from: Phasor, w: f64, h: f64) -> f64 {
