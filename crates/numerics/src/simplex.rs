@@ -208,7 +208,7 @@ mod tests {
         let text = include_str!("../../../tests/golden/jets.csv");
         let (mut cases, mut short) = (0, 0);
         for line in text.lines().filter(|line| !line.starts_with('#')) {
-            let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().unwrap()).collect();
+            let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
             let (rows, count) = (numbers[0] as usize, numbers[1] as usize);
             let mut rest = numbers[2..].iter().copied();
             let mut take = |n: usize| -> Vec<f64> { rest.by_ref().take(n).collect() };

@@ -127,7 +127,9 @@ impl RunView<'_> {
     ) {
         let axes = self.estimation.axis_count();
         let at = ReportContext { now: self.now, occasion, axes, truth: self, damping };
-        parts.iter().for_each(|part| part.report(&at, report));
+        for part in parts {
+            part.report(&at, report);
+        }
     }
 
     /// Adds the rows of a one-axis plant, of the manoeuvre, and of the torques.
