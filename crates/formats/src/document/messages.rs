@@ -13,7 +13,7 @@ pub fn parse_error(origin: &str, text: &str, error: &toml::de::Error) -> Diagnos
     }
     let message = explained(error.message());
     let Some(span) = error.span() else { return Diagnostic::new(origin, message) };
-    let message = of_another_language(text, span.start).unwrap_or(message);
+    let message = foreign_syntax(text, span.start).unwrap_or(message);
     let table = DeTable::parse(text).ok();
     match table.and_then(|table| path_of(table.get_ref(), &span)) {
         None => Diagnostic::new(origin, message).at(text, &span),
@@ -73,7 +73,7 @@ const DISTRIBUTIONS: &str = "; a distribution is a table such as `{ normal = { m
                              `{ relative_normal = 0.1 }` or `{ uniform = [0.2, 0.3] }`";
 
 /// Returns a message about syntax of another language at a place that the parser does not understand.
-fn of_another_language(text: &str, place: usize) -> Option<String> {
+fn foreign_syntax(text: &str, place: usize) -> Option<String> {
     let (before, after) = text.split_at_checked(place)?;
     let line = before.rsplit('\n').next().unwrap_or(before);
     let rest = after.lines().next().unwrap_or_default();

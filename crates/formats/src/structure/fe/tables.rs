@@ -51,7 +51,7 @@ impl ParticipationTable {
     ///
     /// # Errors
     /// Fields that are not of this form, and modes that begin again.
-    pub fn take(&mut self, line: &TextLine) -> Result<(), String> {
+    pub fn read_line(&mut self, line: &TextLine) -> Result<(), String> {
         let fields = line.fields([
             "MODE NO.",
             "X-COMPONENT",
@@ -132,7 +132,7 @@ impl ParticipationTable {
 ///
 /// # Errors
 /// Modes without factors, and tables that contradict each other.
-pub fn of_factors(
+pub fn from_factors(
     natural: &[NaturalFrequency],
     factors: &ParticipationTable,
     masses: &ParticipationTable,
@@ -156,11 +156,11 @@ pub fn of_factors(
 /// direction.
 ///
 /// # Errors
-/// A mode with two directions, with what to ask the solver for.
-pub fn of_masses(
+/// A mode with two directions; the message names the output to request from the solver.
+pub fn from_masses(
     natural: &[NaturalFrequency],
     masses: &ParticipationTable,
-    ask: &str,
+    request: &str,
 ) -> Result<Vec<FileMode>, String> {
     let largest = |rows: Range<usize>| {
         masses
@@ -183,7 +183,7 @@ pub fn of_masses(
             if parts.iter().filter(|part| **part != 0.0).count() > 1 || parts.iter().any(|part| *part < 0.0) {
                 return Err(format!(
                     "line {}: must have participation factors beside effective masses, of which mode {} has several \
-                     and their signs are lost: {ask}",
+                     and their signs are lost: {request}",
                     row.line, natural.mode
                 ));
             }
