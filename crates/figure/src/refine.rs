@@ -46,10 +46,10 @@ fn finer(values: &[f64], steps: usize) -> Vec<f64> {
     })
 }
 
-fn between(values: &[f64], steps: usize, at: impl Fn(usize, f64) -> f64) -> Vec<f64> {
+fn between(values: &[f64], steps: usize, value_at: impl Fn(usize, f64) -> f64) -> Vec<f64> {
     let inner = (0..values.len().saturating_sub(1))
         .flat_map(|index| (0..steps).map(move |step| (index, step as f64 / steps as f64)));
-    let fine = inner.map(|(index, part)| if part == 0.0 { values[index] } else { at(index, part) });
+    let fine = inner.map(|(index, part)| if part == 0.0 { values[index] } else { value_at(index, part) });
     fine.chain(values.last().copied()).collect()
 }
 
@@ -64,18 +64,19 @@ mod tests {
         let field = ScalarField { x: vec![0.0, 1.0, 2.0, 4.0, 5.0], y: vec![0.0, 0.5, 1.0, 2.0], values };
         let fine = field.refined(4);
         assert_eq!((fine.x.len(), fine.y.len(), fine.values.len()), (17, 13, 17 * 13));
-        let at = |field: &ScalarField, i: usize, j: usize| field.values[i * field.y.len() + j];
+        let value_at = |field: &ScalarField, i: usize, j: usize| field.values[i * field.y.len() + j];
         for i in 0..5 {
             for j in 0..4 {
-                assert_eq!(at(&fine, 4 * i, 4 * j), at(&field, i, j));
+                assert_eq!(value_at(&fine, 4 * i, 4 * j), value_at(&field, i, j));
             }
         }
         for i in 0..16 {
             for j in 0..12 {
-                let corners = [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(a, b)| at(&field, i / 4 + a, j / 4 + b));
+                let corners =
+                    [(0, 0), (1, 0), (0, 1), (1, 1)].map(|(a, b)| value_at(&field, i / 4 + a, j / 4 + b));
                 let (low, high) =
                     corners.iter().fold((f64::MAX, f64::MIN), |(l, h), v| (l.min(*v), h.max(*v)));
-                assert!((low - 1e-12..=high + 1e-12).contains(&at(&fine, i, j)), "{i} {j}");
+                assert!((low - 1e-12..=high + 1e-12).contains(&value_at(&fine, i, j)), "{i} {j}");
             }
         }
         assert_eq!(fine.x[13], 4.25);

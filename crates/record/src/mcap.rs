@@ -43,7 +43,7 @@ impl<W: Write + Seek> McapLog<W> {
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
         let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
         write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
-        let channels = Channels { writer, of: vec![None; TOPICS.len()], since_flush: 0 };
+        let channels = Channels { writer, channels: vec![None; TOPICS.len()], since_flush: 0 };
         Ok(Self { log: MessageEncoder::new(channels, from, detail)? })
     }
 
@@ -67,13 +67,13 @@ impl<W: Write + Seek> McapLog<W> {
 struct Channels<W: Write + Seek> {
     writer: Writer<W>,
     /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`].
-    of: Vec<Option<(u16, u32)>>,
+    channels: Vec<Option<(u16, u32)>>,
     since_flush: u64,
 }
 
 impl<W: Write + Seek> Channels<W> {
     fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
-        if let Some(channel) = self.of[index] {
+        if let Some(channel) = self.channels[index] {
             return Ok(channel);
         }
         let topic = &TOPICS[index];
@@ -87,7 +87,7 @@ impl<W: Write + Seek> Channels<W> {
 impl<W: Write + Seek> MessageSink for Channels<W> {
     fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         let (channel_id, sequence) = self.channel(message.topic)?;
-        self.of[message.topic] = Some((channel_id, sequence.wrapping_add(1)));
+        self.channels[message.topic] = Some((channel_id, sequence.wrapping_add(1)));
         let log_time = message.time_ns;
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
         self.writer.write_to_known_channel(&header, message.data).map_err(failure)?;
