@@ -12,7 +12,7 @@ pub struct Translation {
     /// Total mass (kg).
     mass: f64,
     /// Position of the point on the undeformed body, from the centre of mass (m).
-    at: Vector,
+    position: Vector,
     /// Displacement of the point per unit of each free mode, in the hub's axes (1/sqrt(kg)).
     shifts: Vec<Vector>,
 }
@@ -21,9 +21,9 @@ impl Translation {
     /// Creates the translation of a body of the given mass (kg), for its first point.
     pub fn new(body: &Spatial, mass: f64) -> Self {
         let first = body.points.first();
-        let at = first.map_or_else(Vector::zeros, |point| vector(&point.position));
+        let position = first.map_or_else(Vector::zeros, |point| vector(&point.position));
         let shifts = body.displacements(first.map_or("", |point| &point.name), &Vector::zeros());
-        Self { mass, at, shifts }
+        Self { mass, position, shifts }
     }
 
     /// Returns the acceleration of the centre of mass under a force (N), in m/s².
@@ -32,17 +32,17 @@ impl Translation {
     }
 
     /// Returns the point's position, in inertial axes from the centre of mass at the start (m), and its velocity (m/s).
-    pub fn position(&self, seen: &BodyView) -> [Vector; 2] {
-        let sum = |of: &[f64]| -> Vector {
-            self.shifts.iter().zip(of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
+    pub fn position(&self, view: &BodyView) -> [Vector; 2] {
+        let sum = |weighted_sum_of: &[f64]| -> Vector {
+            self.shifts.iter().zip(weighted_sum_of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
         };
-        let bent = || [sum(&seen.displacements), sum(&seen.rates)];
-        let [moved, speed] = seen.shift.unwrap_or_else(bent);
-        let arm = self.at + moved;
-        let rate = seen.rate.cross(&arm) + speed;
-        let q = seen.attitude;
+        let bent = || [sum(&view.displacements), sum(&view.rates)];
+        let [moved, speed] = view.shift.unwrap_or_else(bent);
+        let arm = self.position + moved;
+        let rate = view.rate.cross(&arm) + speed;
+        let q = view.attitude;
         let inertial = |v: Vector| (q * Quaternion::from_imag(v) * q.conjugate()).vector().into_owned();
-        let [position, velocity] = seen.moved;
+        let [position, velocity] = view.moved;
         [position + inertial(arm), velocity + inertial(rate)]
     }
 }
