@@ -63,8 +63,8 @@ impl ActuatorSet {
         executing.chain(self.unloader.iter().map(|unloader| &*unloader.actuator))
     }
 
-    fn sum(&self, of: impl Fn(&dyn Actuator) -> f64) -> f64 {
-        self.each().map(of).reduce(|sum, next| sum + next).unwrap_or(0.0)
+    fn sum(&self, value_of: impl Fn(&dyn Actuator) -> f64) -> f64 {
+        self.each().map(value_of).reduce(|sum, next| sum + next).unwrap_or(0.0)
     }
 
     /// Commands one of the actuators with its share of the demands.
@@ -107,7 +107,8 @@ impl Actuator for ActuatorSet {
 
     fn update(&mut self, now: Instant, rigid: [f64; 3]) {
         let stored = Vector::from(self.stored_momentum(now));
-        let held = self.unloader.as_mut().and_then(|of| of.serve(now, rigid, stored, &self.demands));
+        let held =
+            self.unloader.as_mut().and_then(|unloader| unloader.serve(now, rigid, stored, &self.demands));
         self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, rigid));
         if let (Some(held), Some(index)) = (held, self.keepers.first().copied()) {
             self.hold(held);
@@ -125,8 +126,8 @@ impl Actuator for ActuatorSet {
 
     /// Returns the total torque demanded of the actuators that execute demands (N m).
     fn demanded_torque(&self, axis: usize) -> f64 {
-        let asked = self.executing.iter().map(|(actuator, _)| actuator.demanded_torque(axis));
-        asked.reduce(|sum, next| sum + next).unwrap_or(0.0)
+        let demanded = self.executing.iter().map(|(actuator, _)| actuator.demanded_torque(axis));
+        demanded.reduce(|sum, next| sum + next).unwrap_or(0.0)
     }
 
     fn held_torque(&self, axis: usize) -> f64 {
@@ -150,7 +151,7 @@ impl Actuator for ActuatorSet {
     }
 
     fn back_emf(&self) -> (f64, bool) {
-        self.each().map(Actuator::back_emf).find(|(of, _)| *of != 0.0).unwrap_or_default()
+        self.each().map(Actuator::back_emf).find(|(back_emf, _)| *back_emf != 0.0).unwrap_or_default()
     }
 
     fn wheel(&self, axis: usize, rigid_rate: f64) -> Option<WheelMotion> {

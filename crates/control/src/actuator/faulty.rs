@@ -31,12 +31,15 @@ impl FaultyActuator {
     ) -> Box<dyn AxisActuator> {
         let Some(failing) = ActiveFailures::new(failures, concerns) else { return inner };
         let until = |outage: Interval| outage.to.map_or(f64::MAX, Time::get);
-        let terms = failing.scheduled_sines().map(|(sine, of)| sine.term(of.from.get(), until(of))).collect();
+        let terms = failing
+            .scheduled_sines()
+            .map(|(sine, scope)| sine.term(scope.from.get(), until(scope)))
+            .collect();
         Box::new(Self { inner, failing, added: Arc::new(Waveform { terms }) })
     }
 
     /// Returns the torque without failures, with the waveform (N m).
-    fn wanted(&self, now: Instant) -> f64 {
+    fn commanded(&self, now: Instant) -> f64 {
         self.inner.torque() + self.inner.waveform(now).map_or(0.0, |forced| forced.at(0.0))
     }
 }
@@ -48,8 +51,8 @@ impl AxisActuator for FaultyActuator {
 
     fn serve(&mut self, now: Instant, rigid_rate: f64) {
         self.inner.serve(now, rigid_rate);
-        let wanted = self.wanted(now);
-        self.failing.update(now, wanted);
+        let commanded = self.commanded(now);
+        self.failing.update(now, commanded);
     }
 
     fn due(&self) -> Option<Instant> {
@@ -76,8 +79,8 @@ impl AxisActuator for FaultyActuator {
         self.failing.sines()
     }
 
-    fn asked(&self) -> f64 {
-        self.inner.asked()
+    fn demanded_torque(&self) -> f64 {
+        self.inner.demanded_torque()
     }
 
     fn executes_waveform(&self) -> bool {
@@ -95,10 +98,10 @@ impl AxisActuator for FaultyActuator {
     }
 
     fn applied(&self, now: Instant, rates: [f64; 2]) -> f64 {
-        let (wanted, t) = (self.wanted(now), now.seconds());
+        let (commanded, t) = (self.commanded(now), now.seconds());
         let added: f64 = self.failing.sines().iter().map(|sine| sine.at(t)).sum();
         // Back-EMF is not affected.
-        self.inner.applied(now, rates) - wanted + self.failing.output(wanted) + added
+        self.inner.applied(now, rates) - commanded + self.failing.output(commanded) + added
     }
 
     fn back_emf(&self) -> (f64, bool) {

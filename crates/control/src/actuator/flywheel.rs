@@ -138,14 +138,14 @@ impl FlywheelState {
 
     /// Executes the commands whose delay has elapsed.
     fn turn(&mut self, now: Instant, rigid_rate: f64) {
-        while let Some((_, command)) = self.delayed.front().copied().filter(|(at, _)| *at <= now) {
+        while let Some((_, command)) = self.delayed.front().copied().filter(|(due, _)| *due <= now) {
             self.delayed.pop_front();
             let torque = self.wheel.gain.get() * command;
             // A torque that accelerates the body decelerates the wheel.
-            let spent = self
+            let heat = self
                 .speed(rigid_rate)
                 .is_some_and(|(speed, limit)| speed.abs() >= limit && speed * torque < 0.0);
-            self.held = if spent { 0.0 } else { torque };
+            self.held = if heat { 0.0 } else { torque };
         }
     }
 
@@ -175,7 +175,7 @@ impl AxisActuator for FlywheelState {
     }
 
     fn due(&self) -> Option<Instant> {
-        let delayed = self.delayed.front().map(|(at, _)| *at);
+        let delayed = self.delayed.front().map(|(due, _)| *due);
         [delayed, self.next].into_iter().flatten().min()
     }
 
@@ -187,7 +187,7 @@ impl AxisActuator for FlywheelState {
         self.held
     }
 
-    fn asked(&self) -> f64 {
+    fn demanded_torque(&self) -> f64 {
         self.wheel.gain.get() * self.feedback
     }
 

@@ -46,7 +46,7 @@ impl AxisActuator for IdealState {
         self.torque
     }
 
-    fn asked(&self) -> f64 {
+    fn demanded_torque(&self) -> f64 {
         self.torque
     }
 

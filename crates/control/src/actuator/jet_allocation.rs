@@ -50,8 +50,8 @@ fn programme(nozzles: &[ThrusterEffect], most: f64, force_free: bool) -> LinearP
 }
 
 /// Returns the right-hand side of a programme: a torque or an impulse, and zero force.
-fn asked(wanted: &Vector, force_free: bool) -> Vec<f64> {
-    wanted.iter().copied().chain([0.0; 3].into_iter().filter(|_| force_free)).collect()
+fn right_hand_side(demand: &Vector, force_free: bool) -> Vec<f64> {
+    demand.iter().copied().chain([0.0; 3].into_iter().filter(|_| force_free)).collect()
 }
 
 /// Returns, for each axis about which the jets act, the combined effects of the thrusters that give the largest
@@ -70,9 +70,9 @@ pub(super) fn largest_torques(
     // More than all thrusters together can give.
     let beyond: f64 = nozzles.iter().map(|nozzle| nozzle.push.torque.norm()).sum::<f64>().max(1.0) * 2.0;
     let group = |axis: usize, sign: f64| {
-        let mut wanted = Vector::zeros();
-        wanted[axis] = sign * beyond;
-        let (parts, _) = programme.cheapest(&asked(&wanted, jets.force_free), &costs);
+        let mut demand = Vector::zeros();
+        demand[axis] = sign * beyond;
+        let (parts, _) = programme.cheapest(&right_hand_side(&demand, jets.force_free), &costs);
         let mut push = ForceEffect::default();
         let mut flow = 0.0;
         for (nozzle, part) in nozzles.iter().zip(parts) {
@@ -80,10 +80,11 @@ pub(super) fn largest_torques(
             flow += nozzle.flow * part;
         }
         if sign * push.torque[axis] <= 1e-9 * beyond {
-            let (name, way) =
+            let (name, group) =
                 (flexsc_numerics::attitude::AXES[axis], if sign > 0.0 { "plus" } else { "minus" });
-            let alone = if jets.force_free { " without a force" } else { "" };
-            let why = format!("must be able to turn the body to {way} {name}{alone} and about no other axis");
+            let condition = if jets.force_free { " without a force" } else { "" };
+            let why =
+                format!("must be able to turn the body to {group} {name}{condition} and about no other axis");
             return Err(ConfigError::new("thrusters", why));
         }
         let acceleration = push.torque[axis].abs() / inertia[axis];
@@ -134,19 +135,19 @@ impl AllocatedJets {
     }
 
     /// Returns the demanded angular impulse over a cycle (N m s).
-    fn wanted(&self) -> Vector {
-        let about = |axis: usize| match self.demands[axis] {
+    fn torque_demand(&self) -> Vector {
+        let demand_about = |axis: usize| match self.demands[axis] {
             Demand::Torque(torque) => torque * self.period.seconds(),
             Demand::Change(0.0) | Demand::Moment(_) => 0.0,
             Demand::Change(change) => change * self.inertia[axis],
         };
-        Vector::from_fn(|axis, _| about(axis))
+        Vector::from_fn(|axis, _| demand_about(axis))
     }
 
     /// Begins a cycle with the current demands.
     fn begin(&mut self, now: Instant) {
         let period = self.period.seconds();
-        let b = asked(&self.wanted(), self.programme.rows() > 3);
+        let b = right_hand_side(&self.torque_demand(), self.programme.rows() > 3);
         let (times, _) = self.programme.cheapest(&b, &self.flows);
         let commanded: Vec<f64> = times.into_iter().map(|t| self.width.on_time(t, period)).collect();
         let before = std::mem::replace(&mut self.waiting, commanded);
@@ -200,7 +201,7 @@ impl Actuator for AllocatedJets {
     }
 
     fn demanded_torque(&self, axis: usize) -> f64 {
-        self.wanted()[axis] / self.period.seconds()
+        self.torque_demand()[axis] / self.period.seconds()
     }
 
     fn held_torque(&self, axis: usize) -> f64 {
@@ -218,17 +219,17 @@ impl Actuator for AllocatedJets {
     }
 
     fn jet_cycle(&self) -> Option<JetCycle> {
-        let turned = self.cycle_impulse();
-        let on = [0, 1, 2].map(|axis| match self.largest[axis][usize::from(turned[axis] < 0.0)] {
+        let cycle_impulse = self.cycle_impulse();
+        let on = [0, 1, 2].map(|axis| match self.largest[axis][usize::from(cycle_impulse[axis] < 0.0)] {
             0.0 => 0.0,
-            largest => turned[axis] / largest,
+            largest => cycle_impulse[axis] / largest,
         });
         let since = self.valves.last_change();
-        let left = |index: usize| self.ends[index].map_or(0.0, |end| end.since(since).seconds());
+        let remaining = |index: usize| self.ends[index].map_or(0.0, |end| end.since(since).seconds());
         Some(JetCycle {
             on,
-            fuel: self.valves.propellant(left),
-            fuels: self.valves.fuels(left),
+            fuel: self.valves.propellant(remaining),
+            fuels: self.valves.fuels(remaining),
             pulses: self.pulses,
             burning: [0.0; 3],
             each: self.executed.clone(),
@@ -237,8 +238,8 @@ impl Actuator for AllocatedJets {
     }
 
     fn queued_rate_change(&self) -> [f64; 3] {
-        let turned = self.impulse_of(&self.waiting);
-        [0, 1, 2].map(|axis| turned[axis] / self.inertia[axis])
+        let waiting_impulse = self.impulse_of(&self.waiting);
+        [0, 1, 2].map(|axis| waiting_impulse[axis] / self.inertia[axis])
     }
 
     fn copy(&self) -> Box<dyn Actuator> {

@@ -164,7 +164,7 @@ impl Jets {
     /// Returns the groups of each thruster: axis, and 0 for plus or 1 for minus.
     pub(super) fn memberships(&self) -> Vec<Vec<[usize; 2]>> {
         let Some(groups) = &self.groups else { return Vec::new() };
-        let of = |thruster: &Thruster| {
+        let effect_of = |thruster: &Thruster| {
             let mut own = Vec::new();
             for (axis, pair) in groups.each().into_iter().enumerate() {
                 for (side, names) in pair.into_iter().flat_map(|pair| [&pair.plus, &pair.minus]).enumerate() {
@@ -173,7 +173,7 @@ impl Jets {
             }
             own
         };
-        self.thrusters.iter().map(of).collect()
+        self.thrusters.iter().map(effect_of).collect()
     }
 
     /// Checks the jets and returns the groups on a body: plus and minus about each axis. `acts` selects the axes about
@@ -220,12 +220,12 @@ impl Jets {
                 "applies only to `allocation = \"least_propellant\"`",
             ));
         }
-        let Some(given) = &self.groups else {
+        let Some(listed) = &self.groups else {
             let why = "must be given, or `allocation = \"least_propellant\"`";
             return Err(ConfigError::new("groups", why));
         };
         let mut groups = [(); 3].map(|()| GroupEffect::without_effect(body.modes.len()));
-        for (axis, pair) in given.each().into_iter().enumerate() {
+        for (axis, pair) in listed.each().into_iter().enumerate() {
             match pair {
                 Some(pair) => {
                     groups[axis] = [

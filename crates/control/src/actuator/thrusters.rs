@@ -55,7 +55,7 @@ impl Thrusters {
             feedback: 0.0,
             held: 0.0,
             pulse: None,
-            owed: 0.0,
+            remainder: 0.0,
         }
     }
 }
@@ -72,7 +72,7 @@ pub struct ThrustersState {
     held: f64,
     pulse: Option<ThrusterPulse>,
     /// Impulse left over for the next period (N m s).
-    owed: f64,
+    remainder: f64,
 }
 
 impl ThrustersState {
@@ -81,8 +81,8 @@ impl ThrustersState {
         let h = self.period.seconds();
         let planned = self.setting.planned_impulse(now, h);
         self.held = 0.0;
-        let (pulse, owed) = self.pulse(now, self.owed + planned + self.feedback * h);
-        self.owed = owed;
+        let (pulse, remainder) = self.pulse(now, self.remainder + planned + self.feedback * h);
+        self.remainder = remainder;
         self.pulse = (pulse.from < pulse.to).then_some(pulse);
     }
 
@@ -128,7 +128,7 @@ impl AxisActuator for ThrustersState {
         self.held
     }
 
-    fn asked(&self) -> f64 {
+    fn demanded_torque(&self) -> f64 {
         self.feedback
     }
 

@@ -65,7 +65,7 @@ impl AxisActuator for ZeroOrderHoldState {
         self.held
     }
 
-    fn asked(&self) -> f64 {
+    fn demanded_torque(&self) -> f64 {
         self.feedback
     }
 

@@ -67,9 +67,9 @@ impl Relay {
         let overshoot = (back * (1.0 - k_t) * (1.0 - k_t) / (4.0 * k_t)).min(0.5 * zone);
         let speed = f64::sqrt(2.0 * push * overshoot);
         let pushed = (speed + f64::sqrt(2.0 * push * (overshoot + back))) / push;
-        let left = speed * speed - 4.0 * weak * zone;
-        let coasted = if self.sides == RelaySides::Two && left > 0.0 {
-            4.0 * zone / (speed + f64::sqrt(left))
+        let discriminant = speed * speed - 4.0 * weak * zone;
+        let coasted = if self.sides == RelaySides::Two && discriminant > 0.0 {
+            4.0 * zone / (speed + f64::sqrt(discriminant))
         } else if weak > 0.0 {
             2.0 * speed / weak
         } else {

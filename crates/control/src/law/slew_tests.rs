@@ -66,8 +66,8 @@ type Met = (f64, usize, SlipDirection);
 
 #[test]
 fn sixty_degrees_by_four_wheels() {
-    let met = turn(wheels(200.0), Vec::new(), TURN);
-    assert!(met.is_empty());
+    let contacts = turn(wheels(200.0), Vec::new(), TURN);
+    assert!(contacts.is_empty());
 }
 
 /// Checks the slew with friction: six times a wheel stops and then slips in the other direction; the first two times
@@ -75,22 +75,22 @@ fn sixty_degrees_by_four_wheels() {
 #[test]
 fn the_same_with_friction() {
     let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
-    let met = turn(wheels(40.0), vec![bearing; 4], RUBBING);
-    assert_eq!(met.len(), 6, "{met:?}");
-    for ((found, wheel, slip), (at, way)) in met
+    let contacts = turn(wheels(40.0), vec![bearing; 4], RUBBING);
+    assert_eq!(contacts.len(), 6, "{contacts:?}");
+    for ((found, wheel, direction), (time, expected)) in contacts
         .iter()
         .filter(|(_, wheel, _)| *wheel == 0)
         .zip([(12.712_848_560_1, -1.0), (166.691_652_789_7, 1.0)])
     {
-        assert!((found - at).abs() < 6e-10 && slip.sign() == way, "{wheel}: {found}");
+        assert!((found - time).abs() < 6e-10 && direction.sign() == expected, "{wheel}: {found}");
     }
 }
 
 /// Runs the slew against a table of the second code; returns the times at which wheels stopped.
 fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met> {
     let craft = craft();
-    let mut turning = ThreeAxisMotion::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
-    turning.set_bearings(bearings);
+    let mut motion = ThreeAxisMotion::new(&craft, Quaternion::identity(), Vector::zeros(), &[[0.0; 2]; 8]);
+    motion.set_bearings(bearings);
     let mut events = Vec::new();
     let to = rotation(&(Vector::new(1.0, 2.0, 2.0) * (std::f64::consts::FRAC_PI_3 / 3.0)));
     let slew = Slew::new([Quaternion::identity(), to], 2e-4, 8e-3, SlewProfile::Trapezoid);
@@ -106,14 +106,14 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
     let mut laws: [Box<dyn Law>; 3] = [0, 1, 2].map(|_| law.start(&authority));
     let distribution = TorqueDistribution::for_three_axes(craft.inertia);
     let table = rows(table);
-    let mut met = 0;
+    let mut count = 0;
     for k in 0..=920 {
         let (t, now) = (PERIOD * f64::from(k), Instant::START + Span::from_seconds(PERIOD * f64::from(k)));
-        let (attitude, rate) = (turning.seen().attitude, turning.seen().rate);
+        let (attitude, rate) = (motion.seen().attitude, motion.seen().rate);
         let pose = slew.at(t);
         let angles = rotation_vector(&pose.attitude, &attitude);
         if let Some(row) = table.iter().find(|row| row[0] == t) {
-            met += 1;
+            count += 1;
             let three = |from: usize| Vector::from_row_slice(&row[from..from + 3]);
             let q = Quaternion::new(row[1], row[2], row[3], row[4]);
             // The reference table has 13 digits; the two codes agree to 1e-13, 1e-14, 2e-10 and 2e-13.
@@ -134,11 +134,11 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
             ..StateEstimate::default()
         };
         let estimates = [0, 1, 2].map(estimate);
-        let [wanted, acceleration] = pose.in_body_axes(&angles);
+        let [reference, acceleration] = pose.in_body_axes(&angles);
         let mut axis = 0;
         let commands = laws.each_mut().map(|law| {
             let goal =
-                Setpoint { from: now, angle: 0.0, rate: wanted[axis], acceleration: acceleration[axis] };
+                Setpoint { from: now, angle: 0.0, rate: reference[axis], acceleration: acceleration[axis] };
             axis += 1;
             law.decide(now, DecisionCause::Timeout, &goal, &estimates[axis - 1]).command
         });
@@ -147,30 +147,32 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
         let mut wrench = Wrench::default();
         wheels.apply(now, &mut wrench);
         let acting = SegmentLoads { rotors: wrench.rotors, ..SegmentLoads::default() };
-        turning.depart(&acting);
-        turning.resolve_stick_slip(None);
+        motion.depart(&acting);
+        motion.resolve_stick_slip(None);
         let mut began = 0.0;
-        while let Some(at) = go(&mut turning, PERIOD - began) {
+        while let Some(contact) = advance_to_contact(&mut motion, PERIOD - began) {
             let before: Vec<SlipDirection> =
-                turning.rotor_observations(None).iter().map(|wheel| wheel.slip).collect();
-            turning.reach(at, None);
-            began += at;
-            turning.depart(&acting);
-            turning.resolve_stick_slip(None);
-            for (wheel, (turned, before)) in turning.rotor_observations(None).iter().zip(before).enumerate() {
-                if turned.slip != before {
-                    events.push((t + began, wheel, turned.slip));
+                motion.rotor_observations(None).iter().map(|wheel| wheel.slip).collect();
+            motion.reach(contact, None);
+            began += contact;
+            motion.depart(&acting);
+            motion.resolve_stick_slip(None);
+            for (wheel, (observation, before)) in
+                motion.rotor_observations(None).iter().zip(before).enumerate()
+            {
+                if observation.slip != before {
+                    events.push((t + began, wheel, observation.slip));
                 }
             }
         }
-        wheels.set_rotor_states(now + Span::from_seconds(PERIOD), &turning.rotor_observations(None));
+        wheels.set_rotor_states(now + Span::from_seconds(PERIOD), &motion.rotor_observations(None));
     }
-    assert_eq!(met, table.len());
+    assert_eq!(count, table.len());
     events
 }
 
-fn go(turning: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
-    turning.advance(t, None, || Ok::<(), std::convert::Infallible>(())).unwrap()
+fn advance_to_contact(motion: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
+    motion.advance(t, None, || Ok::<(), std::convert::Infallible>(())).unwrap()
 }
 
 #[test]

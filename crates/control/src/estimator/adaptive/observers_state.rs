@@ -15,7 +15,7 @@ pub struct ObserverSet {
     channels: Vec<AxisObserver>,
     /// Mode estimates of each axis after the last sample.
     modes: Vec<Vec<ModeEstimate>>,
-    given: AppliedPulses,
+    applied_pulses: AppliedPulses,
     /// True after the first sample.
     sampled: bool,
 }
@@ -25,30 +25,30 @@ impl ObserverSet {
     pub fn new(plan: &ObserverDesign) -> Self {
         let channels = plan.channels();
         let modes = vec![Vec::new(); channels.len()];
-        Self { plan: plan.clone(), channels, modes, given: AppliedPulses::default(), sampled: false }
+        Self { plan: plan.clone(), channels, modes, applied_pulses: AppliedPulses::default(), sampled: false }
     }
 }
 
 impl estimator::Estimator for ObserverSet {
     fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
-        self.given.input_changed(now, moments);
+        self.applied_pulses.input_changed(now, moments);
     }
 
-    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let executed = self.given.take(taken.now, taken.actuator);
+    fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        let executed = self.applied_pulses.take_executed(context.now, context.actuator);
         if std::mem::replace(&mut self.sampled, true) {
             self.channels.iter_mut().for_each(|channel| channel.advance(&executed));
         }
-        let waiting = taken.actuator.pending_pulses();
+        let waiting = context.actuator.pending_pulses();
         for (axis, (channel, state_estimate)) in self.channels.iter_mut().zip(state_estimates).enumerate() {
-            if let Some(measured) = taken.measured {
+            if let Some(measured) = context.measured {
                 let [angle, rate] = measured[axis];
                 channel.update(rate);
                 state_estimate.angle = angle;
             }
             channel.write_modes(&mut self.modes[axis]);
             state_estimate.rate = channel.rate();
-            let rates = channel.predict(taken.ahead, &waiting).into_iter();
+            let rates = channel.predict(context.ahead, &waiting).into_iter();
             let mode = |(rate, mode): (f64, &ModeEstimate)| ElasticRateEstimate {
                 rate,
                 frequency: mode.frequency,
@@ -69,12 +69,12 @@ impl estimator::Estimator for ObserverSet {
         let (rates, damped) = (rates(), damped());
         let mut tracking = Tracking { channels: Vec::with_capacity(3), trackers: Vec::new() };
         for (axis, (channel, design)) in self.channels.iter().zip(&self.plan.axes).enumerate() {
-            let seen = |mode: &usize| design.seen[*mode] * rates[*mode];
+            let measured_rate = |mode: &usize| design.visibilities[*mode] * rates[*mode];
             let (residual, modes) = (channel.residual(), &self.modes[axis]);
             let damped = &damped[axis];
             tracking.channels.push(ChannelState {
                 elastic_rad_s: modes.iter().map(|mode| mode.phase[0]).sum(),
-                true_elastic_rad_s: (0..rates.len()).map(|mode| seen(&mode)).sum(),
+                true_elastic_rad_s: (0..rates.len()).map(|mode| measured_rate(&mode)).sum(),
                 innovation_rms_rad_s: f64::sqrt(residual.innovation),
                 elastic_rms_rad_s: f64::sqrt(residual.elastic),
                 trusted: channel.is_trusted().into(),
@@ -90,9 +90,13 @@ impl estimator::Estimator for ObserverSet {
                 frequency_rad_s: mode.frequency,
                 true_frequency_rad_s: truth.tracker.frequency.get(),
                 influence: channel.influence(mode),
-                true_influence: truth.tracker.influence.get(own).map_or(f64::NAN, |of| of.get()),
+                true_influence: truth
+                    .tracker
+                    .influence
+                    .get(own)
+                    .map_or(f64::NAN, |influence| influence.get()),
                 rate_rad_s: mode.phase[0],
-                true_rate_rad_s: truth.modes.iter().map(seen).sum(),
+                true_rate_rad_s: truth.modes.iter().map(measured_rate).sum(),
                 amplitude_rad_s: mode.amplitude(),
             };
             tracking.trackers.extend(modes.iter().zip(&design.modes).map(state));

@@ -36,13 +36,13 @@ impl KalmanFilter {
             covariance = transition * covariance * transition.transpose() + self.noise();
             let mut gains = Vec::with_capacity(noises.len());
             for (first, noise) in noises.iter().enumerate() {
-                let seen = (first..order)
+                let observable = (first..order)
                     .step_by(2)
                     .fold(DVector::zeros(order), |sum, place| sum + covariance.column(place));
                 let variance =
-                    (first..order).step_by(2).map(|place| seen[place]).sum::<f64>() + noise * noise;
-                let gain = &seen / variance;
-                covariance -= &gain * seen.transpose();
+                    (first..order).step_by(2).map(|place| observable[place]).sum::<f64>() + noise * noise;
+                let gain = &observable / variance;
+                covariance -= &gain * observable.transpose();
                 gains.push(gain);
             }
             covariance = (&covariance + covariance.transpose()) * 0.5;
