@@ -42,7 +42,9 @@ impl AttitudeMetrics {
     /// estimate an attitude; `None` for others.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let estimator = scenario.estimator.as_ref();
-        let own = |of: &EstimatorKind| matches!(of, EstimatorKind::Own(_)) && scenario.axis_count() == 3;
+        let own = |estimator: &EstimatorKind| {
+            matches!(estimator, EstimatorKind::Own(_)) && scenario.axis_count() == 3
+        };
         let filter = estimator.filter(|estimator| estimator.attitude().is_some() || own(estimator))?;
         let assess = filter.assess();
         Some(Self {
@@ -104,11 +106,17 @@ impl AttitudeMetrics {
             (&BIAS_ERROR, bias),
         ];
         if let Some(last) = self.identified {
-            let list =
-                |of: &dyn Fn(&ElasticEstimate) -> f64| MetricValue::Numbers(last.iter().map(of).collect());
-            reported.push((&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)));
-            reported
-                .push((&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)));
+            let list = |value_of: &dyn Fn(&ElasticEstimate) -> f64| {
+                MetricValue::Numbers(last.iter().map(value_of).collect())
+            };
+            reported.push((
+                &FREQUENCY_ESTIMATES,
+                list(&|estimate| estimate.frequency_rad_s / std::f64::consts::TAU),
+            ));
+            reported.push((
+                &FREQUENCY_ERRORS,
+                list(&|estimate| estimate.frequency_rad_s / estimate.true_frequency_rad_s - 1.0),
+            ));
         }
         reported
     }

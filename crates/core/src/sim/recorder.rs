@@ -319,7 +319,7 @@ impl Simulation {
                 steered: self.loads.actuator.steering_record(),
                 friction_heat_j: plant.friction_heat(),
             };
-            self.recorder.saturation.see(now.seconds(), &cycle);
+            self.recorder.saturation.observe(now.seconds(), &cycle);
             record.record(now, Sample::Cycle(&cycle))?;
             if let Some(written) = self.guidance.target_as_written(now) {
                 let error = || truth.orientation.error_from(&self.guidance.target(now));

@@ -11,7 +11,7 @@ use super::plant::{AppliedTorque, Plant};
 use super::{Simulation, SimulationError};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneState, RunSetup, SWITCHINGS, apply_crossing,
-    apply_state, fly_alone, guards, instant, law_state, shortest_window,
+    apply_state, guards, instant, law_state, run_single, shortest_window,
 };
 
 /// Adapter that runs a single simulation through the relay kernel.
@@ -57,7 +57,7 @@ impl Simulation {
             failed,
             rest,
         };
-        fly_alone(host.setup.structure, &mut host);
+        run_single(host.setup.structure, &mut host);
         let SingleRunHost { failed, rest, .. } = host;
         self.take_over(&rest, record)?;
         failed.map_or(Ok(()), Err)
@@ -78,13 +78,13 @@ impl Simulation {
 
     /// Continues the run in the loop from the segment start at which the kernel stopped.
     fn take_over(&mut self, rest: &LaneHandover, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (Some(place), now) = (rest.place, instant(rest.from.at)) else { return Ok(()) };
+        let (Some(place), now) = (rest.phase, instant(rest.from.time)) else { return Ok(()) };
         if now == Instant::START {
             return Ok(());
         }
         (self.now, self.decisions_at_now) = (now, 1);
         self.switchings = (rest.switched.0, instant(rest.switched.1));
-        self.controllers.begin(law_state(place, rest.from.side), now, instant(rest.pushed));
+        self.controllers.begin(law_state(place, rest.from.side), now, instant(rest.push_start));
         let Command::Torque(torque) = self.controllers.outputs()[0] else { return Ok(()) };
         self.begin_relay_segment(&rest.from, torque);
         let Plant::OneAxis(plant) = &mut self.plant else { return Ok(()) };
@@ -94,7 +94,7 @@ impl Simulation {
         }
         self.loads.command(now, self.controllers.outputs(), &self.estimates, [rigid, 0.0, 0.0]);
         if let Some(monitor) = &mut self.monitor {
-            monitor.take_over(instant(rest.seen), rest.integral, &rest.tracks);
+            monitor.take_over(instant(rest.integrated_to), rest.integral, &rest.tracks);
         }
         self.find_crossing(record)
     }
@@ -103,7 +103,7 @@ impl Simulation {
     fn begin_relay_segment(&mut self, from: &LaneState, torque: f64) {
         self.applied = AppliedTorque { constant: torque, feedback: torque, back_emf: (0.0, false) };
         if let Plant::OneAxis(plant) = &mut self.plant {
-            plant.set_state(instant(from.at), |state| apply_state(state, from));
+            plant.set_state(instant(from.time), |state| apply_state(state, from));
             plant.begin_under_torque(0.0 + torque);
         }
     }
@@ -119,7 +119,7 @@ impl SingleRunHost<'_> {
 
     fn record_state(&mut self, to: CyclePhase, now: &LaneState) -> Result<(), RecordError> {
         self.record.poll()?;
-        let at = instant(now.at);
+        let at = instant(now.time);
         let Plant::OneAxis(plant) = &mut self.run.plant else { return Ok(()) };
         plant.set_state(at, |state| apply_state(state, now));
         let sensed = plant.view(at);
@@ -160,13 +160,13 @@ impl LaneHost for SingleRunHost<'_> {
         found: &mut FoundCrossing,
     ) -> bool {
         self.run.begin_relay_segment(from, self.setup.torque(place, from.side));
-        let horizon = instant(self.setup.end).since(instant(from.at));
+        let horizon = instant(self.setup.end).since(instant(from.time));
         let guards = guards(&self.setup, place, from.side);
         let Plant::OneAxis(plant) = &mut self.run.plant else { return false };
         match plant.trip(&guards, horizon, &mut self.record) {
             Ok(Some((at, guard))) => {
                 plant.view(at);
-                apply_crossing(found, at.since(instant(from.at)), guard == 0, plant.state());
+                apply_crossing(found, at.since(instant(from.time)), guard == 0, plant.state());
                 true
             }
             Ok(None) => false,

@@ -24,7 +24,7 @@ pub struct MapCell {
 /// within it the periods (s). Rows are computed on the threads of the current rayon pool. A delay of the loop scales
 /// with the period, so that a delay of one sample stays one.
 pub fn map(
-    of: &SampledLoop,
+    sampled_loop: &SampledLoop,
     frequencies: &[f64],
     periods: &[f64],
     scaling: Scaling,
@@ -32,10 +32,10 @@ pub fn map(
     window: SettlingWindow,
 ) -> Vec<MapCell> {
     let row = |frequency: &f64| -> Vec<MapCell> {
-        let ratios = of.ratios(*frequency, scaling);
-        let mut changed = of.clone();
+        let ratios = sampled_loop.ratios(*frequency, scaling);
+        let mut changed = sampled_loop.clone();
         let cell = |period: &f64| {
-            (changed.period, changed.delay) = (*period, of.delay / of.period * period);
+            (changed.period, changed.delay) = (*period, sampled_loop.delay / sampled_loop.period * period);
             let closed = DiscretePlant::new(&changed, &ratios).closed(gain(*frequency));
             let settling = closed.settle(window);
             MapCell {

@@ -240,7 +240,7 @@ impl OneAxisPlant {
         };
         Ok(trip.map(|trip| {
             let at = departed + trip.after;
-            (self.next_crossing.1, self.next_crossing.2) = (trip.sight, at);
+            (self.next_crossing.1, self.next_crossing.2) = (trip.observation, at);
             (at, trip.guard)
         }))
     }
