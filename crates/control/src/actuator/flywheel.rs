@@ -142,10 +142,10 @@ impl FlywheelState {
             self.delayed.pop_front();
             let torque = self.wheel.gain.get() * command;
             // A torque that accelerates the body decelerates the wheel.
-            let heat = self
+            let is_at_speed_limit = self
                 .speed(rigid_rate)
                 .is_some_and(|(speed, limit)| speed.abs() >= limit && speed * torque < 0.0);
-            self.held = if heat { 0.0 } else { torque };
+            self.held = if is_at_speed_limit { 0.0 } else { torque };
         }
     }
 

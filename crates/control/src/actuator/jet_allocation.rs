@@ -69,31 +69,32 @@ pub(super) fn largest_torques(
     let costs: Vec<f64> = nozzles.iter().map(|nozzle| nozzle.flow).collect();
     // More than all thrusters together can give.
     let beyond: f64 = nozzles.iter().map(|nozzle| nozzle.push.torque.norm()).sum::<f64>().max(1.0) * 2.0;
-    let group = |axis: usize, sign: f64| {
+    let sign_name = |axis: usize, sign: f64| {
         let mut demand = Vector::zeros();
         demand[axis] = sign * beyond;
         let (parts, _) = programme.cheapest(&right_hand_side(&demand, jets.force_free), &costs);
-        let mut push = ForceEffect::default();
+        let mut effect = ForceEffect::default();
         let mut flow = 0.0;
         for (nozzle, part) in nozzles.iter().zip(parts) {
-            push += &super::valves::scaled(&nozzle.push, part);
+            effect += &super::valves::scaled(&nozzle.push, part);
             flow += nozzle.flow * part;
         }
-        if sign * push.torque[axis] <= 1e-9 * beyond {
-            let (name, group) =
+        if sign * effect.torque[axis] <= 1e-9 * beyond {
+            let (name, sign_name) =
                 (flexsc_numerics::attitude::AXES[axis], if sign > 0.0 { "plus" } else { "minus" });
             let condition = if jets.force_free { " without a force" } else { "" };
-            let why =
-                format!("must be able to turn the body to {group} {name}{condition} and about no other axis");
+            let why = format!(
+                "must be able to turn the body to {sign_name} {name}{condition} and about no other axis"
+            );
             return Err(ConfigError::new("thrusters", why));
         }
-        let acceleration = push.torque[axis].abs() / inertia[axis];
-        Ok(GroupEffect { push, flow, acceleration })
+        let acceleration = effect.torque[axis].abs() / inertia[axis];
+        Ok(GroupEffect { push: effect, flow, acceleration })
     };
     let pair = |axis: usize| {
         let modes = nozzles.first().map_or(0, |nozzle| nozzle.push.forces.len());
         if acts[axis] {
-            Ok([group(axis, 1.0)?, group(axis, -1.0)?])
+            Ok([sign_name(axis, 1.0)?, sign_name(axis, -1.0)?])
         } else {
             Ok(GroupEffect::without_effect(modes))
         }

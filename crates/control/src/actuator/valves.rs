@@ -122,11 +122,11 @@ impl Valves {
 }
 
 /// Returns a push multiplied by a factor.
-pub(super) fn scaled(push: &ForceEffect, part: f64) -> ForceEffect {
+pub(super) fn scaled(effect: &ForceEffect, part: f64) -> ForceEffect {
     ForceEffect {
-        torque: push.torque * part,
-        forces: push.forces.iter().map(|force| force * part).collect(),
-        force: push.force * part,
-        levers: push.levers.iter().map(|lever| lever * part).collect(),
+        torque: effect.torque * part,
+        forces: effect.forces.iter().map(|force| force * part).collect(),
+        force: effect.force * part,
+        levers: effect.levers.iter().map(|lever| lever * part).collect(),
     }
 }

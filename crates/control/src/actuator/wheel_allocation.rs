@@ -115,8 +115,8 @@ mod tests {
     fn pyramid() -> Vec<Vector> {
         let (sin, cos) = libm::sincos(35.0_f64.to_radians());
         [45.0_f64, 135.0, 225.0, 315.0]
-            .map(|axis| {
-                let (s, c) = libm::sincos(axis.to_radians());
+            .map(|azimuth| {
+                let (s, c) = libm::sincos(azimuth.to_radians());
                 Vector::new(cos * c, cos * s, sin)
             })
             .to_vec()

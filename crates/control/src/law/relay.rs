@@ -181,8 +181,8 @@ impl Relay {
         let until_guards =
             |torque, guards| ControlOutput { command: Command::Torque(torque), until: None, guards };
         let until_braked = |torque| {
-            let push = now.since(self.pushed_at).seconds();
-            let until = Some(now + Span::from_seconds(k_t * push));
+            let push_duration = now.since(self.pushed_at).seconds();
+            let until = Some(now + Span::from_seconds(k_t * push_duration));
             ControlOutput { command: Command::Torque(torque), until, guards: Guards::NONE }
         };
         let boundaries = match self.sides {

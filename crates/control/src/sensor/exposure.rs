@@ -13,8 +13,8 @@ pub struct ExposureMean(Vec<(f64, Quaternion<f64>)>);
 
 impl ExposureMean {
     /// Adds an attitude with the time `lasts` (s) that it represents.
-    pub fn add(&mut self, attitude: Quaternion<f64>, lasts: f64) {
-        self.0.push((lasts, attitude));
+    pub fn add(&mut self, attitude: Quaternion<f64>, duration: f64) {
+        self.0.push((duration, attitude));
     }
 
     /// Removes all attitudes.
@@ -27,9 +27,9 @@ impl ExposureMean {
     /// angles.
     pub fn mean(&self, middle: &Quaternion<f64>) -> Quaternion<f64> {
         let (mut whole, mut sum) = (0.0, Vector::zeros());
-        for (lasts, attitude) in &self.0 {
-            whole += lasts;
-            sum += rotation_vector(middle, attitude) * *lasts;
+        for (duration, attitude) in &self.0 {
+            whole += duration;
+            sum += rotation_vector(middle, attitude) * *duration;
         }
         if whole > 0.0 { middle * rotation(&(sum / whole)) } else { *middle }
     }
@@ -66,8 +66,8 @@ mod tests {
         let attitude_at = |t: f64| rotation(&Vector::new(0.4, -1.1, 0.3)) * rotation(&angle_at(t));
         let mut exposure = ExposureMean::default();
         for ends in breaks.windows(2) {
-            for (t, lasts) in nodes(ends[1] - ends[0], 40.0) {
-                exposure.add(attitude_at(ends[0] + t), lasts);
+            for (t, duration) in nodes(ends[1] - ends[0], 40.0) {
+                exposure.add(attitude_at(ends[0] + t), duration);
             }
         }
         attitude_at(0.0).conjugate() * exposure.mean(&attitude_at(0.0))
@@ -116,9 +116,9 @@ mod tests {
         for size in [0.01, 0.04] {
             let angle_at = |t: f64| Vector::new(t, 1.5 * t * t, libm::sin(3.0 * t) - t) * (size / 0.25);
             let found = mean(&[-0.25, 0.25], angle_at);
-            let sum = nodes(0.5, 40.0)
-                .into_iter()
-                .fold(Quaternion::default(), |sum, (t, lasts)| sum + rotation(&angle_at(t - 0.25)) * lasts);
+            let sum = nodes(0.5, 40.0).into_iter().fold(Quaternion::default(), |sum, (t, duration)| {
+                sum + rotation(&angle_at(t - 0.25)) * duration
+            });
             let apart = rotation_vector(&(sum / sum.norm()), &found).norm();
             assert!(apart < 0.05 * size * size * size && apart > 0.0, "{size} {apart:e}");
         }

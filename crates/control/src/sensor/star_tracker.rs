@@ -234,8 +234,8 @@ mod tests {
                 if gathered > Instant::START && gathered <= now {
                     let mut mean = ExposureMean::default();
                     let middle = gathered.before(tracker.tracker.half_exposure()).seconds();
-                    for lasts in [0.2, 0.3] {
-                        mean.add(attitude_at(middle) * rotation(&smear), lasts);
+                    for duration in [0.2, 0.3] {
+                        mean.add(attitude_at(middle) * rotation(&smear), duration);
                     }
                     tracker.close_exposure(&mean);
                     // The mean is already set: further attitudes have no effect.

@@ -140,21 +140,21 @@ mod tests {
             flexsc_formats::document::from_text("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5")
                 .unwrap();
         let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
-        let mut is_visible = |t: f64, rotation_angle: f64, sun: Option<Vector>| {
+        let mut measure = |t: f64, rotation_angle: f64, sun: Option<Vector>| {
             let now = Instant::START + Span::from_seconds(t);
             let attitude = rotation(&Vector::new(0.0, 0.0, rotation_angle));
             state.read(now, &truth(attitude, sun), None).and_then(|reading| reading.sight)
         };
         let sun = Some(Vector::x());
-        let measurement = is_visible(0.0, 0.499, sun).unwrap();
+        let measurement = measure(0.0, 0.499, sun).unwrap();
         assert!((measurement.vector - Vector::new(libm::cos(0.499), -libm::sin(0.499), 0.0)).norm() < 1e-15);
         assert!(measurement.is_direction && measurement.inertial == Vector::x());
         assert!(
-            is_visible(1.0, 0.501, sun).is_none()
-                && is_visible(2.0, 3.0, sun).is_none()
-                && is_visible(3.0, 0.0, None).is_none()
+            measure(1.0, 0.501, sun).is_none()
+                && measure(2.0, 3.0, sun).is_none()
+                && measure(3.0, 0.0, None).is_none()
         );
-        assert!(is_visible(4.0, -0.499, sun).is_some());
+        assert!(measure(4.0, -0.499, sun).is_some());
     }
 
     #[test]

@@ -216,10 +216,10 @@ impl SimulatedChannel {
     }
 
     fn advance(&mut self, pulse: Option<Pulse>, cycle: f64) {
-        for (phase, (observation, influence)) in self.phases.iter_mut().zip(&self.modes) {
-            *phase = observation.propagate(&observation.transition(cycle), cycle, *phase).0;
+        for (phase, (oscillator, influence)) in self.phases.iter_mut().zip(&self.modes) {
+            *phase = oscillator.propagate(&oscillator.transition(cycle), cycle, *phase).0;
             if let Some(Pulse { acceleration, start, duration, .. }) = pulse {
-                let push = observation.pulse_response(cycle - start, cycle - start - duration).0;
+                let push = oscillator.pulse_response(cycle - start, cycle - start - duration).0;
                 *phase = [0, 1].map(|part| phase[part] + influence * acceleration * push[part]);
             }
         }

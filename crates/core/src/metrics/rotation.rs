@@ -153,7 +153,7 @@ impl ManoeuvreMetrics {
         let mut metrics = Vec::new();
         let (acceleration, unit_inertia) = self.reduced;
         if self.planned {
-            let median_of = |value: fn(&Arrival) -> f64| {
+            let arrival_value = |value: fn(&Arrival) -> f64| {
                 MetricValue::Number(self.arrival.as_ref().map_or(f64::NAN, value))
             };
             let residuals = self.arrival.iter().flat_map(|arrival| &arrival.outputs);
@@ -163,14 +163,14 @@ impl ManoeuvreMetrics {
             };
             let energy = if unit_inertia { &RESIDUAL_ENERGY_UNIT_INERTIA } else { &RESIDUAL_ENERGY };
             metrics.extend([
-                (&ARRIVAL_ANGLE, median_of(|arrival| arrival.angle_error_rad)),
-                (&ARRIVAL_RATE, median_of(|arrival| arrival.rate_error_rad_s)),
-                (&ANGLE_RESIDUAL, median_of(|arrival| arrival.angle_residual_rad)),
+                (&ARRIVAL_ANGLE, arrival_value(|arrival| arrival.angle_error_rad)),
+                (&ARRIVAL_RATE, arrival_value(|arrival| arrival.rate_error_rad_s)),
+                (&ANGLE_RESIDUAL, arrival_value(|arrival| arrival.angle_residual_rad)),
                 (
                     &OUTPUT_RESIDUALS,
                     MetricValue::Quantities(residuals.zip(&self.outputs).map(residual).collect()),
                 ),
-                (energy, median_of(|arrival| arrival.elastic_energy_j)),
+                (energy, arrival_value(|arrival| arrival.elastic_energy_j)),
             ]);
         }
         let outputs = |value: fn(&CoordinateRange) -> f64| {

@@ -122,14 +122,14 @@ impl Kepler {
         let anomaly_rate = f64::sqrt(gravity * a) / radius;
         let velocity = (q * (minor * cos) - p * sin) * anomaly_rate;
         let nadir = -position / radius;
-        let rotation = f64::sqrt(gravity * a) * minor / (radius * radius);
+        let orbit_rate = f64::sqrt(gravity * a) * minor / (radius * radius);
         // r r' = sqrt(mu a) e sin E.
         let climb = anomaly_rate * e * sin;
         OrbitPosition {
             position,
             velocity,
             local: [(-normal).cross(&nadir), -normal, nadir],
-            turning: [rotation, -2.0 * rotation * climb / radius],
+            turning: [orbit_rate, -2.0 * orbit_rate * climb / radius],
             tide: gravity / (radius * radius * radius),
         }
     }

@@ -30,7 +30,7 @@ fn demand(wheels: &mut WheelsState, now: Instant, torque: [f64; 3]) {
     wheels.command(now, &torque.map(Demand::Torque), [0.0; 3]);
 }
 
-fn given(wheels: &WheelsState) -> [f64; 3] {
+fn applied(wheels: &WheelsState) -> [f64; 3] {
     [0, 1, 2].map(|axis| wheels.held_torque(axis))
 }
 
@@ -41,7 +41,7 @@ fn wheels_take_the_momentum_that_the_body_gets() {
     assert!(before.norm() < 1e-14, "two turn one way and two the other: {before}");
     let torque = [0.1, -0.05, 0.2];
     demand(&mut wheels, at(0.0), torque);
-    for (found, exact) in given(&wheels).into_iter().zip(torque) {
+    for (found, exact) in applied(&wheels).into_iter().zip(torque) {
         assert!((found - exact).abs() < 1e-15);
     }
     let after = Vector::from(wheels.stored_momentum(at(2.0)));
@@ -59,7 +59,7 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
     demand(&mut wheels, at(0.0), [1.0, -0.5, 2.0]);
     // Ten times the torque that requires 0.1519 N m of a wheel.
     let part = 0.4 / 1.519_136_9;
-    for (found, exact) in given(&wheels).into_iter().zip([1.0, -0.5, 2.0]) {
+    for (found, exact) in applied(&wheels).into_iter().zip([1.0, -0.5, 2.0]) {
         assert!((found - part * exact).abs() < 1e-7, "{found}");
     }
 }
@@ -90,7 +90,7 @@ fn a_speed_bias_gives_the_body_nothing() {
     for k in 0..1600 {
         demand(&mut wheels, at(PERIOD * f64::from(k)), if k < 8 { torque } else { [0.0; 3] });
         let demand = if k < 8 { torque } else { [0.0; 3] };
-        for (found, exact) in given(&wheels).into_iter().zip(demand) {
+        for (found, exact) in applied(&wheels).into_iter().zip(demand) {
             assert!((found - exact).abs() < 1e-14);
         }
         assert!(wheels.wheels.iter().all(|wheel| wheel.torque.abs() <= 0.4 + 1e-15));

@@ -123,10 +123,9 @@ impl ElasticStates {
                 return Err(ConfigError::new(format!("modes[{index}]"), format!("names mode {mode} again")));
             }
         }
-        let expected = self.frequencies.as_ref().map_or(self.modes.len(), Vec::len);
-        if expected != self.modes.len() {
-            let why =
-                format!("must be one for each of {}, got {expected}", counted(self.modes.len(), "mode"));
+        let listed = self.frequencies.as_ref().map_or(self.modes.len(), Vec::len);
+        if listed != self.modes.len() {
+            let why = format!("must be one for each of {}, got {listed}", counted(self.modes.len(), "mode"));
             return Err(ConfigError::new("frequencies", why));
         }
         if self.frequency_walk.is_some() && self.frequency_deviation.is_none() {

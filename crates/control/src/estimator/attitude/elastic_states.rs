@@ -110,14 +110,14 @@ impl ElasticFilterStates {
         {
             let before = state[0];
             *grown = [0.0; 2];
-            for (lasts, torque) in torques {
+            for (duration, torque) in torques {
                 let rest = mode.hub.dot(torque) / (frequency * frequency);
-                let [a, b, c, d] = transition(*frequency, mode.damping, *lasts);
+                let [a, b, c, d] = transition(*frequency, mode.damping, *duration);
                 let (x, y) = (state[0] - rest, state[1]);
                 let (displacement, rate) = (a * x + b * y, c * x + d * y);
                 *state = [rest + a * x + b * y, rate];
                 // The derivative of exp(W t K) is W t K exp(W t K), and that of the equilibrium is -2 times it.
-                let (x, y, angle) = (grown[0] + 2.0 * rest, grown[1], frequency * lasts);
+                let (x, y, angle) = (grown[0] + 2.0 * rest, grown[1], frequency * duration);
                 *grown = [
                     a * x + b * y + angle * rate - 2.0 * rest,
                     c * x + d * y - angle * (displacement + 2.0 * mode.damping * rate),
@@ -224,7 +224,7 @@ impl ElasticFilterStates {
         let expected: Vector =
             to_body(&(attitude * rotation(&self.mount_rotation(sensor))), &measurement.inertial);
         let off = measurement.vector - expected;
-        let moved = expected.cross_matrix();
+        let jacobian = expected.cross_matrix();
         let whole =
             |block: &nalgebra::Matrix3<f64>| DMatrix::from_fn(3, 3, |row, column| block[(row, column)]);
         let reported = if measurement.is_direction {
@@ -232,23 +232,28 @@ impl ElasticFilterStates {
             let rows = DMatrix::from_fn(2, 3, |row, column| rows[(row, column)]);
             let off = &rows * DVector::from_column_slice(off.as_slice());
             let reported = self.apply_innovation(
-                &(&rows * whole(&moved)),
+                &(&rows * whole(&jacobian)),
                 &off,
                 &(&rows * noise * rows.transpose()),
                 sensor,
             )?;
             ElasticInnovation { nis: reported.nis * 1.5, ..reported }
         } else {
-            self.apply_innovation(&whole(&moved), &DVector::from_column_slice(off.as_slice()), noise, sensor)?
+            self.apply_innovation(
+                &whole(&jacobian),
+                &DVector::from_column_slice(off.as_slice()),
+                noise,
+                sensor,
+            )?
         };
         Some((off.cross(&expected) / expected.norm_squared(), reported))
     }
 
-    /// Updates the states with the innovation `off`, its derivatives `moved` with respect to a rotation of the sensor's
+    /// Updates the states with the innovation `off`, its derivatives `jacobian` with respect to a rotation of the sensor's
     /// mount, and the covariance `noise` of the measurement.
     fn apply_innovation(
         &mut self,
-        moved: &DMatrix<f64>,
+        jacobian: &DMatrix<f64>,
         off: &DVector<f64>,
         noise: &DMatrix<f64>,
         sensor: usize,
@@ -261,7 +266,7 @@ impl ElasticFilterStates {
                 observation[(axis, 6 + 2 * index)] = mode.mounts[sensor][axis];
             }
         }
-        let observation = moved * observation;
+        let observation = jacobian * observation;
         let to_measured = &self.covariance * observation.transpose();
         let inverse = Cholesky::new(&observation * &to_measured + noise)?.inverse();
         let gain = &to_measured * &inverse;

@@ -134,12 +134,12 @@ impl AttitudeFilterState {
         noise: &Matrix3<f64>,
     ) -> Option<Correction> {
         let expected = to_body(&self.attitude, &measurement.inertial);
-        let (off, moved) = (measurement.vector - expected, expected.cross_matrix());
+        let (off, jacobian) = (measurement.vector - expected, expected.cross_matrix());
         let nis = if measurement.is_direction {
             let across = perpendicular_pair(&expected);
-            self.update(&(across * moved), &(across * off), &(across * noise * across.transpose()))? * 1.5
+            self.update(&(across * jacobian), &(across * off), &(across * noise * across.transpose()))? * 1.5
         } else {
-            self.update(&moved, &off, noise)?
+            self.update(&jacobian, &off, noise)?
         };
         let numbers = if measurement.is_direction { 2 } else { 3 };
         Some(Correction { innovation: off.cross(&expected) / expected.norm_squared(), nis, numbers })
@@ -153,7 +153,7 @@ impl AttitudeFilterState {
         noise: &Matrix3<f64>,
         gain: &Matrix6x3<f64>,
     ) -> Option<Correction> {
-        let (off, moved, gain) = match measured {
+        let (off, jacobian, gain) = match measured {
             AttitudeMeasurement::Attitude(attitude) => {
                 (rotation_vector(&self.attitude, attitude), Matrix3::identity(), *gain)
             }
@@ -163,8 +163,8 @@ impl AttitudeFilterState {
                 (measurement.vector - expected, expected.cross_matrix(), gain * to_angle)
             }
         };
-        let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
-        let spread = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?;
+        let to_measured = self.covariance.fixed_columns::<3>(0) * jacobian.transpose();
+        let spread = Cholesky::new(jacobian * to_measured.fixed_rows::<3>(0) + noise)?;
         let numbers = measured.dimension();
         let nis = 3.0 / numbers as f64 * off.dot(&spread.solve(&off));
         let error = gain * off;
@@ -175,11 +175,11 @@ impl AttitudeFilterState {
                 off.cross(&expected) / expected.norm_squared()
             }
         };
-        self.apply_correction(&error, &(gain * moved), &(gain * noise * gain.transpose()));
+        self.apply_correction(&error, &(gain * jacobian), &(gain * noise * gain.transpose()));
         Some(Correction { innovation, nis, numbers })
     }
 
-    /// Applies the estimated `error`, and updates the covariance for the gain's action `gain` on the attitude and the
+    /// Applies the estimated `error`, and updates the covariance for the action `gain` on the attitude and the
     /// term `added`.
     fn apply_correction(&mut self, error: &SMatrix<f64, 6, 1>, gain: &Matrix6x3<f64>, added: &Matrix6<f64>) {
         self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
@@ -187,21 +187,21 @@ impl AttitudeFilterState {
         self.covariance = corrected_covariance(&self.covariance, gain, added);
     }
 
-    /// Updates the filter with D components `off` of an innovation, their derivatives `moved` with respect to theta,
+    /// Updates the filter with D components `off` of an innovation, their derivatives `jacobian` with respect to theta,
     /// and their covariance `noise`; returns the normalised innovation squared.
     fn update<const D: usize>(
         &mut self,
-        moved: &SMatrix<f64, D, 3>,
+        jacobian: &SMatrix<f64, D, 3>,
         off: &SMatrix<f64, D, 1>,
         noise: &SMatrix<f64, D, D>,
     ) -> Option<f64>
     where
         Const<D>: ToTypenum + DimSub<Const<1>>,
     {
-        let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
-        let inverse = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?.inverse();
+        let to_measured = self.covariance.fixed_columns::<3>(0) * jacobian.transpose();
+        let inverse = Cholesky::new(jacobian * to_measured.fixed_rows::<3>(0) + noise)?.inverse();
         let gain = to_measured * inverse;
-        self.apply_correction(&(gain * off), &(gain * moved), &(gain * noise * gain.transpose()));
+        self.apply_correction(&(gain * off), &(gain * jacobian), &(gain * noise * gain.transpose()));
         Some(off.dot(&(inverse * off)))
     }
 

@@ -185,8 +185,8 @@ impl KalmanFilter {
         let Self { tuning, mean, covariance, noise, tangent, room, gated, .. } = self;
         let (model, period) = (&tuning.model, tuning.period);
         let carried = match &tuning.prediction {
-            Prediction::Linear(transition, push) => {
-                *mean = transition * &*mean + push * moment;
+            Prediction::Linear(transition, input) => {
+                *mean = transition * &*mean + input * moment;
                 transition.mul_to(covariance, room);
                 room.mul_to(&transition.transpose(), covariance);
                 Some(())

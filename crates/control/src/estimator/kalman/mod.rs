@@ -197,13 +197,13 @@ impl Kalman {
     pub fn filter(&self, setting: &FilterContext<'_>, draws: &mut Stream) -> KalmanFilter {
         let body = filter_body(setting.body, self.modes.as_deref());
         let ones = vec![1.0; body.modes.len()];
-        let (transition, push) = CoupledMatrices::new(&body, setting.back_emf.0, setting.back_emf.1, &ones)
+        let (transition, input) = CoupledMatrices::new(&body, setting.back_emf.0, setting.back_emf.1, &ones)
             .discrete(setting.period);
         let model = FilterModel::new(&body.modes, 0, setting.back_emf, 1, [1.0; 2]);
         let (mean, spread) = start(setting.body, &model, self.initial, &[], self.prior, draws);
         KalmanFilter::new(FilterParameters {
             model,
-            prediction: Prediction::Linear(transition, push),
+            prediction: Prediction::Linear(transition, input),
             period: setting.period,
             mean,
             spread,

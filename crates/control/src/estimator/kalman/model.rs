@@ -266,9 +266,9 @@ mod tests {
 
     /// Returns the exact motion at a constant ratio, by the matrix exponential.
     fn exact(back_emf: (f64, bool), ratio: f64, moment: f64, h: f64) -> Vec<f64> {
-        let (transition, push) =
+        let (transition, input) =
             CoupledMatrices::new(&body(), back_emf.0, back_emf.1, &[ratio; 4]).discrete(h);
-        (transition * nalgebra::DVector::from_row_slice(&STATE) + push * moment).as_slice().to_vec()
+        (transition * nalgebra::DVector::from_row_slice(&STATE) + input * moment).as_slice().to_vec()
     }
 
     fn split(
@@ -329,13 +329,13 @@ mod tests {
             let mut tangent = DMatrix::identity(order, order);
             model.propagate(0.3, 3e-5, &mut start.clone(), Some(&mut tangent));
             for column in 0..order {
-                let moved = |by: f64| {
+                let shifted = |by: f64| {
                     let mut state = start.clone();
                     state[column] += by;
                     model.propagate(0.3, 3e-5, &mut state, None);
                     state
                 };
-                let (above, below) = (moved(1e-4), moved(-1e-4));
+                let (above, below) = (shifted(1e-4), shifted(-1e-4));
                 for row in 0..order {
                     let slope = (above[row] - below[row]) / 2e-4;
                     assert!((tangent[(column, row)] - slope).abs() < 1e-9, "{ratios} {row} {column}");

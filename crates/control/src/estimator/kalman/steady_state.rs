@@ -25,8 +25,8 @@ pub struct SteadyStateFilter {
 impl KalmanFilter {
     /// Returns the filter's steady state, if it is linear and its gains settle.
     pub fn steady_state(&self) -> Option<SteadyStateFilter> {
-        let Prediction::Linear(transition, push) = &self.tuning().prediction else { return None };
-        let (order, tuning) = (push.len(), self.tuning());
+        let Prediction::Linear(transition, input) = &self.tuning().prediction else { return None };
+        let (order, tuning) = (input.len(), self.tuning());
         let noises: Vec<f64> = [Some(tuning.angle_noise), tuning.rate_noise].into_iter().flatten().collect();
         let mut covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
         let mut before: Vec<DVector<f64>> = Vec::new();
@@ -61,7 +61,7 @@ impl KalmanFilter {
         let moves = before.iter().any(|gain| gain.amax() > 1e-9);
         (still > 100 && moves).then(|| SteadyStateFilter {
             transition: transition.row_iter().map(|row| row.iter().copied().collect()).collect(),
-            push: push.iter().copied().collect(),
+            push: input.iter().copied().collect(),
             gains: before.iter().map(|gain| gain.iter().copied().collect()).collect(),
         })
     }

@@ -43,8 +43,8 @@ pub fn process_samples<R: LaneFloat>(
         }
         let angle = run.simulation.read_sample_ahead().ok().flatten();
         let moment = run.simulation.filter().and_then(|(_, moment)| moment);
-        if let Some(innovation) = angle.zip(moment).filter(|(_, moment)| moment.is_finite()) {
-            (measured[lane], moments[lane]) = innovation;
+        if let Some(sample) = angle.zip(moment).filter(|(_, moment)| moment.is_finite()) {
+            (measured[lane], moments[lane]) = sample;
             (has_sample[lane], flags[lane]) = (true, 1.0);
         } else {
             run.continues = false;
@@ -64,7 +64,7 @@ pub fn process_samples<R: LaneFloat>(
         still[lane] = f64::from(u8::from(has_sample[lane] && filter.is_below_gate()));
     }
     let zero = kind.splat(0.0);
-    let [innovation, nis] = filters.update(kind.load(&measured), zero.lt(kind.load(&still)));
+    let [sample, nis] = filters.update(kind.load(&measured), zero.lt(kind.load(&still)));
     let sound = predicted & filters.are_valid() & zero.le(nis) & nis.le(kind.splat(KalmanFilter::FARTHEST));
     filters.store_means(&mut each, &has_sample);
     if let Some(before) = before {
@@ -73,7 +73,7 @@ pub fn process_samples<R: LaneFloat>(
     let sound = R::select(sound, kind.splat(1.0), zero);
     for (lane, filter) in each.iter_mut().enumerate() {
         if has_sample[lane] && sound.lane(lane) > 0.0 {
-            filters.apply(lane, filter, still[lane] > 0.0, innovation.lane(lane), nis.lane(lane));
+            filters.apply(lane, filter, still[lane] > 0.0, sample.lane(lane), nis.lane(lane));
         }
     }
     filters.load_means(&each);

@@ -205,13 +205,13 @@ fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
             return error_at(".translation", why);
         }
         let carried = r.norm_squared();
-        let root_offset = if carried > 0.0 { (r.transpose() * about_root * r).x / carried } else { 0.0 };
-        if carried > root_offset * (1.0 + ROUNDING) {
-            let hint = if carried > OTHER_UNITS * root_offset { ": is it in sqrt(kg) mm?" } else { "" };
+        let available = if carried > 0.0 { (r.transpose() * about_root * r).x / carried } else { 0.0 };
+        if carried > available * (1.0 + ROUNDING) {
+            let hint = if carried > OTHER_UNITS * available { ": is it in sqrt(kg) mm?" } else { "" };
             let key = if mode.moments.is_some() { ".moments" } else { ".rotation" };
             let why = format!(
                 "must carry no more than the appendage: its effective inertia about its axis is {carried} kg m², the \
-                 appendage's, about the root, {root_offset} kg m²{hint}"
+                 appendage's, about the root, {available} kg m²{hint}"
             );
             return error_at(key, why);
         }
