@@ -105,7 +105,7 @@ impl Law for Deciding {
         now: Instant,
         cause: DecisionCause,
         goal: &Setpoint,
-        belief: &StateEstimate,
+        estimate: &StateEstimate,
     ) -> ControlOutput {
         let cause = match cause {
             DecisionCause::Start => 0.0,
@@ -124,8 +124,8 @@ impl Law for Deciding {
                 now.seconds(),
                 since,
                 cause,
-                belief.angle,
-                belief.rate,
+                estimate.angle,
+                estimate.rate,
                 angle,
                 rate,
                 states,
