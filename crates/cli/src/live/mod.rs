@@ -29,7 +29,7 @@ use flexsc_core::record::{Detail, MessageEncoder, Record, RecordError, RunEnd, S
 use crate::error::CliError;
 use crate::{say, stop};
 use access::AccessControl;
-use clock::{Clock, LOOK, Speed};
+use clock::{Clock, POLL_PERIOD, Speed};
 use hub::{Hub, Publisher};
 use server_state::ServerState;
 
@@ -128,7 +128,7 @@ impl Live {
             );
         }
         while self.hub.clients() > 0 && !stop::stop_requested() {
-            thread::sleep(LOOK);
+            thread::sleep(POLL_PERIOD);
         }
     }
 }
@@ -160,7 +160,7 @@ fn accept(hub: &Arc<Hub>, gate: &Arc<AccessControl>, listener: &TcpListener) {
     let mut silent: VecDeque<(Weak<()>, TcpStream)> = VecDeque::new();
     while !hub.closing() {
         let Ok((stream, _)) = listener.accept() else {
-            thread::sleep(LOOK);
+            thread::sleep(POLL_PERIOD);
             continue;
         };
         silent.retain(|(greeting, _)| greeting.strong_count() > 0);

@@ -20,8 +20,8 @@ pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
         simulation.enable_scene(&run.scenario);
         let _ = simulation.run_until(Instant::START, &mut messages);
     }
-    let later = later(&run.scenario);
-    topics.0.extend((0..TOPICS.len()).filter(|&index| later.contains(&TOPICS[index].name)));
+    let late_topics = later(&run.scenario);
+    topics.0.extend((0..TOPICS.len()).filter(|&index| late_topics.contains(&TOPICS[index].name)));
     topics.0
 }
 
@@ -47,7 +47,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/summary", true),
         ("/metrics", true),
     ];
-    topics.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect()
+    topics.into_iter().filter(|(_, is_expected)| *is_expected).map(|(name, _)| name).collect()
 }
 
 /// Record that collects the topics of messages.
@@ -79,8 +79,8 @@ mod tests {
             let scenario = Scenario::load(&file.path()).expect("a scenario");
             let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
             let from = Campaign::provenance(&run, Detail::Scene);
-            let (expected, mut seen) = (expected(&run, &from), TopicCollector::default());
-            let mut messages = MessageEncoder::new(&mut seen, &from, Detail::Scene).expect("messages");
+            let (expected, mut topics) = (expected(&run, &from), TopicCollector::default());
+            let mut messages = MessageEncoder::new(&mut topics, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, the windows of an adaptation, and a zero crossing of a wheel.
             let grips = run.scenario.study.bearings.iter().any(Bearing::can_stick);
             let seconds = match (run.scenario.adaptation.is_some(), grips) {
@@ -93,9 +93,9 @@ mod tests {
             simulation.enable_scene(&run.scenario);
             simulation.run_until(until, &mut messages).expect("a run");
             let name = |index: &usize| TOPICS[*index].name;
-            let unknown: Vec<_> = seen.0.difference(&expected).map(name).collect();
+            let unknown: Vec<_> = topics.0.difference(&expected).map(name).collect();
             assert!(unknown.is_empty(), "{}: {unknown:?}", file.path().display());
-            names.extend(seen.0.iter().map(name));
+            names.extend(topics.0.iter().map(name));
         }
         let all: BTreeSet<_> = TOPICS.iter().map(|topic| topic.name).collect();
         assert_eq!(all.difference(&names).collect::<Vec<_>>(), [&"/metrics", &"/summary"], "the last of all");

@@ -77,9 +77,10 @@ impl Results for Spacecraft {
             say!("  frequencies as drives turn, increasing, {unit}");
             let mut rows = vec![texts(&["s"])];
             rows[0].extend((0..drives).map(|drive| format!("angle {}, rad", drive + 1)));
-            for at in &parts.turned {
-                let frequencies = at.frequencies_rad_s.iter().map(|frequency| frequency * factor);
-                let numbers = [at.time_s].into_iter().chain(at.angles_rad.iter().copied()).chain(frequencies);
+            for modes in &parts.turned {
+                let frequencies = modes.frequencies_rad_s.iter().map(|frequency| frequency * factor);
+                let numbers =
+                    [modes.time_s].into_iter().chain(modes.angles_rad.iter().copied()).chain(frequencies);
                 rows.push(numbers.map(digits).collect());
             }
             print_table(&rows, 0);

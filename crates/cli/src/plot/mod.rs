@@ -111,12 +111,12 @@ impl Args {
 
 impl Args {
     /// Returns the figures of a log over the requested time.
-    fn own(&self, path: &Path, asked: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+    fn own(&self, path: &Path, requested: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
         let log = Log::open(path)?;
         if !self.json {
             stale_check::warn_if_stale(&log, path);
         }
-        drawn_over(&log, path, asked, (self.from, self.to))
+        drawn_over(&log, path, requested, (self.from, self.to))
     }
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
@@ -129,22 +129,22 @@ impl Args {
             .collect();
         // Logs of the same name in several directories are distinguished by their paths.
         let name = |run: usize| {
-            let alone = names.iter().filter(|name| **name == names[run]).count() == 1;
-            if alone { names[run].clone() } else { paths[run].display().to_string() }
+            let is_unique = names.iter().filter(|name| **name == names[run]).count() == 1;
+            if is_unique { names[run].clone() } else { paths[run].display().to_string() }
         };
         let mut figures = Vec::new();
         let mut runs: Vec<_> = all.into_iter().map(Vec::into_iter).map(Iterator::collect::<Vec<_>>).collect();
-        let kinds: Vec<FigureKind> = runs[0].iter().map(|(what, _)| *what).collect();
-        for what in kinds {
-            let mut of_kind = Vec::new();
+        let kinds: Vec<FigureKind> = runs[0].iter().map(|(kind, _)| *kind).collect();
+        for kind in kinds {
+            let mut same_kind = Vec::new();
             for (run, own) in runs.iter_mut().enumerate() {
-                if let Some(place) = own.iter().position(|(other, _)| *other == what) {
-                    of_kind.push((name(run), own.swap_remove(place).1));
+                if let Some(place) = own.iter().position(|(other, _)| *other == kind) {
+                    same_kind.push((name(run), own.swap_remove(place).1));
                 }
             }
-            if of_kind.len() == paths.len() {
-                let title = what.name().replace('-', " ");
-                figures.extend(overlay::overlaid(&title, &of_kind).map(|figure| (what, figure)));
+            if same_kind.len() == paths.len() {
+                let title = kind.name().replace('-', " ");
+                figures.extend(overlay::overlaid(&title, &same_kind).map(|figure| (kind, figure)));
             }
         }
         if figures.is_empty() {
@@ -160,65 +160,66 @@ impl Args {
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, CliError> {
-    let what = FigureKind::from_str(name, false).map_err(CliError::Arguments)?;
-    let drawn = drawn(log, path, &[what])?.into_iter().next();
+    let kind = FigureKind::from_str(name, false).map_err(CliError::Arguments)?;
+    let drawn = drawn(log, path, &[kind])?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
 /// Returns the figures that a log has.
-pub fn there(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliError> {
+pub fn drawable_kinds(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliError> {
     Ok(FigureKind::all_in(&RunEvents::read(log, path)?))
 }
 
 pub fn run(args: &Args) -> Result<(), CliError> {
     if args.path.is_dir() {
-        let of_logs = [
+        let log_options = [
             ("more than one path", !args.others.is_empty()),
             ("--from", args.from.is_some()),
             ("--to", args.to.is_some()),
         ];
-        if let Some((given, _)) = of_logs.into_iter().find(|(_, given)| *given) {
+        if let Some((is_given, _)) = log_options.into_iter().find(|(_, is_given)| *is_given) {
             let path = args.path.display();
-            return Err(CliError::Arguments(format!("{given}: only for logs, and {path} is a directory")));
+            return Err(CliError::Arguments(format!("{is_given}: only for logs, and {path} is a directory")));
         }
         return campaign::run(args);
     }
-    let of_campaigns = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
-    if let Some((option, _)) = of_campaigns.into_iter().find(|(_, given)| *given) {
+    let campaign_options = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
+    if let Some((option, _)) = campaign_options.into_iter().find(|(_, is_given)| *is_given) {
         let path = args.path.display();
         return Err(CliError::Arguments(format!("--{option}: {path} is not the directory of a campaign")));
     }
-    let beside = args.path.parent().unwrap_or(Path::new(""));
+    let directory = args.path.parent().unwrap_or(Path::new(""));
     let logs: Vec<&Path> = std::iter::once(&args.path).chain(&args.others).map(PathBuf::as_path).collect();
-    let target = FigureTarget::new(args.out.as_deref().unwrap_or(beside), args.format, &logs, args.force)?;
+    let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &logs, args.force)?;
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
     let figures = if args.others.is_empty() { args.own(&args.path, &args.what)? } else { args.together()? };
-    let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{}", what.name()), figure));
+    let named = figures.into_iter().map(|(kind, figure)| (format!("{name}-{}", kind.name()), figure));
     target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }
 
 /// Returns figures of a log: the named ones, or all that it has.
-fn drawn(log: &Log, path: &Path, asked: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
-    drawn_over(log, path, asked, (None, None))
+fn drawn(log: &Log, path: &Path, requested: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+    drawn_over(log, path, requested, (None, None))
 }
 
 /// Returns figures over an interval of time, if given.
 fn drawn_over(
     log: &Log,
     path: &Path,
-    asked: &[FigureKind],
+    requested: &[FigureKind],
     (from, to): (Option<f64>, Option<f64>),
 ) -> Result<Vec<(FigureKind, Figure)>, CliError> {
     let mut story = RunEvents::read(log, path)?;
     story.shown = time_range::resolve(from, to, story.end)?;
-    let chosen = figure_kind::select(asked, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
-        let path = path.display();
-        CliError::Arguments(format!(
-            "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
-        ))
-    })?;
-    let any = |of: &[FigureKind]| of.iter().any(|what| chosen.contains(what));
+    let chosen =
+        figure_kind::select(requested, &FigureKind::all_in(&story)).map_err(|(missing, drawable)| {
+            let path = path.display();
+            CliError::Arguments(format!(
+                "{path}: there is no figure `{missing}` for this log\n\nhint: it has {drawable}"
+            ))
+        })?;
+    let any = |kinds: &[FigureKind]| kinds.iter().any(|kind| chosen.contains(kind));
     let moving = any(&[FigureKind::PhasePlane, FigureKind::Envelope, FigureKind::Modes, FigureKind::Angle]);
     let all = any(&[
         FigureKind::Wheel,
@@ -240,13 +241,13 @@ fn drawn_over(
     } else {
         MotionData::default()
     };
-    let drawn = chosen.into_iter().filter_map(|what| {
-        let figure = what.figure(&story, &motion, &cycles)?;
+    let drawn = chosen.into_iter().filter_map(|kind| {
+        let figure = kind.figure(&story, &motion, &cycles)?;
         let figure = match &story.shown {
             Some(shown) => time_range::crop(figure, shown),
             None => figure,
         };
-        Some((what, failures::shaded(figure, &story)))
+        Some((kind, failures::shaded(figure, &story)))
     });
     Ok(drawn.collect())
 }

@@ -123,7 +123,7 @@ fn estimates(columns: &Columns) -> Vec<DominantModeEstimate> {
         _ => &[],
     };
     let (gated, lock) = (labels(columns, "gated"), labels(columns, "lock"));
-    let is = |of: &[String], index: usize, label: &str| of.get(index).is_some_and(|own| own == label);
+    let is = |labels: &[String], index: usize, label: &str| labels.get(index).is_some_and(|own| own == label);
     let own = inner(columns, "modes", "frequency_rad_s");
     let names = [
         "time_s",
@@ -137,7 +137,8 @@ fn estimates(columns: &Columns) -> Vec<DominantModeEstimate> {
     let row = |(index, numbers): (usize, [f64; 7])| {
         let [time, read_frequency, frequency_sd, true_frequency, displacement, nis, nees] = numbers;
         let mode = modes.get(index).copied().unwrap_or_default() as usize;
-        let frequency = own.get(mode).and_then(|of| of.get(index)).copied().unwrap_or(f64::NAN);
+        let frequency =
+            own.get(mode).and_then(|frequencies| frequencies.get(index)).copied().unwrap_or(f64::NAN);
         let (gated, lost) = (is(&gated, index, "gated"), is(&lock, index, "lost"));
         DominantModeEstimate {
             time,
@@ -181,28 +182,28 @@ impl MotionRecorder {
         Self { motion: MotionData::default(), early, late, switchings: Vec::new() }
     }
 
-    fn see(&mut self, time: f64, motion: &record::Motion) {
-        let kept = &mut self.motion;
-        kept.envelope.extend(motion.envelope.as_ref().map(|envelope| (time, envelope.envelope_rad)));
+    fn record(&mut self, time: f64, motion: &record::Motion) {
+        let data = &mut self.motion;
+        data.envelope.extend(motion.envelope.as_ref().map(|envelope| (time, envelope.envelope_rad)));
         if time > self.early && time < self.late {
             return;
         }
-        kept.time.push(time);
-        kept.angle.push(motion.attitude.angle_rad);
-        kept.rate.push(motion.rate.rate_rad_s);
-        kept.elastic.push(motion.modes.elastic_rad);
-        extend(&mut kept.modes, motion.modes.modes.iter().map(|mode| mode.displacement_rad));
-        extend(&mut kept.mode_rates, motion.modes.modes.iter().map(|mode| mode.rate_rad_s));
+        data.time.push(time);
+        data.angle.push(motion.attitude.angle_rad);
+        data.rate.push(motion.rate.rate_rad_s);
+        data.elastic.push(motion.modes.elastic_rad);
+        extend(&mut data.modes, motion.modes.modes.iter().map(|mode| mode.displacement_rad));
+        extend(&mut data.mode_rates, motion.modes.modes.iter().map(|mode| mode.rate_rad_s));
         let outputs = motion.outputs.iter().flat_map(|outputs| &outputs.outputs);
-        extend(&mut kept.outputs, outputs.map(|output| output.value));
+        extend(&mut data.outputs, outputs.map(|output| output.value));
         if let Some((goal, torque)) = &motion.drive {
-            kept.goal.push(goal.angle_rad);
+            data.goal.push(goal.angle_rad);
             let now = [torque.feedforward_nm, torque.feedback_nm, torque.applied_nm, torque.disturbance_nm];
-            kept.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
+            data.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
         }
         if let Some(wheel) = &motion.wheel {
-            kept.wheel[0].push(wheel.speed_rad_s);
-            kept.wheel[1].push(wheel.momentum_nm_s);
+            data.wheel[0].push(wheel.speed_rad_s);
+            data.wheel[1].push(wheel.momentum_nm_s);
         }
     }
 }
@@ -215,7 +216,7 @@ impl Record for MotionRecorder {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
             Sample::Switching(command, _) => self.switchings.push(command.time_s),
-            Sample::Motion(motion) => self.see(now.seconds(), motion),
+            Sample::Motion(motion) => self.record(now.seconds(), motion),
             Sample::Estimate(estimate) => {
                 self.motion.estimates.push(DominantModeEstimate::from_row(now.seconds(), estimate));
             }

@@ -78,8 +78,8 @@ impl CycleData {
         Ok(cycles)
     }
 
-    pub fn over_time(&self, of: impl Fn(&ThreeAxisCycle) -> f64) -> Vec<Point> {
-        self.all.iter().map(|(time, cycle)| (*time, of(cycle))).collect()
+    pub fn over_time(&self, value_of: impl Fn(&ThreeAxisCycle) -> f64) -> Vec<Point> {
+        self.all.iter().map(|(time, cycle)| (*time, value_of(cycle))).collect()
     }
 }
 
@@ -150,12 +150,12 @@ pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Ve
 /// Returns the figure of the rigid rates, and of the rates with their elastic part, which an ideal gyro would measure.
 pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
-        let seen = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
+        let measured = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
         let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
         let name = |name| if axis == 0 { name } else { "" };
         vec![
             // If both coincide, the wider line remains visible.
-            Layer::new(name("at the gyro, with elastic part"), colour::SKY, LayerShape::Line(2.8), seen),
+            Layer::new(name("at the gyro, with elastic part"), colour::SKY, LayerShape::Line(2.8), measured),
             Layer::new(name("rigid part"), colour::BLACK, LayerShape::Line(1.0), rigid),
         ]
     };
@@ -164,9 +164,10 @@ pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
 
 /// Returns the figure of the position of the first point, and its velocity.
 pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let panel = |x: FigureAxis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, coordinates: [fn(&Position) -> f64; 3]| {
         let line = |(axis, colour): (usize, _)| {
-            let points = cycles.position.iter().map(|(time, position)| (*time, of[axis](position))).collect();
+            let points =
+                cycles.position.iter().map(|(time, position)| (*time, coordinates[axis](position))).collect();
             Layer::new(["x", "y", "z"][axis], colour, LayerShape::Line(1.2), points)
         };
         let layers: Vec<Layer> =
@@ -175,8 +176,10 @@ pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
         Panel { x, y: FigureAxis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
     };
     let x = time(0.0..story.end);
-    let places: [fn(&Position) -> f64; 3] = [|at| at.x_m, |at| at.y_m, |at| at.z_m];
-    let rates: [fn(&Position) -> f64; 3] = [|at| at.x_m_s, |at| at.y_m_s, |at| at.z_m_s];
+    let places: [fn(&Position) -> f64; 3] =
+        [|position| position.x_m, |position| position.y_m, |position| position.z_m];
+    let rates: [fn(&Position) -> f64; 3] =
+        [|position| position.x_m_s, |position| position.y_m_s, |position| position.z_m_s];
     Figure {
         title: title(story, "position in inertial axes"),
         panels: vec![panel(x.unnamed(), "position", "m", places), panel(x, "velocity", "m/s", rates)],
@@ -213,8 +216,8 @@ pub fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     if fires {
         panels.push(panel(x, "propellant", "kg", fuel));
     }
-    let what = if fires { "elastic energy and propellant" } else { "elastic energy" };
-    Figure { title: title(story, what), panels, panel_height: 220 }
+    let subject = if fires { "elastic energy and propellant" } else { "elastic energy" };
+    Figure { title: title(story, subject), panels, panel_height: 220 }
 }
 
 /// Returns true if a panel of pulses has any.
@@ -268,27 +271,27 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     };
     let lines = |axis: usize| {
         let count = cycles.tracking.first().map_or(0, |(_, tracking)| tracking.trackers.len());
-        let of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
+        let values_of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
             let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
             cycles.tracking.iter().map(|(time, tracking)| (*time, hertz(tracking))).collect()
         };
-        let mine = |mode: &usize| {
+        let own_windows = |mode: &usize| {
             cycles.tracking.first().is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64)
         };
         let mut layers = Vec::new();
-        for mode in (0..count).filter(mine) {
+        for mode in (0..count).filter(own_windows) {
             let name = |name| if axis == 0 && layers.is_empty() { name } else { "" };
             let truth = Layer::new(
                 name("true"),
                 colour::BLACK,
                 LayerShape::Dashes,
-                ends(of(mode, |of| of.true_frequency_rad_s)),
+                ends(values_of(mode, |mode| mode.true_frequency_rad_s)),
             );
             let estimate = Layer::new(
                 name("estimated"),
                 colour::VERMILLION,
                 LayerShape::Line(1.2),
-                of(mode, |of| of.frequency_rad_s),
+                values_of(mode, |mode| mode.frequency_rad_s),
             );
             layers.extend([estimate, truth]);
         }
@@ -304,7 +307,7 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
 /// Returns the figure of the elastic rates that active damping acts on, with its thresholds and its pulses.
 pub fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
-        let of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
+        let values_of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
             cycles.tracking.iter().map(|(time, tracking)| (*time, value(&tracking.channels[axis]))).collect()
         };
         let name = |name| if axis == 0 { name } else { "" };
@@ -318,10 +321,15 @@ pub fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
                 name("predicted elastic rate"),
                 colour::SKY,
                 LayerShape::Line(1.0),
-                of(|c| c.acted_on_rad_s),
+                values_of(|c| c.acted_on_rad_s),
             ),
-            Layer::new(name("threshold"), colour::BLACK, LayerShape::Line(0.8), of(|c| c.threshold_rad_s)),
-            Layer::new("", colour::BLACK, LayerShape::Line(0.8), of(|c| -c.threshold_rad_s)),
+            Layer::new(
+                name("threshold"),
+                colour::BLACK,
+                LayerShape::Line(0.8),
+                values_of(|c| c.threshold_rad_s),
+            ),
+            Layer::new("", colour::BLACK, LayerShape::Line(0.8), values_of(|c| -c.threshold_rad_s)),
             Layer::new("fires", colour::VERMILLION, mark, fired),
         ]
     };
