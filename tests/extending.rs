@@ -60,3 +60,50 @@ fn a_new_kind_is_named_where_the_document_says_and_nowhere_else() {
         assert!(!elsewhere.is_empty(), "{kind} is named nowhere: a wrong name?");
     }
 }
+
+/// Toys with a state of their own that is logged: file in `tests/own_parts`, and name of its topic.
+const TOYS: [(&str, &str); 4] =
+    [("law", "/pid"), ("sensor", "/encoder"), ("estimator", "/alpha_beta"), ("actuator", "/servo")];
+
+/// Largest number of files outside the declaration of a topic that name its row: the part, its metric, its journal line,
+/// its figure.
+const ROW_FILES: usize = 4;
+
+/// Rows that parts with a state report.
+const ROWS: [&str; 3] = ["BearingMotion", "ElasticEstimates", "SteeringRecord"];
+
+#[test]
+fn a_part_of_ones_own_logs_its_state_from_one_file() {
+    let mut engine = Vec::new();
+    for part in ENGINE.into_iter().chain(["cli", "figure", "papers", "py"]) {
+        sources(Path::new(&format!("{ROOT}/crates/{part}/src")), &mut engine);
+    }
+    for (file, topic) in TOYS {
+        let path = format!("{ROOT}/tests/own_parts/{file}.rs");
+        let text = fs::read_to_string(&path).expect("a toy");
+        assert!(text.contains(&format!("\"{topic}\"")) && text.contains("fn report("), "{path}");
+        let named: Vec<_> =
+            engine.iter().filter(|(_, text)| text.contains(&format!("\"{topic}\""))).collect();
+        assert!(named.is_empty(), "{topic} is in {}", named[0].0);
+    }
+}
+
+#[test]
+fn a_row_is_named_by_its_part_and_its_readers() {
+    let mut all = Vec::new();
+    for part in ["control", "core", "cli", "py"] {
+        sources(Path::new(&format!("{ROOT}/crates/{part}/src")), &mut all);
+    }
+    for row in ROWS {
+        let is_word = |text: &str, at: usize| {
+            let is_letter = |c: char| c.is_alphanumeric() || c == '_';
+            !text[..at].ends_with(is_letter) && !text[at + row.len()..].starts_with(is_letter)
+        };
+        let names = |text: &str| text.match_indices(row).any(|(at, _)| is_word(text, at));
+        let named: Vec<&str> =
+            all.iter().filter(|(_, text)| names(text)).map(|(name, _)| name.as_str()).collect();
+        assert!(!named.is_empty() && named.len() <= ROW_FILES, "{row} is named in {named:?}");
+        let built = named.iter().filter(|name| name.contains("/control/")).count();
+        assert_eq!(built, 1, "{row} is built in {named:?}");
+    }
+}

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
 use flexsc_core::control::custom::Custom;
+use flexsc_core::control::part::Part;
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::Trace;
@@ -44,6 +45,8 @@ impl AdaptationSpec for Stairs {
         Box::new(Climbing(self.clone(), value))
     }
 }
+
+impl Part for Climbing {}
 
 impl Adaptation for Climbing {
     fn learn(&mut self, _: Instant, _: f64) -> Option<SearchStep> {

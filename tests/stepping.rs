@@ -54,7 +54,7 @@ fn a_run_in_pieces_comes_to_the_same_as_a_whole_one() {
         let mut trace = Trace::new(Detail::Events);
         let mut whole = Simulation::new(&scenario, 3);
         whole.run(&mut trace).expect("a run");
-        let rows = |trace: Trace| -> BTreeMap<&str, usize> {
+        let rows = |trace: Trace| -> BTreeMap<String, usize> {
             trace.into_columns().map(|(name, rows)| (name, rows.len())).collect()
         };
         let reported = rows(trace);

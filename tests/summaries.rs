@@ -116,6 +116,18 @@ fn tables_of_modes_keep_their_columns_apart() {
     }
 }
 
+/// A spacecraft without appendages has no modes, and no tables of them.
+#[test]
+fn modes_of_a_rigid_spacecraft_have_no_empty_tables() {
+    let dir = Dir::with(&["detumble-and-point"]);
+    let reported = dir.run("modes detumble-and-point.toml").exits(0).err;
+    holds(
+        &reported,
+        &["centre of mass", "acceleration of the hub"],
+        &["influence", "clamped", "hub free", "period, s"],
+    );
+}
+
 #[test]
 fn a_log_of_other_settings_is_refused_in_plain_words() {
     let dir = Dir::with(&["wheel-ekf"]);

@@ -126,7 +126,7 @@ fn a_wheel_is_drawn_with_its_limits() {
     dir.run(&format!("simulate wheel-fast-mode.toml --set duration=60 {rotor}")).exits(0);
     dir.run("plot wheel-fast-mode.mcap --format svg --what wheel -o figures").exits(0);
     let wheel = Drawing::read(&dir, "wheel-fast-mode-wheel");
-    wheel.shows(&["speed (rad/s)", "momentum (mrad/s)", "limits"]);
+    wheel.shows(&["speed (rad/s)", "momentum over inertia (mrad/s)", "limits"]);
     let (_, start) = wheel.line(BLACK)[0];
     near(wheel.up(start, ["−40", "−20"]), 10.0, 0.2);
     let limits = wheel.shapes("polyline", "stroke", VERMILLION);

@@ -4,6 +4,7 @@ use std::io;
 
 use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, SearchStep};
 use flexsc_core::control::custom::PartError;
+use flexsc_core::control::part::Part;
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::Instant;
 
@@ -28,14 +29,16 @@ impl AdaptationSpec for Climber {
     }
 }
 
+impl Part for Climbing {
+    fn failure(&self) -> Option<PartError> {
+        (self.1 > self.0.most).then(|| PartError::new(io::Error::other("too far")))
+    }
+}
+
 impl Adaptation for Climbing {
     fn learn(&mut self, _: Instant, _: f64) -> Option<SearchStep> {
         self.1 += self.0.step;
         Some(SearchStep { decision: Decision::Keep, change: 0.0, draw: 1.0, gain: self.1, settled: 0 })
-    }
-
-    fn halted(&self) -> Option<PartError> {
-        (self.1 > self.0.most).then(|| PartError::new(io::Error::other("too far")))
     }
 
     fn copy(&self) -> Box<dyn Adaptation> {

@@ -6,17 +6,19 @@ mod estimator;
 mod law;
 mod sensor;
 
+use std::path::Path;
 use std::sync::Arc;
 
-use flexsc_core::campaign::Campaign;
+use flexsc_cli::figures;
+use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::control::actuator::{ActuatorKind, ActuatorSpec};
 use flexsc_core::control::adaptation::AdaptationKind;
 use flexsc_core::control::custom::Custom;
-use flexsc_core::control::estimator::EstimatorKind;
-use flexsc_core::control::law::LawKind;
 use flexsc_core::control::one_or_many::OneOrMany;
-use flexsc_core::control::sensor::SensorKind;
-use flexsc_core::record::{Column, Detail, Trace};
+use flexsc_core::record::metrics::Metrics;
+use flexsc_core::record::{
+    Column, CustomField, CustomTopic, Detail, Log, LogBytes, RunEnd, TopicError, Trace,
+};
 use flexsc_core::scenario::CustomParts;
 use flexsc_core::{Document, Scenario, Simulation, SimulationError};
 
@@ -32,22 +34,17 @@ const THREE_AXES: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.spatial]
 
 /// Creates a custom servo (N m).
 pub fn servo(most: f64, step: f64) -> Arc<dyn ActuatorSpec> {
-    Arc::new(actuator::Servo { most, step })
+    actuator::Servo::new(most, step)
 }
 
 /// Returns a scenario whose control system is all custom.
 fn of_own_parts(text: &str) -> Scenario {
     let scenario = Scenario::parse("own.toml", text).expect("a scenario");
     let whole = scenario.with(|scenario| {
-        scenario.law =
-            LawKind::Own(Custom::new(Arc::new(law::Pid { k_p: 4.0, k_i: 0.15, k_d: 30.0, period: 0.25 })));
-        scenario.sensor = OneOrMany::one(SensorKind::Own(Custom::new(Arc::new(sensor::Encoder {
-            step: 1e-6,
-            period: 0.25,
-        }))));
-        scenario.estimator =
-            Some(EstimatorKind::Own(Custom::new(Arc::new(estimator::AlphaBeta { alpha: 0.4, beta: 0.1 }))));
-        scenario.actuator = OneOrMany::one(ActuatorKind::Own(Custom::new(servo(0.05, 1e-5))).into());
+        scenario.law = law::Pid::kind([4.0, 0.15, 30.0], 0.25);
+        scenario.sensor = OneOrMany::one(sensor::Encoder::kind(1e-6, 0.25));
+        scenario.estimator = Some(estimator::AlphaBeta::kind(0.4, 0.1));
+        scenario.actuator = OneOrMany::one(actuator::Servo::kind(0.05, 1e-5).into());
     });
     whole.expect("parts that fit each other")
 }
@@ -83,6 +80,85 @@ fn parts_from_outside_hold_three_axes() {
     let state = simulation.spatial_state().expect("three axes");
     let off = state.turn.attitude.vector().norm();
     assert!(off < 1e-5, "{off}");
+}
+
+/// Topics of the toys, each with a field and its unit.
+const TOPICS: [(&str, &str, &str); 4] = [
+    ("/pid", "integral", "rad s"),
+    ("/encoder", "x", ""),
+    ("/alpha_beta", "innovation", "rad"),
+    ("/servo", "travel", "N m"),
+];
+
+#[test]
+fn parts_from_outside_log_their_states() {
+    for text in [ONE_ANGLE, THREE_AXES] {
+        let study = of_own_parts(text);
+        let mut trace = Trace::new(Detail::Full);
+        Simulation::new(&study, 0).run(&mut trace).expect("a run");
+        let run = CampaignRun { number: 0, scenario: study.clone(), drawn: Vec::new() };
+        let provenance = Campaign::provenance(&run, Detail::Full);
+        let layout = String::from_utf8(provenance.attachments[0].data.clone()).expect("a text");
+        let mut bytes = LogBytes::new(&provenance, Detail::Full).expect("a log");
+        Simulation::new(&study, 0).run(&mut bytes).expect("a run");
+        let bytes = bytes.finish(&Metrics(Vec::new()), RunEnd::Complete).expect("a log");
+        let path = Path::new("own.mcap");
+        let log = Log::read(path, bytes).expect("a log");
+        for (topic, field, unit) in TOPICS {
+            let traced = trace.topic(topic).and_then(|rows| rows.numbers(field)).expect("a column");
+            let logged = log.columns(topic).expect("a topic");
+            assert_eq!(logged.numbers(field), Some(traced), "{topic}");
+            let moves = text == THREE_AXES || traced.iter().any(|value| *value != 0.0);
+            assert!(traced.len() >= 200 && moves, "{topic}");
+            assert_eq!(log.units(topic)[field], unit);
+            let path = format!("{topic}.{field}");
+            assert!(layout.contains(&path), "no panel shows {path}");
+            let figure = figures::log_figure(&log, Path::new("own.mcap"), topic).expect("a figure");
+            assert!(figure.svg().expect("a picture").contains(field), "{topic}");
+        }
+        // A log without the motion has no rows of the toys either.
+        let mut events = Trace::new(Detail::Events);
+        Simulation::new(&study, 0).run(&mut events).expect("a run");
+        assert!(TOPICS.iter().all(|(topic, ..)| events.topic(topic).is_none()));
+    }
+}
+
+#[test]
+fn custom_topics_are_checked() {
+    let field = |name: &str| CustomField::new(name, "rad", "A field.");
+    let topic = |name: &str, fields| CustomTopic::new(name, "A topic.", fields).map(drop).expect_err("wrong");
+    for name in ["pid", "/", "/Pid", "/1pid", "/a-b", "/a/b"] {
+        assert_eq!(topic(name, vec![field("x")]), TopicError::Name(name.to_owned()));
+    }
+    let long = format!("/{}", "a".repeat(65));
+    assert_eq!(topic(&long, vec![field("x")]), TopicError::Name(long.clone()));
+    assert_eq!(topic("/wheels", vec![field("x")]), TopicError::Taken("/wheels".to_owned()));
+    for name in ["", "X", "time_s", "a b", "ä"] {
+        let (topic_name, field_name) = ("/pid".to_owned(), name.to_owned());
+        let wrong = TopicError::Field { topic: topic_name, field: field_name };
+        assert_eq!(topic("/pid", vec![field(name)]), wrong);
+    }
+    let twice = TopicError::Twice { topic: "/pid".to_owned(), field: "x".to_owned() };
+    assert_eq!(topic("/pid", vec![field("x"), field("x")]), twice);
+    let many = (0..65).map(|index| field(&format!("x{index}"))).collect::<Vec<_>>();
+    for fields in [Vec::new(), many] {
+        let count = fields.len();
+        assert_eq!(topic("/pid", fields), TopicError::Count { topic: "/pid".to_owned(), count });
+    }
+    let long = CustomField::new("x", "y".repeat(65), "");
+    assert_eq!(topic("/pid", vec![long]), TopicError::Text { topic: "/pid".to_owned() });
+    let own = CustomTopic::new("/pid", "", vec![field("x")]).expect("a topic");
+    let values = TopicError::Values { topic: "/pid".to_owned(), fields: 1, count: 2 };
+    assert_eq!(own.row([1.0, 2.0]).expect_err("two values"), values);
+    // Two parts with different topics of one name.
+    let fault = of_own_parts(ONE_ANGLE)
+        .with(|scenario| {
+            let other = CustomTopic::new("/pid", "", vec![field("x")]).expect("a topic");
+            let servo = Custom::with_topics(servo(0.05, 1e-5), vec![other]);
+            scenario.actuator = OneOrMany::one(ActuatorKind::Own(servo).into());
+        })
+        .expect_err("a conflict");
+    assert!(fault.to_string().contains("actuator: topic `/pid`: is declared by two parts"), "{fault}");
 }
 
 const RELAY: &str = "duration = 3000.0\n[law.relay]\ndead_zone = 5e-4\nhysteresis = 1e-4\nstrong = 4e-5\nweak = 1e-6\n\

@@ -76,3 +76,27 @@ def test_long_work_needs_a_yes() -> None:
 def test_pushes_come_within_some_turns_of_a_mode() -> None:
     with pytest.raises(ValueError, match="at most 1e5 rad later than its sample"):
         flexsc.relay_damping([1.0], 0.1, period=1e20)
+
+
+def test_work_is_estimated_beforehand() -> None:
+    scenario = shipped("relay-sampled")
+    one, all_ = flexsc.estimate(scenario), flexsc.estimate(scenario, runs=1000)
+    assert set(one) == {"seconds", "steps", "key", "memory_bytes", "needs_yes"}
+    assert (one["steps"], one["key"]) == (200_000.0, "sensor.sampled.period")
+    assert all_["seconds"] == pytest.approx(1000 * one["seconds"])
+    assert flexsc.estimate(scenario, log="full")["seconds"] > one["seconds"]
+    assert not all_["needs_yes"]
+    assert flexsc.estimate(scenario, runs=10_000_000)["needs_yes"]
+    # It agrees with what is refused.
+    with pytest.raises(ValueError, match=r"10000000 runs|1\.0e7 runs"):
+        flexsc.campaign(scenario, runs=10_000_000)
+    for runs in (0, -1):
+        with pytest.raises(ValueError, match="runs must be at least 1"):
+            flexsc.estimate(scenario, runs)
+    with pytest.raises(ValueError, match="runs must be at most 100000000"):
+        flexsc.estimate(scenario, 10**9)
+    wrong: Any = "relay-sampled"
+    with pytest.raises(TypeError, match=r"Scenario\.load reads a file"):
+        flexsc.estimate(wrong)
+    with pytest.raises(TypeError):
+        flexsc.estimate(scenario, 1.5)  # type: ignore[arg-type]

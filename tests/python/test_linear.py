@@ -333,6 +333,27 @@ def test_python_control_takes_and_gives_models() -> None:
     np.testing.assert_allclose(runs[0], runs[1], rtol=1e-9, atol=1e-12)
 
 
+def test_an_unstable_loop_is_named_by_its_worst_pole() -> None:
+    # On one axis the command warns by the same number.
+    for name in ("wheel-unstable-band", "wheel-fast-mode"):
+        scenario = shipped(name)
+        closed = scenario.linearise(loop="command").closed()
+        reported = scenario.simulate(log="none").metrics["spectral_radius"]
+        assert closed.spectral_radius() == pytest.approx(reported, rel=1e-9)
+    opened = shipped("wheel-unstable-band").linearise(loop="command")
+    radius = opened.closed().spectral_radius()
+    assert radius > 1.0
+    with pytest.raises(ValueError, match=rf"spectral radius {radius:.5g}, of a pole at [0-9.]+ rad/s"):
+        opened.margins()
+    # Three axes have no such metric, but the linear model has the number.
+    observer = shipped("earth-observer").linearise(loop="command").closed()
+    assert 0.9 < observer.spectral_radius() < 1.0
+    fast = shipped("earth-observer").with_("law.attitude.bandwidth", 2.0).linearise(loop="command")
+    assert fast.closed().spectral_radius() > 1.0
+    with pytest.raises(ValueError, match="a period or a loop"):
+        shipped("earth-observer").linearise().spectral_radius()
+
+
 def test_margins_are_on_the_safe_side() -> None:
     # The pole of x + u with u = -k x lies at 1 - k: the loop is stable up to k = 2 exactly.
     one = np.ones((1, 1))

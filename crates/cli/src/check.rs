@@ -12,7 +12,7 @@ use crate::human::seconds;
 use crate::{print, say, scenario};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct CheckArgs {
     /// Scenario files
     #[arg(required = true, value_name = "SCENARIO")]
     scenarios: Vec<PathBuf>,
@@ -21,7 +21,7 @@ pub struct Args {
     json: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &CheckArgs) -> Result<(), CliError> {
     let mut all = true;
     for path in &args.scenarios {
         match scenario::load(path, &[], None) {

@@ -16,9 +16,9 @@ use crate::{say, scenario};
 const NEAREST: usize = 3;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct CycleArgs {
     #[command(flatten)]
-    pub scenario: scenario::Args,
+    pub scenario: scenario::ScenarioArgs,
     #[command(flatten)]
     units: UnitsArgs,
 }
@@ -36,7 +36,7 @@ pub struct RelayCycles {
 }
 
 /// Computes the limit cycles of a scenario's relay law on a rigid body.
-pub fn results(scenario: &Scenario, args: &Args) -> Result<RelayCycles, CliError> {
+pub fn results(scenario: &Scenario, args: &CycleArgs) -> Result<RelayCycles, CliError> {
     let body = scenario.one_angle()?;
     let LawKind::Relay(law) = &scenario.law else {
         return Err(CliError::Arguments(format!(
@@ -56,7 +56,7 @@ pub fn results(scenario: &Scenario, args: &Args) -> Result<RelayCycles, CliError
     Ok(RelayCycles { name, k_t, unit, cycles, resonances, units: args.units.units })
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &CycleArgs) -> Result<(), CliError> {
     show(&results(&args.scenario.load()?, args)?, None, args.scenario.json)
 }
 

@@ -76,7 +76,7 @@ const START: &str = "attitude-hold";
 
 /// Copies of examples.
 #[derive(clap::Args)]
-pub struct Args {
+pub struct ExamplesArgs {
     /// Examples to copy [default: list all]
     #[arg(value_name = "NAME")]
     names: Vec<String>,
@@ -119,7 +119,7 @@ pub fn text(name: &str) -> Result<&'static str, CliError> {
     })
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &ExamplesArgs) -> Result<(), CliError> {
     if args.names.is_empty() {
         return list(args.json);
     }

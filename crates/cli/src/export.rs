@@ -14,7 +14,7 @@ use crate::error::{CliError, for_terminal};
 use crate::{files, out};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct ExportArgs {
     /// Log file
     log: PathBuf,
     /// Topic, such as /command [default: list the topics of the log]
@@ -44,7 +44,7 @@ const EMPTY_CELLS: usize = 1 << 24;
 /// ... this number for each full cell.
 const EMPTY_PER_FULL: usize = 16;
 
-impl Args {
+impl ExportArgs {
     /// Returns the format, by the option or the file's extension.
     fn form(&self) -> Result<Format, CliError> {
         let Some(path) = &self.out else { return Ok(self.format.unwrap_or(Format::Csv)) };
@@ -62,7 +62,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &ExportArgs) -> Result<(), CliError> {
     let format = args.form()?;
     let log = Log::open(&args.log)?;
     let Some(topic) = &args.topic else {
@@ -87,7 +87,7 @@ fn unreadable(path: &Path, topic: &str, why: String) -> CliError {
 }
 
 /// Writes the exported table to the file or to stdout.
-fn write_output(args: &Args, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
+fn write_output(args: &ExportArgs, write: impl Fn(&mut dyn Write) -> io::Result<()>) -> Result<(), CliError> {
     let Some(path) = &args.out else {
         let mut out = BufWriter::with_capacity(1 << 16, io::stdout().lock());
         return write(&mut out).and_then(|()| out.flush()).map_err(CliError::Stdout);

@@ -15,7 +15,7 @@ const LONGEST: f64 = 120.0;
 const LARGEST: f64 = 2e9;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct LayoutArgs {
     /// A log, or a scenario: then the layout is for a log with a scene, or a live run
     #[arg(value_name = "LOG|SCENARIO")]
     path: PathBuf,
@@ -30,7 +30,7 @@ pub struct Args {
     force: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &LayoutArgs) -> Result<(), CliError> {
     if let Some(path) = &args.out {
         out::file(path, &["json"], &[&args.path])?;
     }

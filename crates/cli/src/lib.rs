@@ -67,57 +67,57 @@ struct Cli {
 #[derive(Subcommand)]
 enum Verb {
     /// Run scenarios, once each or as a Monte Carlo campaign
-    Simulate(simulate::Args),
+    Simulate(simulate::SimulateArgs),
     /// Run a scenario over a grid or a sample of key values
-    Sweep(sweep::Args),
+    Sweep(sweep::SweepArgs),
     /// Merge parts of a campaign into one directory
-    Merge(merge::Args),
+    Merge(merge::MergeArgs),
     /// Show the progress and the statistics of a running campaign
-    Top(top::Args),
+    Top(top::TopArgs),
     /// Print the elastic modes of a spacecraft
-    Modes(modes::Args),
+    Modes(modes::ModesArgs),
     /// Print the limit cycles and resonances of a relay law
     ///
     /// In closed form, for the rigid body. A resonance is a gain at which an odd harmonic of the limit cycle matches a mode.
-    Cycle(cycle::Args),
+    Cycle(cycle::CycleArgs),
     /// Plan a manoeuvre without residual vibration, or compare plans
-    Plan(plan::Args),
+    Plan(plan::PlanArgs),
     /// Find stable, fast gains of a sampled loop
     ///
     /// Over the frequency of the dominant mode: a region of gains, a gain schedule, or robust gains.
-    Tune(tune::Args),
+    Tune(tune::TuneArgs),
     /// Map the stability of a sampled loop
     ///
     /// Spectral radius and settling time over the frequency of the dominant mode and the sampling period.
-    Map(map::Args),
+    Map(map::MapArgs),
     /// Analyse active damping by thrusters
     ///
     /// Which modes a thruster relay damps, how fast, and the limit cycle that a delay causes.
-    Damping(damping::Args),
+    Damping(damping::DampingArgs),
     /// Measure how well an adaptive observer identifies modes
     ///
     /// Success rate and time over many runs.
-    Identify(identify::Args),
+    Identify(identify::IdentifyArgs),
     /// Find the weights for which a modal observer converges
-    Observer(observer::Args),
+    Observer(observer::ObserverArgs),
     /// Plot a log, a campaign or a sweep
-    Plot(plot::Args),
+    Plot(plot::PlotArgs),
     /// Reproduce the results of the papers on one HTML page
-    Reproduce(reproduce::Args),
+    Reproduce(reproduce::ReproduceArgs),
     /// Export a topic of a log as CSV or JSON
-    Export(export::Args),
+    Export(export::ExportArgs),
     /// Inspect a log, or recover an incomplete one
-    Log(log::Args),
+    Log(log::LogArgs),
     /// Write a viewer layout for a log or a scenario
-    Layout(layout::Args),
+    Layout(layout::LayoutArgs),
     /// Check scenario files without running them
-    Check(check::Args),
+    Check(check::CheckArgs),
     /// Create a scenario from a commented example
     New(examples::NewArgs),
     /// List the example scenarios, or copy some
-    Examples(examples::Args),
+    Examples(examples::ExamplesArgs),
     /// Print the JSON Schema of scenarios, or the list of metrics
-    Schema(schema::Args),
+    Schema(schema::SchemaArgs),
     /// Print a shell completion script
     Completions {
         /// The shell

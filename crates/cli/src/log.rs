@@ -12,7 +12,7 @@ use crate::error::CliError;
 use crate::{files, out, print, say};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct LogArgs {
     #[command(subcommand)]
     verb: Verb,
 }
@@ -40,7 +40,7 @@ enum Verb {
     },
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &LogArgs) -> Result<(), CliError> {
     match &args.verb {
         Verb::Recover { torn, out, force, json } => {
             let name = torn.display().to_string();

@@ -18,7 +18,7 @@ const MOST_CELLS: u64 = 1 << 29;
 const MAX_LISTED: usize = 8;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct MergeArgs {
     /// Directories with parts of one campaign
     #[arg(required = true, value_name = "DIR")]
     directories: Vec<PathBuf>,
@@ -30,7 +30,7 @@ pub struct Args {
     force: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &MergeArgs) -> Result<(), CliError> {
     let out = Out::new(&args.out, &["csv", "parquet"], &[])?;
     let open = |path: &Path| Directory::open(path).map_err(part_files::failure);
     let mut all = args.directories.iter().map(|path| open(path)).collect::<Result<Vec<_>, _>>()?;

@@ -23,9 +23,9 @@ use crate::{say, scenario};
 const WEIGHTS: usize = 12;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct ModesArgs {
     #[command(flatten)]
-    pub scenario: scenario::Args,
+    pub scenario: scenario::ScenarioArgs,
     /// Print every influence, also those below 1e-3 of the largest
     #[arg(long)]
     all: bool,
@@ -63,7 +63,7 @@ struct Spatial {
 }
 
 /// Computes the modes of a scenario's body.
-pub fn results(scenario: &Scenario, args: &Args) -> Box<dyn Results> {
+pub fn results(scenario: &Scenario, args: &ModesArgs) -> Box<dyn Results> {
     let name = scenario.name.clone();
     let style = Style { units: args.units.units, all: args.all };
     if let Some(craft) = scenario.model.craft() {
@@ -79,7 +79,7 @@ pub fn results(scenario: &Scenario, args: &Args) -> Box<dyn Results> {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &ModesArgs) -> Result<(), CliError> {
     show(&*results(&args.scenario.load()?, args), None, args.scenario.json)
 }
 
@@ -112,6 +112,9 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
         rows.push(vec![format!("{axis}, {by}"), digits(plus), digits(-minus), String::new()]);
     }
     print_table(&rows, 0);
+    if modes.dampings.is_empty() {
+        return;
+    }
     say!("  influence: elastic rate at the gyro for each rigid rate that {actuator} about the same axis");
     let mut rows = vec![texts(&["mode", style.units.frequency().1, "period, s", "damping"])];
     rows[0].extend(AXES.map(str::to_owned));

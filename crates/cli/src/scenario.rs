@@ -13,7 +13,7 @@ pub const LARGEST_SEED: u64 = i64::MAX as u64;
 /// One scenario to analyse.
 #[derive(clap::Args)]
 #[group(skip)]
-pub struct Args {
+pub struct ScenarioArgs {
     /// Scenario file
     pub scenario: PathBuf,
     /// Set a key of the scenario, such as law.relay.k_t=0.34
@@ -24,7 +24,7 @@ pub struct Args {
     pub json: bool,
 }
 
-impl Args {
+impl ScenarioArgs {
     /// Loads the scenario.
     pub fn load(&self) -> Result<Scenario, CliError> {
         load(&self.scenario, &self.set, None)

@@ -9,7 +9,7 @@ use crate::error::CliError;
 use crate::print;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct SchemaArgs {
     /// Print the metrics with their units and meanings instead
     #[arg(long)]
     metrics: bool,
@@ -18,7 +18,7 @@ pub struct Args {
     topics: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &SchemaArgs) -> Result<(), CliError> {
     let document = if args.metrics {
         let meaning = |m: &metrics::MetricDescription| json!({"name": m.name, "unit": m.unit, "doc": m.doc});
         metrics::ALL.iter().map(meaning).collect()

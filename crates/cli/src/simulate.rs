@@ -25,7 +25,7 @@ use crate::stop::{self, StopRecord};
 use crate::{files, say, scenario, summary};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct SimulateArgs {
     /// Scenario files
     #[arg(required_unless_present = "from", value_name = "SCENARIO")]
     pub scenarios: Vec<PathBuf>,
@@ -67,7 +67,7 @@ pub struct Args {
     #[command(flatten)]
     consent: CostConfirmation,
     #[command(flatten)]
-    live: crate::live::Args,
+    live: crate::live::LiveArgs,
 }
 
 /// Range of the runs of a campaign, and true if it was given as a part.
@@ -112,7 +112,7 @@ pub fn runs(text: &str) -> Result<RunRange, String> {
     Ok(RunRange { range, part })
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
     if let (Some(from), Some(row)) = (&args.from, args.row) {
         return args.again(from, row);
     }
@@ -175,7 +175,7 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     last.map_or(Ok(()), Err)
 }
 
-impl Args {
+impl SimulateArgs {
     /// Returns the point design of the campaign.
     fn design(&self, uncertain: bool) -> Result<Design, CliError> {
         let Some(RunRange { range, part }) = &self.runs else { return Ok(Design::default()) };
@@ -259,7 +259,7 @@ impl Args {
 /// Runs the campaign of a scenario; its tables have the scenario's name if several scenarios share a directory.
 fn several(
     campaign: &Arc<Campaign>,
-    (args, place): (&Args, &Place),
+    (args, place): (&SimulateArgs, &Place),
     runs: &RunRange,
     (prefixed, selection): (bool, &Selection),
 ) -> Result<(), CliError> {
@@ -292,7 +292,7 @@ pub fn scenario_run(campaign: &Campaign) -> CampaignRun {
 fn single(
     campaign: &Campaign,
     run: &CampaignRun,
-    args: &Args,
+    args: &SimulateArgs,
     (path, detail): (PathBuf, Option<Detail>),
 ) -> Result<(), CliError> {
     let _writing = detail.map(|_| stop::writing());

@@ -1,5 +1,6 @@
 //! Stopping on Ctrl-C, SIGTERM or SIGHUP.
 
+use std::io::Write;
 use std::panic::resume_unwind;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
@@ -13,6 +14,7 @@ use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Record, RecordError, Sample};
 
 use crate::error::CliError;
+use crate::say;
 
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
@@ -72,6 +74,7 @@ pub fn run_watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
         Err(source) => return CliError::Thread(source).print(),
     };
     let mut noticed = None;
+    let mut is_noted = false;
     loop {
         match wait.recv_timeout(POLL_PERIOD) {
             Ok(code) => return code,
@@ -88,10 +91,21 @@ pub fn run_watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
                     drop(files);
                     return print_interrupted();
                 }
+                if waited >= PATIENCE && !is_noted {
+                    is_noted = true;
+                    note_second_signal();
+                }
             }
             Err(RecvTimeoutError::Timeout) => {}
         }
     }
+}
+
+/// Announces that files are being finished, and that a second signal ends the program without it. A blocked reader of the
+/// output delays neither.
+fn note_second_signal() {
+    let note = || say!("note: finishing files; a second Ctrl-C ends at once, without them");
+    let _ = thread::Builder::new().spawn(note);
 }
 
 /// Reports that the user asked to stop, and returns the exit code. A blocked reader of the output, such as a pager,

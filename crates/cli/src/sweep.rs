@@ -24,7 +24,7 @@ use crate::{campaign, files, say, scenario};
 const MOST_VALUES: u32 = 10_000_000;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct SweepArgs {
     /// Scenario file
     pub scenario: PathBuf,
     /// A key and its values: LO:HI:COUNT for evenly spaced values, such as law.relay.k_t=0.28:0.40:2401; a list A,B,C; or a
@@ -105,7 +105,7 @@ fn varied(text: &str) -> Result<VariedKey, String> {
     Ok(VariedKey { key: key.to_owned(), values })
 }
 
-impl Args {
+impl SweepArgs {
     /// Returns the level of detail of each run's log; `None` without logs.
     fn detail(&self) -> Option<Detail> {
         self.log.and_then(LogDetail::detail)
@@ -175,7 +175,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &SweepArgs) -> Result<(), CliError> {
     let (kind, is_file) = args.place()?;
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
     if args.uncertain && scenario.uncertain.is_empty() {

@@ -25,7 +25,7 @@ const SHOWN: usize = 8;
 const RECENT_S: f64 = 120.0;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct TopArgs {
     /// Directory of a campaign
     #[arg(value_name = "DIR")]
     directory: PathBuf,
@@ -52,7 +52,7 @@ struct ReadParts {
     seconds: f64,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &TopArgs) -> Result<(), CliError> {
     if !(args.every.is_finite() && (0.05..=86_400.0).contains(&args.every)) {
         return Err(CliError::Arguments(format!("--every must be from 0.05 to 86400 s, got {}", args.every)));
     }
@@ -90,7 +90,7 @@ fn wanted(directory: &Directory) -> u64 {
 }
 
 /// Returns the metrics to show: the named ones, or the main ones.
-fn metrics(args: &Args, directory: &Directory) -> Result<Vec<(String, RunningMean)>, CliError> {
+fn metrics(args: &TopArgs, directory: &Directory) -> Result<Vec<(String, RunningMean)>, CliError> {
     let work = directory.work();
     let numeric = |name: &str| {
         work.fields().iter().any(|field| {

@@ -6,29 +6,43 @@ use std::fmt;
 use std::ops::Deref;
 use std::sync::Arc;
 
+use flexsc_record::CustomTopic;
 use schemars::{JsonSchema, Schema, SchemaGenerator};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Custom part provided by a program, shared by all runs of a scenario.
-pub struct Custom<T: ?Sized>(Arc<T>);
+pub struct Custom<T: ?Sized> {
+    part: Arc<T>,
+    topics: Arc<[Arc<CustomTopic>]>,
+}
 
 impl<T: ?Sized> Custom<T> {
-    /// Wraps a custom part.
+    /// Wraps a custom part that logs no rows of its own.
     pub fn new(part: Arc<T>) -> Self {
-        Self(part)
+        Self::with_topics(part, Vec::new())
+    }
+
+    /// Wraps a custom part with the topics of the rows that it reports.
+    pub fn with_topics(part: Arc<T>, topics: Vec<Arc<CustomTopic>>) -> Self {
+        Self { part, topics: topics.into() }
+    }
+
+    /// Returns the topics of the rows that the part reports.
+    pub fn topics(&self) -> &[Arc<CustomTopic>] {
+        &self.topics
     }
 }
 
 impl<T: ?Sized> Deref for Custom<T> {
     type Target = T;
     fn deref(&self) -> &T {
-        &self.0
+        &self.part
     }
 }
 
 impl<T: ?Sized> Clone for Custom<T> {
     fn clone(&self) -> Self {
-        Self(Arc::clone(&self.0))
+        Self { part: Arc::clone(&self.part), topics: Arc::clone(&self.topics) }
     }
 }
 
@@ -40,7 +54,7 @@ impl<T: ?Sized> fmt::Debug for Custom<T> {
 
 impl<T: ?Sized> PartialEq for Custom<T> {
     fn eq(&self, other: &Self) -> bool {
-        Arc::ptr_eq(&self.0, &other.0)
+        Arc::ptr_eq(&self.part, &other.part)
     }
 }
 

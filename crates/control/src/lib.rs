@@ -1,7 +1,7 @@
 //! The control system of a spacecraft: from sensor measurements to actuator outputs.
 //!
 //! Each role is a trait: [`sensor::Sensor`], [`estimator::Estimator`], [`adaptation::AdaptationSpec`], [`law::Law`],
-//! [`actuator::Actuator`]. `docs/extending.md` describes how to add a kind.
+//! [`actuator::Actuator`]. Every part of a run is a [`part::Part`], which reports its own rows for the log. `docs/extending.md` describes how to add a kind.
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 
@@ -12,5 +12,6 @@ pub mod estimator;
 pub mod interval;
 pub mod law;
 pub mod one_or_many;
+pub mod part;
 pub mod sensor;
 pub mod state_estimate;

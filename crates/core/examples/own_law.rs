@@ -7,8 +7,10 @@ use std::sync::Arc;
 
 use flexsc_core::control::custom::Custom;
 use flexsc_core::control::law::{
-    Authority, Command, ControlOutput, DecisionCause, Guards, Law, LawKind, LawSpec, Phase, Setpoint,
+    Authority, Command, ControlOutput, DecisionCause, Guards, Law, LawKind, LawSpec, LawState, Phase,
+    Setpoint,
 };
+use flexsc_core::control::part::Part;
 use flexsc_core::control::state_estimate::StateEstimate;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::prelude::*;
@@ -35,6 +37,8 @@ impl LawSpec for Pid {
     }
 }
 
+impl Part for PidState {}
+
 impl Law for PidState {
     fn decide(
         &mut self,
@@ -53,8 +57,8 @@ impl Law for PidState {
         ControlOutput { command: Command::Torque(torque), until, guards: Guards::NONE }
     }
 
-    fn state(&self) -> Phase {
-        Phase::Feedback
+    fn state(&self) -> LawState<'_> {
+        LawState::new(Phase::Feedback)
     }
 
     fn copy(&self) -> Box<dyn Law> {

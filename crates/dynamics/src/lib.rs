@@ -18,5 +18,5 @@ pub mod predicted_crossing;
 pub mod three_axis;
 pub mod waveform;
 
-pub use one_axis_state::{AngleObservation, AxisState, ModeState};
+pub use one_axis_state::{AngleObservation, AxisState, LARGEST_STATE, ModeState, is_bounded};
 pub use polynomial_piece::{MotionPiece, SeriesExpansion};

@@ -22,17 +22,25 @@ pub struct ModeState {
     pub quadrature: f64,
 }
 
+/// Largest angle (rad) or rate (rad/s) of a state: energies, which are squares, would overflow beyond it.
+pub const LARGEST_STATE: f64 = 1e100;
+
+/// Returns true if an angle (rad) or a rate (rad/s) is a number below [`LARGEST_STATE`].
+pub fn is_bounded(value: f64) -> bool {
+    value.abs() < LARGEST_STATE
+}
+
 impl AxisState {
     /// Returns the angle that a sensor measures (rad): the rigid angle plus all modes.
     pub fn angle(&self) -> f64 {
         self.modes.iter().fold(self.rigid_angle, |sum, mode| sum + mode.displacement)
     }
 
-    /// Returns true if every number is finite.
-    pub fn is_finite(&self) -> bool {
-        self.rigid_angle.is_finite()
-            && self.rigid_rate.is_finite()
-            && self.modes.iter().all(|m| m.displacement.is_finite() && m.quadrature.is_finite())
+    /// Returns true if every number is below [`LARGEST_STATE`].
+    pub fn is_bounded(&self) -> bool {
+        is_bounded(self.rigid_angle)
+            && is_bounded(self.rigid_rate)
+            && self.modes.iter().all(|m| is_bounded(m.displacement) && is_bounded(m.quadrature))
     }
 
     /// Returns the state as one vector, for modes with the given frequencies (rad/s).

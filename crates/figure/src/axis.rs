@@ -153,7 +153,7 @@ impl FigureAxis {
 
     /// Returns the size of the prefixed unit in the axis' own unit.
     pub fn factor(&self) -> f64 {
-        self.long().map_or_else(|| 10_f64.powi(self.prefix().1 - self.own()), |unit| unit.1)
+        self.long().map_or_else(|| 10_f64.powi(self.prefix().1 - self.exponent_of_unit()), |unit| unit.1)
     }
 
     /// The name and the length (s) of the unit of a time that has no prefix.
@@ -199,18 +199,18 @@ impl FigureAxis {
 
     fn prefix(&self) -> (&'static str, i32) {
         if self.unit.is_empty() || self.scale == Scale::Logarithmic {
-            return ("", self.own());
+            return ("", self.exponent_of_unit());
         }
-        let size = self.size().max(self.stacked_size) * 10_f64.powi(self.own());
+        let size = self.size().max(self.stacked_size) * 10_f64.powi(self.exponent_of_unit());
         let half = (self.range.end - self.range.start) / 2.0;
         // A short time has the prefix of its length, however late it is.
         let measure = if self.unit == "s" { half } else { size };
         let fits = |(_, power): &&(&str, i32)| (1.25..1250.0).contains(&(measure / 10_f64.powi(*power)));
-        PREFIXES.iter().find(fits).copied().unwrap_or(("", self.own()))
+        PREFIXES.iter().find(fits).copied().unwrap_or(("", self.exponent_of_unit()))
     }
 
     /// Returns the power of ten of the prefix that the unit itself contains.
-    fn own(&self) -> i32 {
+    fn exponent_of_unit(&self) -> i32 {
         if self.unit == "kg" { 3 } else { 0 }
     }
 }

@@ -11,7 +11,6 @@ mod line;
 pub mod palette;
 #[cfg(feature = "png")]
 mod pdf;
-mod refine;
 mod sheet;
 mod style;
 mod svg;

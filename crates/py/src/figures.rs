@@ -15,11 +15,12 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
+use super::Scenario;
 use super::aside::aside;
 use super::campaign::Work;
 use super::commands::Commands;
+use super::log::Log;
 use super::table::column;
-use super::{Log, Scenario};
 
 /// A figure.
 #[pyclass(frozen, module = "flexsc._native")]

@@ -16,15 +16,14 @@ mod error;
 mod figures;
 mod instants;
 mod linear;
+mod log;
 mod parts;
 mod sampled;
 mod stepping;
 mod table;
 
-use std::collections::BTreeMap;
 use std::ffi::OsString;
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
@@ -47,7 +46,7 @@ use serde_json::json;
 
 use aside::aside;
 use commands::Commands;
-use error::{allowed, log_error, no_file, scenario_error, simulation_error};
+use error::{allowed, no_file, scenario_error, simulation_error};
 
 #[pymodule]
 mod _native {
@@ -74,6 +73,8 @@ mod _native {
     #[pymodule_export]
     use super::linear::{exponential, linear_json, loop_json};
     #[pymodule_export]
+    use super::log::Log;
+    #[pymodule_export]
     use super::parts::{
         Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
         Truth, beside_parts, parts_of, text_beside_parts, with_parts,
@@ -84,7 +85,7 @@ mod _native {
     use super::stepping::Simulator;
     #[pymodule_export]
     use super::{
-        Log, Scenario, examples, main, meanings_json, metrics_json, plan_json, plan_torque,
+        Scenario, estimate_json, examples, main, meanings_json, metrics_json, plan_json, plan_torque,
         rigid_cycles_json, rivals_json, schema_json, simulate, to_mcap, topics_json, write,
     };
     #[pymodule_export]
@@ -264,6 +265,25 @@ fn to_mcap(
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))
 }
 
+/// The estimated work of runs as a campaign has them, or of one run whose log of this detail stays in memory.
+#[pyfunction]
+fn estimate_json(scenario: &Scenario, runs: u64, log: &str) -> PyResult<String> {
+    let detail = detail(log)?;
+    let cost = if runs > 1 {
+        let campaign = Campaign::new(scenario.inner.clone(), &scenario.origin, []);
+        let campaign = campaign.map_err(scenario_error)?;
+        campaign.cost(runs, detail).map_err(|why| PyValueError::new_err(format!("runs {why}")))?
+    } else {
+        scenario.inner.cost(detail, true)
+    };
+    let (key, steps) = &cost.most;
+    let object = json!({
+        "seconds": cost.seconds, "steps": steps, "key": key.trim_matches('`'), "memory_bytes": cost.memory,
+        "needs_yes": cost.limit_exceeded().is_some(),
+    });
+    Ok(object.to_string())
+}
+
 #[pyfunction]
 fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
     let body = scenario.inner.one_angle().map_err(scenario_error)?;
@@ -320,39 +340,6 @@ fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Opti
     let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).clone());
     let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
     Ok(serde_json::Value::from(rows.iter().map(CommandCost::to_json).collect::<Vec<_>>()).to_string())
-}
-
-/// A log in memory.
-#[pyclass(frozen, module = "flexsc._native")]
-struct Log(Arc<record::Log>);
-
-#[pymethods]
-impl Log {
-    #[staticmethod]
-    fn open(py: Python<'_>, path: PathBuf) -> PyResult<Self> {
-        let log = aside(py, move |_| record::Log::open(&path))?.map_err(log_error)?;
-        Ok(Self(Arc::new(log)))
-    }
-
-    #[getter]
-    fn topics(&self) -> &[String] {
-        self.0.topics()
-    }
-
-    #[getter]
-    fn metadata(&self) -> &BTreeMap<String, String> {
-        self.0.metadata()
-    }
-
-    #[getter]
-    fn scenario(&self) -> Option<&str> {
-        self.0.scenario()
-    }
-
-    fn columns<'py>(&self, py: Python<'py>, topic: &str) -> PyResult<Bound<'py, PyDict>> {
-        let (log, topic) = (self.0.clone(), topic.to_owned());
-        columns::rows_to_dict(py, aside(py, move |_| log.columns(&topic))?.map_err(log_error)?)
-    }
 }
 
 /// Writes a text file, which is whole or not there.

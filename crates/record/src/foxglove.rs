@@ -152,7 +152,7 @@ rows! {
         rotation: Quaternion,
     }
     /// Poses of the frames.
-    FrameTransforms = "/tf" {
+    FrameTransforms = "/tf" at Scene {
         /// Each frame.
         transforms: Vec<FrameTransform>,
     }
@@ -287,7 +287,7 @@ rows! {
         texts: Vec<TextPrimitive>,
     }
     /// Contents of a scene.
-    SceneUpdate = "/scene" {
+    SceneUpdate = "/scene" at Scene {
         /// Entities to remove.
         deletions: Vec<SceneEntityDeletion>,
         /// Entities of the scene from now on.

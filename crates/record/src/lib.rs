@@ -5,6 +5,7 @@
 pub mod atomic_file;
 mod columns;
 mod composite;
+pub mod custom_topic;
 mod decoder;
 pub mod description;
 mod descriptor;
@@ -19,6 +20,7 @@ pub mod metrics;
 mod proto;
 mod provenance_check;
 mod recover;
+mod report;
 pub mod row;
 mod states;
 mod summary;
@@ -28,6 +30,7 @@ mod topics;
 mod trace;
 mod wire;
 
+use std::any::Any;
 use std::io;
 
 use flexsc_dynamics::{AxisState, MotionPiece};
@@ -35,23 +38,16 @@ use flexsc_numerics::time::Instant;
 use thiserror::Error;
 
 pub use columns::{Column, Columns};
+pub use custom_topic::{CustomField, CustomRow, CustomTopic, LogTopic, TopicError};
 pub use log_file::{Log, LogError};
 pub use mcap::{LogBytes, LogFile};
 pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Provenance, RunEnd};
 pub use provenance_check::{ExistingLog, difference, existing_log};
 pub use recover::recover;
+pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
-pub use three_axis::{SteeringRecord, ThreeAxisCycle, ThreeAxisMotionSample};
-pub use topics::{
-    Acceleration, Accelerations, Adaptation, Arrival, Attitude, AttitudeEstimate, AxisEstimate, AxisRate,
-    BearingMotion, Bearings, ChannelState, Command, ControlMomentGyro, ControlMomentGyros, Decision,
-    DriveMotion, DrivenMode, DrivesMotion, ElasticEstimate, ElasticEstimates, Energy, Envelope, Estimate,
-    Estimates, FaultEvent, GoalMotion, HingeMotion, Hinges, Jets, Law, Magnetorquer, Magnetorquers, Metric,
-    MetricLine, MetricPage, Metrics, ModeEnvelope, ModeEstimate, ModeMotion, Modes, Objective, Orbit,
-    OrbitAxis, OutputMotion, OutputName, Outputs, Params, Pointing, Position, Rate, Rates, Residual, Sliding,
-    Summary, TOPICS, ThrusterPulse, Thrusters, Torque, Torques, TrackedMode, Tracking, Trigger, Vibration,
-    Vibrations, Wheel, WheelEvent, WheelMotion, Wheels, WindowMean,
-};
+pub use three_axis::{SteeringRecord, StoredMomentum, ThreeAxisCycle};
+pub use topics::*;
 pub use trace::Trace;
 
 /// Samples that a simulation reports while it runs.
@@ -61,84 +57,21 @@ pub enum Sample<'a> {
     Begin(&'a Law),
     /// Switching of the law, with the body in this state.
     Switching(&'a Command, &'a AxisState),
-    /// Motion at one instant: at each period of a dense record, and at every switching.
-    Motion(&'a Motion),
-    /// State of the law, once a second in a dense record.
-    Law(&'a Law),
-    /// End of a window of the envelope's mean.
-    Window(&'a WindowMean),
-    /// End of a window of the adaptation's objective.
-    Objective(&'a Objective),
-    /// Step of the adaptation.
-    Adaptation(&'a Adaptation),
-    /// End of the manoeuvre.
-    Arrival(&'a Arrival),
-    /// Estimate of a filter after a sample.
-    Estimate(&'a Estimate),
-    /// Estimates of the filters of three axes after a sample.
-    Estimates(&'a Estimates),
-    /// Estimate of an attitude filter after a sample.
-    AttitudeEstimate(&'a AttitudeEstimate),
-    /// Estimates of elastic modes by an attitude filter after a sample.
-    ElasticEstimates(&'a ElasticEstimates),
-    /// Wheel that passed through zero speed, stuck, or slipped again.
-    WheelEvent(&'a WheelEvent),
-    /// Sample of an accelerometer.
-    Accelerations(&'a Accelerations),
-    /// Start or end of a failure of a sensor or an actuator.
-    Fault(&'a FaultEvent),
-    /// Start of a cycle of a three-axis body.
-    Cycle(&'a ThreeAxisCycle),
-    /// Estimates of adaptive observers after a cycle's sample.
-    Tracking(&'a Tracking),
-    /// Motion of a spatial body at one instant, at each period of a dense record.
-    SpatialMotion(&'a ThreeAxisMotionSample),
-    /// Log line for people.
-    Log(&'a foxglove::Log),
-    /// Contents of the scene, once.
-    Scene(&'a foxglove::SceneUpdate),
-    /// Poses of the parts of the scene.
-    Frames(&'a foxglove::FrameTransforms),
-    /// Plumes of the scene, at each change.
-    Plumes(&'a foxglove::Plumes),
+    /// Row of one topic.
+    Row(&'a dyn LogRow),
+    /// Rows and values of the parts at one instant.
+    Report(&'a Report),
 }
 
-impl Sample<'_> {
-    /// Returns the least detail of a record that needs the sample.
-    pub fn detail(self) -> Detail {
+impl<'a> Sample<'a> {
+    /// Returns the row or value of this type, of a sample that is a row or a report.
+    pub fn get<T: Any>(self) -> Option<&'a T> {
         match self {
-            Self::Motion(_)
-            | Self::Law(_)
-            | Self::Estimate(_)
-            | Self::Estimates(_)
-            | Self::AttitudeEstimate(_)
-            | Self::ElasticEstimates(_)
-            | Self::Tracking(_)
-            | Self::Accelerations(_)
-            | Self::SpatialMotion(_) => Detail::Full,
-            Self::Scene(_) | Self::Frames(_) | Self::Plumes(_) => Detail::Scene,
-            _ => Detail::Events,
+            Self::Begin(_) | Self::Switching(..) => None,
+            Self::Row(row) => row.downcast(),
+            Self::Report(report) => report.get(),
         }
     }
-}
-
-/// Motion at one instant.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Motion {
-    /// Angle of the body.
-    pub attitude: Attitude,
-    /// Rate of the body.
-    pub rate: Rate,
-    /// Motion of the elastic modes.
-    pub modes: Modes,
-    /// Observed coordinates, if the body has any.
-    pub outputs: Option<Outputs>,
-    /// Goal and torques, if the scenario has more than a law.
-    pub drive: Option<(GoalMotion, Torque)>,
-    /// Motion of the wheel, if there is one that stores momentum.
-    pub wheel: Option<WheelMotion>,
-    /// Envelope of the modes, if the scenario has an observer.
-    pub envelope: Option<Envelope>,
 }
 
 /// Selection of the pieces of motion that a record needs as a whole.
@@ -218,6 +151,9 @@ pub enum RecordError {
     /// Request of the user to stop.
     #[error("interrupted")]
     Interrupted,
+    /// Custom topic that the log cannot have.
+    #[error(transparent)]
+    Topic(#[from] TopicError),
 }
 
 /// Detail in which a run is recorded.
@@ -234,77 +170,24 @@ pub enum Detail {
 
 /// Destination of rows of any topic: messages, or columns in memory.
 trait RowTaker {
-    fn take_row<R: row::TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError>;
+    /// Records a row.
+    fn take_row(&mut self, now: Instant, row: &dyn LogRow) -> Result<(), RecordError>;
 
-    /// Records the rows of which a sample consists.
-    fn take_sample_rows(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+    /// Records the rows of a sample that a record of this detail has.
+    fn take_sample_rows(
+        &mut self,
+        now: Instant,
+        sample: Sample<'_>,
+        detail: Detail,
+    ) -> Result<(), RecordError> {
         match sample {
-            Sample::Begin(law) | Sample::Law(law) => self.take_row(now, law),
+            Sample::Begin(law) => self.take_row(now, law),
             Sample::Switching(command, _) => self.take_row(now, command),
-            Sample::Window(mean) => self.take_row(now, mean),
-            Sample::Objective(row) => self.take_row(now, row),
-            Sample::Adaptation(step) => self.take_row(now, step),
-            Sample::Arrival(arrival) => self.take_row(now, arrival),
-            Sample::Estimate(estimate) => self.take_row(now, estimate),
-            Sample::Estimates(estimates) => self.take_row(now, estimates),
-            Sample::AttitudeEstimate(estimate) => self.take_row(now, estimate),
-            Sample::ElasticEstimates(estimates) => self.take_row(now, estimates),
-            Sample::Tracking(tracking) => self.take_row(now, tracking),
-            Sample::WheelEvent(event) => self.take_row(now, event),
-            Sample::Fault(event) => self.take_row(now, event),
-            Sample::Accelerations(row) => self.take_row(now, row),
-            Sample::Log(line) => self.take_row(now, line),
-            Sample::Scene(scene) => self.take_row(now, scene),
-            Sample::Frames(frames) => self.take_row(now, frames),
-            Sample::Plumes(plumes) => self.take_row(now, plumes),
-            Sample::Cycle(ThreeAxisCycle { pulses: 0, .. }) => Ok(()),
-            Sample::Cycle(cycle) => {
-                self.take_row(now, &cycle.jets)?;
-                if cycle.thrusters.is_empty() {
-                    return Ok(());
-                }
-                let thrusters = cycle.thrusters.iter().map(|on_s| ThrusterPulse { on_s: *on_s }).collect();
-                self.take_row(now, &Thrusters { thrusters })
-            }
-            Sample::SpatialMotion(motion) => {
-                self.take_row(now, &motion.pointing)?;
-                self.take_row(now, &motion.rates)?;
-                self.take_row(now, &motion.vibrations)?;
-                self.take_row(now, &motion.energy)?;
-                if let Some(position) = &motion.position {
-                    self.take_row(now, position)?;
-                }
-                if let Some(torques) = &motion.torques {
-                    self.take_row(now, torques)?;
-                }
-                if let Some(orbit) = &motion.orbit {
-                    self.take_row(now, orbit)?;
-                }
-                if let Some(magnetorquers) = &motion.magnetorquers {
-                    self.take_row(now, magnetorquers)?;
-                }
-                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take_row(now, envelope))?;
-                motion.drives.as_ref().map_or(Ok(()), |drives| self.take_row(now, drives))?;
-                motion.hinges.as_ref().map_or(Ok(()), |hinges| self.take_row(now, hinges))?;
-                motion.bearings.as_ref().map_or(Ok(()), |bearings| self.take_row(now, bearings))?;
-                motion.gimbals.as_ref().map_or(Ok(()), |gimbals| self.take_row(now, gimbals))?;
-                motion.wheels.as_ref().map_or(Ok(()), |wheels| self.take_row(now, wheels))
-            }
-            Sample::Motion(motion) => {
-                self.take_row(now, &motion.attitude)?;
-                self.take_row(now, &motion.rate)?;
-                self.take_row(now, &motion.modes)?;
-                if let Some(outputs) = &motion.outputs {
-                    self.take_row(now, outputs)?;
-                }
-                if let Some((goal, torque)) = &motion.drive {
-                    self.take_row(now, goal)?;
-                    self.take_row(now, torque)?;
-                }
-                if let Some(wheel) = &motion.wheel {
-                    self.take_row(now, wheel)?;
-                }
-                motion.envelope.as_ref().map_or(Ok(()), |envelope| self.take_row(now, envelope))
+            Sample::Row(row) if row.topic().detail() <= detail => self.take_row(now, row),
+            Sample::Row(_) => Ok(()),
+            Sample::Report(report) => {
+                let mut rows = report.rows().filter(|row| row.topic().detail() <= detail);
+                rows.try_for_each(|row| self.take_row(now, row))
             }
         }
     }

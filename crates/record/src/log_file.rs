@@ -12,6 +12,7 @@ use mcap::records::{Channel, Record};
 use mcap::sans_io::LinearReaderOptions;
 use thiserror::Error;
 
+use super::custom_topic::UNIT_KEY;
 use super::decoder::Schema;
 use super::mcap_reader::{for_each_record, outer_records, parsed};
 use super::memory_budget::MemoryBudget;
@@ -98,6 +99,8 @@ pub struct Log {
     epoch_ns: u64,
     metadata: BTreeMap<String, String>,
     topics: Vec<String>,
+    /// Units of the fields of custom topics, by topic and field.
+    units: BTreeMap<String, BTreeMap<String, String>>,
     scenario: Option<String>,
     commands: Option<String>,
 }
@@ -148,7 +151,7 @@ impl Log {
         }
         let mut metadata = BTreeMap::new();
         let (mut scenario, mut commands) = (None, None);
-        let mut topics = BTreeSet::new();
+        let mut channels = Vec::new();
         for (opcode, body) in outer_records(&bytes).map_err(damaged)? {
             match parsed(opcode, body).map_err(damaged)? {
                 Some(Record::Metadata(record)) => metadata.extend(record.metadata),
@@ -158,30 +161,46 @@ impl Log {
                 Some(Record::Attachment { header, data, .. }) if header.name == COMMANDS => {
                     commands = Some(String::from_utf8_lossy(&data).into_owned());
                 }
-                Some(Record::Channel(channel)) => {
-                    topics.insert(channel.topic);
-                }
+                Some(Record::Channel(channel)) => channels.push(channel),
                 _ => {}
             }
         }
-        if topics.is_empty() {
+        if channels.is_empty() {
             // The summary of some logs does not repeat the channels, which are then within chunks.
             let reported = for_each_record(&bytes, checked(), |record| {
                 if let Record::Channel(channel) = record {
-                    topics.insert(channel.topic);
+                    channels.push(channel);
                 }
                 Ok(ControlFlow::Continue(()))
             });
             reported.map_err(damaged)?;
         }
         let epoch_ns = metadata.get("epoch_ns").and_then(|ns| ns.parse().ok()).unwrap_or(0);
+        let topics: BTreeSet<String> = channels.iter().map(|channel| channel.topic.clone()).collect();
         let topics = topics.into_iter().collect();
-        Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, scenario, commands })
+        let units = channels.into_iter().map(|channel| (channel.topic, units_in(channel.metadata))).collect();
+        Ok(Self { path: path.to_owned(), bytes, epoch_ns, metadata, topics, units, scenario, commands })
+    }
+
+    /// Returns the path of the log, as messages call it.
+    pub fn path(&self) -> &Path {
+        &self.path
+    }
+
+    /// Returns the bytes of the file.
+    pub fn bytes(&self) -> &[u8] {
+        &self.bytes
     }
 
     /// Returns the topics of the log.
     pub fn topics(&self) -> &[String] {
         &self.topics
+    }
+
+    /// Returns the units that the log gives for the fields of a topic; empty for topics of the engine, whose field names
+    /// end with their units.
+    pub fn units(&self, topic: &str) -> BTreeMap<String, String> {
+        self.units.get(topic).cloned().unwrap_or_default()
     }
 
     /// Returns the metadata of the run: `scenario`, `seed`, `run`, `version`, `end`, ...
@@ -264,6 +283,12 @@ impl Log {
         }
         Ok(tables.into_iter().map(|table| table.map(TopicTable::into_columns)).collect())
     }
+}
+
+/// Returns the units in the metadata of a channel, by field.
+fn units_in(metadata: BTreeMap<String, String>) -> BTreeMap<String, String> {
+    let unit = |(key, unit): (String, String)| Some((key.strip_prefix(UNIT_KEY)?.to_owned(), unit));
+    metadata.into_iter().filter_map(unit).collect()
 }
 
 /// Appends a message of a topic to its table.

@@ -10,11 +10,16 @@ use mcap::{McapError, WriteOptions, Writer};
 
 use super::message::{Message, MessageEncoder, MessageSink};
 use super::metrics::Metrics;
-use super::{Attachment, Detail, Provenance, Record, RecordError, RunEnd, Sample, TOPICS};
+use super::row::TopicRow;
+use super::topics::index_of;
+use super::{Attachment, Detail, LogTopic, Provenance, Record, RecordError, RunEnd, Sample, Summary, TOPICS};
 use crate::atomic_file::AtomicFile;
 
 /// Number of messages after which a chunk is closed: the largest number lost with a killed run.
 const MESSAGES_PER_FLUSH: u64 = 2000;
+
+/// Topic that is dated at the start of the run, because viewers show the last message before the instant of playback.
+const FROM_START: usize = index_of(Summary::TOPIC.name);
 
 /// Log of a run, written while it runs.
 struct McapLog<W: Write + Seek> {
@@ -43,13 +48,17 @@ impl<W: Write + Seek> McapLog<W> {
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
         let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
         write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
-        let channels = Channels { writer, channels: vec![None; TOPICS.len()], since_flush: 0 };
+        let channels = vec![None; TOPICS.len()];
+        let channels =
+            Channels { writer, channels, since_flush: 0, start_ns: from.epoch_ns, from_start: Vec::new() };
         Ok(Self { log: MessageEncoder::new(channels, from, detail)? })
     }
 
     /// Writes the metrics, the end of the run, and the file's summary.
     fn finish(self, metrics: &Metrics, end: RunEnd) -> Result<W, RecordError> {
-        let (Channels { mut writer, .. }, last) = self.log.finish(metrics, end)?;
+        let (mut channels, last) = self.log.finish(metrics, end)?;
+        channels.write_from_start()?;
+        let mut writer = channels.writer;
         let end = match end {
             RunEnd::Complete => "complete",
             RunEnd::Interrupted => "interrupted",
@@ -66,31 +75,61 @@ impl<W: Write + Seek> McapLog<W> {
 /// Channels of a file, created with their first message.
 struct Channels<W: Write + Seek> {
     writer: Writer<W>,
-    /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`].
+    /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`] and then of the custom topics.
     channels: Vec<Option<(u16, u32)>>,
     since_flush: u64,
+    /// Start of the run (ns past 1970 UTC).
+    start_ns: u64,
+    /// Messages of the topic [`FROM_START`], kept until the end of the file.
+    from_start: Vec<Vec<u8>>,
 }
 
 impl<W: Write + Seek> Channels<W> {
-    fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
-        if let Some(channel) = self.channels[index] {
-            return Ok(channel);
+    /// Writes the messages that are dated at the start. They have a chunk of their own: in one with the last rows, its
+    /// span of time would be the whole run, and viewers would read it first.
+    fn write_from_start(&mut self) -> Result<(), RecordError> {
+        self.writer.flush().map_err(failure)?;
+        for data in std::mem::take(&mut self.from_start) {
+            self.write(FROM_START, self.start_ns, &data)?;
         }
-        let topic = &TOPICS[index];
-        let schema = self.writer.add_schema(topic.message, "protobuf", &topic.schema());
-        let none = BTreeMap::new();
-        let id = self.writer.add_channel(schema.map_err(failure)?, topic.name, "protobuf", &none);
+        Ok(())
+    }
+
+    fn write(&mut self, topic: usize, log_time: u64, data: &[u8]) -> Result<(), RecordError> {
+        let (channel_id, sequence) = self.channel(topic)?;
+        self.channels[topic] = Some((channel_id, sequence.wrapping_add(1)));
+        let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
+        self.writer.write_to_known_channel(&header, data).map_err(failure)
+    }
+
+    fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
+        match self.channels[index] {
+            Some(channel) => Ok(channel),
+            None => self.add_channel(LogTopic::Declared(index)),
+        }
+    }
+
+    fn add_channel(&mut self, topic: LogTopic<'_>) -> Result<(u16, u32), RecordError> {
+        let schema = self.writer.add_schema(topic.message(), "protobuf", &topic.schema());
+        let (schema, metadata) = (schema.map_err(failure)?, topic.channel_metadata());
+        let id = self.writer.add_channel(schema, topic.name(), "protobuf", &metadata);
         Ok((id.map_err(failure)?, 0))
     }
 }
 
 impl<W: Write + Seek> MessageSink for Channels<W> {
+    fn declare(&mut self, _: usize, topic: LogTopic<'_>) -> Result<(), RecordError> {
+        let channel = self.add_channel(topic)?;
+        self.channels.push(Some(channel));
+        Ok(())
+    }
+
     fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
-        let (channel_id, sequence) = self.channel(message.topic)?;
-        self.channels[message.topic] = Some((channel_id, sequence.wrapping_add(1)));
-        let log_time = message.time_ns;
-        let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
-        self.writer.write_to_known_channel(&header, message.data).map_err(failure)?;
+        if message.topic == FROM_START {
+            self.from_start.push(message.data.to_owned());
+            return Ok(());
+        }
+        self.write(message.topic, message.time_ns, message.data)?;
         self.since_flush += 1;
         // Flush only after a message: a chunk without one would start at time 0 in a viewer.
         if self.since_flush == MESSAGES_PER_FLUSH {

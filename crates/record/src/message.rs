@@ -2,12 +2,12 @@
 
 use flexsc_numerics::time::{Instant, Span};
 
+use super::custom_topic::CustomTopics;
 use super::foxglove::{Log, LogLevel};
 use super::metrics::Metrics;
-use super::proto::Encoder;
-use super::row::{LogDate, TopicRow};
-use super::topics::index_of;
-use super::{Detail, OutputName, Params, Record, RecordError, RowTaker, Sample, Summary};
+use super::report::LogRow;
+use super::row::LogDate;
+use super::{Detail, LogTopic, OutputName, Params, Record, RecordError, RowTaker, Sample, Summary, TOPICS};
 
 /// Provenance of a log.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,7 +82,7 @@ pub const COMMANDS: &str = "commands.csv";
 /// Message of a log.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct Message<'a> {
-    /// Topic, as an index into [`TOPICS`](super::TOPICS).
+    /// Topic, as an index into [`TOPICS`]; custom topics follow in the order of [`MessageSink::declare`].
     pub topic: usize,
     /// Time in simulated nanoseconds past the epoch.
     pub time_ns: u64,
@@ -92,6 +92,11 @@ pub struct Message<'a> {
 
 /// Destination of messages: a file or a viewer.
 pub trait MessageSink {
+    /// Declares a custom topic before its first message, with its index.
+    fn declare(&mut self, _index: usize, _topic: LogTopic<'_>) -> Result<(), RecordError> {
+        Ok(())
+    }
+
     /// Writes the next message. Times never decrease.
     fn push(&mut self, message: Message<'_>) -> Result<(), RecordError>;
 }
@@ -103,13 +108,20 @@ pub struct MessageEncoder<M> {
     epoch_ns: u64,
     last: Instant,
     buffer: Vec<u8>,
+    custom: CustomTopics,
 }
 
 impl<M: MessageSink> MessageEncoder<M> {
     /// Creates the messages of a run, beginning with its parameters.
     pub fn new(to: M, from: &Provenance, detail: Detail) -> Result<Self, RecordError> {
-        let mut encode =
-            Self { to, detail, epoch_ns: from.epoch_ns, last: Instant::START, buffer: Vec::new() };
+        let mut encode = Self {
+            to,
+            detail,
+            epoch_ns: from.epoch_ns,
+            last: Instant::START,
+            buffer: Vec::new(),
+            custom: CustomTopics::default(),
+        };
         let params = Params {
             scenario: from.scenario.clone(),
             seed: from.seed,
@@ -142,7 +154,8 @@ impl<M: MessageSink> MessageEncoder<M> {
 
 impl<M: MessageSink> MessageEncoder<M> {
     fn rows(&mut self) -> RowSink<'_> {
-        RowSink { to: &mut self.to, epoch_ns: self.epoch_ns, last: &mut self.last, buffer: &mut self.buffer }
+        let Self { to, epoch_ns, last, buffer, custom, .. } = self;
+        RowSink { to, epoch_ns: *epoch_ns, last, buffer, custom }
     }
 }
 
@@ -152,18 +165,26 @@ struct RowSink<'a> {
     epoch_ns: u64,
     last: &'a mut Instant,
     buffer: &'a mut Vec<u8>,
+    custom: &'a mut CustomTopics,
 }
 
 impl RowTaker for RowSink<'_> {
-    fn take_row<R: TopicRow>(&mut self, now: Instant, row: &R) -> Result<(), RecordError> {
+    fn take_row(&mut self, now: Instant, row: &dyn LogRow) -> Result<(), RecordError> {
+        let topic = match row.topic() {
+            LogTopic::Declared(index) => index,
+            LogTopic::Custom(topic) => {
+                let (index, is_new) = self.custom.index(topic)?;
+                let index = TOPICS.len() + index;
+                if is_new {
+                    self.to.declare(index, row.topic())?;
+                }
+                index
+            }
+        };
         self.buffer.clear();
-        Encoder::encode(row, self.buffer);
+        row.encode(self.buffer);
         *self.last = now;
-        self.to.push(Message {
-            topic: const { index_of(R::TOPIC.name) },
-            time_ns: self.epoch_ns + now.nanoseconds(),
-            data: self.buffer,
-        })
+        self.to.push(Message { topic, time_ns: self.epoch_ns + now.nanoseconds(), data: self.buffer })
     }
 }
 
@@ -177,7 +198,7 @@ impl<M: MessageSink> Record for MessageEncoder<M> {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        // The sample may be meant for a record of more detail.
-        if sample.detail() > self.detail { Ok(()) } else { self.rows().take_sample_rows(now, sample) }
+        let detail = self.detail;
+        self.rows().take_sample_rows(now, sample, detail)
     }
 }

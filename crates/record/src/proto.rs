@@ -24,6 +24,36 @@ impl Topic {
     }
 }
 
+/// Returns the schema of a message whose fields, given by name, type and description, are neither nested nor repeated.
+pub fn flat_schema<'a>(
+    message: &str,
+    doc: &str,
+    fields: impl Iterator<Item = (&'a str, Type, String)>,
+) -> Vec<u8> {
+    let (package, name) = parts(message);
+    let mut comments = vec![comment(&[4, 0], &[doc])];
+    let mut descriptors = Vec::new();
+    for ((field, of, doc), index) in fields.zip(0..) {
+        comments.push(comment(&[4, 0, 2, index], &[&doc]));
+        descriptors.push(FieldDescriptorProto {
+            name: Some(field.to_owned()),
+            number: Some(index + 1),
+            label: Some(Label::Optional as i32),
+            r#type: Some(of as i32),
+            json_name: Some(field.to_owned()),
+            ..FieldDescriptorProto::default()
+        });
+    }
+    let descriptor =
+        DescriptorProto { name: Some(name.to_owned()), field: descriptors, ..DescriptorProto::default() };
+    let file = FileDescriptorProto {
+        message_type: vec![descriptor],
+        source_code_info: Some(SourceCodeInfo { location: comments }),
+        ..file(package, name)
+    };
+    FileDescriptorSet { file: vec![file] }.encode_to_vec()
+}
+
 /// Splits a full name into package and name.
 fn parts(full: &str) -> (&str, &str) {
     full.rsplit_once('.').unwrap_or(("", full))
@@ -176,10 +206,15 @@ pub struct Encoder<'a> {
 }
 
 impl<'a> Encoder<'a> {
+    /// Creates an encoder of one row, which it appends to the buffer.
+    pub fn new(buffer: &'a mut Vec<u8>) -> Self {
+        Self { field: 0, buffer }
+    }
+
     /// Encodes a row.
     #[inline]
     pub fn encode<R: Row>(row: &R, buffer: &'a mut Vec<u8>) {
-        row.write_to(&mut Self { field: 0, buffer });
+        row.write_to(&mut Self::new(buffer));
     }
 
     fn key(&mut self, wire: WireType) {

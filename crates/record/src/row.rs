@@ -1,5 +1,6 @@
 //! Rows: the fields of a topic listed once, for protobuf schemas, protobuf bytes, columns and CSV.
 
+use super::Detail;
 use crate::enum_label::LoggedEnum;
 
 /// Topic of the log.
@@ -13,6 +14,35 @@ pub struct Topic {
     pub doc: &'static [&'static str],
     /// Fields, in the order of their protobuf numbers.
     pub fields: &'static [RowField],
+    /// Instants at which the topic has rows.
+    pub logged: Logging,
+    /// Panels of viewer layouts, each with its title and the name of the fields that it shows. Topics whose panels depend
+    /// on more than their rows have none here.
+    pub panels: &'static [(&'static str, &'static str)],
+}
+
+/// Instants at which a topic has rows, from which the least detail of a log that has it follows.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub enum Logging {
+    /// Rows at events, in every log.
+    Event,
+    /// Rows at samples or cycles, in full logs.
+    Sample,
+    /// One row in each period of a full log.
+    Period,
+    /// Rows for three-dimensional viewers.
+    Scene,
+}
+
+impl Logging {
+    /// Returns the least detail of a log that has the rows.
+    pub const fn detail(self) -> Detail {
+        match self {
+            Self::Event => Detail::Events,
+            Self::Sample | Self::Period => Detail::Full,
+            Self::Scene => Detail::Scene,
+        }
+    }
 }
 
 /// Field of a row.
@@ -164,9 +194,11 @@ pub const fn field_name(name: &'static str) -> &'static str {
     }
 }
 
-/// Declares row types of a package, and topics for the types with a topic name.
+/// Declares row types of a package, and topics for the types with a topic name. `at` gives the instants of the rows, by
+/// default events, and `panels` the panels of viewer layouts with their fields.
 macro_rules! rows {
-    (package $package:literal; $($(#[doc = $doc:literal])* $name:ident $(= $topic:literal)? {
+    (package $package:literal; $($(#[doc = $doc:literal])* $name:ident
+        $(= $topic:literal $(at $logging:ident)? $(panels [$($title:literal: $shown:ident),+ $(,)?])?)? {
         $($(#[doc = $field_doc:literal])* $field:ident: $of:ty),+ $(,)?
     })+) => {
         $(
@@ -220,12 +252,14 @@ macro_rules! rows {
                     message: concat!($package, ".", stringify!($name)),
                     doc: <$name as $crate::row::Row>::DOC,
                     fields: <$name as $crate::row::Row>::FIELDS,
+                    logged: $crate::row::logging!($($logging)?),
+                    panels: &[$($(($title, stringify!($shown))),+)?],
                 };
             })?
         )+
 
         /// Topics declared in this macro call, in their order.
-        pub const DECLARED: &[$crate::row::Topic] = &[
+        pub(crate) const DECLARED: &[$crate::row::Topic] = &[
             $($({
                 const _: &str = $topic;
                 <$name as $crate::row::TopicRow>::TOPIC
@@ -234,7 +268,17 @@ macro_rules! rows {
     };
 }
 
-/// Implements `Cell` for labelled enumerations.
+/// Returns the named instants of a topic's rows, by default events.
+macro_rules! logging {
+    () => {
+        $crate::row::Logging::Event
+    };
+    ($logging:ident) => {
+        $crate::row::Logging::$logging
+    };
+}
+
+/// Implements `FieldType` for labelled enumerations.
 macro_rules! label_cells {
     ($($of:ty),+ $(,)?) => {
         $(impl $crate::row::FieldType for $of {
@@ -247,4 +291,4 @@ macro_rules! label_cells {
     };
 }
 
-pub(crate) use {label_cells, rows};
+pub(crate) use {label_cells, logging, rows};

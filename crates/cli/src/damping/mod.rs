@@ -20,7 +20,7 @@ use crate::say;
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
-pub struct Args {
+pub struct DampingArgs {
     /// Natural frequencies of the modes (rad/s)
     #[arg(long, value_name = "LO:HI:COUNT")]
     frequency: PositiveGrid,
@@ -63,7 +63,7 @@ pub struct DampingResults {
     units: Units,
 }
 
-impl Args {
+impl DampingArgs {
     /// Computes the effect of the relay on the modes.
     pub fn results(&self) -> Result<DampingResults, CliError> {
         let timing = PulseTiming {
@@ -95,7 +95,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &DampingArgs) -> Result<(), CliError> {
     let target = args.output.target(&[])?;
     let results = args.results()?;
     if let Some(target) = target {

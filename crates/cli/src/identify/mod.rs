@@ -31,7 +31,7 @@ const SETS: [(&[(f64, f64)], f64); 6] = [
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
-pub struct Args {
+pub struct IdentifyArgs {
     /// A set of modes by frequency (rad/s) and influence, such as 1.556:2.89,3.77:3.0; may be repeated. Left out, those of
     /// the space station's study
     #[arg(long, value_name = "W:MU,...")]
@@ -106,7 +106,7 @@ impl FromStr for ModeSet {
     }
 }
 
-impl Args {
+impl IdentifyArgs {
     /// Runs the trials of the observer.
     pub fn results(&self) -> Result<IdentifyResults, CliError> {
         let shipped =
@@ -150,7 +150,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &IdentifyArgs) -> Result<(), CliError> {
     show(&args.results()?, Some(&args.drawing), args.json)
 }
 

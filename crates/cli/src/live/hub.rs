@@ -6,7 +6,7 @@ use std::sync::{Arc, Condvar, Mutex, MutexGuard, PoisonError};
 use std::time::{Duration, Instant as WallInstant};
 
 use flexsc_core::numerics::time::Instant;
-use flexsc_core::record::{Message, MessageSink, RecordError};
+use flexsc_core::record::{LogTopic, Message, MessageSink, RecordError};
 
 use super::clock::{Clock, POLL_PERIOD};
 use super::outbox::OutgoingFrame;
@@ -152,6 +152,11 @@ impl Hub {
 pub struct Publisher(pub Arc<Hub>);
 
 impl MessageSink for Publisher {
+    fn declare(&mut self, _: usize, topic: LogTopic<'_>) -> Result<(), RecordError> {
+        self.0.lock().declare(topic);
+        Ok(())
+    }
+
     fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         let mut state = self.0.lock();
         while state.clients.values().any(|client| client.outbox.is_full()) && !stop::stop_requested() {

@@ -41,7 +41,7 @@ const MOST_SILENT: usize = 64;
 
 #[derive(clap::Args)]
 #[group(skip)]
-pub struct Args {
+pub struct LiveArgs {
     /// Serve the run to viewers such as Foxglove and Lichtblick while it goes on, in real time
     #[arg(
         long,
@@ -80,7 +80,7 @@ pub struct Live {
     messages: Option<MessageEncoder<Publisher>>,
 }
 
-impl Args {
+impl LiveArgs {
     /// Starts the server if a live run is requested.
     pub fn serve(&self, run: &CampaignRun) -> Result<Option<Live>, CliError> {
         let Some(address) = &self.live else { return Ok(None) };

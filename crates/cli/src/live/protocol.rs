@@ -1,7 +1,7 @@
 //! Messages of the Foxglove WebSocket protocol, version 1: those of the server, and the requests of clients.
 
 use data_encoding::BASE64;
-use flexsc_core::record::row::Topic;
+use flexsc_core::record::LogTopic;
 use serde_json::{Value as Json, json};
 use tungstenite::Message;
 
@@ -126,13 +126,13 @@ pub fn topic_of(channel: u32) -> Option<usize> {
 }
 
 /// Returns the message that advertises channels to clients.
-pub fn advertise<'a>(topics: impl Iterator<Item = (usize, &'a Topic)>) -> Message {
-    let channel = |(index, topic): (usize, &Topic)| {
+pub fn advertise<'a>(topics: impl Iterator<Item = (usize, LogTopic<'a>)>) -> Message {
+    let channel = |(index, topic): (usize, LogTopic<'_>)| {
         json!({
             "id": channel_of(index),
-            "topic": topic.name,
+            "topic": topic.name(),
             "encoding": "protobuf",
-            "schemaName": topic.message,
+            "schemaName": topic.message(),
             "schemaEncoding": "protobuf",
             "schema": BASE64.encode(&topic.schema()),
         })

@@ -1,9 +1,10 @@
 //! Mutable state of a live run: its clock, its topics, and its clients.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
 use std::time::Instant as WallInstant;
 
-use flexsc_core::record::{Message, TOPICS};
+use flexsc_core::record::{CustomTopic, LogTopic, Message, TOPICS};
 use serde_json::Value as Json;
 
 use super::clock::{Clock, Speed};
@@ -19,8 +20,10 @@ const ENDED: &str = "the run has ended";
 pub struct ServerState {
     /// Clock of the run.
     pub clock: Clock,
-    /// Topics, in the order of [`TOPICS`].
+    /// Topics, in the order of [`TOPICS`] and then of the custom topics.
     topics: Vec<LiveTopic>,
+    /// Custom topics that the run has declared.
+    custom: Vec<Arc<CustomTopic>>,
     /// Latest time that was sent (ns).
     time_ns: u64,
     /// Clients by their numbers.
@@ -60,7 +63,16 @@ impl ServerState {
             all[index].advertised = true;
         }
         let clients = BTreeMap::new();
-        Self { clock, topics: all, time_ns: 0, clients, joined: 0, ended: false, closing: false }
+        Self {
+            clock,
+            topics: all,
+            custom: Vec::new(),
+            time_ns: 0,
+            clients,
+            joined: 0,
+            ended: false,
+            closing: false,
+        }
     }
 
     /// Registers a client and sends it the greeting; returns its number.
@@ -69,7 +81,7 @@ impl ServerState {
         let frames = [
             greeting,
             protocol::time(self.time_ns),
-            protocol::advertise(advertised.map(|(index, _)| (index, &TOPICS[index]))),
+            protocol::advertise(advertised.map(|(index, _)| (index, self.topic(index)))),
             protocol::advertise_services(),
         ];
         self.joined += 1;
@@ -96,13 +108,27 @@ impl ServerState {
         }
     }
 
+    /// Adds a custom topic, which is advertised with its first message.
+    pub fn declare(&mut self, topic: LogTopic<'_>) {
+        if let LogTopic::Custom(topic) = topic {
+            self.custom.push(Arc::clone(topic));
+            self.topics.push(LiveTopic::default());
+        }
+    }
+
+    /// Returns the topic of an index.
+    fn topic(&self, index: usize) -> LogTopic<'_> {
+        match index.checked_sub(TOPICS.len()) {
+            Some(custom) => LogTopic::Custom(&self.custom[custom]),
+            None => LogTopic::Declared(index),
+        }
+    }
+
     /// Sends a message to the clients that subscribed to its topic.
     pub fn publish(&mut self, message: Message<'_>) {
         let Message { topic: index, time_ns, data } = message;
-        let topic = &mut self.topics[index];
-        if !topic.advertised {
-            topic.advertised = true;
-            let frame = protocol::advertise([(index, &TOPICS[index])].into_iter());
+        if !std::mem::replace(&mut self.topics[index].advertised, true) {
+            let frame = protocol::advertise([(index, self.topic(index))].into_iter());
             self.clients.values_mut().for_each(|client| client.outbox.push(frame.clone()));
         }
         // Viewers date a message by the time that they received last, which therefore precedes it.
@@ -115,7 +141,7 @@ impl ServerState {
                 client.outbox.push(protocol::data(*subscription, time_ns, data));
             }
         }
-        let (instant, latest) = &mut topic.latest;
+        let (instant, latest) = &mut self.topics[index].latest;
         if *instant != time_ns || latest.len() >= MOST_LATEST {
             latest.clear();
         }

@@ -10,7 +10,7 @@ use crate::unavailable::HINT;
 
 #[derive(clap::Args)]
 #[group(skip)]
-pub struct Args {
+pub struct LiveArgs {
     #[arg(long, hide = true, num_args = 0..=1, require_equals = true, default_missing_value = "")]
     pub live: Option<String>,
     #[arg(long, hide = true, requires = "live")]
@@ -26,7 +26,7 @@ pub struct Args {
 /// Placeholder for a live run, which cannot exist in this build.
 pub enum Live {}
 
-impl Args {
+impl LiveArgs {
     /// Returns an error if a live run is requested.
     pub fn serve(&self, _: &CampaignRun) -> Result<Option<Live>, CliError> {
         match self.live {

@@ -1,11 +1,11 @@
 //! Map of the spectral radius over the frequency of the dominant mode and the sampling period.
 
-use flexsc_core::analysis::sampled_loop::MapCell;
 use flexsc_figure::palette::between;
 use flexsc_figure::{
     Bar, Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, ScalarField, colour,
 };
 
+use super::{LoopFamily, MapResults};
 use crate::plot::readable;
 
 /// Spectral radii on the colour bar: finest near 1, where stability ends.
@@ -30,8 +30,10 @@ const COLOURS: [RGBColor; 14] = [
 
 /// Number of shades between two labelled limits.
 const SHADES: usize = 3;
-/// Largest number of points along an axis of the refined grid.
+/// Number of points along an axis for which the grid of the map is refined.
 const FINE: usize = 160;
+/// Number of floating-point operations for the refined grid: some seconds.
+const WORK: f64 = 1e10;
 /// Distance from 1 up to which radii have a linear scale; beyond it the scale is logarithmic.
 const NEAR: f64 = 1e-3;
 
@@ -59,30 +61,45 @@ fn shade(index: usize) -> RGBColor {
     between(&COLOURS, place)
 }
 
-/// Returns the map; `cells` are in rows of one frequency each, `own` is the scenario's frequency (rad/s) and its
-/// sampling period (s).
-pub fn figure(name: &str, cells: &[MapCell], own: Point) -> Figure {
+/// Divides each step between increasing abscissae into `steps`.
+fn divided(values: &[f64], steps: usize) -> Vec<f64> {
+    let between = |pair: &[f64]| -> Vec<f64> {
+        let part = |step: usize| step as f64 / steps as f64;
+        (0..steps).map(|step| pair[0] + part(step) * (pair[1] - pair[0])).collect()
+    };
+    values.windows(2).flat_map(between).chain(values.last().copied()).collect()
+}
+
+/// Returns the positions of the spectral radii on the colour scale, on a grid that divides each step of the map evenly.
+/// They are computed at every point of it: interpolated between the cells of the map, the limit of stability and narrow
+/// resonances would have steps.
+fn field(family: &LoopFamily, frequencies: &[f64], periods: &[f64]) -> ScalarField {
+    let fine = (WORK / family.cost()).sqrt().min(FINE as f64);
+    let steps = (fine as usize / frequencies.len().max(periods.len()).max(1)).max(1);
+    let (x, y) = (divided(frequencies, steps), divided(periods, steps));
+    let values = family.radii(&x, &y).into_iter().map(place).collect();
+    ScalarField { x, y, values }
+}
+
+/// Returns the figure of a map.
+pub fn figure(map: &MapResults) -> Figure {
+    let MapResults { name, cells, own, family, .. } = map;
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();
     let periods = cells.iter().take(cells.len() / frequencies.len().max(1)).map(|cell| cell.period_s);
-    let number = |radius: f64| if radius.is_nan() { f64::INFINITY } else { radius };
-    let radii: Vec<f64> = cells.iter().map(|cell| number(cell.spectral_radius)).collect();
+    let field = field(family, &frequencies, &periods.collect::<Vec<_>>());
     let ends = |values: &[f64]| values[0]..values[values.len() - 1];
-    let field = ScalarField { y: periods.collect(), x: frequencies, values: radii };
     let x = FigureAxis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
     let y = FigureAxis::exact("period of the samples (s)", "", ends(&field.y));
 
     // Only the shades that occur are in the bar.
     let limits = limits();
-    let class = |radius: &f64| limits.iter().filter(|(limit, _)| place(*radius) >= *limit).count();
+    let class = |place: &f64| limits.iter().filter(|(limit, _)| place >= limit).count();
     let classes = || field.values.iter().map(class);
     let (lowest, highest) = (classes().min().unwrap_or(0), classes().max().unwrap_or(0));
-    let steps = FINE / field.x.len().max(field.y.len()).max(1);
-    let mut fine = field.refined(steps);
-    fine.values.iter_mut().for_each(|radius| *radius = place(*radius));
-    let mut layers = regions(&fine, &limits, lowest, highest);
-    layers.push(Layer::new("limit of stability", colour::BLACK, LayerShape::Line(1.8), fine.lines(0.0)));
-    layers.push(Layer::new("scenario", colour::BLACK, LayerShape::Diamond, vec![own]));
+    let mut layers = regions(&field, &limits, lowest, highest);
+    layers.push(Layer::new("limit of stability", colour::BLACK, LayerShape::Line(1.8), field.lines(0.0)));
+    layers.push(Layer::new("scenario", colour::BLACK, LayerShape::Diamond, vec![*own]));
     let bar = Bar {
         name: "spectral radius".to_owned(),
         colours: (lowest..=highest).map(shade).collect(),
@@ -114,4 +131,32 @@ fn regions(field: &ScalarField, limits: &[(f64, String)], lowest: usize, highest
         Layer::new("", shade(class), LayerShape::Area(1.0), points)
     };
     rings.into_iter().map(layer).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use flexsc_core::Scenario;
+    use flexsc_core::analysis::sampled_loop::Scaling;
+
+    use super::*;
+    use crate::sampled_loop::sampled;
+
+    #[test]
+    fn the_drawn_limit_is_the_limit_of_stability() {
+        let path = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios/wheel-fixed-gain.toml");
+        let scenario = Scenario::load(path.as_ref()).expect("a scenario");
+        let (of, law) = sampled(&scenario).expect("a sampled loop");
+        let family = LoopFamily { of, law: law.clone(), gain: None, scaling: Scaling::All };
+        let even = |low: f64, high: f64, count: u32| -> Vec<f64> {
+            (0..count).map(|i| low + f64::from(i) / f64::from(count - 1) * (high - low)).collect()
+        };
+        let line = field(&family, &even(0.5, 2.0, 12), &even(0.1, 1.0, 10)).lines(0.0);
+        let points: Vec<&Point> = line.iter().filter(|point| point.0.is_finite()).collect();
+        assert!(points.len() > 100, "{}", points.len());
+        for (frequency, period) in points {
+            let off = |period: f64| place(family.radii(&[*frequency], &[period])[0]);
+            // The sign changes within a fraction of a step of the map, which is 0.1 s.
+            assert!(off(period - 2e-3) < 0.0 && off(period + 2e-3) > 0.0, "{frequency} rad/s, {period} s");
+        }
+    }
 }

@@ -6,7 +6,8 @@ use std::io::Write;
 use std::path::PathBuf;
 
 use flexsc_core::Scenario;
-use flexsc_core::analysis::sampled_loop::{MapCell, map};
+use flexsc_core::analysis::sampled_loop::{MapCell, SampledLoop, Scaling, map, spectral_radii};
+use flexsc_core::control::law::Pd;
 use flexsc_core::formats::count::counted;
 use flexsc_figure::{Named, Point};
 use serde_json::{Value as Json, json};
@@ -21,9 +22,9 @@ use crate::sampled_loop::{SettlingArgs, sampled};
 use crate::{files, print, say, scenario};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct MapArgs {
     #[command(flatten)]
-    pub scenario: scenario::Args,
+    pub scenario: scenario::ScenarioArgs,
     #[command(flatten)]
     settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s)
@@ -59,9 +60,37 @@ pub struct MapResults {
     /// Frequency (rad/s) and period (s) of the scenario itself.
     own: Point,
     units: Units,
+    family: LoopFamily,
 }
 
-impl Args {
+/// Sampled loops of a scenario over the frequency of the dominant mode and the sampling period.
+struct LoopFamily {
+    of: SampledLoop,
+    law: Pd,
+    /// Gain of the extra loop in place of the scenario's.
+    gain: Option<f64>,
+    scaling: Scaling,
+}
+
+impl LoopFamily {
+    /// Returns the gain of the extra loop at a frequency of the dominant mode (rad/s).
+    fn gain(&self, frequency: f64) -> f64 {
+        self.gain.unwrap_or_else(|| self.law.extra_gain(frequency))
+    }
+
+    /// Returns the spectral radii, a row for each frequency (rad/s), within it the periods (s).
+    fn radii(&self, frequencies: &[f64], periods: &[f64]) -> Vec<f64> {
+        spectral_radii(&self.of, frequencies, periods, self.scaling, |frequency| self.gain(frequency))
+    }
+
+    /// Returns the number of floating-point operations of about one spectral radius.
+    fn cost(&self) -> f64 {
+        let order = 2 * (self.of.body.modes.len() + 2);
+        25.0 * (order as f64).powi(3)
+    }
+}
+
+impl MapArgs {
     /// Computes the map of a scenario.
     pub fn results(&self, scenario: &Scenario) -> Result<MapResults, CliError> {
         let (sampled_loop, law) = sampled(scenario)?;
@@ -72,10 +101,16 @@ impl Args {
         let (PositiveGrid(frequencies), PositiveGrid(periods)) = (&self.frequency, &self.period);
         let shortest = periods.iter().copied().fold(f64::INFINITY, f64::min);
         self.settled.check_cost(&sampled_loop, frequencies.len() * periods.len(), shortest, 0.0)?;
-        let gain = |frequency: f64| self.gain.unwrap_or_else(|| law.extra_gain(frequency));
-        let cells = map(&sampled_loop, frequencies, periods, self.settled.scaling(), gain, window);
         let (name, own) = (scenario.name.clone(), (sampled_loop.frequency(), sampled_loop.period));
-        Ok(MapResults { name, cells, own, units: self.units.units })
+        let family = LoopFamily {
+            of: sampled_loop,
+            law: law.clone(),
+            gain: self.gain,
+            scaling: self.settled.scaling(),
+        };
+        let gain = |frequency: f64| family.gain(frequency);
+        let cells = map(&family.of, frequencies, periods, family.scaling, gain, window);
+        Ok(MapResults { name, cells, own, units: self.units.units, family })
     }
 }
 
@@ -85,7 +120,7 @@ impl Results for MapResults {
     }
 
     fn figures(&self) -> Vec<Named> {
-        vec![(format!("{}-map", self.name), figure::figure(&self.name, &self.cells, self.own))]
+        vec![(format!("{}-map", self.name), figure::figure(self))]
     }
 
     fn print(&self) -> Result<(), CliError> {
@@ -98,7 +133,7 @@ impl Results for MapResults {
 impl MapResults {
     /// Prints the ranges of the map and the stable cell that settles first; `place` names the file of the table.
     fn print_summary(&self, place: &str) {
-        let Self { name, cells, own, units } = self;
+        let Self { name, cells, own, units, .. } = self;
         let stable = || cells.iter().filter(|cell| cell.spectral_radius < 1.0);
         say!("{name}   {}, {} stable{place}", counted(cells.len(), "cell"), stable().count());
         let range = |value: fn(&MapCell) -> f64| {
@@ -120,7 +155,7 @@ impl MapResults {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &MapArgs) -> Result<(), CliError> {
     let drawing = |figures: Option<&PathBuf>, format| FigureOutput {
         figures: figures.cloned(),
         format,

@@ -39,6 +39,40 @@ impl Results for Spacecraft {
             cells
         });
         print_table(&inertia.collect::<Vec<_>>(), 0);
+        let is_flexible = !parts.clamped.is_empty();
+        if is_flexible {
+            self.print_clamped();
+            say!(
+                "  modes of the complete spacecraft, hub free; off-diagonal damping {}",
+                digits(parts.damping_coupling)
+            );
+        }
+        print_influences(&parts.free, *jets, *style);
+        if !is_flexible {
+            return Ok(());
+        }
+        self.print_points();
+        if !parts.turned.is_empty() {
+            let drives = parts.turned[0].angles_rad.len();
+            let (factor, unit) = style.units.frequency();
+            say!("  frequencies as drives turn, increasing, {unit}");
+            let mut rows = vec![texts(&["s"])];
+            rows[0].extend((0..drives).map(|drive| format!("angle {}, rad", drive + 1)));
+            for at in &parts.turned {
+                let frequencies = at.frequencies_rad_s.iter().map(|frequency| frequency * factor);
+                let numbers = [at.time_s].into_iter().chain(at.angles_rad.iter().copied()).chain(frequencies);
+                rows.push(numbers.map(digits).collect());
+            }
+            print_table(&rows, 0);
+        }
+        Ok(())
+    }
+}
+
+impl Spacecraft {
+    /// Prints the modes of the appendages with their roots held.
+    fn print_clamped(&self) {
+        let Self { parts, style, .. } = self;
         say!(
             "  modes of the appendages, clamped, with effective masses and inertias in their own axes about the root"
         );
@@ -65,31 +99,8 @@ impl Results for Spacecraft {
             rows.push(row);
         }
         print_table(&rows, 1);
-        say!(
-            "  modes of the complete spacecraft, hub free; off-diagonal damping {}",
-            digits(parts.damping_coupling)
-        );
-        print_influences(&parts.free, *jets, *style);
-        self.print_points();
-        if !parts.turned.is_empty() {
-            let drives = parts.turned[0].angles_rad.len();
-            let (factor, unit) = style.units.frequency();
-            say!("  frequencies as drives turn, increasing, {unit}");
-            let mut rows = vec![texts(&["s"])];
-            rows[0].extend((0..drives).map(|drive| format!("angle {}, rad", drive + 1)));
-            for modes in &parts.turned {
-                let frequencies = modes.frequencies_rad_s.iter().map(|frequency| frequency * factor);
-                let numbers =
-                    [modes.time_s].into_iter().chain(modes.angles_rad.iter().copied()).chain(frequencies);
-                rows.push(numbers.map(digits).collect());
-            }
-            print_table(&rows, 0);
-        }
-        Ok(())
     }
-}
 
-impl Spacecraft {
     /// Prints the effect of a torque on the hub at the points of the spacecraft.
     fn print_points(&self) {
         let parts = &self.parts;

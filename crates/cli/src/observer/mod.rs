@@ -17,7 +17,7 @@ use crate::say;
 
 #[derive(clap::Args)]
 #[command(allow_negative_numbers = true)]
-pub struct Args {
+pub struct ObserverArgs {
     /// Natural frequency of the mode (rad/s)
     #[arg(long, value_name = "FREQUENCY")]
     frequency: f64,
@@ -63,7 +63,7 @@ pub struct ObserverResults {
     margin: Option<GainMargin>,
 }
 
-impl Args {
+impl ObserverArgs {
     /// Computes the convergence of the observer.
     pub fn results(&self) -> Result<ObserverResults, CliError> {
         let Ok(weights) = <[f64; 3]>::try_from(self.weights.as_slice()) else {
@@ -95,7 +95,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &ObserverArgs) -> Result<(), CliError> {
     show(&args.results()?, Some(&args.drawing), args.json)
 }
 

@@ -24,9 +24,9 @@ use alternatives::AlternativesResults;
 use planned::PlanResults;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct PlanArgs {
     #[command(flatten)]
-    pub scenario: scenario::Args,
+    pub scenario: scenario::ScenarioArgs,
     /// Compare with all other commands for the same body; JSON lines with --json
     #[arg(long, group = "views")]
     compare: bool,
@@ -53,7 +53,7 @@ pub struct Args {
     units: UnitsArgs,
 }
 
-impl Args {
+impl PlanArgs {
     /// Computes the plan of a scenario's manoeuvre, or its comparison with all other commands.
     pub fn results(&self, scenario: Scenario) -> Result<Box<dyn Results>, CliError> {
         let body = scenario.one_angle()?.clone();
@@ -99,7 +99,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &PlanArgs) -> Result<(), CliError> {
     let output = ResultOutput { out: args.out.clone(), format: args.format, force: args.force };
     let target = output.target(&[args.scenario.scenario.as_path()])?;
     if args.coordinate.is_some() && matches!(target, Some(ResultTarget::Table { .. })) {

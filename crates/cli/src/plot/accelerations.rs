@@ -1,5 +1,6 @@
 //! Figure `accelerations` of a spacecraft: the readings of each accelerometer along its axes.
 
+use flexsc_core::record::Accelerations;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::run_events::RunEvents;
@@ -18,10 +19,11 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let all: Vec<_> = scenario.sensor.accelerometers().collect();
     let panel =
         |(place, (index, accelerometer)): (usize, &(usize, &flexsc_core::control::sensor::Accelerometer))| {
-            let rows = || cycles.accelerations.iter().filter(|(_, row)| row.sensor == *index as u64);
+            let rows =
+                || cycles.rows().filter(|(_, row): &(f64, &Accelerations)| row.sensor == *index as u64);
             let own = accelerometer.along.is_empty();
             let layer = |axis: usize| {
-                let points: Vec<Point> = rows().map(|(t, row)| (*t, row.axes[axis].measured_m_s2)).collect();
+                let points: Vec<Point> = rows().map(|(t, row)| (t, row.axes[axis].measured_m_s2)).collect();
                 let name = if own { ["x", "y", "z"][axis].to_owned() } else { format!("axis {}", axis + 1) };
                 Layer::new(&name, COLOURS[axis], LayerShape::Line(0.8), points)
             };

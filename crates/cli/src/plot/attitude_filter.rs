@@ -1,7 +1,7 @@
 //! Figure `consistency` of three axes: the errors of an attitude filter with three of its standard deviations, and its
 //! normalised error squared, which is about 1 for each state of a consistent filter.
 
-use flexsc_core::record::AxisEstimate;
+use flexsc_core::record::{AttitudeEstimate, AxisEstimate};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::pointing::{decades, norm};
@@ -14,7 +14,7 @@ const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let over_time = |axis: usize, value_of: &dyn Fn(&AxisEstimate) -> f64| -> Vec<Point> {
-        cycles.attitude.iter().map(|(time, row)| (*time, value_of(&row.axes[axis]))).collect()
+        cycles.rows::<AttitudeEstimate>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()
     };
     let mut panels = panels(story, "rad", |axis| {
         let name = |name| if axis == 0 { name } else { "" };
@@ -35,9 +35,8 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     }
     let norm_of = |value_of: fn(&AxisEstimate) -> f64| -> Vec<Point> {
         cycles
-            .attitude
-            .iter()
-            .map(|(time, row)| (*time, norm([0, 1, 2].map(|axis| value_of(&row.axes[axis])))))
+            .rows::<AttitudeEstimate>()
+            .map(|(time, row)| (time, norm([0, 1, 2].map(|axis| value_of(&row.axes[axis])))))
             .collect()
     };
     let layers = vec![
@@ -46,7 +45,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     ];
     let lengths = decades(story, "norm", layers);
     panels.push(Panel { x: lengths.x.unnamed(), ..lengths });
-    let nees: Vec<Point> = cycles.attitude.iter().map(|(time, row)| (*time, row.nees)).collect();
+    let nees: Vec<Point> = cycles.rows::<AttitudeEstimate>().map(|(time, row)| (time, row.nees)).collect();
     let mean = consistency::mean(story, &nees);
     let level = |height: f64| [(0.0, height), (story.end, height)];
     let y = FigureAxis::from_zero("NEES / states", "", nees.iter().map(|point| point.1).chain(INSIDE));

@@ -2,6 +2,7 @@
 //! the elastic modes, relative to the first point, in axes of the hub.
 
 use flexsc_core::numerics::attitude::Vector;
+use flexsc_core::record::Vibrations;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::run_events::RunEvents;
@@ -43,8 +44,11 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let last = all.len().min(PANELS).saturating_sub(1);
     let panel = |(index, (name, shifts)): (usize, &(&str, Vec<Vector>))| {
         let line = |axis: usize| -> Vec<Point> {
-            let moved = |modes: &[f64]| shifts.iter().zip(modes).map(|(shift, q)| shift[axis] * q).sum();
-            cycles.modes.iter().map(|(time, modes)| (*time, moved(modes))).collect()
+            let moved = |row: &Vibrations| {
+                let modes = row.modes.iter().map(|mode| mode.displacement);
+                shifts.iter().zip(modes).map(|(shift, q)| shift[axis] * q).sum()
+            };
+            cycles.rows().map(|(time, row)| (time, moved(row))).collect()
         };
         let layer = |axis: usize| {
             let label = if index == 0 { ["x", "y", "z"][axis] } else { "" };

@@ -33,19 +33,19 @@ pub fn alike(x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, 
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |value_of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
-        cycles.drives.iter().map(|(time, row)| (*time, value_of(row))).collect()
+        cycles.rows().map(|(time, row)| (time, value_of(row))).collect()
     };
     let (drives, modes) =
-        cycles.drives.first().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
+        cycles.rows::<DrivesMotion>().next().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
     let x = time(0.0..story.end);
     let angles = (0..drives)
         .map(|drive| (format!("drive {}", drive + 1), unwrapped(line(&|row| row.drives[drive].angle_rad))))
         .collect();
     let highest = |mode: usize| {
-        cycles.drives.iter().map(|(_, row)| row.modes[mode].frequency_rad_s).fold(0.0, f64::max)
+        cycles.rows::<DrivesMotion>().map(|(_, row)| row.modes[mode].frequency_rad_s).fold(0.0, f64::max)
     };
     let varies = |mode: &usize| {
-        let lowest = cycles.drives.iter().map(|(_, row)| row.modes[*mode].frequency_rad_s);
+        let lowest = cycles.rows::<DrivesMotion>().map(|(_, row)| row.modes[*mode].frequency_rad_s);
         lowest.fold(f64::INFINITY, f64::min) < CONSTANT * highest(*mode)
     };
     let varying: Vec<usize> = (0..modes).filter(varies).collect();

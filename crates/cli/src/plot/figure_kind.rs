@@ -2,6 +2,7 @@
 
 use clap::ValueEnum;
 use flexsc_core::control::estimator::EstimatorKind;
+use flexsc_core::record::{AttitudeEstimate, ElasticEstimates};
 use flexsc_figure::Figure;
 
 use super::motion::MotionData;
@@ -158,10 +159,14 @@ impl FigureKind {
             Self::Drives => drives::figure(story, cycles),
             Self::Hinges => hinges::figure(story, cycles),
             Self::Accelerations => accelerations::figure(story, cycles),
-            Self::Frequency if !cycles.elastic.is_empty() => identified_frequencies::figure(story, cycles),
+            Self::Frequency if cycles.rows::<ElasticEstimates>().next().is_some() => {
+                identified_frequencies::figure(story, cycles)
+            }
             Self::Frequency => frequency::figure(story, motion),
             Self::Estimate => estimate::figure(story, motion),
-            Self::Consistency if !cycles.attitude.is_empty() => attitude_filter::figure(story, cycles),
+            Self::Consistency if cycles.rows::<AttitudeEstimate>().next().is_some() => {
+                attitude_filter::figure(story, cycles)
+            }
             Self::Consistency => consistency::figure(story, motion),
             Self::Extra => extra_loop::figure(story, motion),
             Self::Distribution | Self::Scatter | Self::Fan | Self::Curve | Self::Region => return None,

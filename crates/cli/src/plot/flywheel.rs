@@ -32,12 +32,15 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         layers.push(Layer::new(name, colour::BLACK, LayerShape::Line(1.2), line));
         Panel::new(x, y, layers)
     };
-    // A body without inertia has a rate instead of a momentum.
-    let momentum = if super::unit_of_torque(story) == "N m" { "N m s" } else { "rad/s" };
+    // For a body without inertia, torques are accelerations of the body, and their integral is a rate.
+    let (momentum, unit) = match super::unit_of_torque(story) {
+        "N m" => ("momentum", "N m s"),
+        _ => ("momentum over inertia", "rad/s"),
+    };
     let [speeds, momenta] = &motion.wheel;
     let panels = vec![
         panel(x.unnamed(), "speed", "rad/s", speeds, limit.map(|(speed, _)| speed)),
-        panel(x, "momentum", momentum, momenta, limit.map(|(speed, inertia)| speed * inertia)),
+        panel(x, momentum, unit, momenta, limit.map(|(speed, inertia)| speed * inertia)),
     ];
     Figure { title: title(story, "flywheel"), panels, panel_height: 200 }
 }

@@ -20,7 +20,7 @@ pub fn applies_to(story: &RunEvents) -> bool {
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let line = |value_of: &dyn Fn(&ControlMomentGyros) -> f64| -> Vec<Point> {
-        cycles.gimbals.iter().map(|(time, row)| (*time, value_of(row))).collect()
+        cycles.rows().map(|(time, row)| (time, value_of(row))).collect()
     };
     let named = |lines: Vec<(String, Vec<Point>)>| -> Vec<Layer> {
         let layer = |(index, (name, points)): (usize, (String, Vec<Point>))| {

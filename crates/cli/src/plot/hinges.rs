@@ -1,6 +1,6 @@
 //! Figure `hinges` of a spacecraft whose appendages swing on hinges: angles and rates of the hinges.
 
-use flexsc_core::record::HingeMotion;
+use flexsc_core::record::{HingeMotion, Hinges};
 use flexsc_figure::{Figure, Point};
 
 use super::drives::alike;
@@ -9,10 +9,10 @@ use super::spatial::CycleData;
 use super::{time, title};
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let hinges = cycles.hinges.first().map_or(0, |(_, row)| row.hinges.len());
+    let hinges = cycles.rows::<Hinges>().next().map_or(0, |(_, row)| row.hinges.len());
     let lines = |value_of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {
         let line = |hinge: usize| {
-            cycles.hinges.iter().map(|(time, row)| (*time, value_of(&row.hinges[hinge]))).collect()
+            cycles.rows::<Hinges>().map(|(time, row)| (time, value_of(&row.hinges[hinge]))).collect()
         };
         (0..hinges).map(|hinge| (format!("hinge {}", hinge + 1), line(hinge))).collect()
     };

@@ -1,7 +1,7 @@
 //! Figure `frequency` of three axes: the natural frequency of each mode that an attitude filter identifies, with two
 //! standard deviations to each side, and the true frequency.
 
-use flexsc_core::record::ElasticEstimate;
+use flexsc_core::record::{ElasticEstimate, ElasticEstimates};
 use flexsc_core::scenario::Scenario;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
@@ -27,7 +27,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let modes = modes(&story.scenario).unwrap_or_default();
     let panel = |(index, mode): (usize, &usize)| {
         let line = |value: &dyn Fn(&ElasticEstimate) -> f64| -> Vec<Point> {
-            cycles.elastic.iter().map(|(time, row)| (*time, value(&row.modes[index]))).collect()
+            cycles.rows::<ElasticEstimates>().map(|(time, row)| (time, value(&row.modes[index]))).collect()
         };
         let [estimated, truth] =
             [line(&|mode| mode.frequency_rad_s), line(&|mode| mode.true_frequency_rad_s)];

@@ -1,7 +1,7 @@
 //! Figure `magnetorquers` of three axes: magnetic moments with their limits, and the momentum of the wheels or the
 //! body.
 
-use flexsc_core::record::ThreeAxisCycle;
+use flexsc_core::record::{Magnetorquers, StoredMomentum};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::run_events::RunEvents;
@@ -22,7 +22,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     });
     let moments = COLOURS.iter().enumerate().map(|(axis, (name, colour))| {
         let points: Vec<Point> =
-            cycles.magnetorquers.iter().map(|(time, row)| (*time, row.axes[axis].moment_am2)).collect();
+            cycles.rows::<Magnetorquers>().map(|(time, row)| (time, row.axes[axis].moment_am2)).collect();
         Layer::new(name, *colour, LayerShape::Line(1.2), points)
     });
     let levels: Vec<f64> = limits.into_iter().flat_map(|limit| [limit, -limit]).collect();
@@ -37,9 +37,11 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let moments = Panel::new(x.unnamed(), y, layers);
     let wheels = story.scenario.study.wheels.is_some();
     let norm = |vector: [f64; 3]| vector.iter().map(|part| part * part).sum::<f64>().sqrt();
-    let points = cycles.over_time(|cycle: &ThreeAxisCycle| {
-        norm(if wheels { cycle.stored_nm_s } else { cycle.rigid_rate_rad_s })
-    });
+    let points: Vec<Point> = if wheels {
+        cycles.values::<StoredMomentum>().map(|(time, stored)| (time, norm(stored.0))).collect()
+    } else {
+        cycles.over_time(|cycle| norm(cycle.rigid_rate_rad_s))
+    };
     let (name, unit) = if wheels { ("momentum of the wheels", "N m s") } else { ("rate", "rad/s") };
     let y = FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>());
     let kept = Panel::new(x, y, vec![Layer::new("", colour::BLUE, LayerShape::Line(1.2), points)]);

@@ -14,6 +14,7 @@ mod estimate;
 mod extra_loop;
 mod failures;
 mod figure_kind;
+mod figure_name;
 mod filter_lock;
 mod flywheel;
 mod frequency;
@@ -36,6 +37,7 @@ mod spatial;
 mod stale_check;
 mod time_range;
 mod title;
+mod topic;
 mod torque;
 mod torques;
 mod wheels;
@@ -43,7 +45,6 @@ mod wheels;
 use std::f64::consts::TAU;
 use std::path::{Path, PathBuf};
 
-use clap::ValueEnum;
 use flexsc_core::record::Log;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Style, colour, round_to_nice};
 
@@ -51,6 +52,8 @@ use crate::error::CliError;
 use crate::figure_files::{FigureFormat, FigureTarget};
 pub use campaign::{column_figures, directory_figures};
 pub use figure_kind::FigureKind;
+pub use figure_name::FigureName;
+use figure_name::FigureNameParser;
 use motion::MotionData;
 use run_events::RunEvents;
 use spatial::CycleData;
@@ -58,7 +61,7 @@ pub use title::readable;
 use title::{short, title};
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct PlotArgs {
     /// Log file, or directory of a campaign
     #[arg(value_name = "LOG|DIR")]
     path: PathBuf,
@@ -70,8 +73,8 @@ pub struct Args {
     #[arg(short, long, value_name = "DIR|FILE")]
     out: Option<PathBuf>,
     /// Figures to draw [default: all of a log; the usual ones of a campaign]
-    #[arg(long, value_enum, value_delimiter = ',', value_name = "FIGURES")]
-    what: Vec<FigureKind>,
+    #[arg(long, value_parser = FigureNameParser, value_delimiter = ',', value_name = "FIGURES")]
+    what: Vec<FigureName>,
     /// Format of the figures [default: svg and png, or by the extension of FILE]
     #[arg(long, value_enum)]
     format: Option<FigureFormat>,
@@ -101,7 +104,7 @@ pub struct Args {
     json: bool,
 }
 
-impl Args {
+impl PlotArgs {
     /// Returns the style of the figures with their size.
     fn style(&self) -> Result<Style, CliError> {
         Style::new(self.width, self.font)
@@ -109,20 +112,21 @@ impl Args {
     }
 }
 
-impl Args {
+impl PlotArgs {
     /// Returns the figures of a log over the requested time.
-    fn own(&self, path: &Path, requested: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+    fn figures_of(&self, path: &Path, asked: &[FigureName]) -> Result<Vec<(String, Figure)>, CliError> {
         let log = Log::open(path)?;
         if !self.json {
             stale_check::warn_if_stale(&log, path);
         }
-        drawn_over(&log, path, requested, (self.from, self.to))
+        drawn_over(&log, path, asked, (self.from, self.to))
     }
 
     /// Returns the figures that all logs have in common, the lines of all logs in each.
-    fn together(&self) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+    fn together(&self) -> Result<Vec<(String, Figure)>, CliError> {
         let paths: Vec<&PathBuf> = std::iter::once(&self.path).chain(&self.others).collect();
-        let all = paths.iter().map(|path| self.own(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
+        let all =
+            paths.iter().map(|path| self.figures_of(path, &self.what)).collect::<Result<Vec<_>, _>>()?;
         let names: Vec<String> = paths
             .iter()
             .map(|path| path.file_stem().unwrap_or_default().to_string_lossy().into_owned())
@@ -134,16 +138,16 @@ impl Args {
         };
         let mut figures = Vec::new();
         let mut runs: Vec<_> = all.into_iter().map(Vec::into_iter).map(Iterator::collect::<Vec<_>>).collect();
-        let kinds: Vec<FigureKind> = runs[0].iter().map(|(kind, _)| *kind).collect();
+        let kinds: Vec<String> = runs[0].iter().map(|(kind, _)| kind.clone()).collect();
         for kind in kinds {
             let mut same_kind = Vec::new();
-            for (run, own) in runs.iter_mut().enumerate() {
-                if let Some(place) = own.iter().position(|(other, _)| *other == kind) {
-                    same_kind.push((name(run), own.swap_remove(place).1));
+            for (run, figures) in runs.iter_mut().enumerate() {
+                if let Some(place) = figures.iter().position(|(other, _)| *other == kind) {
+                    same_kind.push((name(run), figures.swap_remove(place).1));
                 }
             }
             if same_kind.len() == paths.len() {
-                let title = kind.name().replace('-', " ");
+                let title = kind.replace('-', " ");
                 figures.extend(overlay::overlaid(&title, &same_kind).map(|figure| (kind, figure)));
             }
         }
@@ -160,7 +164,7 @@ impl Args {
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, CliError> {
-    let kind = FigureKind::from_str(name, false).map_err(CliError::Arguments)?;
+    let kind = FigureName::parse(name).map_err(CliError::Arguments)?;
     let drawn = drawn(log, path, &[kind])?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
@@ -171,7 +175,7 @@ pub fn drawable_kinds(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliErro
     Ok(FigureKind::all_in(&RunEvents::read(log, path)?))
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     if args.path.is_dir() {
         let log_options = [
             ("more than one path", !args.others.is_empty()),
@@ -193,32 +197,41 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     let logs: Vec<&Path> = std::iter::once(&args.path).chain(&args.others).map(PathBuf::as_path).collect();
     let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &logs, args.force)?;
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
-    let figures = if args.others.is_empty() { args.own(&args.path, &args.what)? } else { args.together()? };
-    let named = figures.into_iter().map(|(kind, figure)| (format!("{name}-{}", kind.name()), figure));
+    let figures =
+        if args.others.is_empty() { args.figures_of(&args.path, &args.what)? } else { args.together()? };
+    let named = figures.into_iter().map(|(kind, figure)| (format!("{name}-{kind}"), figure));
     target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }
 
 /// Returns figures of a log: the named ones, or all that it has.
-fn drawn(log: &Log, path: &Path, requested: &[FigureKind]) -> Result<Vec<(FigureKind, Figure)>, CliError> {
-    drawn_over(log, path, requested, (None, None))
+fn drawn(log: &Log, path: &Path, asked: &[FigureName]) -> Result<Vec<(String, Figure)>, CliError> {
+    drawn_over(log, path, asked, (None, None))
 }
 
 /// Returns figures over an interval of time, if given.
 fn drawn_over(
     log: &Log,
     path: &Path,
-    requested: &[FigureKind],
+    asked: &[FigureName],
     (from, to): (Option<f64>, Option<f64>),
-) -> Result<Vec<(FigureKind, Figure)>, CliError> {
+) -> Result<Vec<(String, Figure)>, CliError> {
+    let (kinds, topics) = FigureName::split(asked);
+    let of_topic = |topic: &str| Ok((topic.replace('/', "topic-"), topic::figure(log, path, topic)?));
+    let figures = topics.into_iter().map(of_topic).collect::<Result<Vec<_>, CliError>>()?;
+    if kinds.is_empty() && !figures.is_empty() {
+        let end = figures.iter().flat_map(|(_, figure)| &figure.panels).map(|panel| panel.x.range.end);
+        let shown = time_range::resolve(from, to, end.fold(0.0, f64::max))?;
+        let crop = |figure| shown.iter().fold(figure, time_range::crop);
+        return Ok(figures.into_iter().map(|(name, figure)| (name, crop(figure))).collect());
+    }
     let mut story = RunEvents::read(log, path)?;
     story.shown = time_range::resolve(from, to, story.end)?;
-    let chosen =
-        figure_kind::select(requested, &FigureKind::all_in(&story)).map_err(|(missing, drawable)| {
-            let path = path.display();
-            CliError::Arguments(format!(
-                "{path}: there is no figure `{missing}` for this log\n\nhint: it has {drawable}"
-            ))
-        })?;
+    let chosen = figure_kind::select(&kinds, &FigureKind::all_in(&story)).map_err(|(missing, there)| {
+        let path = path.display();
+        CliError::Arguments(format!(
+            "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
+        ))
+    })?;
     let any = |kinds: &[FigureKind]| kinds.iter().any(|kind| chosen.contains(kind));
     let moving = any(&[FigureKind::PhasePlane, FigureKind::Envelope, FigureKind::Modes, FigureKind::Angle]);
     let all = any(&[
@@ -247,9 +260,11 @@ fn drawn_over(
             Some(shown) => time_range::crop(figure, shown),
             None => figure,
         };
-        Some((kind, failures::shaded(figure, &story)))
+        Some((kind.name(), failures::shaded(figure, &story)))
     });
-    Ok(drawn.collect())
+    let crop = |figure| story.shown.iter().fold(figure, time_range::crop);
+    let topics = figures.into_iter().map(|(name, figure)| (name, crop(figure)));
+    Ok(drawn.chain(topics).collect())
 }
 
 /// Returns the unit of the torque: of an acceleration for a body without inertia.

@@ -1,7 +1,7 @@
 //! Motion of a run and the filter's estimates at each sample, from a full log or from a repeated run.
 
 use flexsc_core::numerics::time::Instant;
-use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Sample};
+use flexsc_core::record::{self, Column, Columns, Log, Record, RecordError, Report, Sample};
 
 use super::columns::{labels, rows, topics};
 use crate::error::CliError;
@@ -182,26 +182,29 @@ impl MotionRecorder {
         Self { motion: MotionData::default(), early, late, switchings: Vec::new() }
     }
 
-    fn record(&mut self, time: f64, motion: &record::Motion) {
+    fn observe(&mut self, time: f64, report: &Report) {
         let data = &mut self.motion;
-        data.envelope.extend(motion.envelope.as_ref().map(|envelope| (time, envelope.envelope_rad)));
+        data.envelope.extend(report.get().map(|row: &record::Envelope| (time, row.envelope_rad)));
+        let Some(attitude) = report.get::<record::Attitude>() else { return };
         if time > self.early && time < self.late {
             return;
         }
         data.time.push(time);
-        data.angle.push(motion.attitude.angle_rad);
-        data.rate.push(motion.rate.rate_rad_s);
-        data.elastic.push(motion.modes.elastic_rad);
-        extend(&mut data.modes, motion.modes.modes.iter().map(|mode| mode.displacement_rad));
-        extend(&mut data.mode_rates, motion.modes.modes.iter().map(|mode| mode.rate_rad_s));
-        let outputs = motion.outputs.iter().flat_map(|outputs| &outputs.outputs);
+        data.angle.push(attitude.angle_rad);
+        data.rate.extend(report.get().map(|row: &record::Rate| row.rate_rad_s));
+        if let Some(modes) = report.get::<record::Modes>() {
+            data.elastic.push(modes.elastic_rad);
+            extend(&mut data.modes, modes.modes.iter().map(|mode| mode.displacement_rad));
+            extend(&mut data.mode_rates, modes.modes.iter().map(|mode| mode.rate_rad_s));
+        }
+        let outputs = report.get().into_iter().flat_map(|row: &record::Outputs| &row.outputs);
         extend(&mut data.outputs, outputs.map(|output| output.value));
-        if let Some((goal, torque)) = &motion.drive {
-            data.goal.push(goal.angle_rad);
+        data.goal.extend(report.get().map(|row: &record::GoalMotion| row.angle_rad));
+        if let Some(torque) = report.get::<record::Torque>() {
             let now = [torque.feedforward_nm, torque.feedback_nm, torque.applied_nm, torque.disturbance_nm];
             data.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
         }
-        if let Some(wheel) = &motion.wheel {
+        if let Some(wheel) = report.get::<record::WheelMotion>() {
             data.wheel[0].push(wheel.speed_rad_s);
             data.wheel[1].push(wheel.momentum_nm_s);
         }
@@ -216,11 +219,12 @@ impl Record for MotionRecorder {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
             Sample::Switching(command, _) => self.switchings.push(command.time_s),
-            Sample::Motion(motion) => self.record(now.seconds(), motion),
-            Sample::Estimate(estimate) => {
-                self.motion.estimates.push(DominantModeEstimate::from_row(now.seconds(), estimate));
+            Sample::Report(report) => {
+                self.observe(now.seconds(), report);
+                let estimate = report.get().map(|row| DominantModeEstimate::from_row(now.seconds(), row));
+                self.motion.estimates.extend(estimate);
             }
-            _ => {}
+            Sample::Begin(_) | Sample::Row(_) => {}
         }
         Ok(())
     }

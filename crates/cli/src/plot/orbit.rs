@@ -1,7 +1,7 @@
 //! Figure `orbit` of three axes: the magnetic field and the directions to planet and Sun in the body's axes, and the
 //! intervals in shadow.
 
-use flexsc_core::record::{Light, OrbitAxis};
+use flexsc_core::record::{Light, Orbit, OrbitAxis};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, band, colour};
 
 use super::run_events::RunEvents;
@@ -25,7 +25,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let mut panels = Vec::new();
     for (name, unit, value_of) in shown {
         let line = |axis: usize| -> Vec<Point> {
-            cycles.orbit.iter().map(|(time, row)| (*time, value_of(&row.axes[axis]))).collect()
+            cycles.rows::<Orbit>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()
         };
         let lines = [0, 1, 2].map(line);
         if lines.iter().flatten().all(|(_, value)| value.is_nan()) {
@@ -63,11 +63,11 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
 fn shadows(cycles: &CycleData, end: f64) -> Vec<[f64; 2]> {
     let mut shadows = Vec::new();
     let mut since = None;
-    for (time, row) in &cycles.orbit {
+    for (time, row) in cycles.rows::<Orbit>() {
         match (row.light, since) {
-            (Light::Shadow, None) => since = Some(*time),
+            (Light::Shadow, None) => since = Some(time),
             (Light::Lit, Some(from)) => {
-                shadows.push([from, *time]);
+                shadows.push([from, time]);
                 since = None;
             }
             _ => {}

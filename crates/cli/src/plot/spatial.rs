@@ -1,15 +1,16 @@
 //! Figures of a three-axis body: `rates`, `energy`, `position`, `jets`, and of its adaptive observers `tracking` and
 //! `damping`, from its repeated run.
 
+use std::any::Any;
 use std::path::Path;
 
 use flexsc_core::Simulation;
+use flexsc_core::control::actuator::JetCycle;
 use flexsc_core::numerics::attitude::AXES;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{
-    Accelerations, AttitudeEstimate, Bearings, ChannelState, ControlMomentGyros, DrivesMotion,
-    ElasticEstimates, Hinges, Log, Magnetorquers, Orbit, Position, Record, RecordError, Sample,
-    ThreeAxisCycle, ThreeAxisMotionSample, Torques, TrackedMode, Tracking, Wheels,
+    ChannelState, Jets, Log, Position, Record, RecordError, Report, Sample, ThreeAxisCycle, TrackedMode,
+    Tracking,
 };
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour, steps};
 
@@ -22,38 +23,9 @@ const MANY: usize = 100;
 /// Fraction of the values about other axes below which values are rounding errors, and drawn at the others' scale.
 const ROUNDING: f64 = 1e-9;
 
-/// Data of a repeated run.
+/// Data of a repeated run: its reports, and rows that are recorded alone.
 #[derive(Default)]
-pub struct CycleData {
-    all: Vec<(f64, ThreeAxisCycle)>,
-    tracking: Vec<(f64, Tracking)>,
-    /// Estimates of an attitude filter at each sample.
-    pub attitude: Vec<(f64, AttitudeEstimate)>,
-    /// Filter estimates of the elastic modes.
-    pub elastic: Vec<(f64, ElasticEstimates)>,
-    /// States of the wheels, at each period of the log.
-    pub wheels: Vec<(f64, Wheels)>,
-    /// States of the control moment gyros, at each period of the log.
-    pub gimbals: Vec<(f64, ControlMomentGyros)>,
-    /// Position on the orbit, at each period of the log.
-    pub orbit: Vec<(f64, Orbit)>,
-    /// Magnetic moments, at each period of the log.
-    pub magnetorquers: Vec<(f64, Magnetorquers)>,
-    /// Position of the first point and its velocity, at each period of the log.
-    position: Vec<(f64, Position)>,
-    /// Readings of the accelerometers.
-    pub accelerations: Vec<(f64, Accelerations)>,
-    /// States of the wheels' bearings, if any.
-    pub bearings: Vec<(f64, Bearings)>,
-    /// Torques on the body, except of jets that act alone.
-    pub torques: Vec<(f64, Torques)>,
-    /// Displacements of the elastic modes (m sqrt(kg)).
-    pub modes: Vec<(f64, Vec<f64>)>,
-    /// States of the appendages' drives, if any.
-    pub drives: Vec<(f64, DrivesMotion)>,
-    /// States of the appendages' hinges, if any.
-    pub hinges: Vec<(f64, Hinges)>,
-}
+pub struct CycleData(Vec<(f64, Report)>);
 
 impl CycleData {
     /// Repeats the run of a log.
@@ -68,8 +40,8 @@ impl CycleData {
             .map_err(|source| CliError::Run { name: story.scenario.name.clone(), source })?;
         let jets = log.tables(&["/jets"])?.pop().flatten().unwrap_or_default();
         let logged = jets.numbers("fuel_kg").unwrap_or_default();
-        let fired = cycles.all.iter().filter(|(_, cycle)| cycle.pulses > 0);
-        if !fired.map(|(_, cycle)| cycle.jets.fuel_kg).take(logged.len()).eq(logged.iter().copied()) {
+        let fired = cycles.rows::<Jets>().map(|(_, row)| row.fuel_kg);
+        if !fired.take(logged.len()).eq(logged.iter().copied()) {
             let version = log.metadata().get("version").map_or("another", String::as_str);
             let own = env!("CARGO_PKG_VERSION");
             let why = format!("flexsc {own} fires at other times than this log of version {version}");
@@ -78,8 +50,26 @@ impl CycleData {
         Ok(cycles)
     }
 
+    /// Iterates over the logged rows of a type, each with its time (s).
+    pub fn rows<T: Any>(&self) -> impl Iterator<Item = (f64, &T)> {
+        self.0.iter().filter_map(|(time, report)| Some((*time, report.row()?)))
+    }
+
+    /// Iterates over the values of a type in the reports of cycles, each with its time (s).
+    pub fn values<T: Any>(&self) -> impl Iterator<Item = (f64, &T)> {
+        let cycles = self.0.iter().filter(|(_, report)| report.get::<ThreeAxisCycle>().is_some());
+        cycles.filter_map(|(time, report)| Some((*time, report.get()?)))
+    }
+
+    /// Returns a number of each cycle over time.
     pub fn over_time(&self, value_of: impl Fn(&ThreeAxisCycle) -> f64) -> Vec<Point> {
-        self.all.iter().map(|(time, cycle)| (*time, value_of(cycle))).collect()
+        self.values().map(|(time, cycle)| (time, value_of(cycle))).collect()
+    }
+
+    /// Returns the propellant that the jets have used at each cycle (kg); NaN without jets.
+    pub fn fuel(&self) -> Vec<Point> {
+        let jets: Vec<Point> = self.values::<JetCycle>().map(|(time, jets)| (time, jets.fuel)).collect();
+        if jets.is_empty() { self.over_time(|_| f64::NAN) } else { jets }
     }
 }
 
@@ -90,37 +80,9 @@ impl Record for CycleData {
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         match sample {
-            Sample::Cycle(cycle) => self.all.push((now.seconds(), cycle.clone())),
-            Sample::Tracking(tracking) => self.tracking.push((now.seconds(), tracking.clone())),
-            Sample::Accelerations(row) => self.accelerations.push((now.seconds(), row.clone())),
-            Sample::AttitudeEstimate(row) => self.attitude.push((now.seconds(), row.clone())),
-            Sample::ElasticEstimates(row) => self.elastic.push((now.seconds(), row.clone())),
-            Sample::SpatialMotion(ThreeAxisMotionSample {
-                wheels,
-                gimbals,
-                orbit,
-                magnetorquers,
-                position,
-                bearings,
-                drives,
-                hinges,
-                torques,
-                vibrations,
-                ..
-            }) => {
-                let t = now.seconds();
-                self.wheels.extend(wheels.clone().map(|wheels| (t, wheels)));
-                self.gimbals.extend(gimbals.iter().map(|gimbals| (t, gimbals.clone())));
-                self.orbit.extend(orbit.clone().map(|orbit| (t, orbit)));
-                self.magnetorquers.extend(magnetorquers.clone().map(|moments| (t, moments)));
-                self.position.extend(position.iter().map(|position| (t, position.clone())));
-                self.torques.extend(torques.iter().map(|torques| (t, torques.clone())));
-                self.modes.push((t, vibrations.modes.iter().map(|mode| mode.displacement).collect()));
-                self.drives.extend(drives.iter().map(|drives| (t, drives.clone())));
-                self.hinges.extend(hinges.iter().map(|hinges| (t, hinges.clone())));
-                self.bearings.extend(bearings.iter().map(|bearings| (t, bearings.clone())));
-            }
-            _ => {}
+            Sample::Report(report) => self.0.push((now.seconds(), report.clone())),
+            Sample::Row(row) => self.0.push((now.seconds(), Report::from_row(row))),
+            Sample::Begin(_) | Sample::Switching(..) => {}
         }
         Ok(())
     }
@@ -166,8 +128,7 @@ pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
 pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
     let panel = |x: FigureAxis, name: &str, unit: &'static str, coordinates: [fn(&Position) -> f64; 3]| {
         let line = |(axis, colour): (usize, _)| {
-            let points =
-                cycles.position.iter().map(|(time, position)| (*time, coordinates[axis](position))).collect();
+            let points = cycles.rows().map(|(time, position)| (time, coordinates[axis](position))).collect();
             Layer::new(["x", "y", "z"][axis], colour, LayerShape::Line(1.2), points)
         };
         let layers: Vec<Layer> =
@@ -190,7 +151,7 @@ pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
 /// Returns the figure of the elastic modes' energy, and of the jets' propellant.
 pub fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     let elastic = cycles.over_time(|cycle| cycle.elastic_energy_j);
-    let fuel = cycles.over_time(|cycle| cycle.jets.fuel_kg);
+    let fuel = cycles.fuel();
     let panel = |x: FigureAxis, name: &str, unit: &'static str, points: Vec<Point>| Panel {
         x,
         y: FigureAxis::from_zero(name, unit, points.iter().map(|(_, value)| *value).collect::<Vec<_>>()),
@@ -227,14 +188,13 @@ fn fires(panel: &Panel) -> bool {
 
 /// Returns the figure of the jets' firing times in each cycle.
 pub fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let on = |cycle: &ThreeAxisCycle, axis: usize| {
-        [cycle.jets.roll_on_s, cycle.jets.pitch_on_s, cycle.jets.yaw_on_s][axis]
-    };
-    let period = cycles.all.get(1).map_or(0.0, |(time, _)| time - cycles.all[0].0);
+    let on = |cycle: &JetCycle, axis: usize| cycle.on[axis];
+    let all: Vec<(f64, &JetCycle)> = cycles.values().collect();
+    let period = all.get(1).map_or(0.0, |(time, _)| time - all[0].0);
     let line = |axis: usize| {
         // Outline of each series of cycles with pulses, without points between them.
         let mut points = Vec::new();
-        for row in cycles.all.chunk_by(|a, b| (on(&a.1, axis) == 0.0) == (on(&b.1, axis) == 0.0)) {
+        for row in all.chunk_by(|a, b| (on(a.1, axis) == 0.0) == (on(b.1, axis) == 0.0)) {
             let Some((first, _)) = row.first().filter(|(_, cycle)| on(cycle, axis) != 0.0) else { continue };
             let last = row.last().map_or(*first, |(time, _)| time + period);
             points.push((*first, 0.0));
@@ -249,7 +209,7 @@ pub fn jets(story: &RunEvents, cycles: &CycleData) -> Figure {
         ]
     };
     // All axes have the same scale; axes without firing jets have no panel.
-    let longest = cycles.all.iter().flat_map(|(_, cycle)| (0..3).map(|axis| on(cycle, axis).abs()));
+    let longest = all.iter().flat_map(|(_, cycle)| (0..3).map(|axis| on(cycle, axis).abs()));
     let longest = 1.1 * longest.fold(0.0, f64::max);
     let mut panels = panels(story, "s", line);
     for panel in &mut panels {
@@ -269,17 +229,16 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     let ends = |points: Vec<Point>| -> Vec<Point> {
         points.first().into_iter().chain(points.last()).copied().collect()
     };
+    let first = cycles.rows::<Tracking>().next();
     let lines = |axis: usize| {
-        let count = cycles.tracking.first().map_or(0, |(_, tracking)| tracking.trackers.len());
+        let count = first.map_or(0, |(_, tracking)| tracking.trackers.len());
         let values_of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
             let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
-            cycles.tracking.iter().map(|(time, tracking)| (*time, hertz(tracking))).collect()
+            cycles.rows().map(|(time, tracking)| (time, hertz(tracking))).collect()
         };
-        let own_windows = |mode: &usize| {
-            cycles.tracking.first().is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64)
-        };
+        let mine = |mode: &usize| first.is_some_and(|(_, t)| t.trackers[*mode].axis == axis as u64);
         let mut layers = Vec::new();
-        for mode in (0..count).filter(own_windows) {
+        for mode in (0..count).filter(mine) {
             let name = |name| if axis == 0 && layers.is_empty() { name } else { "" };
             let truth = Layer::new(
                 name("true"),
@@ -308,12 +267,11 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
 pub fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
         let values_of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
-            cycles.tracking.iter().map(|(time, tracking)| (*time, value(&tracking.channels[axis]))).collect()
+            cycles.rows::<Tracking>().map(|(time, row)| (time, value(&row.channels[axis]))).collect()
         };
         let name = |name| if axis == 0 { name } else { "" };
-        let fires = |(_, tracking): &&(f64, Tracking)| tracking.channels[axis].damping_on_s != 0.0;
-        let fired =
-            cycles.tracking.iter().filter(fires).map(|(time, t)| (*time, t.channels[axis].acted_on_rad_s));
+        let fires = |(_, tracking): &(f64, &Tracking)| tracking.channels[axis].damping_on_s != 0.0;
+        let fired = cycles.rows().filter(fires).map(|(time, t)| (time, t.channels[axis].acted_on_rad_s));
         let fired: Vec<Point> = fired.collect();
         let mark = if fired.len() > MANY { LayerShape::Dot } else { LayerShape::Disc };
         vec![

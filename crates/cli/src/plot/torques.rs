@@ -2,7 +2,7 @@
 //! the disturbances with the environment.
 
 use flexsc_core::numerics::attitude::AXES;
-use flexsc_core::record::Torque;
+use flexsc_core::record::{Torque, Torques};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, RGBColor, colour};
 
 use super::run_events::RunEvents;
@@ -19,7 +19,7 @@ pub fn applies_to(story: &RunEvents) -> bool {
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let torque_about = |axis: usize, value_of: fn(&Torque) -> f64| -> Vec<Point> {
-        cycles.torques.iter().map(|(time, row)| (*time, value_of(&row.axes[axis]))).collect()
+        cycles.rows::<Torques>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()
     };
     // Demands are steps, drawn with a wider line than the actuators' response.
     let lines = |axis: usize| {

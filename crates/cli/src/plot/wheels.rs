@@ -28,10 +28,10 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         (speeds.into_iter().flatten().reduce(f64::min), wheels.torque.map(Positive::get))
     });
     let rubs = story.scenario.study.bearings.iter().any(Bearing::can_stick);
-    let count = cycles.wheels.first().map_or(0, |(_, row)| row.wheels.len());
+    let count = cycles.rows::<record::Wheels>().next().map_or(0, |(_, row)| row.wheels.len());
     let each = |value_of: fn(&record::Wheel) -> f64| -> Vec<Vec<Point>> {
         let line = |wheel: usize| {
-            cycles.wheels.iter().map(|(time, row)| (*time, value_of(&row.wheels[wheel]))).collect()
+            cycles.rows::<record::Wheels>().map(|(time, row)| (time, value_of(&row.wheels[wheel]))).collect()
         };
         (0..count).map(line).collect()
     };
@@ -59,7 +59,10 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     ];
     if rubs {
         let friction = |wheel: usize| {
-            cycles.bearings.iter().map(|(time, row)| (*time, row.wheels[wheel].friction_nm)).collect()
+            cycles
+                .rows::<record::Bearings>()
+                .map(|(time, row)| (time, row.wheels[wheel].friction_nm))
+                .collect()
         };
         panels.push(panel(x.unnamed(), "friction", "N m", None, (0..count).map(friction).collect()));
         let error = |axis: usize| cycles.over_time(|cycle| cycle.error_rad[axis]);

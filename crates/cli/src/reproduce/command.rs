@@ -32,14 +32,17 @@ impl PageCommand {
     }
 
     /// Returns the scenario of a simulation, and the path that the command gives it.
-    pub fn simulated<'a>(&self, args: &'a simulate::Args) -> Result<(Scenario, &'a PathBuf), CliError> {
+    pub fn simulated<'a>(
+        &self,
+        args: &'a simulate::SimulateArgs,
+    ) -> Result<(Scenario, &'a PathBuf), CliError> {
         let [path] = &args.scenarios[..] else { return Err(self.failure("one scenario at a time")) };
         Ok((shipped_scenarios::load(path, &args.set, args.seed)?, path))
     }
 }
 
 /// Returns the scenario of an analysis.
-pub fn analysed(args: &scenario::Args) -> Result<Scenario, CliError> {
+pub fn analysed(args: &scenario::ScenarioArgs) -> Result<Scenario, CliError> {
     shipped_scenarios::load(&args.scenario, &args.set, None)
 }
 

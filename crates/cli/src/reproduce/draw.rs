@@ -23,7 +23,7 @@ impl PageCommand {
 
     /// Returns a figure of a run's log, with the motion of a single-axis body by repeating the run, as `flexsc plot`
     /// does.
-    fn plot(&self, args: &simulate::Args, kind: &str) -> Result<(Figure, String), CliError> {
+    fn plot(&self, args: &simulate::SimulateArgs, kind: &str) -> Result<(Figure, String), CliError> {
         let (scenario, path) = self.simulated(args)?;
         let spatial = scenario.axis_count() == 3;
         let (detail, option) = if spatial { (Detail::Full, " --log full") } else { (Detail::Events, "") };

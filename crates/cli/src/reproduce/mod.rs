@@ -24,7 +24,7 @@ use crate::{files, progress, say, stop};
 use command_runner::CommandRunner;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct ReproduceArgs {
     /// The paper [default: all of them]
     #[arg(value_enum)]
     paper: Option<Paper>,
@@ -39,7 +39,7 @@ pub struct Args {
     force: bool,
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &ReproduceArgs) -> Result<(), CliError> {
     let began = WallInstant::now();
     let page = args.docs.as_ref().map(|docs| docs.join("papers.md"));
     if let Some(page) = page.filter(|page| args.paper.is_some() && page.exists()) {

@@ -19,9 +19,9 @@ use tuned::{TuneMethodResults, TuneResults};
 use tuning::TuneSetup;
 
 #[derive(clap::Args)]
-pub struct Args {
+pub struct TuneArgs {
     #[command(flatten)]
-    pub scenario: scenario::Args,
+    pub scenario: scenario::ScenarioArgs,
     #[command(flatten)]
     settled: SettlingArgs,
     /// Frequencies of the dominant mode (rad/s) [default: 36, from 1/6 to 4/3 of its own]
@@ -67,7 +67,7 @@ fn part(name: &str, value: f64) -> Result<(), CliError> {
     }
 }
 
-impl Args {
+impl TuneArgs {
     /// Computes the tuning of a scenario's loop over the given gains.
     pub fn results(&self, scenario: &Scenario) -> Result<TuneResults, CliError> {
         let (sampled_loop, law) = sampled(scenario)?;
@@ -136,7 +136,7 @@ impl Args {
     }
 }
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &TuneArgs) -> Result<(), CliError> {
     args.drawing.check(&args.scenario.scenario)?;
     let tuned = args.results(&args.scenario.load()?)?;
     if args.schedule {

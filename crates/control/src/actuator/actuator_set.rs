@@ -1,14 +1,17 @@
 //! Several actuators in one: each executes its share of the demand about each axis, or unloads the wheels or gyros.
 
-use flexsc_dynamics::three_axis::RotorObservation;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{self, WheelMotion};
+use flexsc_record::{self, Report};
 use flexsc_spacecraft::wrench::Wrench;
 
 use super::unloading::UnloaderState;
-use super::{Actuator, ActuatorKind, ActuatorTask, Demand, JetCycle, Pulse};
+use super::{
+    Actuator, ActuatorInput, ActuatorKind, ActuatorTask, AxisEffort, AxisResponse, Capabilities, Demand,
+    JetCycle, MomentumStorage, Pulse, PulsedActuator, WaveformActuator,
+};
 use crate::custom::PartError;
+use crate::part::{Part, ReportContext};
 
 /// Run-time state of several actuators.
 #[derive(Clone, Debug)]
@@ -67,6 +70,11 @@ impl ActuatorSet {
         self.each().map(value_of).reduce(|sum, next| sum + next).unwrap_or(0.0)
     }
 
+    /// Iterates over the actuators that act by pulses.
+    fn pulsed(&self) -> impl Iterator<Item = &dyn PulsedActuator> {
+        self.each().filter_map(|actuator| actuator.capabilities().pulses)
+    }
+
     /// Commands one of the actuators with its share of the demands.
     fn pass_on(&mut self, index: usize, now: Instant, rigid: [f64; 3]) {
         let (actuator, shares) = &mut self.executing[index];
@@ -78,130 +86,149 @@ impl ActuatorSet {
     }
 
     /// Makes the actuator that stores momentum counteract a torque (N m) from the next command on.
-    fn hold(&mut self, torque: Vector) {
+    fn hold(&mut self, now: Instant, torque: Vector) {
         if let Some(index) = self.keepers.first() {
-            self.executing[*index].0.set_counter_torque(torque);
+            self.executing[*index].0.update(now, ActuatorInput::CounterTorque(torque));
+        }
+    }
+
+    /// Executes the changes that are due, and unloads the rotors.
+    fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+        let stored = Vector::from(self.stored_momentum(now));
+        let held = self.unloader.as_mut().and_then(|of| of.serve(now, rigid, stored, &self.demands));
+        let executing = self.executing.iter_mut();
+        executing.for_each(|(actuator, _)| actuator.update(now, ActuatorInput::Due(rigid)));
+        if let (Some(held), Some(index)) = (held, self.keepers.first().copied()) {
+            self.hold(now, held);
+            self.pass_on(index, now, rigid);
         }
     }
 }
 
-impl Actuator for ActuatorSet {
-    fn set_magnetic_field(&mut self, field: Vector) {
-        self.executing.iter_mut().for_each(|(actuator, _)| actuator.set_magnetic_field(field));
-        self.unloader.iter_mut().for_each(|unloader| unloader.actuator.set_magnetic_field(field));
-    }
-
-    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
-        self.demands.iter_mut().zip(demands).for_each(|(own, demand)| *own = *demand);
-        if let Some(unloader) = self.unloader.as_mut().filter(|unloader| unloader.is_commanded(demands)) {
-            unloader.execute(now, demands, rigid);
-            self.hold(Vector::zeros());
-        }
-        (0..self.executing.len()).for_each(|index| self.pass_on(index, now, rigid));
-    }
-
+impl Part for ActuatorSet {
     fn due(&self) -> Option<Instant> {
         let executing = self.executing.iter().filter_map(|(actuator, _)| actuator.due());
         executing.chain(self.unloader.as_ref().and_then(UnloaderState::due)).min()
     }
 
-    fn update(&mut self, now: Instant, rigid: [f64; 3]) {
-        let stored = Vector::from(self.stored_momentum(now));
-        let held =
-            self.unloader.as_mut().and_then(|unloader| unloader.serve(now, rigid, stored, &self.demands));
-        self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, rigid));
-        if let (Some(held), Some(index)) = (held, self.keepers.first().copied()) {
-            self.hold(held);
-            self.pass_on(index, now, rigid);
-        }
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.each().for_each(|actuator| actuator.report(at, report));
     }
 
-    fn set_rotor_states(&mut self, now: Instant, rotors: &[RotorObservation]) {
-        self.executing.iter_mut().for_each(|(actuator, _)| actuator.set_rotor_states(now, rotors));
+    fn failure(&self) -> Option<PartError> {
+        self.each().find_map(|actuator| actuator.failure())
+    }
+}
+
+impl Actuator for ActuatorSet {
+    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
+        self.demands.iter_mut().zip(demands).for_each(|(own, demand)| *own = *demand);
+        if let Some(unloader) = self.unloader.as_mut().filter(|unloader| unloader.is_commanded(demands)) {
+            unloader.execute(now, demands, rigid);
+            self.hold(now, Vector::zeros());
+        }
+        (0..self.executing.len()).for_each(|index| self.pass_on(index, now, rigid));
+    }
+
+    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
+        match input {
+            ActuatorInput::Due(rigid) => self.serve(now, rigid),
+            ActuatorInput::CounterTorque(torque) => self.hold(now, torque),
+            ActuatorInput::MagneticField(_) => {
+                self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, input));
+                self.unloader.iter_mut().for_each(|unloader| unloader.actuator.update(now, input));
+            }
+            ActuatorInput::Rotors(_) => {
+                self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, input));
+            }
+        }
     }
 
     fn apply(&self, now: Instant, onto: &mut Wrench) {
         self.each().for_each(|actuator| actuator.apply(now, onto));
     }
 
-    /// Returns the total torque demanded of the actuators that execute demands (N m).
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        let demanded = self.executing.iter().map(|(actuator, _)| actuator.demanded_torque(axis));
-        demanded.reduce(|sum, next| sum + next).unwrap_or(0.0)
+    /// Returns the total effort; the demanded torque is that of the actuators that execute demands.
+    fn effort(&self, axis: usize) -> AxisEffort {
+        let plus = |a: AxisEffort, b: AxisEffort| AxisEffort {
+            demanded: a.demanded + b.demanded,
+            held: a.held + b.held,
+            firing: a.firing + b.firing,
+            reduced_moment: a.reduced_moment + b.reduced_moment,
+        };
+        let executing = self.executing.iter().map(|(actuator, _)| actuator.effort(axis)).reduce(plus);
+        let Some(unloader) = &self.unloader else { return executing.unwrap_or_default() };
+        let unloading = unloader.actuator.effort(axis);
+        executing.map_or(AxisEffort { demanded: 0.0, ..unloading }, |executing| AxisEffort {
+            demanded: executing.demanded,
+            ..plus(executing, unloading)
+        })
     }
 
-    fn held_torque(&self, axis: usize) -> f64 {
-        self.sum(|actuator| actuator.held_torque(axis))
+    fn response(&self, now: Instant, axis: usize, rates: [f64; 2]) -> AxisResponse {
+        AxisResponse {
+            applied: self.sum(|actuator| actuator.response(now, axis, rates).applied),
+            rotor: self.each().find_map(|actuator| actuator.response(now, axis, rates).rotor),
+        }
     }
 
-    fn firing(&self, axis: usize) -> f64 {
-        self.sum(|actuator| actuator.firing(axis))
-    }
-
-    fn applied_torque(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {
-        self.sum(|actuator| actuator.applied_torque(now, axis, rates))
-    }
-
-    fn reduced_moment(&self, axis: usize) -> f64 {
-        self.sum(|actuator| actuator.reduced_moment(axis))
-    }
-
-    fn waveform_impulse(&self, from: f64, to: f64) -> f64 {
-        self.sum(|actuator| actuator.waveform_impulse(from, to))
-    }
-
-    fn back_emf(&self) -> (f64, bool) {
-        self.each().map(Actuator::back_emf).find(|(back_emf, _)| *back_emf != 0.0).unwrap_or_default()
-    }
-
-    fn wheel(&self, axis: usize, rigid_rate: f64) -> Option<WheelMotion> {
-        self.each().find_map(|actuator| actuator.wheel(axis, rigid_rate))
-    }
-
-    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
-        self.each().flat_map(|actuator| actuator.wheels(now, rate)).collect()
-    }
-
-    fn gimbal_row(&self, now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
-        self.each().find_map(|actuator| actuator.gimbal_row(now))
-    }
-
-    fn steering_record(&self) -> Option<flexsc_record::SteeringRecord> {
-        self.each().find_map(Actuator::steering_record)
-    }
-
-    fn magnetorquer_row(&self) -> Option<flexsc_record::Magnetorquers> {
-        self.each().find_map(Actuator::magnetorquer_row)
-    }
-
-    fn measured_wheel_speeds(&self) -> Vec<f64> {
-        self.each().flat_map(Actuator::measured_wheel_speeds).collect()
-    }
-
-    fn stored_momentum(&self, now: Instant) -> [f64; 3] {
-        let stored =
-            self.keepers.iter().map(|index| Vector::from(self.executing[*index].0.stored_momentum(now)));
-        stored.reduce(|sum, next| sum + next).unwrap_or_default().into()
-    }
-
-    fn jet_cycle(&self) -> Option<JetCycle> {
-        self.each().find_map(Actuator::jet_cycle)
-    }
-
-    fn queued_rate_change(&self) -> [f64; 3] {
-        let queued = self.each().map(Actuator::queued_rate_change);
-        queued.fold([0.0; 3], |sum, next| [0, 1, 2].map(|axis| sum[axis] + next[axis]))
-    }
-
-    fn pending_pulses(&self) -> Vec<Pulse> {
-        self.each().flat_map(Actuator::pending_pulses).collect()
-    }
-
-    fn failure(&self) -> Option<PartError> {
-        self.each().find_map(Actuator::failure)
+    fn capabilities(&self) -> Capabilities<'_> {
+        let mut back_emf = self.each().map(|actuator| actuator.capabilities().back_emf);
+        Capabilities {
+            momentum: Some(self),
+            pulses: self.pulsed().next().map(|_| self as &dyn PulsedActuator),
+            waveform: Some(self),
+            back_emf: back_emf.find(|(of, _)| *of != 0.0).unwrap_or_default(),
+        }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {
         Box::new(self.clone())
+    }
+}
+
+impl MomentumStorage for ActuatorSet {
+    fn stored_momentum(&self, now: Instant) -> [f64; 3] {
+        let keepers = self.keepers.iter().map(|index| self.executing[*index].0.capabilities());
+        let stored = keepers.map(|of| Vector::from(of.stored_momentum(now)));
+        stored.reduce(|sum, next| sum + next).unwrap_or_default().into()
+    }
+
+    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
+        self.each().flat_map(|actuator| actuator.capabilities().wheels(now, rate)).collect()
+    }
+
+    fn gyros(&self, now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
+        self.each().find_map(|actuator| actuator.capabilities().momentum?.gyros(now))
+    }
+}
+
+/// The pulses of all jets; those executed are known only from the held torques.
+impl PulsedActuator for ActuatorSet {
+    fn cycle(&self) -> JetCycle {
+        self.pulsed().next().map_or_else(JetCycle::default, PulsedActuator::cycle)
+    }
+
+    fn pending_pulses(&self) -> Vec<Pulse> {
+        self.pulsed().flat_map(PulsedActuator::pending_pulses).collect()
+    }
+
+    /// Returns 0: several actuators do not unload others together.
+    fn cycle_impulse(&self) -> Vector {
+        Vector::zeros()
+    }
+
+    fn queued_rate_change(&self) -> [f64; 3] {
+        let queued = self.pulsed().map(PulsedActuator::queued_rate_change);
+        queued.fold([0.0; 3], |sum, next| [0, 1, 2].map(|axis| sum[axis] + next[axis]))
+    }
+}
+
+impl WaveformActuator for ActuatorSet {
+    fn waveform_impulse(&self, from: f64, to: f64) -> f64 {
+        self.sum(|actuator| {
+            let waveform = actuator.capabilities().waveform;
+            waveform.map_or(0.0, |waveform| waveform.waveform_impulse(from, to))
+        })
     }
 }

@@ -1,19 +1,22 @@
 //! Single-axis actuators: one of a one-axis body, or three of a three-axis body.
 
-use std::fmt;
 use std::sync::Arc;
 
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::WheelMotion;
+use flexsc_record::Report;
 use flexsc_spacecraft::flow::ActiveWaveform;
 use flexsc_spacecraft::sine::Sine;
 use flexsc_spacecraft::wrench::Wrench;
 
 use super::failure::FailureScope;
 use super::faulty::FaultyActuator;
-use super::{Actuator, ActuatorKind, Demand};
+use super::{
+    Actuator, ActuatorInput, ActuatorKind, AxisEffort, AxisResponse, Capabilities, Demand, WaveformActuator,
+};
+use crate::custom::PartError;
+use crate::part::{Part, ReportContext};
 
 /// Body and manoeuvre data that a single-axis actuator needs.
 #[derive(Clone, Debug)]
@@ -52,8 +55,47 @@ impl AxisActuatorContext {
     }
 }
 
+/// Torques of a single-axis actuator.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct AxisTorques {
+    /// Torque demanded (N m).
+    pub demanded: f64,
+    /// Torque held (N m), without a waveform and without back-EMF.
+    pub held: f64,
+    /// Torque that would be held without failures (N m), which estimators and laws assume.
+    pub nominal: f64,
+    /// Torque of the pulse that is on (N m), of thrusters.
+    pub firing: f64,
+}
+
+/// Constant properties of a single-axis actuator.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct AxisProperties {
+    /// Torque per unit of the command (N m).
+    pub torque_per_unit: f64,
+    /// True if the actuator executes the manoeuvre's waveform exactly.
+    pub executes_waveform: bool,
+    /// Back-EMF torque per unit of the rate (N m s), and true if the elastic rate is included.
+    pub back_emf: (f64, bool),
+}
+
+impl Default for AxisProperties {
+    fn default() -> Self {
+        Self { torque_per_unit: 1.0, executes_waveform: false, back_emf: (0.0, false) }
+    }
+}
+
+/// Parts of a torque that vary continuously with time.
+#[derive(Clone, Debug, Default)]
+pub struct AxisWaves<'a> {
+    /// Waveform, on a one-axis body.
+    pub waveform: Option<ActiveWaveform>,
+    /// Sines of time, on a three-axis body.
+    pub sines: &'a [Sine],
+}
+
 /// Run-time state of a single-axis actuator.
-pub trait AxisActuator: fmt::Debug + Send + Sync {
+pub trait AxisActuator: Part {
     /// Sets a command from `now` on: a torque (N m), or a value in the actuator's unit, of a body with this rigid rate
     /// (rad/s).
     fn command(&mut self, now: Instant, command: f64, rigid_rate: f64);
@@ -61,60 +103,22 @@ pub trait AxisActuator: fmt::Debug + Send + Sync {
     /// Executes the changes due at `now`.
     fn serve(&mut self, _now: Instant, _rigid_rate: f64) {}
 
-    /// Returns the next time at which the torque changes without a command.
-    fn due(&self) -> Option<Instant> {
-        None
+    /// Returns the torques demanded and held.
+    fn torques(&self) -> AxisTorques;
+
+    /// Returns the response of a body with this rate and this rigid rate (rad/s).
+    fn response(&self, _now: Instant, _rates: [f64; 2]) -> AxisResponse {
+        AxisResponse { applied: self.torques().held, rotor: None }
     }
 
-    /// Returns the torque per unit of the command (N m).
-    fn torque_per_unit(&self) -> f64 {
-        1.0
+    /// Returns the constant properties.
+    fn properties(&self) -> AxisProperties {
+        AxisProperties::default()
     }
 
-    /// Returns the torque held (N m), without a waveform and without back-EMF.
-    fn torque(&self) -> f64;
-
-    /// Returns the torque that would be held without failures (N m), which estimators and laws assume.
-    fn nominal_torque(&self) -> f64 {
-        self.torque()
-    }
-
-    /// Returns the torque of the pulse that is on (N m), of thrusters.
-    fn firing(&self) -> f64 {
-        0.0
-    }
-
-    /// Returns the sines of time in the torque, on a three-axis body.
-    fn sines(&self) -> &[Sine] {
-        &[]
-    }
-
-    /// Returns the demanded torque (N m).
-    fn demanded_torque(&self) -> f64;
-
-    /// Returns true if the actuator executes the manoeuvre's waveform exactly.
-    fn executes_waveform(&self) -> bool {
-        false
-    }
-
-    /// Returns the waveform in the torque from `now` on, on a one-axis body.
-    fn waveform(&self, _now: Instant) -> Option<ActiveWaveform> {
-        None
-    }
-
-    /// Returns the torque on a body with this rate and this rigid rate (rad/s), in N m.
-    fn applied(&self, _now: Instant, _rates: [f64; 2]) -> f64 {
-        self.torque()
-    }
-
-    /// Returns the back-EMF torque per unit of the rate (N m s), and true if the elastic rate is included.
-    fn back_emf(&self) -> (f64, bool) {
-        (0.0, false)
-    }
-
-    /// Returns the rotor of a body with this rigid rate (rad/s), if it stores momentum.
-    fn rotor(&self, _rigid_rate: f64) -> Option<WheelMotion> {
-        None
+    /// Returns the parts of the torque that vary continuously from `now` on.
+    fn waves(&self, _now: Instant) -> AxisWaves<'_> {
+        AxisWaves::default()
     }
 
     /// Returns a copy in the same state.
@@ -148,10 +152,23 @@ impl AxisActuators {
         )
     }
 
-    /// Returns a number of the actuator about an axis; 0 without an actuator.
-    fn about(&self, axis: usize, number: impl Fn(&dyn AxisActuator, &AxisActuatorContext) -> f64) -> f64 {
-        let actuator = self.0.get(axis).and_then(Option::as_ref);
-        actuator.map_or(0.0, |(actuator, setting)| number(&**actuator, setting))
+    /// Returns the actuator about an axis, if one acts there.
+    fn about(&self, axis: usize) -> Option<&(Box<dyn AxisActuator>, AxisActuatorContext)> {
+        self.0.get(axis).and_then(Option::as_ref)
+    }
+}
+
+impl Part for AxisActuators {
+    fn due(&self) -> Option<Instant> {
+        self.0.iter().flatten().filter_map(|(actuator, _)| actuator.due()).min()
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.0.iter().flatten().for_each(|(actuator, _)| actuator.report(at, report));
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.0.iter().flatten().find_map(|(actuator, _)| actuator.failure())
     }
 }
 
@@ -160,18 +177,15 @@ impl Actuator for AxisActuators {
         for (axis, (actuator, demand)) in self.0.iter_mut().zip(demands).enumerate() {
             let Some((actuator, setting)) = actuator else { continue };
             let commanded = match demand {
-                Demand::Change(_) => setting.demanded_torque(demand) / actuator.torque_per_unit(),
+                Demand::Change(_) => setting.demanded_torque(demand) / actuator.properties().torque_per_unit,
                 Demand::Torque(_) | Demand::Moment(_) => setting.demanded_torque(demand),
             };
             actuator.command(now, commanded, rigid[axis]);
         }
     }
 
-    fn due(&self) -> Option<Instant> {
-        self.0.iter().flatten().filter_map(|(actuator, _)| actuator.due()).min()
-    }
-
-    fn update(&mut self, now: Instant, rigid: [f64; 3]) {
+    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
+        let ActuatorInput::Due(rigid) = input else { return };
         for (actuator, rate) in self.0.iter_mut().zip(rigid) {
             if let Some((actuator, _)) = actuator {
                 actuator.serve(now, rate);
@@ -183,51 +197,41 @@ impl Actuator for AxisActuators {
         let actuators = self.0.iter().zip([Vector::x(), Vector::y(), Vector::z()]).enumerate();
         for (index, (actuator, axis)) in actuators {
             let Some((actuator, _)) = actuator else { continue };
-            onto.hub[index] += actuator.torque();
+            onto.hub[index] += actuator.torques().held;
+            let waves = actuator.waves(now);
             if self.0.len() == 1 {
-                onto.add_waveform(actuator.waveform(now));
+                onto.add_waveform(waves.waveform);
             } else {
-                onto.sines.extend(actuator.sines().iter().map(|sine| (axis, *sine)));
+                onto.sines.extend(waves.sines.iter().map(|sine| (axis, *sine)));
             }
         }
     }
 
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        self.about(axis, |actuator, _| actuator.demanded_torque())
+    fn effort(&self, axis: usize) -> AxisEffort {
+        let Some((actuator, setting)) = self.about(axis) else { return AxisEffort::default() };
+        let AxisTorques { demanded, held, nominal, firing } = actuator.torques();
+        AxisEffort { demanded, held, firing, reduced_moment: nominal / setting.inertia }
     }
 
-    fn held_torque(&self, axis: usize) -> f64 {
-        self.about(axis, |actuator, _| actuator.torque())
+    fn response(&self, now: Instant, axis: usize, rates: [f64; 2]) -> AxisResponse {
+        self.about(axis).map_or_else(AxisResponse::default, |(actuator, _)| actuator.response(now, rates))
     }
 
-    fn firing(&self, axis: usize) -> f64 {
-        self.about(axis, |actuator, _| actuator.firing())
-    }
-
-    fn applied_torque(&self, now: Instant, axis: usize, rates: [f64; 2]) -> f64 {
-        self.about(axis, |actuator, _| actuator.applied(now, rates))
-    }
-
-    fn reduced_moment(&self, axis: usize) -> f64 {
-        self.about(axis, |actuator, setting| actuator.nominal_torque() / setting.inertia)
-    }
-
-    fn waveform_impulse(&self, from: f64, to: f64) -> f64 {
-        self.about(0, |actuator, setting| {
-            let forced = setting.waveform.as_ref().filter(|_| actuator.executes_waveform());
-            forced.map_or(0.0, |waveform| setting.share * waveform.impulse(from, to) / setting.inertia)
-        })
-    }
-
-    fn back_emf(&self) -> (f64, bool) {
-        self.0[0].as_ref().map_or((0.0, false), |(actuator, _)| actuator.back_emf())
-    }
-
-    fn wheel(&self, axis: usize, rigid_rate: f64) -> Option<WheelMotion> {
-        self.0[axis].as_ref()?.0.rotor(rigid_rate)
+    fn capabilities(&self) -> Capabilities<'_> {
+        let back_emf = self.about(0).map_or((0.0, false), |(actuator, _)| actuator.properties().back_emf);
+        Capabilities { waveform: Some(self), back_emf, ..Capabilities::default() }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {
         Box::new(self.clone())
+    }
+}
+
+impl WaveformActuator for AxisActuators {
+    fn waveform_impulse(&self, from: f64, to: f64) -> f64 {
+        self.about(0).map_or(0.0, |(actuator, setting)| {
+            let forced = setting.waveform.as_ref().filter(|_| actuator.properties().executes_waveform);
+            forced.map_or(0.0, |waveform| setting.share * waveform.impulse(from, to) / setting.inertia)
+        })
     }
 }

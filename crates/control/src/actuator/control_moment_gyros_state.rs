@@ -8,13 +8,17 @@ use flexsc_dynamics::three_axis::Gimbal;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{self, SteeringRecord};
+use flexsc_record::{self, Report, SteeringRecord};
 use flexsc_spacecraft::wrench::Wrench;
 
 use super::control_moment_gyros::ControlMomentGyros;
 use super::failure::ActiveFailures;
 use super::steering::{self, GyroAxes, Robustness};
-use super::{Actuator, AxisActuatorContext, Demand};
+use super::{
+    Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Capabilities, Demand,
+    MomentumStorage,
+};
+use crate::part::{Occasion, Part, ReportContext};
 
 /// Run-time state of the control moment gyros of a body.
 #[derive(Clone, Debug)]
@@ -154,26 +158,9 @@ impl ControlMomentGyrosState {
     }
 }
 
-impl Actuator for ControlMomentGyrosState {
-    fn command(&mut self, now: Instant, demands: &[Demand], _: [f64; 3]) {
-        self.turn(now);
-        for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
-            self.demanded[axis] = setting.demanded_torque(demand);
-        }
-        self.steer_now(now);
-    }
-
-    fn set_counter_torque(&mut self, torque: Vector) {
-        self.against = torque;
-    }
-
-    fn due(&self) -> Option<Instant> {
-        let failing = self.failing.iter().flatten().filter_map(ActiveFailures::due);
-        failing.chain(self.updates.map(|(next, _)| next)).min()
-    }
-
+impl ControlMomentGyrosState {
     /// Starts and ends failures, and updates the rates.
-    fn update(&mut self, now: Instant, _: [f64; 3]) {
+    fn serve(&mut self, now: Instant) {
         let mut any = false;
         for (failing, commanded) in self.failing.iter_mut().zip(&self.commanded) {
             any |= failing.as_mut().is_some_and(|failing| failing.update(now, *commanded));
@@ -191,31 +178,29 @@ impl Actuator for ControlMomentGyrosState {
             self.update_extremes(&steering::torque_directions(&self.axes, &self.angles));
         }
     }
+}
 
-    fn apply(&self, now: Instant, onto: &mut Wrench) {
-        onto.gimbals.extend(self.rotors(now));
+impl Part for ControlMomentGyrosState {
+    fn due(&self) -> Option<Instant> {
+        let failing = self.failing.iter().flatten().filter_map(ActiveFailures::due);
+        failing.chain(self.updates.map(|(next, _)| next)).min()
     }
 
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        self.demanded[axis]
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        match at.occasion {
+            Occasion::Period => self.gyros(at.now).into_iter().for_each(|row| report.add(row)),
+            Occasion::Cycle => report.add_value(self.steered),
+            Occasion::Sample => {}
+        }
+    }
+}
+
+impl MomentumStorage for ControlMomentGyrosState {
+    fn stored_momentum(&self, now: Instant) -> [f64; 3] {
+        self.rotors(now).fold(Vector::zeros(), |sum, rotor| sum + rotor.at(0.0).0).into()
     }
 
-    /// Returns the torque about an axis (N m) at the last change of the rates.
-    fn held_torque(&self, axis: usize) -> f64 {
-        self.body_torque(&steering::torque_directions(&self.axes, &self.angles), &self.rates)[axis]
-    }
-
-    fn applied_torque(&self, now: Instant, axis: usize, _: [f64; 2]) -> f64 {
-        self.body_torque(&steering::torque_directions(&self.axes, &self.angles_at(now)), &self.rates)[axis]
-    }
-
-    /// Returns the reduced moment about an axis (rad/s²) as if no gimbal failed.
-    fn reduced_moment(&self, axis: usize) -> f64 {
-        let columns = steering::torque_directions(&self.axes, &self.angles);
-        self.body_torque(&columns, &self.commanded)[axis] / self.settings[axis].inertia
-    }
-
-    fn gimbal_row(&self, now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
+    fn gyros(&self, now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
         let angles = self.angles_at(now);
         let [x, y, z] = self.stored_momentum(now);
         Some(flexsc_record::ControlMomentGyros {
@@ -230,13 +215,47 @@ impl Actuator for ControlMomentGyrosState {
                 .collect(),
         })
     }
+}
 
-    fn steering_record(&self) -> Option<SteeringRecord> {
-        Some(self.steered)
+impl Actuator for ControlMomentGyrosState {
+    fn command(&mut self, now: Instant, demands: &[Demand], _: [f64; 3]) {
+        self.turn(now);
+        for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
+            self.demanded[axis] = setting.demanded_torque(demand);
+        }
+        self.steer_now(now);
     }
 
-    fn stored_momentum(&self, now: Instant) -> [f64; 3] {
-        self.rotors(now).fold(Vector::zeros(), |sum, rotor| sum + rotor.at(0.0).0).into()
+    fn apply(&self, now: Instant, onto: &mut Wrench) {
+        onto.gimbals.extend(self.rotors(now));
+    }
+
+    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
+        match input {
+            ActuatorInput::CounterTorque(torque) => self.against = torque,
+            ActuatorInput::Due(_) => self.serve(now),
+            ActuatorInput::MagneticField(_) | ActuatorInput::Rotors(_) => {}
+        }
+    }
+
+    /// Returns the effort at the last change of the gimbal rates. The reduced moment is that without failures.
+    fn effort(&self, axis: usize) -> AxisEffort {
+        let columns = steering::torque_directions(&self.axes, &self.angles);
+        AxisEffort {
+            demanded: self.demanded[axis],
+            held: self.body_torque(&columns, &self.rates)[axis],
+            firing: 0.0,
+            reduced_moment: self.body_torque(&columns, &self.commanded)[axis] / self.settings[axis].inertia,
+        }
+    }
+
+    fn response(&self, now: Instant, axis: usize, _: [f64; 2]) -> AxisResponse {
+        let columns = steering::torque_directions(&self.axes, &self.angles_at(now));
+        AxisResponse { applied: self.body_torque(&columns, &self.rates)[axis], rotor: None }
+    }
+
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { momentum: Some(self), ..Capabilities::default() }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {

@@ -5,13 +5,14 @@ use std::sync::Arc;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::quantity::Time;
 use flexsc_numerics::time::Instant;
-use flexsc_record::WheelMotion;
+use flexsc_record::Report;
 use flexsc_spacecraft::flow::ActiveWaveform;
-use flexsc_spacecraft::sine::Sine;
 
-use super::AxisActuator;
 use super::failure::{ActiveFailures, Failure, FailureScope};
+use super::{AxisActuator, AxisProperties, AxisResponse, AxisTorques, AxisWaves};
+use crate::custom::PartError;
 use crate::interval::Interval;
+use crate::part::{Part, ReportContext};
 
 /// Single-axis actuator with failures, which change its torque; estimators and laws are not informed of them.
 #[derive(Clone, Debug)]
@@ -40,7 +41,33 @@ impl FaultyActuator {
 
     /// Returns the torque without failures, with the waveform (N m).
     fn commanded(&self, now: Instant) -> f64 {
-        self.inner.torque() + self.inner.waveform(now).map_or(0.0, |forced| forced.at(0.0))
+        let waveform = self.inner.waves(now).waveform;
+        self.inner.torques().held + waveform.map_or(0.0, |forced| forced.at(0.0))
+    }
+
+    /// Returns the waveform of the actuator with that of its failures.
+    fn waveform(&self, now: Instant) -> Option<ActiveWaveform> {
+        let own = self.failing.fraction().and_then(|part| Some((self.inner.waves(now).waveform?, part)));
+        match own {
+            None if self.failing.sines().is_empty() => None,
+            None => Some(ActiveWaveform::new(Arc::clone(&self.added), now.seconds())),
+            Some((own, 1.0)) if self.failing.sines().is_empty() => Some(own),
+            Some((own, part)) => Some(own.scaled_and_added(part, &self.added)),
+        }
+    }
+}
+
+impl Part for FaultyActuator {
+    fn due(&self) -> Option<Instant> {
+        [self.inner.due(), self.failing.due()].into_iter().flatten().min()
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.inner.report(at, report);
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.inner.failure()
     }
 }
 
@@ -55,61 +82,25 @@ impl AxisActuator for FaultyActuator {
         self.failing.update(now, commanded);
     }
 
-    fn due(&self) -> Option<Instant> {
-        [self.inner.due(), self.failing.due()].into_iter().flatten().min()
+    fn torques(&self) -> AxisTorques {
+        let torques = self.inner.torques();
+        AxisTorques { held: self.failing.output(torques.held), ..torques }
     }
 
-    fn torque_per_unit(&self) -> f64 {
-        self.inner.torque_per_unit()
-    }
-
-    fn torque(&self) -> f64 {
-        self.failing.output(self.inner.torque())
-    }
-
-    fn nominal_torque(&self) -> f64 {
-        self.inner.nominal_torque()
-    }
-
-    fn firing(&self) -> f64 {
-        self.inner.firing()
-    }
-
-    fn sines(&self) -> &[Sine] {
-        self.failing.sines()
-    }
-
-    fn demanded_torque(&self) -> f64 {
-        self.inner.demanded_torque()
-    }
-
-    fn executes_waveform(&self) -> bool {
-        self.inner.executes_waveform()
-    }
-
-    fn waveform(&self, now: Instant) -> Option<ActiveWaveform> {
-        let own = self.failing.fraction().and_then(|part| Some((self.inner.waveform(now)?, part)));
-        match own {
-            None if self.failing.sines().is_empty() => None,
-            None => Some(ActiveWaveform::new(Arc::clone(&self.added), now.seconds())),
-            Some((own, 1.0)) if self.failing.sines().is_empty() => Some(own),
-            Some((own, part)) => Some(own.scaled_and_added(part, &self.added)),
-        }
-    }
-
-    fn applied(&self, now: Instant, rates: [f64; 2]) -> f64 {
+    fn response(&self, now: Instant, rates: [f64; 2]) -> AxisResponse {
         let (commanded, t) = (self.commanded(now), now.seconds());
         let added: f64 = self.failing.sines().iter().map(|sine| sine.at(t)).sum();
+        let AxisResponse { applied, rotor } = self.inner.response(now, rates);
         // Back-EMF is not affected.
-        self.inner.applied(now, rates) - commanded + self.failing.output(commanded) + added
+        AxisResponse { applied: applied - commanded + self.failing.output(commanded) + added, rotor }
     }
 
-    fn back_emf(&self) -> (f64, bool) {
-        self.inner.back_emf()
+    fn properties(&self) -> AxisProperties {
+        self.inner.properties()
     }
 
-    fn rotor(&self, rigid_rate: f64) -> Option<WheelMotion> {
-        self.inner.rotor(rigid_rate)
+    fn waves(&self, now: Instant) -> AxisWaves<'_> {
+        AxisWaves { waveform: self.waveform(now), sines: self.failing.sines() }
     }
 
     fn copy(&self) -> Box<dyn AxisActuator> {

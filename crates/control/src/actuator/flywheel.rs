@@ -4,11 +4,12 @@ use std::collections::VecDeque;
 
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::WheelMotion;
+use flexsc_record::{Report, WheelMotion};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuator, AxisActuatorContext, Failure};
+use super::{AxisActuator, AxisActuatorContext, AxisProperties, AxisResponse, AxisTorques, Failure};
+use crate::part::{Occasion, Part, ReportContext};
 
 /// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -156,6 +157,27 @@ impl FlywheelState {
         let limit = rotor.speed_limit.map_or(f64::INFINITY, Positive::get);
         Some((rotor.speed.get() - gained, limit))
     }
+
+    /// Returns the rotor of a body with this rigid rate (rad/s), if it stores momentum.
+    fn rotor(&self, rigid_rate: f64) -> Option<WheelMotion> {
+        let (speed, _) = self.speed(rigid_rate)?;
+        let inertia = self.wheel.rotor.as_ref().map_or(0.0, |rotor| rotor.inertia.get());
+        Some(WheelMotion { speed_rad_s: speed, momentum_nm_s: inertia * speed })
+    }
+}
+
+impl Part for FlywheelState {
+    fn due(&self) -> Option<Instant> {
+        let delayed = self.delayed.front().map(|(at, _)| *at);
+        [delayed, self.next].into_iter().flatten().min()
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        if at.occasion == Occasion::Period && at.axes == 1 {
+            let [_, rigid_rates] = at.truth.rates();
+            self.rotor(rigid_rates[0]).into_iter().for_each(|row| report.add(row));
+        }
+    }
 }
 
 impl AxisActuator for FlywheelState {
@@ -174,36 +196,23 @@ impl AxisActuator for FlywheelState {
         self.turn(now, rigid_rate);
     }
 
-    fn due(&self) -> Option<Instant> {
-        let delayed = self.delayed.front().map(|(due, _)| *due);
-        [delayed, self.next].into_iter().flatten().min()
+    fn torques(&self) -> AxisTorques {
+        let (demanded, held) = (self.wheel.gain.get() * self.feedback, self.held);
+        AxisTorques { demanded, held, nominal: held, firing: 0.0 }
     }
 
-    fn torque_per_unit(&self) -> f64 {
-        self.wheel.gain.get()
-    }
-
-    fn torque(&self) -> f64 {
-        self.held
-    }
-
-    fn demanded_torque(&self) -> f64 {
-        self.wheel.gain.get() * self.feedback
-    }
-
-    fn applied(&self, _: Instant, [rate, rigid_rate]: [f64; 2]) -> f64 {
+    fn response(&self, _: Instant, [rate, rigid_rate]: [f64; 2]) -> AxisResponse {
         let sensed = if self.wheel.opposes == BackEmfRate::BodyRate { rate } else { rigid_rate };
-        self.held - self.wheel.back_emf.get() * sensed
+        let applied = self.held - self.wheel.back_emf.get() * sensed;
+        AxisResponse { applied, rotor: self.rotor(rigid_rate) }
     }
 
-    fn back_emf(&self) -> (f64, bool) {
-        (self.wheel.back_emf.get(), self.wheel.opposes == BackEmfRate::BodyRate)
-    }
-
-    fn rotor(&self, rigid_rate: f64) -> Option<WheelMotion> {
-        let (speed, _) = self.speed(rigid_rate)?;
-        let inertia = self.wheel.rotor.as_ref().map_or(0.0, |rotor| rotor.inertia.get());
-        Some(WheelMotion { speed_rad_s: speed, momentum_nm_s: inertia * speed })
+    fn properties(&self) -> AxisProperties {
+        AxisProperties {
+            torque_per_unit: self.wheel.gain.get(),
+            back_emf: (self.wheel.back_emf.get(), self.wheel.opposes == BackEmfRate::BodyRate),
+            ..AxisProperties::default()
+        }
     }
 
     fn copy(&self) -> Box<dyn AxisActuator> {

@@ -8,7 +8,10 @@ use flexsc_spacecraft::flow::ActiveWaveform;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuator, AxisActuatorContext, Failure};
+use super::{
+    AxisActuator, AxisActuatorContext, AxisProperties, AxisResponse, AxisTorques, AxisWaves, Failure,
+};
+use crate::part::Part;
 
 /// The ideal actuator.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -37,30 +40,31 @@ impl IdealState {
     }
 }
 
+impl Part for IdealState {}
+
 impl AxisActuator for IdealState {
     fn command(&mut self, _: Instant, command: f64, _: f64) {
         self.torque = command;
     }
 
-    fn torque(&self) -> f64 {
-        self.torque
+    fn torques(&self) -> AxisTorques {
+        let torque = self.torque;
+        AxisTorques { demanded: torque, held: torque, nominal: torque, firing: 0.0 }
     }
 
-    fn demanded_torque(&self) -> f64 {
-        self.torque
+    fn response(&self, now: Instant, _: [f64; 2]) -> AxisResponse {
+        let planned = self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds()));
+        AxisResponse { applied: planned + self.torque, rotor: None }
     }
 
-    fn executes_waveform(&self) -> bool {
-        self.waveform.is_some()
+    fn properties(&self) -> AxisProperties {
+        AxisProperties { executes_waveform: self.waveform.is_some(), ..AxisProperties::default() }
     }
 
-    fn waveform(&self, now: Instant) -> Option<ActiveWaveform> {
-        let waveform = self.waveform.as_ref().filter(|waveform| now.seconds() < waveform.end())?;
-        Some(ActiveWaveform::new(Arc::clone(waveform), now.seconds()))
-    }
-
-    fn applied(&self, now: Instant, _: [f64; 2]) -> f64 {
-        self.waveform.as_ref().map_or(0.0, |waveform| waveform.at(now.seconds())) + self.torque
+    fn waves(&self, now: Instant) -> AxisWaves<'_> {
+        let waveform = self.waveform.as_ref().filter(|waveform| now.seconds() < waveform.end());
+        let active = |waveform| ActiveWaveform::new(Arc::clone(waveform), now.seconds());
+        AxisWaves { waveform: waveform.map(active), sines: &[] }
     }
 
     fn copy(&self) -> Box<dyn AxisActuator> {

@@ -9,10 +9,15 @@ use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::simplex::LinearProgramme;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Report;
 use flexsc_spacecraft::wrench::{ForceEffect, Wrench};
 
 use super::valves::Valves;
-use super::{Actuator, Demand, GroupEffect, JetCycle, Jets, PulseWidth, ThrusterEffect};
+use super::{
+    Actuator, ActuatorInput, AxisEffort, Capabilities, Demand, GroupEffect, JetCycle, Jets, PulseWidth,
+    PulsedActuator, ThrusterEffect,
+};
+use crate::part::{Occasion, Part, ReportContext};
 
 /// Run-time state of individually allocated jets.
 #[derive(Clone, Debug)]
@@ -176,6 +181,48 @@ impl AllocatedJets {
     }
 }
 
+impl Part for AllocatedJets {
+    fn due(&self) -> Option<Instant> {
+        self.ends.iter().flatten().copied().chain(self.next).chain(self.valves.due()).min()
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        if at.occasion == Occasion::Cycle {
+            self.cycle().report(report);
+        }
+    }
+}
+
+impl PulsedActuator for AllocatedJets {
+    fn cycle(&self) -> JetCycle {
+        let turned = self.cycle_impulse();
+        let on = [0, 1, 2].map(|axis| match self.largest[axis][usize::from(turned[axis] < 0.0)] {
+            0.0 => 0.0,
+            largest => turned[axis] / largest,
+        });
+        let since = self.valves.last_change();
+        let left = |index: usize| self.ends[index].map_or(0.0, |end| end.since(since).seconds());
+        JetCycle {
+            on,
+            fuel: self.valves.propellant(left),
+            fuels: self.valves.fuels(left),
+            pulses: self.pulses,
+            burning: [0.0; 3],
+            each: self.executed.clone(),
+            open: self.valves.open_fractions(),
+        }
+    }
+
+    fn cycle_impulse(&self) -> Vector {
+        self.impulse_of(&self.executed)
+    }
+
+    fn queued_rate_change(&self) -> [f64; 3] {
+        let turned = self.impulse_of(&self.waiting);
+        [0, 1, 2].map(|axis| turned[axis] / self.inertia[axis])
+    }
+}
+
 impl Actuator for AllocatedJets {
     fn command(&mut self, now: Instant, demands: &[Demand], _: [f64; 3]) {
         self.demands.iter_mut().zip(demands).for_each(|(own, demand)| *own = *demand);
@@ -184,11 +231,8 @@ impl Actuator for AllocatedJets {
         }
     }
 
-    fn due(&self) -> Option<Instant> {
-        self.ends.iter().flatten().copied().chain(self.next).chain(self.valves.due()).min()
-    }
-
-    fn update(&mut self, now: Instant, _: [f64; 3]) {
+    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
+        let ActuatorInput::Due(_) = input else { return };
         self.ends.iter_mut().for_each(|end| *end = end.filter(|end| *end > now));
         if self.next == Some(now) {
             self.begin(now);
@@ -201,46 +245,19 @@ impl Actuator for AllocatedJets {
         self.valves.exert(onto);
     }
 
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        self.torque_demand()[axis] / self.period.seconds()
-    }
-
-    fn held_torque(&self, axis: usize) -> f64 {
-        self.valves.torque(axis)
-    }
-
-    /// Returns the reduced moment about an axis (rad/s²) as if no thruster failed.
-    fn reduced_moment(&self, axis: usize) -> f64 {
+    fn effort(&self, axis: usize) -> AxisEffort {
+        // Estimators assume that no thruster fails.
         let burning = self.torques.iter().zip(&self.ends).filter(|(_, end)| end.is_some());
-        burning.map(|(torque, _)| torque[axis]).sum::<f64>() / self.inertia[axis]
+        AxisEffort {
+            demanded: self.torque_demand()[axis] / self.period.seconds(),
+            held: self.valves.torque(axis),
+            firing: 0.0,
+            reduced_moment: burning.map(|(torque, _)| torque[axis]).sum::<f64>() / self.inertia[axis],
+        }
     }
 
-    fn cycle_impulse(&self) -> Vector {
-        self.impulse_of(&self.executed)
-    }
-
-    fn jet_cycle(&self) -> Option<JetCycle> {
-        let cycle_impulse = self.cycle_impulse();
-        let on = [0, 1, 2].map(|axis| match self.largest[axis][usize::from(cycle_impulse[axis] < 0.0)] {
-            0.0 => 0.0,
-            largest => cycle_impulse[axis] / largest,
-        });
-        let since = self.valves.last_change();
-        let remaining = |index: usize| self.ends[index].map_or(0.0, |end| end.since(since).seconds());
-        Some(JetCycle {
-            on,
-            fuel: self.valves.propellant(remaining),
-            fuels: self.valves.fuels(remaining),
-            pulses: self.pulses,
-            burning: [0.0; 3],
-            each: self.executed.clone(),
-            open: self.valves.open_fractions(),
-        })
-    }
-
-    fn queued_rate_change(&self) -> [f64; 3] {
-        let waiting_impulse = self.impulse_of(&self.waiting);
-        [0, 1, 2].map(|axis| waiting_impulse[axis] / self.inertia[axis])
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { pulses: Some(self), ..Capabilities::default() }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {

@@ -2,10 +2,15 @@
 
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Report;
 use flexsc_spacecraft::wrench::Wrench;
 
 use super::valves::Valves;
-use super::{Actuator, Demand, GroupEffect, JetCycle, Jets, PulseWidth, ThrusterEffect};
+use super::{
+    Actuator, ActuatorInput, AxisEffort, Capabilities, Demand, GroupEffect, JetCycle, Jets, PulseWidth,
+    PulsedActuator, ThrusterEffect,
+};
+use crate::part::{Occasion, Part, ReportContext};
 
 /// Pulse of thrusters, executed or queued.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -137,6 +142,27 @@ impl JetsState {
         (valves.propellant(remaining), valves.fuels(remaining))
     }
 
+    /// Returns the torque demanded about an axis (N m).
+    fn demanded_torque(&self, axis: usize) -> f64 {
+        match self.demands[axis] {
+            Demand::Torque(torque) => torque,
+            Demand::Change(change) => {
+                let group = self.group(axis, change);
+                change / group.acceleration * group.push.torque[axis].abs() / self.period.seconds()
+            }
+            Demand::Moment(_) => 0.0,
+        }
+    }
+
+    /// Returns the torque about an axis of the jets that are on (N m).
+    fn held_torque(&self, axis: usize) -> f64 {
+        if let Some((valves, _)) = &self.valves {
+            return valves.torque(axis);
+        }
+        let burning = (0..3).filter(|axis| self.ends[*axis].is_some());
+        burning.map(|burning| self.group(burning, self.executed[burning]).push.torque[axis]).sum()
+    }
+
     fn pulses(&self, on: [f64; 3]) -> Vec<Pulse> {
         let pulse = |axis: usize| Pulse {
             input: axis,
@@ -145,6 +171,54 @@ impl JetsState {
             duration: on[axis].abs(),
         };
         (0..3).filter(|axis| on[*axis] != 0.0).map(pulse).collect()
+    }
+}
+
+impl Part for JetsState {
+    fn due(&self) -> Option<Instant> {
+        let failing = self.valves.as_ref().and_then(|(valves, _)| valves.due());
+        self.ends.into_iter().flatten().chain(self.next).chain(failing).min()
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        if at.occasion == Occasion::Cycle {
+            self.cycle().report(report);
+        }
+    }
+}
+
+impl PulsedActuator for JetsState {
+    fn cycle(&self) -> JetCycle {
+        let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
+        let (fuel, fuels) = self.fuel();
+        JetCycle {
+            on: self.executed,
+            fuel,
+            fuels,
+            pulses: self.pulses,
+            burning: [0, 1, 2].map(sign),
+            each: Vec::new(),
+            open: self.valves.as_ref().map_or_else(Vec::new, |(valves, _)| valves.open_fractions()),
+        }
+    }
+
+    fn executed_pulses(&self) -> Option<Vec<Pulse>> {
+        Some(self.pulses(self.executed))
+    }
+
+    fn pending_pulses(&self) -> Vec<Pulse> {
+        self.pulses(self.waiting)
+    }
+
+    fn cycle_impulse(&self) -> Vector {
+        let pulse =
+            |axis: usize| self.group(axis, self.executed[axis]).push.torque * self.executed[axis].abs();
+        pulse(0) + pulse(1) + pulse(2)
+    }
+
+    fn queued_rate_change(&self) -> [f64; 3] {
+        let on = self.waiting;
+        std::array::from_fn(|axis| on[axis] * self.group(axis, on[axis]).acceleration)
     }
 }
 
@@ -158,12 +232,8 @@ impl Actuator for JetsState {
         }
     }
 
-    fn due(&self) -> Option<Instant> {
-        let failing = self.valves.as_ref().and_then(|(valves, _)| valves.due());
-        self.ends.into_iter().flatten().chain(self.next).chain(failing).min()
-    }
-
-    fn update(&mut self, now: Instant, _: [f64; 3]) {
+    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
+        let ActuatorInput::Due(_) = input else { return };
         self.ends = self.ends.map(|end| end.filter(|end| *end > now));
         if self.next == Some(now) {
             self.begin(now);
@@ -182,65 +252,19 @@ impl Actuator for JetsState {
         }
     }
 
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        match self.demands[axis] {
-            Demand::Torque(torque) => torque,
-            Demand::Change(change) => {
-                let group = self.group(axis, change);
-                change / group.acceleration * group.push.torque[axis].abs() / self.period.seconds()
-            }
-            Demand::Moment(_) => 0.0,
-        }
-    }
-
-    fn held_torque(&self, axis: usize) -> f64 {
-        if let Some((valves, _)) = &self.valves {
-            return valves.torque(axis);
-        }
-        let burning = (0..3).filter(|axis| self.ends[*axis].is_some());
-        burning.map(|burning| self.group(burning, self.executed[burning]).push.torque[axis]).sum()
-    }
-
-    fn applied_torque(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {
-        self.held_torque(axis)
-    }
-
-    fn reduced_moment(&self, axis: usize) -> f64 {
+    fn effort(&self, axis: usize) -> AxisEffort {
         let on = self.executed[axis];
-        if self.ends[axis].is_some() { on.signum() * self.group(axis, on).acceleration } else { 0.0 }
+        let fires = self.ends[axis].is_some();
+        AxisEffort {
+            demanded: self.demanded_torque(axis),
+            held: self.held_torque(axis),
+            firing: 0.0,
+            reduced_moment: if fires { on.signum() * self.group(axis, on).acceleration } else { 0.0 },
+        }
     }
 
-    fn cycle_impulse(&self) -> Vector {
-        let pulse =
-            |axis: usize| self.group(axis, self.executed[axis]).push.torque * self.executed[axis].abs();
-        pulse(0) + pulse(1) + pulse(2)
-    }
-
-    fn jet_cycle(&self) -> Option<JetCycle> {
-        let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
-        let (fuel, fuels) = self.fuel();
-        Some(JetCycle {
-            on: self.executed,
-            fuel,
-            fuels,
-            pulses: self.pulses,
-            burning: [0, 1, 2].map(sign),
-            each: Vec::new(),
-            open: self.valves.as_ref().map_or_else(Vec::new, |(valves, _)| valves.open_fractions()),
-        })
-    }
-
-    fn executed_pulses(&self) -> Option<Vec<Pulse>> {
-        Some(self.pulses(self.executed))
-    }
-
-    fn queued_rate_change(&self) -> [f64; 3] {
-        let on = self.waiting;
-        std::array::from_fn(|axis| on[axis] * self.group(axis, on[axis]).acceleration)
-    }
-
-    fn pending_pulses(&self) -> Vec<Pulse> {
-        self.pulses(self.waiting)
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { pulses: Some(self), ..Capabilities::default() }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {

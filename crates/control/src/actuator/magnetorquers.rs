@@ -6,13 +6,15 @@
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
+use flexsc_record::{self, Report};
 use flexsc_spacecraft::axes::PerAxis;
 use flexsc_spacecraft::wrench::Wrench;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{ActiveFailures, FailureScope};
-use super::{Actuator, AxisActuatorContext, Demand, Failure};
+use super::{Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Demand, Failure};
+use crate::part::{Occasion, Part, ReportContext};
 
 /// Magnetorquers along the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -68,8 +70,8 @@ impl MagnetorquersState {
     /// Returns the actual moments (A m²), subject to failures.
     fn held(&self) -> Vector {
         let coil = |axis: usize| {
-            let commanded = self.moment[axis];
-            self.failing[axis].as_ref().map_or(commanded, |failing| failing.output(commanded))
+            let wanted = self.moment[axis];
+            self.failing[axis].as_ref().map_or(wanted, |failing| failing.output(wanted))
         };
         Vector::from_fn(|axis, _| coil(axis))
     }
@@ -95,68 +97,75 @@ impl MagnetorquersState {
     /// Commands the demanded moments (A m²), each limited separately.
     fn hold(&mut self, demands: &[Demand]) {
         for (axis, demand) in demands.iter().enumerate().take(3) {
-            let demanded = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
-            self.moment[axis] = demanded.clamp(-self.limits[axis], self.limits[axis]);
+            let wanted = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
+            self.moment[axis] = wanted.clamp(-self.limits[axis], self.limits[axis]);
         }
         self.demanded = self.torque_in_field();
     }
 }
 
-impl Actuator for MagnetorquersState {
-    fn set_magnetic_field(&mut self, field: Vector) {
-        self.field = Some(field);
+impl Part for MagnetorquersState {
+    fn due(&self) -> Option<Instant> {
+        self.failing.iter().flatten().filter_map(ActiveFailures::due).min()
     }
 
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        let held = self.held();
+        let axis = |axis: usize| flexsc_record::Magnetorquer { moment_am2: held[axis] };
+        let row = flexsc_record::Magnetorquers { axes: [0, 1, 2].map(axis).into() };
+        match at.occasion {
+            Occasion::Period => report.add(row),
+            Occasion::Cycle => report.add_value(row),
+            Occasion::Sample => {}
+        }
+    }
+}
+
+impl Actuator for MagnetorquersState {
     fn command(&mut self, _: Instant, demands: &[Demand], _: [f64; 3]) {
         if demands.iter().any(|demand| matches!(demand, Demand::Moment(_))) {
             return self.hold(demands);
         }
         let torque = |(demand, setting): (&Demand, &AxisActuatorContext)| setting.demanded_torque(demand);
-        let mut demanded = Vector::zeros();
-        demanded
+        let mut wanted = Vector::zeros();
+        wanted
             .iter_mut()
             .zip(demands.iter().zip(&self.settings).map(torque))
             .for_each(|(total, torque)| *total = torque);
-        self.give(demanded);
-    }
-
-    fn due(&self) -> Option<Instant> {
-        self.failing.iter().flatten().filter_map(ActiveFailures::due).min()
-    }
-
-    fn update(&mut self, now: Instant, _: [f64; 3]) {
-        for (failing, moment) in self.failing.iter_mut().zip(&self.moment) {
-            if let Some(failing) = failing {
-                failing.update(now, *moment);
-            }
-        }
+        self.give(wanted);
     }
 
     fn apply(&self, _: Instant, onto: &mut Wrench) {
         onto.moment += self.held();
     }
 
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        self.demanded[axis]
+    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
+        match input {
+            ActuatorInput::MagneticField(field) => self.field = Some(field),
+            ActuatorInput::Due(_) => {
+                for (failing, moment) in self.failing.iter_mut().zip(&self.moment) {
+                    if let Some(failing) = failing {
+                        failing.update(now, *moment);
+                    }
+                }
+            }
+            ActuatorInput::CounterTorque(_) | ActuatorInput::Rotors(_) => {}
+        }
     }
 
-    fn held_torque(&self, axis: usize) -> f64 {
-        self.torque_in_field()[axis]
+    fn effort(&self, axis: usize) -> AxisEffort {
+        let held = self.torque_in_field()[axis];
+        AxisEffort {
+            demanded: self.demanded[axis],
+            held,
+            firing: 0.0,
+            reduced_moment: held / self.settings[axis].inertia,
+        }
     }
 
     /// Returns -0: the torque depends on the current field and is computed by the plant; -0 leaves every sum unchanged.
-    fn applied_torque(&self, _: Instant, _: usize, _: [f64; 2]) -> f64 {
-        -0.0
-    }
-
-    fn reduced_moment(&self, axis: usize) -> f64 {
-        self.held_torque(axis) / self.settings[axis].inertia
-    }
-
-    fn magnetorquer_row(&self) -> Option<flexsc_record::Magnetorquers> {
-        let held = self.held();
-        let axis = |axis: usize| flexsc_record::Magnetorquer { moment_am2: held[axis] };
-        Some(flexsc_record::Magnetorquers { axes: [0, 1, 2].map(axis).into() })
+    fn response(&self, _: Instant, _: usize, _: [f64; 2]) -> AxisResponse {
+        AxisResponse { applied: -0.0, rotor: None }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {
@@ -189,14 +198,14 @@ mod tests {
         let (field, torque) = (Vector::new(2e-5, -1e-5, 3e-5), Vector::new(1e-4, 2e-4, -1e-4));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         assert_eq!(torquers.torque_in_field(), Vector::zeros(), "no field is known");
-        torquers.set_magnetic_field(field);
+        torquers.update(Instant::START, ActuatorInput::MagneticField(field));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         let along = field.normalize();
         let exact = torque - along * along.dot(&torque);
         assert!((torquers.torque_in_field() - exact).norm() < 1e-18);
         // Ten times the torque exceeds the limit: all of it is scaled down.
         let mut weak = start("moment = [4.0, 100.0, 100.0]");
-        weak.set_magnetic_field(field);
+        weak.update(Instant::START, ActuatorInput::MagneticField(field));
         weak.command(Instant::START, &(torque * 10.0).data.0[0].map(Demand::Torque), [0.0; 3]);
         assert!((weak.moment.x.abs() - 4.0).abs() < 1e-14);
         assert!(

@@ -4,8 +4,10 @@ mod actuator_set;
 mod allocation_role;
 mod assignment;
 mod axis_actuators;
+mod capabilities;
 mod control_moment_gyros;
 mod control_moment_gyros_state;
+mod effort;
 mod failure;
 mod faulty;
 mod flywheel;
@@ -30,25 +32,26 @@ mod wheels_state;
 mod zero_order_hold;
 
 use std::any::Any;
-use std::fmt;
 
-use flexsc_dynamics::three_axis::RotorObservation;
-use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::{Share, Time};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{self, SteeringRecord, WheelMotion};
 use flexsc_spacecraft::wrench::Wrench;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::custom::{Custom, PartError};
+use crate::custom::Custom;
+use crate::part::Part;
 
 pub use actuator_set::ActuatorSet;
 pub use allocation_role::{ActuatorTask, AssignedMember};
 pub use assignment::AssignedActuator;
-pub use axis_actuators::{AxisActuator, AxisActuatorContext, AxisActuators};
+pub use axis_actuators::{
+    AxisActuator, AxisActuatorContext, AxisActuators, AxisProperties, AxisTorques, AxisWaves,
+};
+pub use capabilities::{Capabilities, JetCycle, MomentumStorage, PulsedActuator, WaveformActuator};
 pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
 pub use control_moment_gyros_state::ControlMomentGyrosState;
+pub use effort::{ActuatorInput, AxisEffort, AxisResponse};
 pub use failure::{Failure, FailureScope};
 pub use flywheel::{BackEmfRate, FlywheelRotor, Wheel};
 pub use friction::Friction;
@@ -123,123 +126,27 @@ pub trait ActuatorSpec: Send + Sync {
 }
 
 /// Run-time state of an actuator.
-pub trait Actuator: fmt::Debug + Send + Sync {
+pub trait Actuator: Part {
     /// Sets the demands about the axes from `now` on, of a body with these rigid rates (rad/s).
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]);
 
-    /// Sets the measured magnetic field in the body's axes (T), before the commands that depend on it.
-    fn set_magnetic_field(&mut self, _field: Vector) {}
-
-    /// Makes wheels or gyros counteract a torque on the body (N m) from the next command on.
-    fn set_counter_torque(&mut self, _torque: Vector) {}
-
-    /// Returns the next time at which the output changes without a command.
-    fn due(&self) -> Option<Instant> {
-        None
-    }
-
-    /// Executes the changes due at `now`, after the laws have decided.
-    fn update(&mut self, _now: Instant, _rigid: [f64; 3]) {}
-
-    /// Sets the state of the rotors in bearings, as computed by the motion.
-    fn set_rotor_states(&mut self, _now: Instant, _rotors: &[RotorObservation]) {}
+    /// Applies an input other than a command at `now`.
+    fn update(&mut self, _now: Instant, _input: ActuatorInput<'_>) {}
 
     /// Adds the actuator's output from `now` on to `onto`.
     fn apply(&self, now: Instant, onto: &mut Wrench);
 
-    /// Returns the torque demanded about an axis (N m).
-    fn demanded_torque(&self, axis: usize) -> f64;
+    /// Returns the demanded and the held effort about an axis.
+    fn effort(&self, axis: usize) -> AxisEffort;
 
-    /// Returns the torque held about an axis (N m), without a waveform and without back-EMF.
-    fn held_torque(&self, axis: usize) -> f64;
-
-    /// Returns the torque of the pulse of thrusters that is on about an axis (N m); 0 of other actuators.
-    fn firing(&self, _axis: usize) -> f64 {
-        0.0
+    /// Returns the response about an axis of a body with this rate and this rigid rate (rad/s).
+    fn response(&self, _now: Instant, axis: usize, _rates: [f64; 2]) -> AxisResponse {
+        AxisResponse { applied: self.effort(axis).held, rotor: None }
     }
 
-    /// Returns the torque applied about an axis (N m), of a body with this rate and this rigid rate (rad/s).
-    fn applied_torque(&self, _now: Instant, axis: usize, _rates: [f64; 2]) -> f64 {
-        self.held_torque(axis)
-    }
-
-    /// Returns the reduced moment held about an axis (rad/s²), without back-EMF and disregarding failures.
-    fn reduced_moment(&self, axis: usize) -> f64;
-
-    /// Returns the change of the rate about the first axis (rad/s) by the waveform between two times (s).
-    fn waveform_impulse(&self, _from: f64, _to: f64) -> f64 {
-        0.0
-    }
-
-    /// Returns the back-EMF torque per unit of the rate about the first axis (N m s), and true if the elastic rate is
-    /// included.
-    fn back_emf(&self) -> (f64, bool) {
-        (0.0, false)
-    }
-
-    /// Returns the wheel about an axis, if it stores momentum, of a body with this rigid rate (rad/s).
-    fn wheel(&self, _axis: usize, _rigid_rate: f64) -> Option<WheelMotion> {
-        None
-    }
-
-    /// Returns the log rows of wheels about their own axes, of a body with this rate (rad/s).
-    fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
-        Vec::new()
-    }
-
-    /// Returns the log row of control moment gyros, if the actuator has any.
-    fn gimbal_row(&self, _now: Instant) -> Option<flexsc_record::ControlMomentGyros> {
-        None
-    }
-
-    /// Returns the extreme values of the control moment gyros since the start.
-    fn steering_record(&self) -> Option<SteeringRecord> {
-        None
-    }
-
-    /// Returns the log row of the magnetic moments held by magnetorquers.
-    fn magnetorquer_row(&self) -> Option<flexsc_record::Magnetorquers> {
-        None
-    }
-
-    /// Returns the speeds of wheels in bearings that are available to the drives (rad/s).
-    fn measured_wheel_speeds(&self) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// Returns the angular momentum stored in the rotors (N m s, body axes), as available to the drives.
-    fn stored_momentum(&self, _now: Instant) -> [f64; 3] {
-        [0.0; 3]
-    }
-
-    /// Returns the current cycle of pulses of jets.
-    fn jet_cycle(&self) -> Option<JetCycle> {
-        None
-    }
-
-    /// Returns the pulses of the current cycle of jets.
-    fn executed_pulses(&self) -> Option<Vec<Pulse>> {
-        None
-    }
-
-    /// Returns the angular impulse of all pulses of the current cycle of jets (N m s, body axes).
-    fn cycle_impulse(&self) -> Vector {
-        Vector::zeros()
-    }
-
-    /// Returns the changes of the rigid rates (rad/s) by commands that are not yet executed.
-    fn queued_rate_change(&self) -> [f64; 3] {
-        [0.0; 3]
-    }
-
-    /// Returns the pulses that will be executed in the cycle that begins now.
-    fn pending_pulses(&self) -> Vec<Pulse> {
-        Vec::new()
-    }
-
-    /// Returns the error that an actuator of another crate failed with; the run ends there.
-    fn failure(&self) -> Option<PartError> {
-        None
+    /// Returns the actuator's abilities beyond torques about the axes.
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities::default()
     }
 
     /// Returns a copy in the same state.
@@ -250,25 +157,6 @@ impl Clone for Box<dyn Actuator> {
     fn clone(&self) -> Self {
         self.copy()
     }
-}
-
-/// Jet activity in a cycle.
-#[derive(Clone, Debug, PartialEq)]
-pub struct JetCycle {
-    /// Signed on-time about each axis (s).
-    pub on: [f64; 3],
-    /// Propellant used until the end of the pulses (kg).
-    pub fuel: f64,
-    /// The propellant of each group about x, y and z, or of each thruster where they act by themselves or may fail (kg).
-    pub fuels: Vec<f64>,
-    /// Number of pulses since the start, of all axes together.
-    pub pulses: u64,
-    /// Sign of the group that fires now about each axis; 0 for none.
-    pub burning: [f64; 3],
-    /// On-time of each thruster (s), for jets that are allocated individually.
-    pub each: Vec<f64>,
-    /// Current fraction of the thrust of each thruster, for jets that are allocated individually or may fail.
-    pub open: Vec<f64>,
 }
 
 /// Returns the first time at which an actuator with a phase acts.

@@ -1,7 +1,7 @@
 //! Saturation: how often a run has wheels and magnetorquers at their limits, and whether it ends there.
 
 use flexsc_numerics::quantity::Positive;
-use flexsc_record::ThreeAxisCycle;
+use flexsc_record::{self, Report};
 
 use super::AssignedActuator;
 use crate::one_or_many::OneOrMany;
@@ -117,12 +117,14 @@ impl Saturation {
         }
     }
 
-    /// Observes a cycle that begins at the time `t` (s).
-    pub fn observe(&mut self, t: f64, cycle: &ThreeAxisCycle) {
+    /// Observes the wheels and magnetorquers in the report of a cycle that begins at a time (s).
+    pub fn observe(&mut self, t: f64, report: &Report) {
+        let wheels = report.get().map_or(&[][..], |row: &flexsc_record::Wheels| &row.wheels);
+        let torquers = report.get().map_or(&[][..], |row: &flexsc_record::Magnetorquers| &row.axes);
         let reaches = |value: f64, limit: f64| value.abs() >= limit * (1.0 - AT_LIMIT);
         let is_late = t >= self.late;
         let (mut torque, mut momentum) = (false, false);
-        for (own, wheel) in self.wheels.iter_mut().zip(&cycle.wheels) {
+        for (own, wheel) in self.wheels.iter_mut().zip(wheels) {
             self.peaks[0] = self.peaks[0].max(wheel.speed_rad_s.abs());
             self.peaks[1] = self.peaks[1].max(wheel.momentum_nm_s.abs());
             let forced = reaches(wheel.torque_nm, self.torque);
@@ -133,7 +135,8 @@ impl Saturation {
                 own.record(if forced { wheel.torque_nm } else { 0.0 }, full, t >= self.middle);
             }
         }
-        let moment = cycle.moments_am2.iter().zip(self.moments).any(|(value, limit)| reaches(*value, limit));
+        let mut moments = torquers.iter().zip(self.moments);
+        let moment = moments.any(|(torquer, limit)| reaches(torquer.moment_am2, limit));
         self.cycles += 1;
         for (count, now) in self.limited.iter_mut().zip([torque, momentum, moment]) {
             *count += u64::from(now);

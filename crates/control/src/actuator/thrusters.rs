@@ -6,7 +6,8 @@ use flexsc_spacecraft::axes::PerAxis;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuator, AxisActuatorContext, Failure, PulseWidth};
+use super::{AxisActuator, AxisActuatorContext, AxisTorques, Failure, PulseWidth};
+use crate::part::Part;
 
 /// A pair of thrusters for each direction, with pulse-width modulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -99,6 +100,13 @@ impl ThrustersState {
     }
 }
 
+impl Part for ThrustersState {
+    fn due(&self) -> Option<Instant> {
+        let pulse = self.pulse.map(|pulse| if self.held == 0.0 { pulse.from } else { pulse.to });
+        Some(pulse.map_or(self.next, |pulse| pulse.min(self.next)))
+    }
+}
+
 impl AxisActuator for ThrustersState {
     fn command(&mut self, _: Instant, command: f64, _: f64) {
         self.feedback = command;
@@ -115,21 +123,9 @@ impl AxisActuator for ThrustersState {
         }
     }
 
-    fn due(&self) -> Option<Instant> {
-        let pulse = self.pulse.map(|pulse| if self.held == 0.0 { pulse.from } else { pulse.to });
-        Some(pulse.map_or(self.next, |pulse| pulse.min(self.next)))
-    }
-
-    fn torque(&self) -> f64 {
-        self.held
-    }
-
-    fn firing(&self) -> f64 {
-        self.held
-    }
-
-    fn demanded_torque(&self) -> f64 {
-        self.feedback
+    fn torques(&self) -> AxisTorques {
+        let held = self.held;
+        AxisTorques { demanded: self.feedback, held, nominal: held, firing: held }
     }
 
     fn copy(&self) -> Box<dyn AxisActuator> {

@@ -12,7 +12,7 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuator, ActuatorKind, Demand, Jets, Magnetorquers};
+use super::{Actuator, ActuatorInput, ActuatorKind, Demand, Jets, Magnetorquers, PulsedActuator};
 
 /// How an actuator of a list unloads the wheels of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -220,14 +220,15 @@ impl UnloaderState {
                 self.actuator.command(now, &demanded.data.0[0].map(Demand::Torque), [0.0; 3]);
             }
         }
-        self.actuator.update(now, rigid);
+        self.actuator.update(now, ActuatorInput::Due(rigid));
         if !begins || is_commanded {
             return None;
         }
         let mean = if self.gain.is_some() {
-            Vector::from_fn(|axis, _| self.actuator.held_torque(axis))
+            Vector::from_fn(|axis, _| self.actuator.effort(axis).held)
         } else {
-            self.actuator.cycle_impulse() / self.period.seconds()
+            let jets = self.actuator.capabilities().pulses;
+            jets.map_or_else(Vector::zeros, PulsedActuator::cycle_impulse) / self.period.seconds()
         };
         // The mean torque of jets is 0 most of the time; that of magnetorquers changes with the field each time.
         (std::mem::replace(&mut self.mean, mean) != mean || self.gain.is_some()).then_some(mean)

@@ -14,7 +14,7 @@ use flexsc_spacecraft::wrench::Wrench;
 use super::failure::ActiveFailures;
 use super::wheel_allocation::Allocation;
 use super::wheels::{FrictionCompensation, SpeedBias, Wheels};
-use super::{Actuator, AxisActuatorContext, Demand};
+use super::{Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Capabilities, Demand};
 use crate::sensor::{Tachometer, TachometerState};
 
 /// Relative distance from its limit at which a wheel with friction counts as being at the limit.
@@ -254,28 +254,10 @@ impl WheelsState {
     }
 }
 
-impl Actuator for WheelsState {
-    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
-        self.turn(now);
-        for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
-            self.demanded[axis] = setting.demanded_torque(demand);
-        }
-        self.drive_all(now, &rigid.into());
-    }
-
-    fn set_counter_torque(&mut self, torque: Vector) {
-        self.against = torque;
-    }
-
-    fn due(&self) -> Option<Instant> {
-        let read = self.tachometer.as_ref().map(TachometerState::due);
-        let failing = self.failing.iter().flatten().filter_map(ActiveFailures::due);
-        self.wheels.iter().filter_map(|wheel| wheel.full).chain(read).chain(failing).min()
-    }
-
+impl WheelsState {
     /// Executes due commands. A wheel at its limit stays there until the next command; tachometers are read, and
     /// compensation follows.
-    fn update(&mut self, now: Instant, rigid: [f64; 3]) {
+    fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
         self.fail(now, &rigid.into());
         let observations = self.observations.iter().map(|wheel| [wheel.angle, wheel.speed]);
         if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
@@ -301,6 +283,22 @@ impl Actuator for WheelsState {
         }
     }
 
+    /// Returns the torque held about an axis (N m).
+    fn held_torque(&self, axis: usize) -> f64 {
+        let wheels = self.allocation.axes().iter().zip(&self.wheels);
+        -wheels.map(|(about, wheel)| about[axis] * wheel.torque).sum::<f64>()
+    }
+}
+
+impl Actuator for WheelsState {
+    fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
+        self.turn(now);
+        for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
+            self.demanded[axis] = setting.demanded_torque(demand);
+        }
+        self.drive_all(now, &rigid.into());
+    }
+
     fn apply(&self, now: Instant, onto: &mut Wrench) {
         let seconds = self.elapsed(now);
         let rotor = |(axis, wheel): (&Vector, &WheelState)| Rotor {
@@ -311,69 +309,45 @@ impl Actuator for WheelsState {
         onto.rotors.extend(self.allocation.axes().iter().zip(&self.wheels).map(rotor));
     }
 
-    fn set_rotor_states(&mut self, now: Instant, rotors: &[RotorObservation]) {
-        self.turn(now);
-        for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
-            wheel.momentum = rotor.momentum;
+    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
+        match input {
+            ActuatorInput::CounterTorque(torque) => self.against = torque,
+            ActuatorInput::Due(rigid) => self.serve(now, rigid),
+            ActuatorInput::Rotors(rotors) => {
+                self.turn(now);
+                for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
+                    wheel.momentum = rotor.momentum;
+                }
+                self.observations.clear();
+                self.observations.extend_from_slice(rotors);
+            }
+            ActuatorInput::MagneticField(_) => {}
         }
-        self.observations.clear();
-        self.observations.extend_from_slice(rotors);
     }
 
-    fn applied_torque(&self, _: Instant, axis: usize, _: [f64; 2]) -> f64 {
-        if self.observations.is_empty() {
-            return self.held_torque(axis);
+    fn effort(&self, axis: usize) -> AxisEffort {
+        let believed = self.allocation.axes().iter().enumerate();
+        let torque = -believed.map(|(index, about)| about[axis] * self.assumed_torque(index)).sum::<f64>();
+        AxisEffort {
+            demanded: self.demanded[axis],
+            held: self.held_torque(axis),
+            firing: 0.0,
+            reduced_moment: torque / self.settings[axis].inertia,
         }
-        let held = self.observations.iter().zip(self.allocation.axes());
-        self.held_torque(axis)
-            + held.map(|(wheel, axis_vector)| axis_vector[axis] * wheel.friction).sum::<f64>()
     }
 
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        self.demanded[axis]
-    }
-
-    fn held_torque(&self, axis: usize) -> f64 {
-        let wheels = self.allocation.axes().iter().zip(&self.wheels);
-        -wheels.map(|(axis_vector, wheel)| axis_vector[axis] * wheel.torque).sum::<f64>()
-    }
-
-    fn reduced_moment(&self, axis: usize) -> f64 {
-        let wheel_axes = self.allocation.axes().iter().enumerate();
-        let torque = -wheel_axes
-            .map(|(index, axis_vector)| axis_vector[axis] * self.assumed_torque(index))
-            .sum::<f64>();
-        torque / self.settings[axis].inertia
-    }
-
-    fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
-        let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
-        let motion = |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| flexsc_record::Wheel {
-            speed_rad_s: self
-                .observations
-                .get(index)
-                .map_or(wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate), |observation| {
-                    observation.speed
-                }),
-            momentum_nm_s: wheel.momentum_at(seconds),
-            torque_nm: wheel.torque,
+    fn response(&self, _: Instant, axis: usize, _: [f64; 2]) -> AxisResponse {
+        let held = self.held_torque(axis);
+        let friction = self.observations.iter().zip(self.allocation.axes());
+        let applied = match &self.observations[..] {
+            [] => held,
+            _ => held + friction.map(|(wheel, about)| about[axis] * wheel.friction).sum::<f64>(),
         };
-        self.allocation.axes().iter().zip(&self.wheels).enumerate().map(motion).collect()
+        AxisResponse { applied, rotor: None }
     }
 
-    fn measured_wheel_speeds(&self) -> Vec<f64> {
-        match &self.tachometer {
-            Some(tachometer) => tachometer.speeds().to_vec(),
-            None => self.observations.iter().map(|wheel| wheel.speed).collect(),
-        }
-    }
-
-    fn stored_momentum(&self, now: Instant) -> [f64; 3] {
-        if let Some(known) = self.known {
-            return known.into();
-        }
-        let (seconds, wheels) = (self.elapsed(now), self.allocation.axes().iter().zip(&self.wheels));
-        wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
+    fn capabilities(&self) -> Capabilities<'_> {
+        Capabilities { momentum: Some(self), ..Capabilities::default() }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {
@@ -381,5 +355,6 @@ impl Actuator for WheelsState {
     }
 }
 
+mod rows;
 #[cfg(test)]
 mod tests;

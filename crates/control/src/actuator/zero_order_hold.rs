@@ -5,7 +5,8 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{AxisActuator, AxisActuatorContext, Failure};
+use super::{AxisActuator, AxisActuatorContext, AxisTorques, Failure};
+use crate::part::Part;
 
 /// A zero-order hold.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -44,6 +45,12 @@ impl ZeroOrderHold {
     }
 }
 
+impl Part for ZeroOrderHoldState {
+    fn due(&self) -> Option<Instant> {
+        Some(self.next)
+    }
+}
+
 impl AxisActuator for ZeroOrderHoldState {
     fn command(&mut self, _: Instant, command: f64, _: f64) {
         self.feedback = command;
@@ -57,16 +64,8 @@ impl AxisActuator for ZeroOrderHoldState {
         }
     }
 
-    fn due(&self) -> Option<Instant> {
-        Some(self.next)
-    }
-
-    fn torque(&self) -> f64 {
-        self.held
-    }
-
-    fn demanded_torque(&self) -> f64 {
-        self.feedback
+    fn torques(&self) -> AxisTorques {
+        AxisTorques { demanded: self.feedback, held: self.held, nominal: self.held, firing: 0.0 }
     }
 
     fn copy(&self) -> Box<dyn AxisActuator> {

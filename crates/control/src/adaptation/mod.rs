@@ -4,14 +4,14 @@ mod objective;
 mod random_search;
 
 use std::any::Any;
-use std::fmt;
 
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::custom::{Custom, PartError};
+use crate::custom::Custom;
+use crate::part::Part;
 
 pub use flexsc_record::Decision;
 pub use objective::Objective;
@@ -53,15 +53,10 @@ pub trait AdaptationSpec: Send + Sync {
 }
 
 /// Run-time state of an adaptation.
-pub trait Adaptation: fmt::Debug + Send + Sync {
+pub trait Adaptation: Part {
     /// Updates the adaptation with the objective over the window that ends at `now`. Returns its step; `None` once it
     /// has ended.
     fn learn(&mut self, now: Instant, measured: f64) -> Option<SearchStep>;
-
-    /// Returns the error that an adaptation of another crate failed with; the run ends there.
-    fn halted(&self) -> Option<PartError> {
-        None
-    }
 
     /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Adaptation>;

@@ -13,6 +13,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Adaptation, Objective};
+use crate::part::Part;
 
 /// The constants of the search.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -161,6 +162,8 @@ impl RandomSearchRun {
         Self { search, draws: seed.stream("adaptation") }
     }
 }
+
+impl Part for RandomSearchRun {}
 
 impl Adaptation for RandomSearchRun {
     fn learn(&mut self, now: Instant, mean: f64) -> Option<SearchStep> {

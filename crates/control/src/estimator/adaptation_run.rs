@@ -4,7 +4,7 @@ use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 
 use crate::adaptation::{Adaptation, AdaptationKind};
-use crate::custom::PartError;
+use crate::part::Part;
 
 /// Run-time state of an adaptation and the current value of its parameter.
 #[derive(Clone, Debug)]
@@ -47,8 +47,8 @@ impl AdaptationRun {
         (&self.key, self.value)
     }
 
-    /// Returns the error that an adaptation of another crate failed with.
-    pub fn halted(&self) -> Option<PartError> {
-        self.search.halted()
+    /// Returns the adaptation as a part of the run.
+    pub fn part(&self) -> &dyn Part {
+        &*self.search
     }
 }

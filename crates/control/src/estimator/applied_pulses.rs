@@ -3,7 +3,7 @@
 use flexsc_numerics::time::Instant;
 
 use super::adaptive::Pulse;
-use crate::actuator::Actuator;
+use crate::actuator::PulsedActuator;
 
 /// Pulses applied about each axis since the last sample.
 #[derive(Clone, Debug, Default)]
@@ -31,10 +31,10 @@ impl AppliedPulses {
 
     /// Returns the pulses since the last sample and starts a new record at `now`; those of jets have exactly their
     /// commanded lengths.
-    pub fn take_executed(&mut self, now: Instant, actuator: &dyn Actuator) -> Vec<Pulse> {
+    pub fn take_executed(&mut self, now: Instant, jets: Option<&dyn PulsedActuator>) -> Vec<Pulse> {
         self.input_changed(now, self.moments);
         self.began = now;
         let recorded = std::mem::take(&mut self.pulses);
-        actuator.executed_pulses().unwrap_or(recorded)
+        jets.and_then(PulsedActuator::executed_pulses).unwrap_or(recorded)
     }
 }

@@ -15,7 +15,6 @@ mod sampled;
 
 use std::any::Any;
 use std::borrow::Cow;
-use std::fmt;
 
 use flexsc_dynamics::AxisState;
 use flexsc_numerics::quantity::{NonNegative, Positive};
@@ -25,10 +24,11 @@ use flexsc_spacecraft::body::{Drift, Mode, Planar};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::actuator::Actuator;
-use crate::custom::{Custom, PartError};
+use crate::actuator::PulsedActuator;
+use crate::custom::Custom;
+use crate::part::Part;
 use crate::sensor::{Orientation, Reading};
-use crate::state_estimate::{DampingStatus, EstimateNeeds, StateEstimate};
+use crate::state_estimate::{EstimateNeeds, StateEstimate};
 
 pub use adaptation_run::AdaptationRun;
 pub use adaptive::Adaptive;
@@ -114,7 +114,7 @@ pub struct EstimatorContext<'a> {
     pub attitude: Option<&'a attitude::FilterSetup>,
 }
 
-/// Sensor sample with its time, the target, the actuator and the true state.
+/// Sensor sample with its time, the target, the actuator's output and the true state.
 pub struct SampleContext<'a> {
     /// Time of the sample.
     pub now: Instant,
@@ -126,19 +126,20 @@ pub struct SampleContext<'a> {
     pub origin: &'a Orientation,
     /// True motion about an axis, for ideal observers.
     pub truth: &'a dyn Fn(usize) -> Cow<'a, AxisState>,
-    /// Actuator with its executed and waiting pulses.
-    pub actuator: &'a dyn Actuator,
+    /// Torque that the actuator holds about an axis (N m).
+    pub held_torque: &'a dyn Fn(usize) -> f64,
+    /// Actuator's jets with their executed and waiting pulses, if it has any.
+    pub pulses: Option<&'a dyn PulsedActuator>,
+    /// Change of the rate about the first axis (rad/s) that a command waveform has caused since the last sample.
+    pub waveform_impulse: f64,
     /// Longest lead time (s) for which laws read predicted elastic rates.
     pub ahead: f64,
 }
 
 /// Run-time state of an estimator, which writes the whole state estimate of each axis.
-pub trait Estimator: fmt::Debug + Send + Sync {
+pub trait Estimator: Part {
     /// Sets the reduced moments about the axes (rad/s²) that the actuator applies from now on.
     fn input_changed(&mut self, _now: Instant, _moments: [f64; 3]) {}
-
-    /// Adds the rate change about the first axis (rad/s) that a command waveform has caused.
-    fn add_waveform_impulse(&mut self, _impulse: f64) {}
 
     /// Updates the state estimate with a sample.
     fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]);
@@ -154,59 +155,23 @@ pub trait Estimator: fmt::Debug + Send + Sync {
         [false; 3]
     }
 
-    /// Returns the filter's log row about `axis` after the last sample, with its error against the true motion.
-    fn estimate_row(
-        &self,
-        _axis: usize,
-        _now: Instant,
-        _truth: &AxisState,
-    ) -> Option<flexsc_record::Estimate> {
-        None
-    }
-
-    /// Returns the attitude filter's log row, with its errors against the true orientation and the true gyro bias
-    /// (rad/s).
-    fn attitude_row(
-        &self,
-        _now: Instant,
-        _truth: &Orientation,
-        _bias: [f64; 3],
-    ) -> Option<flexsc_record::AttitudeEstimate> {
-        None
-    }
-
-    /// Returns the attitude filter's log row of the elastic modes; `None` if it does not estimate any.
-    fn elastic_row(&self) -> Option<flexsc_record::ElasticEstimates> {
-        None
-    }
-
-    /// Returns the log row of adaptive observers, with the true modal rates and the status of active damping.
-    fn observer_row(
-        &self,
-        _modal_rates: &dyn Fn() -> Vec<f64>,
-        _damped: &dyn Fn() -> Vec<DampingStatus>,
-    ) -> Option<flexsc_record::Tracking> {
-        None
-    }
-
-    /// Returns the filter of a one-axis body, and the mean reduced moment (rad/s²) from its last sample to `now`; the
-    /// moment is `None` before the first sample.
-    fn batch_filter(&mut self, _now: Instant) -> Option<(&mut kalman::KalmanFilter, Option<f64>)> {
-        None
-    }
-
-    /// Returns the true values of the state components of the filter from [`Estimator::batch_filter`].
-    fn true_filter_state(&self, _now: Instant, _truth: &AxisState) -> Vec<f64> {
-        Vec::new()
-    }
-
-    /// Returns the error that an estimator of another crate failed with; the run ends there.
-    fn failure(&self) -> Option<PartError> {
+    /// Returns the interface for a batch that processes the samples of many runs; `None` for most estimators.
+    fn batch(&mut self) -> Option<&mut dyn BatchEstimator> {
         None
     }
 
     /// Returns a copy in the same state.
     fn copy(&self) -> Box<dyn Estimator>;
+}
+
+/// Estimator whose filter a batch can process.
+pub trait BatchEstimator {
+    /// Returns the filter of a one-axis body, and the mean reduced moment (rad/s²) from its last sample to `now`; the
+    /// moment is `None` before the first sample.
+    fn batch_filter(&mut self, now: Instant) -> Option<(&mut kalman::KalmanFilter, Option<f64>)>;
+
+    /// Returns the true values of the state components of that filter.
+    fn true_filter_state(&self, now: Instant, truth: &AxisState) -> Vec<f64>;
 }
 
 impl Clone for Box<dyn Estimator> {

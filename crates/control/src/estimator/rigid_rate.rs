@@ -8,6 +8,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AppliedPulses, Estimator, SampleContext};
+use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
 /// w^(n) = w^- + l (y - w^-), w^- = w^(n-1) + du + c^(n-1), c^(n) = c^(n-1) + l²/4 (y - w^-): for what is no pulse a low pass of
@@ -58,13 +59,15 @@ impl RigidRateState {
     }
 }
 
+impl Part for RigidRateState {}
+
 impl Estimator for RigidRateState {
     fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
         self.applied_pulses.input_changed(now, moments);
     }
 
     fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let pulses = self.applied_pulses.take_executed(context.now, context.actuator);
+        let pulses = self.applied_pulses.take_executed(context.now, context.pulses);
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             let own = pulses.iter().filter(|pulse| pulse.input == axis);
             let pushed = own.map(|pulse| pulse.acceleration * pulse.duration).sum();

@@ -3,11 +3,12 @@
 use flexsc_dynamics::AxisState;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{self, ModeEstimate};
+use flexsc_record::{self, Estimates, ModeEstimate, Report};
 use flexsc_spacecraft::body::Drift;
 
 use super::kalman::{FilterContext, Innovation, KalmanFilter, Prediction};
-use super::{EstimateOutputs, Estimator, EstimatorContext, EstimatorKind, SampleContext};
+use super::{BatchEstimator, EstimateOutputs, Estimator, EstimatorContext, EstimatorKind, SampleContext};
+use crate::part::{Occasion, Part, ReportContext};
 use crate::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
 
 /// The estimators of all axes.
@@ -50,6 +51,38 @@ impl AxisEstimators {
     }
 }
 
+impl Part for AxisEstimators {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        if at.occasion != Occasion::Sample {
+            return;
+        }
+        let row = |axis: usize| self.0[axis].row(at.now.seconds(), &at.truth.about_axis(axis));
+        if self.0.len() == 1 {
+            row(0).into_iter().for_each(|row| report.add(row));
+        } else if let Some(axes) = (0..self.0.len()).map(row).collect() {
+            report.add(Estimates { axes });
+        }
+    }
+}
+
+impl BatchEstimator for AxisEstimators {
+    fn batch_filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
+        let [track] = &mut self.0[..] else { return None };
+        let impulse = track.impulse + track.moment * now.since(track.since).seconds();
+        let AxisMethod::Filter(filter) = &mut track.method else { return None };
+        Some((filter, track.sampled.map(|sampled| impulse / now.since(sampled).seconds())))
+    }
+
+    fn true_filter_state(&self, now: Instant, truth: &AxisState) -> Vec<f64> {
+        let track = &self.0[0];
+        if let AxisMethod::Filter(filter) = &track.method {
+            track.truth(now.seconds(), truth, filter)
+        } else {
+            Vec::new()
+        }
+    }
+}
+
 impl Estimator for AxisEstimators {
     fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
         for (track, moment) in self.0.iter_mut().zip(moments) {
@@ -57,11 +90,8 @@ impl Estimator for AxisEstimators {
         }
     }
 
-    fn add_waveform_impulse(&mut self, impulse: f64) {
-        self.0[0].impulse += impulse;
-    }
-
     fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        self.0[0].impulse += context.waveform_impulse;
         for (axis, (track, state_estimate)) in self.0.iter_mut().zip(state_estimates).enumerate() {
             track.update_axis(axis, context, state_estimate);
         }
@@ -83,24 +113,8 @@ impl Estimator for AxisEstimators {
         lost
     }
 
-    fn estimate_row(&self, axis: usize, now: Instant, truth: &AxisState) -> Option<flexsc_record::Estimate> {
-        self.0[axis].row(now.seconds(), truth)
-    }
-
-    fn batch_filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
-        let [track] = &mut self.0[..] else { return None };
-        let impulse = track.impulse + track.moment * now.since(track.since).seconds();
-        let AxisMethod::Filter(filter) = &mut track.method else { return None };
-        Some((filter, track.sampled.map(|sampled| impulse / now.since(sampled).seconds())))
-    }
-
-    fn true_filter_state(&self, now: Instant, truth: &AxisState) -> Vec<f64> {
-        let track = &self.0[0];
-        if let AxisMethod::Filter(filter) = &track.method {
-            track.truth(now.seconds(), truth, filter)
-        } else {
-            Vec::new()
-        }
+    fn batch(&mut self) -> Option<&mut dyn BatchEstimator> {
+        Some(self)
     }
 
     fn copy(&self) -> Box<dyn Estimator> {

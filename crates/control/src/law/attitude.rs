@@ -15,8 +15,9 @@ use serde::{Deserialize, Serialize};
 use super::filter::Filter;
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, Phase, Setpoint, Tunable,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, Tunable,
 };
+use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
 /// The attitude law.
@@ -190,6 +191,8 @@ impl AttitudeLawState {
     }
 }
 
+impl Part for AttitudeLawState {}
+
 impl Law for AttitudeLawState {
     fn decide(
         &mut self,
@@ -211,21 +214,17 @@ impl Law for AttitudeLawState {
         }
     }
 
-    fn state(&self) -> Phase {
-        Phase::Feedback
+    fn state(&self) -> LawState<'_> {
+        LawState::with_tuned(Phase::Feedback, self.tuned)
     }
 
-    /// Returns true, because the reference has an acceleration to follow.
-    fn tracks_manoeuvre(&self) -> bool {
-        true
+    fn reference_needs(&self) -> ReferenceNeeds {
+        // The reference has an acceleration to follow.
+        ReferenceNeeds { tracks_manoeuvre: true, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned
     }
 
     fn tune(&mut self, key: &str, value: f64) {

@@ -10,9 +10,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, Phase, Setpoint,
-    Tunable,
+    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, LawState, Phase,
+    Setpoint, Tunable,
 };
+use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
 /// The B-dot law.
@@ -52,6 +53,8 @@ struct BDotState {
     tuned: f64,
 }
 
+impl Part for BDotState {}
+
 impl Law for BDotState {
     fn decide(
         &mut self,
@@ -67,16 +70,12 @@ impl Law for BDotState {
         }
     }
 
-    fn state(&self) -> Phase {
-        Phase::Detumbling
+    fn state(&self) -> LawState<'_> {
+        LawState::with_tuned(Phase::Detumbling, self.tuned)
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(*self)
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned
     }
 
     fn tune(&mut self, key: &str, value: f64) {

@@ -2,9 +2,11 @@
 
 use flexsc_dynamics::guard::Guard;
 use flexsc_numerics::time::Instant;
+use flexsc_record::Report;
 
 use super::{Authority, Command, ControlOutput, DampingStatus, DecisionCause, Law, LawKind, Phase, Setpoint};
 use crate::custom::PartError;
+use crate::part::{Part, ReportContext};
 use crate::state_estimate::StateEstimate;
 
 /// Run-time state of the laws of all axes.
@@ -15,6 +17,20 @@ pub struct Controllers {
     until: Option<Instant>,
     /// Commands set from outside, which replace the laws' outputs.
     steered: Option<[Command; 3]>,
+}
+
+impl Part for Controllers {
+    fn due(&self) -> Option<Instant> {
+        self.until
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.axes.iter().for_each(|held| held.law.report(at, report));
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.axes.iter().find_map(|held| held.law.failure())
+    }
 }
 
 /// Law with its current output.
@@ -137,11 +153,6 @@ impl Controllers {
         &*self.axes[axis].law
     }
 
-    /// Returns the error that a law of another crate failed with.
-    pub fn halted(&self) -> Option<PartError> {
-        self.axes.iter().find_map(|held| held.law.failure())
-    }
-
     /// Sets a parameter of all laws, or of the law about one axis that the key selects.
     pub fn tune(&mut self, key: &str, value: f64) {
         for held in &mut self.axes {
@@ -153,11 +164,11 @@ impl Controllers {
 
     /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
     pub fn lead_time(&self) -> f64 {
-        self.axes.iter().map(|held| held.law.lead_time()).fold(0.0, f64::max)
+        self.axes.iter().map(|held| held.law.reference_needs().lead_time).fold(0.0, f64::max)
     }
 
     /// Returns the status of active damping in the last cycle about each axis; the default for laws without it.
     pub fn damping_status(&self) -> Vec<DampingStatus> {
-        self.axes.iter().map(|held| held.law.damping_status().copied().unwrap_or_default()).collect()
+        self.axes.iter().map(|held| held.law.state().damping.copied().unwrap_or_default()).collect()
     }
 }

@@ -9,6 +9,7 @@ mod distribution;
 mod error_measure;
 mod filter;
 mod frame;
+mod law_state;
 mod open_loop;
 mod pd;
 mod per_axis_laws;
@@ -23,7 +24,6 @@ mod switching_lines;
 mod tunable;
 
 use std::any::Any;
-use std::fmt;
 use std::ops::Deref;
 
 use flexsc_dynamics::guard::Guard;
@@ -33,7 +33,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::PulseWidth;
-use crate::custom::{Custom, PartError};
+use crate::custom::Custom;
+use crate::part::Part;
 pub use crate::state_estimate::EstimateNeeds;
 use flexsc_numerics::time::{Instant, Span};
 
@@ -49,6 +50,7 @@ pub use error_measure::AttitudeErrorMeasure;
 pub use filter::{Coefficients, Filter, Lead, LowPass, Notch};
 pub use flexsc_record::Phase;
 pub use frame::Frame;
+pub use law_state::{LawState, ReferenceNeeds};
 pub use open_loop::Open;
 pub use pd::{Differentiation, Extra, Pd, ScheduledGain};
 pub use per_axis_laws::PerAxisLaws;
@@ -123,7 +125,7 @@ pub trait LawSpec {
 }
 
 /// Run-time state of a law about one axis.
-pub trait Law: fmt::Debug + Send + Sync {
+pub trait Law: Part {
     /// Responds to an event with a command, and the conditions of the next decision.
     fn decide(
         &mut self,
@@ -134,43 +136,23 @@ pub trait Law: fmt::Debug + Send + Sync {
     ) -> ControlOutput;
 
     /// Returns the state of the law.
-    fn state(&self) -> Phase;
-
-    /// Returns the error that a law of another crate failed with; the run ends there.
-    fn failure(&self) -> Option<PartError> {
-        None
-    }
-
-    /// Returns a copy in the same state.
-    fn copy(&self) -> Box<dyn Law>;
-
-    /// Returns the value of the parameter tuned last, or of the law's tunable parameter; NaN if there is none.
-    fn tuned_value(&self) -> f64 {
-        f64::NAN
-    }
+    fn state(&self) -> LawState<'_>;
 
     /// Sets a parameter of [`LawSpec::tunable`].
     fn tune(&mut self, _key: &str, _value: f64) {}
+
+    /// Returns the references that the law reads besides the current state estimate.
+    fn reference_needs(&self) -> ReferenceNeeds {
+        ReferenceNeeds::default()
+    }
 
     /// Returns the relay law, if the law is one.
     fn as_relay(&mut self) -> Option<&mut Relay> {
         None
     }
 
-    /// Returns true if the law tracks a manoeuvre while it lasts, and not only from its end on.
-    fn tracks_manoeuvre(&self) -> bool {
-        false
-    }
-
-    /// Returns the lead time after a sample for which the law reads predicted elastic rates (s).
-    fn lead_time(&self) -> f64 {
-        0.0
-    }
-
-    /// Returns the status of active damping in the last cycle, if the law has it.
-    fn damping_status(&self) -> Option<&DampingStatus> {
-        None
-    }
+    /// Returns a copy in the same state.
+    fn copy(&self) -> Box<dyn Law>;
 }
 
 impl Clone for Box<dyn Law> {

@@ -4,7 +4,10 @@ use flexsc_numerics::time::Instant;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, ControlOutput, DecisionCause, EstimateNeeds, Law, LawSpec, Phase, Setpoint};
+use super::{
+    Authority, ControlOutput, DecisionCause, EstimateNeeds, Law, LawSpec, LawState, Phase, Setpoint,
+};
+use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
 /// Open loop.
@@ -22,13 +25,15 @@ impl LawSpec for Open {
     }
 }
 
+impl Part for Open {}
+
 impl Law for Open {
     fn decide(&mut self, _: Instant, _: DecisionCause, _: &Setpoint, _: &StateEstimate) -> ControlOutput {
         ControlOutput::NONE
     }
 
-    fn state(&self) -> Phase {
-        Phase::Open
+    fn state(&self) -> LawState<'_> {
+        LawState::new(Phase::Open)
     }
 
     fn copy(&self) -> Box<dyn Law> {

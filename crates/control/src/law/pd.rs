@@ -10,8 +10,9 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, Phase, Setpoint, Tunable, TunedNumbers,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, Tunable, TunedNumbers,
 };
+use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
 /// The PD law.
@@ -141,6 +142,8 @@ impl LawSpec for Pd {
     }
 }
 
+impl Part for Pd {}
+
 impl Law for Pd {
     fn decide(
         &mut self,
@@ -173,20 +176,17 @@ impl Law for Pd {
         ControlOutput { command, until: Some(now + self.period), guards: Guards::NONE }
     }
 
-    fn state(&self) -> Phase {
-        if self.active { Phase::Feedback } else { Phase::Open }
+    fn state(&self) -> LawState<'_> {
+        let phase = if self.active { Phase::Feedback } else { Phase::Open };
+        LawState::with_tuned(phase, self.tuned.last_set().unwrap_or(f64::NAN))
     }
 
-    fn tracks_manoeuvre(&self) -> bool {
-        self.track
+    fn reference_needs(&self) -> ReferenceNeeds {
+        ReferenceNeeds { tracks_manoeuvre: self.track, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned.last_set().unwrap_or(f64::NAN)
     }
 
     fn tune(&mut self, key: &str, value: f64) {

@@ -18,9 +18,10 @@ use serde::{Deserialize, Deserializer, Serialize};
 
 use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
 use super::{
-    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, Phase,
-    Setpoint, SwitchingLines, Tunable,
+    Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, LawState,
+    Phase, ReferenceNeeds, Setpoint, SwitchingLines, Tunable,
 };
+use crate::part::Part;
 use crate::state_estimate::{DampingStatus, StateEstimate};
 
 /// The phase-plane law.
@@ -222,6 +223,8 @@ struct PhasePlaneState {
     tuned: f64,
 }
 
+impl Part for PhasePlaneState {}
+
 impl Law for PhasePlaneState {
     /// Commands the change of the rate by the pulses of the cycle.
     fn decide(
@@ -253,24 +256,19 @@ impl Law for PhasePlaneState {
         }
     }
 
-    fn state(&self) -> Phase {
-        if self.firing { Phase::Firing } else { Phase::Coasting }
+    fn state(&self) -> LawState<'_> {
+        let phase = if self.firing { Phase::Firing } else { Phase::Coasting };
+        let damping = self.damping.as_ref().map(|_| &self.damped);
+        LawState { phase, tuned: self.tuned, damping }
+    }
+
+    fn reference_needs(&self) -> ReferenceNeeds {
+        let lead_time = self.damping.as_ref().map_or(0.0, ActiveDampingState::lead_time);
+        ReferenceNeeds { lead_time, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
-    }
-
-    fn lead_time(&self) -> f64 {
-        self.damping.as_ref().map_or(0.0, ActiveDampingState::lead_time)
-    }
-
-    fn damping_status(&self) -> Option<&DampingStatus> {
-        self.damping.as_ref().map(|_| &self.damped)
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned
     }
 
     fn tune(&mut self, key: &str, value: f64) {

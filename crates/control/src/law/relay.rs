@@ -12,9 +12,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, Phase, Setpoint,
-    Tunable, TunedNumbers,
+    Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, LawState, Phase,
+    Setpoint, Tunable, TunedNumbers,
 };
+use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
 /// The relay law.
@@ -107,6 +108,8 @@ impl LawSpec for Relay {
     }
 }
 
+impl Part for Relay {}
+
 impl Law for Relay {
     fn decide(
         &mut self,
@@ -123,8 +126,10 @@ impl Law for Relay {
         self.hold(phase, now)
     }
 
-    fn state(&self) -> Phase {
-        self.phase.unwrap_or(Phase::Start)
+    fn state(&self) -> LawState<'_> {
+        // Limit cycles are judged by k_t, whatever parameter is tuned.
+        let k_t = self.tuned.value_or("k_t", self.k_t.get());
+        LawState::with_tuned(self.phase.unwrap_or(Phase::Start), k_t)
     }
 
     fn copy(&self) -> Box<dyn Law> {
@@ -133,11 +138,6 @@ impl Law for Relay {
 
     fn as_relay(&mut self) -> Option<&mut Relay> {
         Some(self)
-    }
-
-    /// Returns always k_t, by which limit cycles are judged.
-    fn tuned_value(&self) -> f64 {
-        self.tuned.value_or("k_t", self.k_t.get())
     }
 
     fn tune(&mut self, key: &str, value: f64) {
@@ -154,7 +154,7 @@ impl Relay {
 
     /// Returns the state after an event.
     fn next(&self, cause: DecisionCause, state_estimate: &StateEstimate) -> Phase {
-        match (self.state(), cause) {
+        match (self.phase.unwrap_or(Phase::Start), cause) {
             (_, DecisionCause::Start) if self.right().holds(state_estimate.angle) => Phase::RightPush,
             (_, DecisionCause::Start)
                 if self.sides == RelaySides::Two && self.left().holds(state_estimate.angle) =>

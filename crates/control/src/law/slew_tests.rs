@@ -13,7 +13,9 @@ use nalgebra::{DMatrix, Matrix3, Quaternion};
 use super::{
     AttitudeLaw, AttitudeProfile, Authority, DecisionCause, Law, LawSpec, Setpoint, TorqueDistribution,
 };
-use crate::actuator::{Actuator, AxisActuatorContext, PulseWidth, Wheels, WheelsState};
+use crate::actuator::{
+    Actuator, ActuatorInput, AxisActuatorContext, MomentumStorage, PulseWidth, Wheels, WheelsState,
+};
 use crate::state_estimate::StateEstimate;
 
 const MODES: &str = include_str!("../../../../tests/golden/turning/modes.csv");
@@ -165,7 +167,8 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
                 }
             }
         }
-        wheels.set_rotor_states(now + Span::from_seconds(PERIOD), &motion.rotor_observations(None));
+        let rotors = motion.rotor_observations(None);
+        wheels.update(now + Span::from_seconds(PERIOD), ActuatorInput::Rotors(&rotors));
     }
     assert_eq!(count, table.len());
     events

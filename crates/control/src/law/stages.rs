@@ -3,13 +3,16 @@
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Time;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Report;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, Phase,
-    Setpoint, Tunable,
+    Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, LawState,
+    ReferenceNeeds, Setpoint, Tunable,
 };
+use crate::custom::PartError;
+use crate::part::{Part, ReportContext};
 use crate::state_estimate::StateEstimate;
 
 /// Laws that act one after another.
@@ -130,6 +133,16 @@ struct StagesState {
     tuned: Option<usize>,
 }
 
+impl Part for StagesState {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.stages[self.active].1.report(at, report);
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.stages.iter().find_map(|(_, law)| law.failure())
+    }
+}
+
 impl Law for StagesState {
     fn decide(
         &mut self,
@@ -146,20 +159,18 @@ impl Law for StagesState {
         ControlOutput { until: [hold.until, next].into_iter().flatten().min(), ..hold }
     }
 
-    fn state(&self) -> Phase {
-        self.stages[self.active].1.state()
+    fn state(&self) -> LawState<'_> {
+        let tuned = self.tuned.map_or(f64::NAN, |stage| self.stages[stage].1.state().tuned);
+        LawState::with_tuned(self.stages[self.active].1.state().phase, tuned)
     }
 
-    fn tracks_manoeuvre(&self) -> bool {
-        self.stages[self.active].1.tracks_manoeuvre()
+    fn reference_needs(&self) -> ReferenceNeeds {
+        let tracks_manoeuvre = self.stages[self.active].1.reference_needs().tracks_manoeuvre;
+        ReferenceNeeds { tracks_manoeuvre, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned.map_or(f64::NAN, |stage| self.stages[stage].1.tuned_value())
     }
 
     fn tune(&mut self, key: &str, value: f64) {

@@ -14,9 +14,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec, Phase,
-    Setpoint, Tunable,
+    Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec,
+    LawState, Phase, ReferenceNeeds, Setpoint, Tunable,
 };
+use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
 /// Largest number of states.
@@ -267,6 +268,8 @@ struct StateSpaceState {
     active: bool,
 }
 
+impl Part for StateSpaceState {}
+
 impl Law for StateSpaceState {
     fn decide(
         &mut self,
@@ -298,21 +301,18 @@ impl Law for StateSpaceState {
         ControlOutput { command, until: Some(now + self.period), guards: Guards::NONE }
     }
 
-    fn state(&self) -> Phase {
-        if self.active { Phase::Feedback } else { Phase::Open }
+    fn state(&self) -> LawState<'_> {
+        LawState::with_tuned(if self.active { Phase::Feedback } else { Phase::Open }, self.tuned)
     }
 
-    /// Returns true also for accelerations, because their reference has one to follow.
-    fn tracks_manoeuvre(&self) -> bool {
-        self.track || self.command == OutputQuantity::Acceleration
+    fn reference_needs(&self) -> ReferenceNeeds {
+        // Accelerations have a reference to follow.
+        let tracks_manoeuvre = self.track || self.command == OutputQuantity::Acceleration;
+        ReferenceNeeds { tracks_manoeuvre, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(self.clone())
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned
     }
 
     fn tune(&mut self, key: &str, value: f64) {

@@ -114,6 +114,17 @@ pub struct MeasuredAcceleration {
     pub bias: f64,
 }
 
+impl MeasuredAcceleration {
+    /// Returns the row of the measurement.
+    pub fn row(&self) -> flexsc_record::Acceleration {
+        flexsc_record::Acceleration {
+            measured_m_s2: self.measured,
+            true_m_s2: self.exact,
+            bias_m_s2: self.bias,
+        }
+    }
+}
+
 /// Run-time state of an accelerometer.
 #[derive(Clone, Debug)]
 pub struct AccelerometerState {

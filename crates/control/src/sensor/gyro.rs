@@ -14,6 +14,7 @@ use super::gauss_markov_bias::GaussMarkovBias;
 use super::latency_queue::with_failures;
 use super::rate_integrator::{self, RateIntegrator};
 use super::{Reading, Sensor, Truth, stream};
+use crate::part::Part;
 use crate::sensor;
 
 /// A gyro. A gyro that samples the rate is read once per cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
@@ -231,6 +232,8 @@ impl Gyro {
         f64::sqrt(noise * noise + resolution * resolution / 12.0)
     }
 }
+
+impl Part for GyroState {}
 
 impl Sensor for GyroState {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {

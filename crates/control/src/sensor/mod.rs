@@ -15,8 +15,6 @@ mod sun_sensor;
 mod tachometer;
 mod vector;
 
-use std::fmt;
-
 use flexsc_formats::document;
 use flexsc_numerics::attitude::{AXES, Vector, rotation, rotation_vector};
 use flexsc_numerics::quantity::Positive;
@@ -27,8 +25,9 @@ use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use crate::custom::{Custom, PartError};
+use crate::custom::Custom;
 use crate::one_or_many::OneOrMany;
+use crate::part::Part;
 
 pub use accelerometer::{Accelerometer, AccelerometerState, MeasuredAcceleration};
 pub use custom_sensor::SensorSpec;
@@ -67,7 +66,7 @@ pub enum SensorKind {
 }
 
 /// Run-time state of a sensor.
-pub trait Sensor: fmt::Debug + Send + Sync {
+pub trait Sensor: Part {
     /// Returns the reading at `now`, given the last one; `None` if the sensor is silent or has no new reading.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading>;
 
@@ -81,11 +80,6 @@ pub trait Sensor: fmt::Debug + Send + Sync {
 
     /// Returns the true bias of the rates (rad/s), of a gyro.
     fn true_bias(&self) -> Option<[f64; 3]> {
-        None
-    }
-
-    /// Returns the error that a sensor of another crate failed with; the run ends there.
-    fn failure(&self) -> Option<PartError> {
         None
     }
 

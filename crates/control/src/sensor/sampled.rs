@@ -10,6 +10,7 @@ use serde::{Deserialize, Serialize};
 use super::latency_queue::with_failures;
 use super::{Reading, Sensor, Truth, stream};
 use crate::interval::Interval;
+use crate::part::Part;
 
 /// A sampled angle sensor.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -95,6 +96,8 @@ pub struct SampledState {
     sampled: Sampled,
     noise: Vec<Stream>,
 }
+
+impl Part for SampledState {}
 
 impl Sensor for SampledState {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {

@@ -11,6 +11,7 @@ use serde::{Deserialize, Serialize};
 
 use super::latency_queue::{LatencyQueue, with_failures};
 use super::{ExposureMean, Orientation, Reading, Sensor, SensorFailure, Truth, stream};
+use crate::part::Part;
 
 /// A star tracker on a body with three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -152,6 +153,8 @@ impl StarTrackerState {
         reported
     }
 }
+
+impl Part for StarTrackerState {}
 
 impl Sensor for StarTrackerState {
     /// Returns the reading whose latency has elapsed; the reading at the start is available at once, as if exposed

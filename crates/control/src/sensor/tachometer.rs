@@ -10,6 +10,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Reading, Sensor, SensorFailure, Truth};
+use crate::part::Part;
 
 /// Tachometers, one on each wheel of `[actuator.wheels]`.
 ///
@@ -96,6 +97,8 @@ impl TachometerState {
 /// Placeholder for sensors that do not measure the body's motion.
 #[derive(Copy, Clone, Debug)]
 pub(super) struct NoMeasurement;
+
+impl Part for NoMeasurement {}
 
 impl Sensor for NoMeasurement {
     fn read(&mut self, _: Instant, _: &Truth, _: Option<&Reading>) -> Option<Reading> {

@@ -13,6 +13,7 @@ use nalgebra::Matrix3;
 
 use super::latency_queue::{LatencyQueue, with_failures};
 use super::{Orientation, Reading, Sensor, SensorFailure, Truth, VectorMeasurement, stream};
+use crate::part::Part;
 
 /// Errors of a vector measurement in the sensor's axes: y = M v + bias + noise, then rounded.
 #[derive(Copy, Clone, Debug)]
@@ -119,6 +120,8 @@ impl<S: VectorSensor> VectorSensorState<S> {
         with_failures(self.sensor.faults(), now, reading, last)
     }
 }
+
+impl<S: VectorSensor> Part for VectorSensorState<S> {}
 
 impl<S: VectorSensor> Sensor for VectorSensorState<S> {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {

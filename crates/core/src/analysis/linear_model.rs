@@ -103,7 +103,8 @@ impl LinearModel {
         // The tensor was checked, so it has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         let seed = Seed { scenario: scenario.seed, run: 0 };
-        let stored = Vector::from(settings.actuator(scenario, seed).stored_momentum(Instant::START));
+        let stored =
+            Vector::from(settings.actuator(scenario, seed).capabilities().stored_momentum(Instant::START));
         let measured = settings.measured_rates(body);
         let hub = |mode: usize| flexible.map_or_else(Vector::zeros, |body| body.modes[mode].rotation);
         let order = 6 + 2 * modes;

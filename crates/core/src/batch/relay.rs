@@ -70,7 +70,7 @@ struct LaneRun<'a> {
     monitor: Option<WindowedEnvelope>,
     segment: UncoupledSegment,
     state: AxisState,
-    /// True if the run must be computed singly.
+    /// True if the run has to be simulated alone.
     is_single: bool,
 }
 
@@ -102,7 +102,7 @@ impl LaneHost for LaneRuns<'_> {
 
     fn next_run(&mut self, lane: usize) -> Option<&RunSetup> {
         if let Some(ended) = self.lanes[lane].take() {
-            let is_whole = !ended.is_single && ended.state.is_finite();
+            let is_whole = !ended.is_single && ended.state.is_bounded();
             self.found[ended.index] = is_whole.then(|| ended.gather.finish(ended.scenario));
         }
         while let Some(job) = self.jobs.get(self.next) {
@@ -147,7 +147,7 @@ impl LaneHost for LaneRuns<'_> {
         let guards = guards(&lane.setup, phase, from.side);
         let horizon = (Instant::START + lane.scenario.duration).since(instant(from.time));
         let trip = first_crossing(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
-        lane.is_single |= !lane.state.is_finite();
+        lane.is_single |= !lane.state.is_bounded();
         let Ok(Some(trip)) = trip else { return false };
         apply_crossing(found, trip.after, trip.guard == 0, &lane.state);
         true
@@ -189,9 +189,9 @@ impl LaneHost for LaneRuns<'_> {
         let Some(monitor) = &mut lane.monitor else { return gain };
         let now = instant(time);
         let closed = monitor.close_with(now, integral, gain);
-        lane.is_single |= lane.gather.record(now, Sample::Window(&closed.mean)).is_err();
+        lane.is_single |= lane.gather.record(now, Sample::Row(&closed.mean)).is_err();
         let Some((row, _)) = &closed.step else { return gain };
-        lane.is_single |= lane.gather.record(now, Sample::Adaptation(row)).is_err();
+        lane.is_single |= lane.gather.record(now, Sample::Row(row)).is_err();
         row.gain
     }
 

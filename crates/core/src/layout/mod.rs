@@ -5,17 +5,21 @@
 //! module; the last two have their axes fitted to the values of a log.
 
 mod axis_limits;
+mod declared;
 mod mosaic;
 mod one_axis;
 mod panel;
 mod spatial;
+
+use std::borrow::Cow;
 
 use flexsc_control::actuator::FiringMethod;
 use flexsc_control::adaptation::{AdaptationKind, Objective};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_dynamics::three_axis::Bearing;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Detail, Summary};
+use flexsc_record::row::{Logging, Topic};
+use flexsc_record::{Detail, Summary, TOPICS};
 use flexsc_spacecraft::body::BodyAxes;
 use serde_json::{Map, Value, json};
 
@@ -29,36 +33,15 @@ const MOST_PANELS: usize = 8;
 /// Number of points of a curve that is drawn as points: up to about one for each pixel, viewers mark each point of a
 /// line with a black disc, and that many discs hide the line and its colour.
 const FEW: std::ops::Range<f64> = 100.0..1000.0;
-/// Topics that are logged once in each period of the log.
-const AT_EACH_PERIOD: [&str; 20] = [
-    "/attitude",
-    "/bearings",
-    "/control_moment_gyros",
-    "/drives",
-    "/energy",
-    "/envelope",
-    "/goal",
-    "/hinges",
-    "/magnetorquers",
-    "/modes",
-    "/orbit",
-    "/outputs",
-    "/pointing",
-    "/position",
-    "/rate",
-    "/rates",
-    "/torque",
-    "/torques",
-    "/vibrations",
-    "/wheels",
-];
+/// Topic of the flywheel, whose curve is drawn as a line whatever the number of its points.
+const FLYWHEEL: &str = "/wheel";
 
 /// Layout of a viewer.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Layout {
     tabs: Vec<Tab>,
     /// Topics of a log, with the least detail that has each.
-    topics: Vec<(&'static str, Detail)>,
+    topics: Vec<(Cow<'static, str>, Detail)>,
 }
 
 /// Tab with related panels.
@@ -75,14 +58,16 @@ impl Layout {
             BodyAxes::One(body) => one_axis::tabs(scenario, body),
             BodyAxes::Three(body) => spatial::tabs(scenario, body),
         };
+        tabs.extend(declared::tab(scenario));
         tabs.push(Tab { title: "Metrics at the end", panels: metrics(scenario).collect() });
         let rows = scenario.duration.seconds() / scenario.log_period().seconds();
         if FEW.contains(&rows) {
             for panel in tabs.iter_mut().flat_map(|tab| &mut tab.panels) {
-                panel.mark(&|topic| AT_EACH_PERIOD.contains(&topic));
+                panel.mark(&is_at_each_period);
             }
         }
-        Self { tabs, topics: topics(scenario) }
+        let known = topics(scenario).into_iter().map(|(topic, detail)| (Cow::Borrowed(topic), detail));
+        Self { tabs, topics: known.chain(declared::topics(scenario)).collect() }
     }
 
     /// Returns the layout with the panels that a log of this detail can show.
@@ -128,6 +113,12 @@ impl Layout {
         // The value is a tree of texts and finite numbers, so this cannot fail.
         serde_json::to_string_pretty(&layout).unwrap_or_default() + "\n"
     }
+}
+
+/// Returns true if a topic is logged once in each period of the log, and drawn as points where they are few.
+fn is_at_each_period(topic: &str) -> bool {
+    let logged = |known: &Topic| known.name == topic && known.logged == Logging::Period;
+    topic != FLYWHEEL && TOPICS.iter().any(logged)
 }
 
 /// Returns the panels of the metrics, page by page.

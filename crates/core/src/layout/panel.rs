@@ -88,7 +88,7 @@ impl LayoutPanel {
     }
 
     /// Creates a plot of values over time.
-    pub fn plot(name: &'static str, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
+    pub fn plot(name: impl Into<String>, title: impl Into<String>, lines: Vec<PlotLine>) -> Self {
         Self::new(name, title, PanelContent::Plot(lines))
     }
 

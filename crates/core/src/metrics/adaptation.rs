@@ -2,7 +2,7 @@
 
 use flexsc_control::adaptation::{Decision, Objective};
 use flexsc_numerics::time::Instant;
-use flexsc_record::Sample;
+use flexsc_record::{self, Sample};
 
 use super::{
     GAIN_FINAL, GAIN_FROZEN, GAIN_FROZEN_AT, GAIN_INITIAL, MetricDescription, MetricValue, NamedMetric,
@@ -61,15 +61,14 @@ impl AdaptationMetrics {
 
     /// Records an objective's window or a step of the adaptation.
     pub fn observe(&mut self, now: Instant, sample: Sample<'_>) {
-        match sample {
-            Sample::Objective(row) => self.windows.push((row.from_s, row.value)),
-            Sample::Adaptation(step) => {
-                self.gain[1] = step.gain;
-                if step.decision == Decision::Freeze {
-                    self.frozen_at = now.seconds();
-                }
+        if let Some(row) = sample.get::<flexsc_record::Objective>() {
+            self.windows.push((row.from_s, row.value));
+        }
+        if let Some(step) = sample.get::<flexsc_record::Adaptation>() {
+            self.gain[1] = step.gain;
+            if step.decision == Decision::Freeze {
+                self.frozen_at = now.seconds();
             }
-            _ => {}
         }
     }
 

@@ -13,7 +13,7 @@ mod tracking;
 
 use flexsc_dynamics::MotionPiece;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{self, Record, RecordError, Sample};
+use flexsc_record::{self, Estimate, Estimates, Record, RecordError, Sample};
 use flexsc_spacecraft::body::BodyAxes;
 
 use crate::scenario::Scenario;
@@ -337,18 +337,17 @@ impl Record for MetricsCollector {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        match (&mut self.filter, sample) {
-            (Some(filter), Sample::Estimate(estimate)) => filter.observe(now, std::slice::from_ref(estimate)),
-            (Some(filter), Sample::Estimates(estimates)) => filter.observe(now, &estimates.axes),
-            _ => {}
+        if let Some(filter) = &mut self.filter {
+            let one = sample.get().map(|estimate: &Estimate| std::slice::from_ref(estimate));
+            let axes = one.or_else(|| sample.get().map(|estimates: &Estimates| &estimates.axes[..]));
+            axes.into_iter().for_each(|axes| filter.observe(now, axes));
         }
-        match (&mut self.known, sample) {
-            (Some(known), Sample::AttitudeEstimate(estimate)) => known.observe(now, estimate),
-            (Some(known), Sample::ElasticEstimates(estimates)) => known.observe_modes(estimates),
-            _ => {}
+        if let Some(known) = &mut self.known {
+            sample.get().into_iter().for_each(|estimate| known.observe(now, estimate));
+            sample.get().into_iter().for_each(|estimates| known.observe_modes(estimates));
         }
-        if let (Some(windows), Sample::Window(window)) = (&mut self.windows, sample) {
-            windows.observe(window);
+        if let Some(windows) = &mut self.windows {
+            sample.get().into_iter().for_each(|window| windows.observe(window));
         }
         if let Some(adapted) = &mut self.adapted {
             adapted.observe(now, sample);
@@ -357,13 +356,12 @@ impl Record for MetricsCollector {
             RunKind::Switchings(switchings) => switchings.record(now, sample),
             RunKind::Rotation(rotation) => rotation.record(now, sample),
             RunKind::Spatial(spatial) => {
-                match sample {
-                    Sample::Cycle(cycle) => spatial.observe_cycle(now, cycle),
-                    Sample::WheelEvent(event) => spatial.observe_bearing_event(event),
-                    Sample::Accelerations(row) => spatial.observe_acceleration(row),
-                    Sample::Tracking(tracking) => self.tracked.observe(tracking),
-                    _ => {}
+                if let Sample::Report(report) = sample {
+                    spatial.observe_cycle(now, report);
                 }
+                sample.get().into_iter().for_each(|event| spatial.observe_bearing_event(event));
+                sample.get().into_iter().for_each(|row| spatial.observe_acceleration(row));
+                sample.get().into_iter().for_each(|tracking| self.tracked.observe(tracking));
                 Ok(())
             }
         }

@@ -286,7 +286,7 @@ impl Record for ManoeuvreMetrics {
     }
 
     fn record(&mut self, _: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
-        if let Sample::Arrival(arrival) = sample {
+        if let Some(arrival) = sample.get::<Arrival>() {
             self.arrival = Some(arrival.clone());
         }
         Ok(())

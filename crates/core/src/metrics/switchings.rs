@@ -4,7 +4,7 @@ use flexsc_control::adaptation::Objective;
 use flexsc_control::law::{Phase, Setpoint};
 use flexsc_dynamics::MotionPiece;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{PieceDemand, Record, RecordError, Sample};
+use flexsc_record::{Adaptation, PieceDemand, Record, RecordError, Sample};
 use flexsc_spacecraft::body::Planar;
 
 use super::envelope::EnvelopeMetrics;
@@ -219,16 +219,17 @@ impl Record for RelayMetrics {
                     self.cycle.record(now, sample)?;
                 }
             }
-            Sample::Window(window) => {
-                self.windows.observe(window);
-            }
-            Sample::Adaptation(step) => {
-                self.gain.1 = step.gain;
-                if step.decision == flexsc_control::adaptation::Decision::Freeze {
-                    self.frozen_at = now.seconds();
+            Sample::Row(_) | Sample::Report(_) => {
+                if let Some(window) = sample.get() {
+                    self.windows.observe(window);
+                }
+                if let Some(step) = sample.get::<Adaptation>() {
+                    self.gain.1 = step.gain;
+                    if step.decision == flexsc_control::adaptation::Decision::Freeze {
+                        self.frozen_at = now.seconds();
+                    }
                 }
             }
-            _ => {}
         }
         Ok(())
     }

@@ -1,9 +1,11 @@
 //! Metrics of a run of a three-axis body: propellant, firings, elastic energy, pointing.
 
-use flexsc_control::actuator::Saturation;
+use flexsc_control::actuator::{JetCycle, Saturation};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Accelerations, Sliding, SteeringRecord, ThreeAxisCycle, WheelEvent};
+use flexsc_record::{
+    Accelerations, Report, Sliding, SteeringRecord, StoredMomentum, ThreeAxisCycle, WheelEvent,
+};
 
 use super::goal::{self, GoalMetrics};
 use super::{
@@ -119,20 +121,20 @@ impl ThreeAxisMetrics {
         }
     }
 
-    /// Records a cycle.
-    pub fn observe_cycle(&mut self, now: Instant, cycle: &ThreeAxisCycle) {
+    /// Observes the report of a cycle; other reports have no cycle.
+    pub fn observe_cycle(&mut self, now: Instant, report: &Report) {
+        let Some(cycle) = report.get::<ThreeAxisCycle>() else { return };
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
         let norm = |vector: [f64; 3]| vector.iter().map(|value| value * value).sum::<f64>();
-        self.fuel = cycle.jets.fuel_kg;
-        self.fuels.0.clone_from(&cycle.fuels_kg);
-        self.saturation.observe(t, cycle);
+        if let Some(jets) = report.get::<JetCycle>() {
+            self.observe_jets(jets);
+        }
+        self.saturation.observe(t, report);
         if cycle.slewing {
             let square = norm(cycle.error_rad);
             self.slews = (self.slews.0.max(f64::sqrt(square)), self.slews.1 + square, self.slews.2 + 1);
         }
         self.heat = cycle.friction_heat_j;
-        self.firings.0 += cycle.pulses;
-        self.firings.1 += u64::from(cycle.pulses > 0);
         if self.energy.0.is_nan() {
             self.energy.0 = energy;
         }
@@ -149,9 +151,10 @@ impl ThreeAxisMetrics {
         }
         self.error = f64::sqrt(norm(cycle.error_rad));
         self.rate = f64::sqrt(norm(cycle.rigid_rate_rad_s));
-        let stored = f64::sqrt(norm(cycle.stored_nm_s));
+        let stored = report.get::<StoredMomentum>().copied().unwrap_or_default();
+        let stored = f64::sqrt(norm(stored.0));
         self.stored = [self.stored[0].max(stored), stored];
-        self.steered = cycle.steered;
+        self.steered = report.get().copied();
         if self.pointing_requirement.as_ref().is_some_and(|pointing| pointing.includes(t)) {
             self.pointing.0 += norm(cycle.error_rad);
             self.pointing.1 += 1;
@@ -161,6 +164,14 @@ impl ThreeAxisMetrics {
         }
         let is_outside = cycle.error_rad.iter().zip(self.bands).any(|(error, band)| error.abs() > band);
         self.outside = is_outside.then_some(t);
+    }
+
+    /// Observes the jets of a cycle, which may have cycles of their own.
+    fn observe_jets(&mut self, jets: &JetCycle) {
+        self.fuel = jets.fuel;
+        self.fuels.0.clone_from(&jets.fuels);
+        self.firings.1 += u64::from(jets.pulses > self.firings.0);
+        self.firings.0 = jets.pulses;
     }
 
     /// Records a sample of an accelerometer.

@@ -12,7 +12,7 @@ use flexsc_spacecraft::body::{BodyAxes, CommandedQuantity, Planar};
 use flexsc_spacecraft::disturbance::{Disturbance, Pulses};
 
 use super::epoch::nanoseconds_since_1970;
-use super::{Scenario, meant};
+use super::{Scenario, file_name, meant};
 
 impl Scenario {
     /// Checks that the keys are consistent with each other.
@@ -25,9 +25,8 @@ impl Scenario {
 
     fn inconsistency(&self) -> Option<ConfigError> {
         let at = |key: &str, why: String| Some(ConfigError::new(key, why));
-        if self.name.contains(['/', '\\']) || self.name.contains(char::is_control) || self.name.len() > 200 {
-            let why = "is used for file names: at most 200 bytes, no slash, no control character";
-            return at("name", why.to_owned());
+        if let Err(fault) = file_name::validate(&self.name) {
+            return Some(fault);
         }
         if self.epoch.is_some_and(|epoch| nanoseconds_since_1970(&epoch).is_none()) {
             let example = "2026-03-20T14:46:00Z";

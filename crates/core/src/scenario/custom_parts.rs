@@ -1,5 +1,7 @@
 //! Custom parts of a scenario: set in addition to its text, which cannot contain them, and kept when keys change.
 
+use std::sync::Arc;
+
 use flexsc_control::actuator::{ActuatorKind, ActuatorSpec, AssignedActuator};
 use flexsc_control::adaptation::{AdaptationKind, AdaptationSpec};
 use flexsc_control::custom::Custom;
@@ -7,6 +9,8 @@ use flexsc_control::estimator::{EstimatorKind, EstimatorSpec};
 use flexsc_control::law::{LawKind, LawSpec};
 use flexsc_control::sensor::{SensorKind, SensorSpec};
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
+use flexsc_record::CustomTopic;
+use flexsc_record::custom_topic::CustomTopics;
 use toml::{Table, Value};
 
 use super::{Scenario, ScenarioSpec};
@@ -207,5 +211,34 @@ impl CustomParts {
             ("actuator", !self.actuators.is_empty()),
         ];
         all.into_iter().filter_map(|(role, is_own)| is_own.then_some(role)).collect()
+    }
+
+    /// Returns the topics that the parts declare, each with the role of the part.
+    fn declared_topics(&self) -> impl Iterator<Item = (&'static str, &Arc<CustomTopic>)> {
+        let law = self.law.iter().flat_map(|law| law.topics()).map(|topic| ("law", topic));
+        let sensors = self.sensors.iter().flat_map(|(_, sensor)| sensor.topics());
+        let estimator = self.estimator.iter().flat_map(|estimator| estimator.topics());
+        let adaptation = self.adaptation.iter().flat_map(|adaptation| adaptation.topics());
+        let actuators = self.actuators.iter().flat_map(|(_, actuator)| actuator.topics());
+        law.chain(sensors.map(|topic| ("sensor", topic)))
+            .chain(estimator.map(|topic| ("estimator", topic)))
+            .chain(adaptation.map(|topic| ("adaptation", topic)))
+            .chain(actuators.map(|topic| ("actuator", topic)))
+    }
+
+    /// Returns the topics that the parts declare, without repetitions.
+    pub fn topics(&self) -> Vec<Arc<CustomTopic>> {
+        let mut topics = CustomTopics::default();
+        // Parts with topics that conflict are refused before.
+        self.declared_topics().for_each(|(_, topic)| drop(topics.index(topic)));
+        topics.iter().cloned().collect()
+    }
+
+    /// Checks that the topics of the parts can be in one log; returns the role of the first part whose topics cannot.
+    pub(super) fn topic_conflict(&self) -> Option<ConfigError> {
+        let mut topics = CustomTopics::default();
+        self.declared_topics().find_map(|(role, topic)| {
+            topics.index(topic).err().map(|error| ConfigError::new(role, error.to_string()))
+        })
     }
 }

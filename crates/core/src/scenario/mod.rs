@@ -17,6 +17,7 @@ mod estimator_checks;
 mod estimator_context;
 mod failures;
 mod fast_path;
+mod file_name;
 mod log;
 mod meant;
 mod pace;
@@ -125,6 +126,9 @@ impl Scenario {
     /// the manoeuvre.
     fn fitted(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
         written.validate_compatibility(&model)?;
+        if let Some(conflict) = written.custom_parts().topic_conflict() {
+            return Err(conflict);
+        }
         let study = ResolvedScenario::resolve(&written, &model)?;
         let mut scenario = Self { written, model, plan: None, linear: None, study };
         scenario.validate()?;

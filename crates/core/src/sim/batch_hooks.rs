@@ -14,7 +14,7 @@ impl Simulation {
     /// Only for laws without guards and runs without rows between events.
     pub(crate) fn take_motion(&mut self) -> Option<ExternalMotion> {
         let Plant::OneAxis(plant) = &mut self.plant else { return None };
-        if self.monitor.is_some() { None } else { plant.take_motion() }
+        if self.estimation.monitor.is_some() { None } else { plant.take_motion() }
     }
 
     /// Begins the run.
@@ -28,15 +28,15 @@ impl Simulation {
 
     /// Returns the next instant at which anything is due, at most the end, and whether that is within the run.
     pub(crate) fn next_event(&self) -> (Instant, bool) {
-        let next = self.next();
-        (next.min(self.end), next <= self.end)
+        let (next, end) = (self.next_due(), self.clock.end());
+        (next.min(end), next <= end)
     }
 
     /// Returns the start of the last motion segment, its reduced moment (rad/s²) and its torques, once per segment;
     /// `None` if no segment has begun since the last call.
     pub(crate) fn take_segment_start(&mut self) -> Option<(Instant, f64, AppliedTorque)> {
         let Plant::OneAxis(plant) = &mut self.plant else { return None };
-        plant.take_segment_start().map(|(at, moment)| (at, moment, self.applied))
+        plant.take_segment_start().map(|(at, moment)| (at, moment, self.loads.applied))
     }
 
     /// Sets the motion at `now`: angle and rate of each coordinate.
@@ -44,26 +44,17 @@ impl Simulation {
         if let Plant::OneAxis(plant) = &mut self.plant {
             plant.set_motion(now, motion);
         }
-        if now > self.now {
-            self.now = now;
-            self.decisions_at_now = 0;
-        }
-    }
-
-    /// Reads the sensors that are due; returns true if anything was measured.
-    pub(super) fn read_sensors(&mut self) -> bool {
-        self.update_angle_origin(self.now);
-        self.sensors.read(self.now, &self.plant, &self.angle_origin)
+        self.clock.advance_to(now);
     }
 
     /// Returns the current instant of the run.
     pub(crate) fn now(&self) -> Instant {
-        self.now
+        self.clock.now()
     }
 
     /// Returns true if a sample is due at the current instant.
     pub(crate) fn sample_is_due(&self) -> bool {
-        self.sensors.next == Some(self.now)
+        self.sensors.sample_is_due(self.clock.now())
     }
 
     /// Reads the sample at the current instant before the estimator uses it, and returns its angle (rad); `None` if the
@@ -72,27 +63,28 @@ impl Simulation {
     /// # Errors
     /// Fails if the state is no longer finite.
     pub(crate) fn read_sample_ahead(&mut self) -> Result<Option<f64>, SimulationError> {
-        self.plant.evaluate(self.now)?;
-        let measured = self.read_sensors();
-        self.sample_read_ahead = Some(measured);
+        let now = self.clock.now();
+        self.plant.evaluate(now)?;
+        let measured = self.sensors.read_ahead(now, &self.plant, self.estimation.origin());
         Ok(measured.then(|| self.sensors.measured[0][0]))
     }
 
     /// Returns the filter, and the mean reduced moment since its last sample (rad/s²).
     pub(crate) fn filter(&mut self) -> Option<(&mut KalmanFilter, Option<f64>)> {
-        self.estimator.batch_filter(self.now)
+        self.estimation.batch_filter(self.clock.now())
     }
 
     /// Returns the true values of the filter's state components.
-    pub(crate) fn true_state(&self) -> Vec<f64> {
-        self.estimator.true_filter_state(self.now, &self.plant.about_axis(0, &self.angle_origin))
+    pub(crate) fn true_state(&mut self) -> Vec<f64> {
+        self.estimation.true_filter_state(self.clock.now(), &self.plant)
     }
+
     /// Ends the run, if it is at its end.
     ///
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub(crate) fn finish_external(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        self.plant.evaluate(self.now)?;
+        self.plant.evaluate(self.clock.now())?;
         self.finish(record)
     }
 }

@@ -1,60 +1,196 @@
-//! From sensor samples to state estimates, with angles counted from the current target.
+//! Estimation: from sensor samples to state estimates, with angles counted from the current target, and the monitor of
+//! the envelope.
 
-use flexsc_control::estimator::SampleContext;
+use flexsc_control::actuator::PulsedActuator;
+use flexsc_control::estimator::kalman::KalmanFilter;
+use flexsc_control::estimator::{
+    self, AdaptationRun, EnvelopeWindow, Estimator, SampleContext, WindowedEnvelope,
+};
+use flexsc_control::sensor::Orientation;
+use flexsc_control::state_estimate::StateEstimate;
+use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_record::Record;
 
-use super::{Simulation, SimulationError};
+use super::controllers::ControlLaws;
+use super::guidance::Guidance;
+use super::loads::Loads;
+use super::plant::Plant;
+use super::sensors::Sensors;
+use crate::scenario::Scenario;
 
-impl Simulation {
-    /// Reads the sensors that are due and updates the estimates.
-    pub(super) fn update_estimates(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        self.plant.evaluate(now)?;
-        let measured = self.sample_read_ahead.take().unwrap_or_else(|| self.read_sensors());
-        if self.sensors.next.is_some() {
-            let (from, to) = (self.inputs_known_until.seconds(), now.seconds());
-            self.estimator.add_waveform_impulse(self.loads.actuator.waveform_impulse(from, to));
-            self.inputs_known_until = now;
+/// Estimator of a run, its estimates and their origin, and the monitor of the envelope.
+#[derive(Clone, Debug)]
+pub struct Estimation {
+    pub estimator: Box<dyn Estimator>,
+    /// True if the scenario has an estimator.
+    pub has_estimator: bool,
+    /// Instant up to which the estimator knows the impulse of the waveform.
+    inputs_known_until: Instant,
+    /// State estimate about each axis, which the laws read.
+    pub estimates: Vec<StateEstimate>,
+    /// Attitude or angle from which the angles are counted, and (`next_origin_change`) the instant at which it changes
+    /// next.
+    origin: Orientation,
+    next_origin_change: Option<Instant>,
+    pub monitor: Option<WindowedEnvelope>,
+}
+
+impl Estimation {
+    /// Creates the estimation of a scenario's run, before its start.
+    pub fn new(scenario: &Scenario, guidance: &Guidance, seed: Seed) -> Self {
+        Self {
+            estimator: estimator::start(&scenario.estimator_context(), seed),
+            has_estimator: scenario.estimator.is_some(),
+            inputs_known_until: Instant::START,
+            estimates: vec![StateEstimate::default(); scenario.study.axes.len()],
+            origin: guidance.origin(Instant::START),
+            next_origin_change: guidance.next_change(Instant::START),
+            monitor: scenario.monitor(seed),
         }
-        let (plant, origin) = (&self.plant, &self.angle_origin);
-        let taken = SampleContext {
-            now,
-            measured: measured.then_some(&self.sensors.measured[..]),
-            readings: &self.sensors.new_readings,
-            origin,
-            truth: &|axis| plant.about_axis(axis, origin),
-            actuator: &*self.loads.actuator,
-            ahead: self.controllers.lead_time(),
-        };
-        self.estimator.update(&taken, &mut self.estimates);
-        if let Some(changes) = self.sensors.field_rate {
-            self.estimates
-                .iter_mut()
-                .zip(&changes)
-                .for_each(|(state_estimate, change)| state_estimate.field_rate = *change);
-        }
-        for (state_estimate, queued) in
-            self.estimates.iter_mut().zip(self.loads.actuator.queued_rate_change())
-        {
-            state_estimate.queued_rate = queued;
-        }
-        self.record_estimates(record)
     }
 
-    /// Moves the origin of the angles to the current target, and shifts the estimates accordingly.
+    /// Returns the number of axes.
     #[inline]
-    pub(super) fn update_angle_origin(&mut self, now: Instant) {
+    pub fn axis_count(&self) -> usize {
+        self.estimates.len()
+    }
+
+    /// Returns the attitude or angle from which the angles are counted.
+    pub fn origin(&self) -> &Orientation {
+        &self.origin
+    }
+
+    /// Returns true if the origin never changes any more.
+    pub fn origin_is_fixed(&self) -> bool {
+        self.next_origin_change.is_none()
+    }
+
+    /// Returns the instant at which the window of the envelope closes next.
+    #[inline]
+    pub fn window_closes(&self) -> Option<Instant> {
+        self.monitor.as_ref().map(|monitor| monitor.closes)
+    }
+
+    /// Moves the origin of the angles to the target at `now`, and shifts the estimates accordingly.
+    #[inline]
+    pub fn update_angle_origin(&mut self, now: Instant, guidance: &Guidance) {
         if self.next_origin_change.is_none_or(|begins| now < begins) {
             return;
         }
-        let origin = self.guidance.origin(now);
-        let by = self.angle_origin.error_from(&origin);
+        let origin = guidance.origin(now);
+        let by = self.origin.error_from(&origin);
         self.estimator.shift_origin(by);
-        for (axis, state_estimate) in self.estimates.iter_mut().enumerate() {
-            state_estimate.angle += by[axis];
+        for (axis, estimate) in self.estimates.iter_mut().enumerate() {
+            estimate.angle += by[axis];
         }
-        self.angle_origin = origin;
-        self.next_origin_change = self.guidance.next_change(now);
+        self.origin = origin;
+        self.next_origin_change = guidance.next_change(now);
+    }
+
+    /// Updates the estimates with the sample at `now`, in which the sensors have `measured` anything or nothing.
+    pub fn update(
+        &mut self,
+        now: Instant,
+        measured: bool,
+        sensors: &Sensors,
+        plant: &Plant,
+        loads: &Loads,
+        lead_time: f64,
+    ) {
+        let abilities = loads.actuator.capabilities();
+        let mut waveform_impulse = 0.0;
+        if !sensors.is_continuous() {
+            let (from, to) = (self.inputs_known_until.seconds(), now.seconds());
+            waveform_impulse = abilities.waveform.map_or(0.0, |of| of.waveform_impulse(from, to));
+            self.inputs_known_until = now;
+        }
+        let origin = &self.origin;
+        let taken = SampleContext {
+            now,
+            measured: measured.then_some(&sensors.measured[..]),
+            readings: &sensors.new_readings,
+            origin,
+            truth: &|axis| plant.about_axis(axis, origin),
+            held_torque: &|axis| loads.actuator.effort(axis).held,
+            pulses: abilities.pulses,
+            waveform_impulse,
+            ahead: lead_time,
+        };
+        self.estimator.update(&taken, &mut self.estimates);
+        if let Some(changes) = sensors.field_rate {
+            let each = self.estimates.iter_mut().zip(&changes);
+            each.for_each(|(estimate, change)| estimate.field_rate = *change);
+        }
+        let queued = abilities.pulses.map_or([0.0; 3], PulsedActuator::queued_rate_change);
+        for (estimate, queued) in self.estimates.iter_mut().zip(queued) {
+            estimate.queued_rate = queued;
+        }
+    }
+
+    /// Predicts the estimates from the last sample to `now`, at which a law decides; a continuous sensor gives the true
+    /// state.
+    pub fn predict(&mut self, now: Instant, plant: &Plant, sensors: &Sensors) {
+        if sensors.is_continuous() {
+            let truth = plant.truth();
+            let angles = truth.orientation.rotated_by(truth.sensor_angles()).error_from(&self.origin);
+            for (axis, estimate) in self.estimates.iter_mut().enumerate() {
+                (estimate.angle, estimate.rate) = (angles[axis], truth.rate[axis]);
+            }
+        } else {
+            self.estimator.predict(now, &self.origin, &mut self.estimates);
+        }
+    }
+
+    /// Informs the estimator and the monitor of the envelope of the loads that act in the segment that begins at `now`.
+    pub fn begin_segment(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
+        if self.has_estimator {
+            let (actuator, axes) = (&loads.actuator, self.estimates.len());
+            let moment = |axis: usize| if axis < axes { actuator.effort(axis).reduced_moment } else { 0.0 };
+            self.estimator.input_changed(now, [0, 1, 2].map(moment));
+        }
+        if let Some(monitor) = &mut self.monitor {
+            plant.update_monitor(monitor, now, loads.applied.constant, || loads.actuator_wrench(now));
+        }
+    }
+
+    /// Adds the three-axis motion at the start of a cycle to the envelope.
+    pub fn add_cycle(&mut self, now: Instant, plant: &Plant) {
+        if let (Some(monitor), Plant::ThreeAxis(plant)) = (&mut self.monitor, plant) {
+            monitor.observe(now, || plant.swings());
+        }
+    }
+
+    /// Closes the envelope's window, if it ends at `now`, and sets the laws' parameter to the value that the adaptation
+    /// chose.
+    pub fn close_window(
+        &mut self,
+        now: Instant,
+        plant: &Plant,
+        laws: &mut ControlLaws,
+    ) -> Option<EnvelopeWindow> {
+        let monitor = self.monitor.as_mut().filter(|monitor| monitor.closes == now)?;
+        let parameter = monitor.search().map(AdaptationRun::parameter).filter(|(key, _)| *key != "k_t");
+        let gain = parameter.map_or_else(|| laws.tuned_value(), |(_, value)| value);
+        let closed = monitor.close(now, &plant.modal_state(), gain);
+        if let (Some((row, _)), Some(search)) = (&closed.step, monitor.search()) {
+            laws.tune(search.parameter().0, row.gain);
+        }
+        Some(closed)
+    }
+
+    /// Returns the adaptation that reads the envelope.
+    pub fn search(&self) -> Option<&AdaptationRun> {
+        self.monitor.as_ref().and_then(WindowedEnvelope::search)
+    }
+
+    /// Returns the filter of a one-axis body, and the mean reduced moment since its last sample (rad/s²).
+    pub fn batch_filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
+        self.estimator.batch()?.batch_filter(now)
+    }
+
+    /// Returns the true values of the filter's state components.
+    pub fn true_filter_state(&mut self, now: Instant, plant: &Plant) -> Vec<f64> {
+        let truth = plant.about_axis(0, &self.origin);
+        self.estimator.batch().map_or_else(Vec::new, |filter| filter.true_filter_state(now, &truth))
     }
 }

@@ -9,9 +9,9 @@ use flexsc_numerics::quadrature;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
 
+use super::SimulationError;
 use super::plant::Plant;
-use super::sensors::Sensors;
-use super::{Simulation, SimulationError};
+use super::sensors::SensorSchedule;
 use crate::scenario::Scenario;
 
 /// Exposures of all star trackers of a run.
@@ -68,16 +68,11 @@ impl Exposures {
         }
     }
 
-    /// Discards the copy at the end of its segment.
-    pub fn discard_copy(&mut self) {
-        self.copy = None;
-    }
-
     /// Closes and opens the exposures that are due, and hands the means of closed ones to their sensors.
-    fn serve(&mut self, now: Instant, sensing: &mut Sensors) {
+    fn serve(&mut self, now: Instant, sensors: &mut [SensorSchedule]) {
         for shutter in self.shutters.iter_mut().filter(|shutter| shutter.due <= now) {
             if shutter.is_open {
-                sensing.close_exposure(shutter.sensor, &shutter.exposure);
+                sensors[shutter.sensor].close_exposure(&shutter.exposure);
                 shutter.exposure.clear();
                 shutter.middle += shutter.period;
                 // Two rounded halves may exceed the period by a tick.
@@ -90,27 +85,50 @@ impl Exposures {
             }
         }
         if self.shutters.iter().all(|shutter| !shutter.is_open) {
-            self.discard_copy();
+            self.copy = None;
         }
     }
 }
 
-impl Simulation {
-    /// Closes and opens the exposures that are due at the current instant.
-    pub(super) fn update_exposures(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if self.exposures.due().is_some_and(|due| due <= self.now) {
-            self.accumulate_mean(record)?;
-            self.exposures.serve(self.now, &mut self.sensors);
+impl Exposures {
+    /// Closes and opens the exposures that are due at `now`, of a body with this motion.
+    pub fn update(
+        &mut self,
+        now: Instant,
+        plant: &Plant,
+        sensors: &mut [SensorSchedule],
+        record: &mut dyn Record,
+    ) -> Result<(), SimulationError> {
+        if self.due().is_some_and(|due| due <= now) {
+            self.accumulate_mean(now, plant, record)?;
+            self.serve(now, sensors);
         }
         Ok(())
     }
 
-    /// Accumulates the mean of open exposures from the last averaged instant up to now.
-    pub(super) fn accumulate_mean(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (Exposures { shutters, copy, averaged }, now) = (&mut self.exposures, self.now);
+    /// Ends the segment of the copy at `now`, before the body of the run begins its next segment.
+    pub fn end_segment(
+        &mut self,
+        now: Instant,
+        plant: &Plant,
+        record: &mut dyn Record,
+    ) -> Result<(), SimulationError> {
+        self.accumulate_mean(now, plant, record)?;
+        self.copy = None;
+        Ok(())
+    }
+
+    /// Accumulates the mean of open exposures from the last averaged instant up to `now`.
+    fn accumulate_mean(
+        &mut self,
+        now: Instant,
+        body: &Plant,
+        record: &mut dyn Record,
+    ) -> Result<(), SimulationError> {
+        let Self { shutters, copy, averaged } = self;
         let Some(plant) = copy.as_mut().filter(|_| now > *averaged) else { return Ok(()) };
         let from = std::mem::replace(averaged, now);
-        let fastest = plant.fastest_frequency().max(self.plant.fastest_frequency());
+        let fastest = plant.fastest_frequency().max(body.fastest_frequency());
         for (t, lasts) in quadrature::nodes(now.since(from).seconds(), fastest) {
             let at = from + Span::from_seconds(t);
             plant.advance(at, record)?;

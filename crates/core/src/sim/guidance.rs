@@ -75,7 +75,7 @@ impl Guidance {
         if let Some(goal) = led {
             return goal;
         }
-        if now < self.setpoint.from && law.tracks_manoeuvre() {
+        if now < self.setpoint.from && law.reference_needs().tracks_manoeuvre {
             let (angle, rate) = self.manoeuvre_state(now);
             return Setpoint { from: now, angle, rate, acceleration: 0.0 };
         }

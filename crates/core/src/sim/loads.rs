@@ -1,8 +1,9 @@
 //! Loads on the body: the actuator, which executes the laws and the manoeuvre, disturbances, and the environment.
 
-use flexsc_control::actuator::Actuator;
+use flexsc_control::actuator::{Actuator, ActuatorInput, AxisEffort};
 use flexsc_control::law::{Command, TorqueDistribution};
 use flexsc_control::state_estimate::StateEstimate;
+use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::Drift;
@@ -10,6 +11,7 @@ use flexsc_spacecraft::disturbance::{Disturbance, DisturbanceState};
 use flexsc_spacecraft::environment::SurroundingsState;
 use flexsc_spacecraft::wrench::Wrench;
 
+use super::plant::{AppliedTorque, Plant};
 use crate::scenario::Scenario;
 
 /// Everything that acts on the body.
@@ -27,6 +29,8 @@ pub struct Loads {
     /// Next instant at which a load changes without a command.
     pub due: Option<Instant>,
     wrench: Wrench,
+    /// Torques during the current motion segment of a one-axis body.
+    pub applied: AppliedTorque,
 }
 
 impl Loads {
@@ -55,6 +59,7 @@ impl Loads {
             next_change: None,
             due: None,
             wrench: Wrench::default(),
+            applied: AppliedTorque::default(),
         };
         drive.update_due();
         drive
@@ -76,7 +81,9 @@ impl Loads {
         rigid: [f64; 3],
     ) {
         let actuator = &mut self.actuator;
-        let demands = self.distribution.demands(commands, state_estimates, || actuator.stored_momentum(now));
+        let demands = self
+            .distribution
+            .demands(commands, state_estimates, || actuator.capabilities().stored_momentum(now));
         actuator.command(now, &demands, rigid);
         self.due = self.next_change.into_iter().chain(actuator.due()).min();
     }
@@ -87,8 +94,30 @@ impl Loads {
             self.scheduled_changes.pop();
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
-        self.actuator.update(now, rigid);
+        self.actuator.update(now, ActuatorInput::Due(rigid));
         self.update_due();
+    }
+
+    /// Sets the magnetic field in body axes (T) in the actuator, if there is one.
+    pub fn set_magnetic_field(&mut self, now: Instant, field: Option<Vector>) {
+        if let Some(field) = field {
+            self.actuator.update(now, ActuatorInput::MagneticField(field));
+        }
+    }
+
+    /// Copies the speeds and momenta of wheels in bearings from the motion into the actuator.
+    pub fn update_rotor_states(&mut self, now: Instant, plant: &Plant) {
+        let rotors = plant.wheel_bearings();
+        if !rotors.is_empty() {
+            self.actuator.update(now, ActuatorInput::Rotors(&rotors));
+        }
+    }
+
+    /// Sets the torques on a one-axis body during the motion segment that begins.
+    pub fn set_applied_torque(&mut self) {
+        let AxisEffort { held: constant, demanded: feedback, .. } = self.actuator.effort(0);
+        let back_emf = self.actuator.capabilities().back_emf;
+        self.applied = AppliedTorque { constant, feedback, back_emf };
     }
 
     /// Returns the wrench of all loads from `now` on.

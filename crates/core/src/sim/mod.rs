@@ -1,39 +1,31 @@
-//! The run loop, for one-axis and three-axis bodies.
+//! The run loop, for one-axis and three-axis bodies: one instant after the other, in the nine steps of
+//! `docs/events.md`.
 //!
-//! Order at one instant: the body is advanced, the sensors measure, the estimator processes the sample, the monitor
-//! closes its window and the adaptation learns, the laws decide once, the actuator acts, the record gets its rows.
-//! Between events every input is constant or a waveform, and the motion is exact. `docs/events.md` states the rules.
+//! Each part of a run has a file of its own and reaches another part only through the arguments of its methods. Between
+//! two instants every input is constant or a waveform, and the motion is exact.
 
-mod accelerometers;
 mod batch_hooks;
-mod control_step;
-mod custom_parts;
+mod clock;
+mod controllers;
 mod error;
 mod estimation;
 mod exposures;
-mod failures;
 mod guidance;
-mod journal;
-mod journal_events;
 mod loads;
-mod manoeuvre_end;
-mod motion_segments;
-mod objectives;
+mod objective;
 mod observation;
 mod plant;
 mod recorder;
 mod relay_kernel;
 mod run_to;
-mod scene_frames;
+mod run_view;
 mod sensors;
 mod start_finish;
 mod stepping;
-mod wheel_bearings;
 
-use flexsc_control::estimator::{self, Estimator, ObjectiveMeter, WindowedEnvelope};
-use flexsc_control::law::{Controllers, Event};
-use flexsc_control::sensor::Orientation;
-use flexsc_control::state_estimate::StateEstimate;
+use flexsc_control::estimator::AdaptationRun;
+use flexsc_control::law::Event;
+use flexsc_control::part::Part;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
@@ -42,63 +34,31 @@ use crate::relay_setup::{self, RunSetup};
 use crate::scenario::Scenario;
 
 pub use error::SimulationError;
-use exposures::Exposures;
-use loads::Loads;
 pub use observation::{ObservationField, ObservationGroup};
 pub(crate) use plant::AppliedTorque;
 pub use stepping::StopAt;
 
+use clock::Clock;
+use controllers::ControlLaws;
+use estimation::Estimation;
 use guidance::Guidance;
+use loads::Loads;
 use plant::Plant;
 use recorder::Recorder;
+use run_view::RunView;
 use sensors::Sensors;
-
-/// Largest number of decisions at one instant; more are chatter, because no scenario's law needs more than a few.
-const MOST_DECISIONS: u32 = 32;
 
 /// State of one run.
 #[derive(Clone, Debug)]
-#[expect(clippy::struct_excessive_bools, reason = "each is a fact of its own")]
 pub struct Simulation {
-    now: Instant,
-    end: Instant,
+    clock: Clock,
     plant: Plant,
     sensors: Sensors,
-    exposures: Exposures,
-    estimator: Box<dyn Estimator>,
-    /// True if the scenario has an estimator.
-    has_estimator: bool,
-    /// Instant up to which the estimator knows the impulse of the waveform.
-    inputs_known_until: Instant,
-    monitor: Option<WindowedEnvelope>,
-    /// Meter of the adaptation's objective, unless the objective is the envelope.
-    meter: Option<ObjectiveMeter>,
+    estimation: Estimation,
     guidance: Guidance,
-    /// Attitude or angle from which the angles are counted, and (`next_target`) the instant at which it changes next.
-    angle_origin: Orientation,
-    next_origin_change: Option<Instant>,
-    estimates: Vec<StateEstimate>,
-    controllers: Controllers,
+    laws: ControlLaws,
     loads: Loads,
-    /// Torques during the current motion segment.
-    applied: AppliedTorque,
-    /// Instant and index of the next guard crossing, as long as the inputs do not change before.
-    crossing: Option<(Instant, usize)>,
-    decisions_at_now: u32,
-    /// How often the law has switched since the last window of switchings ended, and when that was; how long one lasts (s) at least.
-    switchings: (u64, Instant),
-    shortest_window: f64,
-    /// True if a wheel in bearings has stuck or let go at the current instant; `slips`: number of such events within a
-    /// nanosecond, and the first's instant.
-    bearing_event: bool,
-    recent_bearing_events: (u32, Instant),
     recorder: Recorder,
-    /// True if the sample that was read ahead for the current instant has a measurement; `None` if none was read ahead.
-    sample_read_ahead: Option<bool>,
-    /// Event at the current instant to which the laws have not responded yet, because the run was stopped before.
-    pending_event: Option<Event>,
-    /// True if there are external commands that the actuator does not have yet.
-    external_command_pending: bool,
     /// True if the scenario has custom parts.
     has_custom_parts: bool,
     /// Initial setup for the relay kernel, if it can simulate this run.
@@ -109,38 +69,18 @@ impl Simulation {
     /// Creates the run number `run` of a scenario, before its start.
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         let seed = Seed { scenario: scenario.seed, run };
-        let (study, reference) = (&scenario.study, Guidance::new(scenario));
-        let axes = study.axes.len();
+        let guidance = Guidance::new(scenario);
         Self {
-            now: Instant::START,
-            end: Instant::START + scenario.duration,
+            clock: Clock::new(scenario),
             plant: Plant::new(scenario),
             sensors: Sensors::new(scenario, seed),
-            exposures: Exposures::new(scenario),
-            estimator: estimator::start(&scenario.estimator_context(), seed),
-            has_estimator: scenario.estimator.is_some(),
-            inputs_known_until: Instant::START,
-            monitor: scenario.monitor(seed),
-            meter: scenario.objective_meter(seed),
-            angle_origin: reference.origin(Instant::START),
-            next_origin_change: reference.next_change(Instant::START),
-            estimates: vec![StateEstimate::default(); axes],
-            controllers: Controllers::new(&scenario.law, &study.authorities),
+            estimation: Estimation::new(scenario, &guidance, seed),
+            laws: ControlLaws::new(scenario, seed),
             loads: Loads::new(scenario, seed),
-            applied: AppliedTorque::default(),
-            crossing: None,
-            decisions_at_now: 0,
-            switchings: (0, Instant::START),
-            shortest_window: relay_setup::shortest_window(scenario.model.frequencies().fold(0.0, f64::max)),
-            bearing_event: false,
-            recent_bearing_events: (0, Instant::START),
-            sample_read_ahead: None,
-            pending_event: None,
-            external_command_pending: false,
+            recorder: Recorder::new(scenario, &guidance, run),
+            guidance,
             has_custom_parts: scenario.has_custom_parts(),
             kernel_setup: relay_setup::single(scenario).map(Box::new),
-            recorder: Recorder::new(scenario, &reference, run),
-            guidance: reference,
         }
     }
 
@@ -152,7 +92,7 @@ impl Simulation {
     /// Runs to `until`, or to the end of the scenario if that is earlier, including everything that is due at that
     /// instant.
     pub fn run_until(&mut self, until: Instant, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let until = until.min(self.end);
+        let until = until.min(self.clock.end());
         self.open(record)?;
         self.resume(None, record)?;
         self.run_in_kernel(until, record)?;
@@ -165,18 +105,15 @@ impl Simulation {
     /// Advances the body to the next instant at which anything is due, at most to `until`; returns true if anything is
     /// due there.
     fn advance_to_next(&mut self, until: Instant, record: &mut dyn Record) -> Result<bool, SimulationError> {
-        let mut next = self.next();
-        self.exposures.copy_plant(self.now, &self.plant);
+        let mut next = self.next_due();
+        self.sensors.copy_plant(self.clock.now(), &self.plant);
         if let Some(at) = self.plant.advance(next.min(until), record)? {
             next = at;
-            self.handle_bearing_event(at)?;
+            self.clock.count_bearing_event(at)?;
         }
         let now = next.min(until);
-        self.update_rotor_states(now);
-        if now > self.now {
-            self.now = now;
-            self.decisions_at_now = 0;
-        }
+        self.loads.update_rotor_states(now, &self.plant);
+        self.clock.advance_to(now);
         if next > until {
             self.plant.evaluate(until)?;
         }
@@ -185,78 +122,177 @@ impl Simulation {
 
     /// Returns the next instant at which anything is due.
     #[inline]
-    fn next(&self) -> Instant {
-        let trip = self.crossing.map(|(at, _)| at);
-        let closes = self.monitor.as_ref().map(|monitor| monitor.closes);
-        let measured = self.meter.as_ref().map(|meter| meter.closes);
+    fn next_due(&self) -> Instant {
         let due = [
-            trip,
-            self.controllers.next_timeout(),
+            self.laws.next_event(),
             self.loads.due,
-            self.sensors.next,
-            self.exposures.due(),
-            closes,
-            measured,
+            self.sensors.next_event(),
+            self.estimation.window_closes(),
+            self.clock.next_cycle(),
             self.recorder.due(),
         ];
-        due.into_iter().fold(self.end + Span::TICK, |next, due| due.map_or(next, |due| next.min(due)))
+        let end = self.clock.end() + Span::TICK;
+        due.into_iter().fold(end, |next, due| due.map_or(next, |due| next.min(due)))
     }
 
-    /// Processes everything that is due at the current instant, in the numbered steps of docs/events.md. Step 1, the state
-    /// of the body, is evaluated by `advance_to_next`.
+    /// Processes everything that is due at the current instant, in the numbered steps of `docs/events.md`.
     pub(crate) fn process_instant(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let event = self.law_event();
-        self.sense_and_estimate(record)?;
-        self.control_and_actuate(event, record)
+        let event = self.sense(record)?;
+        self.respond(event, record)
     }
 
-    /// Returns the event at the current instant for the laws.
-    fn law_event(&self) -> Event {
-        match self.crossing {
-            _ if self.sample_is_due() || self.sample_read_ahead.is_some() => Event::Due { sampled: true },
-            Some((at, guard)) if at == self.now => Event::Guard(guard),
-            _ => Event::Due { sampled: false },
+    /// Performs steps 1 to 5 of an instant, which a run that is stopped there has behind it; returns the event for the
+    /// laws.
+    fn sense(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
+        let now = self.clock.now();
+        // 1. State of the body.
+        self.plant.evaluate(now)?;
+        // 2. Exposures that end, the target of this instant, and the sensors.
+        self.sensors.update_exposures(now, &self.plant, record)?;
+        let is_sampled = self.sensors.sample_is_due(now);
+        let event = self.laws.event(now, is_sampled);
+        if is_sampled
+            || self.clock.cycle_is_due()
+            || self.laws.must_decide(now, event, &self.estimation.estimates)
+        {
+            self.estimation.update_angle_origin(now, &self.guidance);
         }
+        // 3. Sample and estimates.
+        if is_sampled {
+            self.take_sample(record)?;
+        }
+        // 4. Windows of the envelope and of other objectives, and the adaptation.
+        let envelope = self.estimation.close_window(now, &self.plant, &mut self.laws);
+        self.recorder.record_envelope_window(now, envelope.as_ref(), record)?;
+        let objective = self.laws.close_objective_window(now, &self.plant, &self.loads);
+        self.recorder.record_objective_window(now, objective.as_ref(), record)?;
+        // 5. End of a manoeuvre.
+        let (run, recorder) = self.view();
+        recorder.record_manoeuvre_end(&run, record)?;
+        Ok(event)
     }
 
-    /// Performs steps 2 to 5 of an instant: sensors, estimates, windows of the adaptation, and the end of a manoeuvre.
-    fn sense_and_estimate(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        // Steps 2 and 3: exposures that end, sensors, and the estimator.
-        self.update_exposures(record)?;
-        if self.sample_is_due() || self.sample_read_ahead.is_some() {
-            self.update_estimates(record)?;
-        }
-        // Step 4: windows of the envelope and of other objectives, and the adaptation.
-        if self.monitor.as_ref().is_some_and(|monitor| monitor.closes == now) {
-            self.close_envelope_window(record)?;
-        }
-        self.close_objective_window(record)?;
-        // Step 5.
-        self.record_manoeuvre_end(record)
-    }
-
-    /// Performs steps 6 to 9 of an instant: laws, which decide on `event`, actuators, loads, and the record's rows.
-    fn control_and_actuate(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        // Steps 6 and 7: the laws, and the actuator's commands.
-        if self.external_command_pending || self.laws_must_decide(event) {
+    /// Performs steps 6 to 9 of an instant, in which the laws respond to `event`.
+    fn respond(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let now = self.clock.now();
+        // 6. and 7. Laws, and the actuator's commands.
+        if self.laws.external_command_pending || self.laws.must_decide(now, event, &self.estimation.estimates)
+        {
             self.control_step(event, record)?;
         }
-        // Step 8: bearings, disturbances and the actuator's own periods.
-        let met = std::mem::take(&mut self.bearing_event);
-        if met || self.loads.due == Some(now) {
-            self.plant.evaluate(now)?;
-            self.set_magnetic_field();
+        // 8. Bearings, disturbances and the actuator's own periods: a new segment.
+        if self.clock.take_bearing_event() || self.loads.due == Some(now) {
+            self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
             self.loads.serve(now, self.plant.truth().rigid);
             self.begin_segment(record)?;
         }
         self.check_custom_parts()?;
-        // Step 9.
-        self.record_bearing_events(record)?;
-        self.record_failures(record)?;
-        self.record_accelerations(record)?;
-        self.record_due(record)?;
-        self.record_frames(record)
+        // 9. Cycle of three axes, and the rows of the record.
+        let is_cycle = self.clock.cycle_is_due();
+        if is_cycle {
+            self.clock.end_cycle();
+            self.add_cycle();
+        }
+        let (run, recorder) = self.view();
+        Ok(recorder.record_instant(&run, is_cycle, record)?)
+    }
+
+    /// Takes the sample of the current instant, and updates the estimates with it.
+    fn take_sample(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let now = self.clock.now();
+        let measured = self.sensors.sample(now, &self.plant, self.estimation.origin());
+        let lead_time = self.laws.lead_time();
+        self.estimation.update(now, measured, &self.sensors, &self.plant, &self.loads, lead_time);
+        let (run, recorder) = self.view();
+        Ok(recorder.record_estimates(&run, record)?)
+    }
+
+    /// Lets the laws decide on `event`, and begins a motion segment under their commands.
+    fn control_step(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let now = self.clock.now();
+        self.clock.count_decision()?;
+        self.estimation.predict(now, &self.plant, &self.sensors);
+        let decision = self.laws.decide(now, event, &self.guidance, &mut self.estimation.estimates);
+        if decision.is_switching() {
+            self.clock.count_switching()?;
+        }
+        self.command_actuator();
+        self.begin_segment(record)?;
+        let (run, recorder) = self.view();
+        Ok(recorder.record_switching(&run, decision, record)?)
+    }
+
+    /// Hands the laws' commands to the actuator.
+    fn command_actuator(&mut self) {
+        let truth = self.plant.truth();
+        self.loads.set_magnetic_field(self.clock.now(), self.sensors.magnetic_field(truth));
+        let (outputs, estimates) = (self.laws.outputs(), &self.estimation.estimates);
+        self.loads.command(self.clock.now(), outputs, estimates, truth.rigid);
+    }
+
+    /// Begins a motion segment under the loads from the current instant on, and finds its first guard crossing.
+    fn begin_segment(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        let (now, axes) = (self.clock.now(), self.estimation.axis_count());
+        self.plant.record_pieces(now, &self.loads.applied, record)?;
+        self.sensors.end_segment(now, &self.plant, record)?;
+        self.laws.objective.add_motion(now, &self.plant, &self.loads);
+        if axes == 1 {
+            self.loads.set_applied_torque();
+        }
+        self.estimation.begin_segment(now, &self.plant, &self.loads);
+        self.plant.begin_segment(self.loads.wrench(now));
+        self.laws.objective.add_torque(now, axes, &self.loads);
+        self.find_crossing(record)
+    }
+
+    /// Finds the first guard crossing of the segment that begins; with a sampled sensor, guards are tested at the
+    /// samples.
+    fn find_crossing(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
+        self.laws.discard_crossing();
+        if self.sensors.is_continuous() {
+            let end = self.loads.due.into_iter().fold(self.clock.end(), Instant::min);
+            self.laws.find_crossing([self.clock.now(), end], &mut self.plant, record)?;
+        }
+        Ok(())
+    }
+
+    /// Adds the motion at the start of a cycle of three axes to the envelope and to the adaptation's objective.
+    fn add_cycle(&mut self) {
+        let (now, plant, loads) = (self.clock.now(), &self.plant, &self.loads);
+        self.estimation.add_cycle(now, plant);
+        self.laws.objective.add_cycle(now, plant, &self.estimation, &self.guidance, loads);
+    }
+
+    /// Fails if a custom part cannot go on.
+    #[inline]
+    fn check_custom_parts(&self) -> Result<(), SimulationError> {
+        if !self.has_custom_parts {
+            return Ok(());
+        }
+        let search = self.estimation.search().or(self.laws.objective.search());
+        let all: [(&str, Option<&dyn Part>); 5] = [
+            ("sensor", Some(&self.sensors)),
+            ("estimator", Some(&*self.estimation.estimator)),
+            ("adaptation", search.map(AdaptationRun::part)),
+            ("law", Some(&self.laws)),
+            ("actuator", Some(&*self.loads.actuator)),
+        ];
+        let failed = all.into_iter().find_map(|(role, part)| Some((role, part?.failure()?)));
+        match failed {
+            Some((role, source)) => Err(SimulationError::Own { at: self.clock.now(), role, source }),
+            None => Ok(()),
+        }
+    }
+
+    /// Returns the parts of the run for reading, and the recorder, which reads them.
+    fn view(&mut self) -> (RunView<'_>, &mut Recorder) {
+        let Self { clock, plant, sensors, estimation, guidance, laws, loads, recorder, .. } = self;
+        (RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads }, recorder)
+    }
+
+    /// Returns the parts of the run for reading.
+    fn read_view(&self) -> RunView<'_> {
+        let Self { clock, plant, sensors, estimation, guidance, laws, loads, .. } = self;
+        RunView { now: clock.now(), plant, sensors, estimation, guidance, laws, loads }
     }
 }

@@ -1,12 +1,10 @@
 //! State of a run as a flat vector with names and units: true state, measurements, and estimates.
 
 use flexsc_control::sensor::Truth;
-use flexsc_dynamics::AxisState;
-use flexsc_record::Hinges;
-use flexsc_spacecraft::flow::ThreeAxisState;
+use flexsc_record::{ControlMomentGyros, Hinges};
 
 use super::plant::Plant;
-use super::{Simulation, SimulationError};
+use super::run_view::RunView;
 use crate::scenario::Scenario;
 
 /// Origin of the values of a field.
@@ -20,7 +18,7 @@ pub enum ObservationGroup {
     Estimated,
 }
 
-/// Quantity in the vector of [`Simulation::observe`].
+/// Quantity in the vector of [`super::Simulation::observe`].
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub struct ObservationField {
     /// Origin of the field's values: true state, measurement or estimate.
@@ -40,32 +38,12 @@ impl ObservationField {
     }
 }
 
-impl Simulation {
-    /// Returns the state of a one-axis body at the current instant.
-    pub fn state(&self) -> Option<&AxisState> {
-        if let Plant::OneAxis(plant) = &self.plant { Some(plant.state()) } else { None }
-    }
-
-    /// Returns the state of a three-axis body at the current instant.
-    pub fn spatial_state(&self) -> Option<&ThreeAxisState> {
-        if let Plant::ThreeAxis(plant) = &self.plant { Some(plant.state()) } else { None }
-    }
-
-    /// Returns the mean of the total envelope over the last closed window (rad).
-    pub fn window_mean(&self) -> Option<f64> {
-        self.monitor.as_ref().map(|monitor| monitor.mean)
-    }
-
-    /// Sets a tunable parameter of the law, such as `k_t`, as an adaptation does.
-    pub fn set_parameter(&mut self, key: &str, value: f64) {
-        self.controllers.tune(key, value);
-    }
-
-    /// Returns the fields of the vector of [`Simulation::observe`], in its order, for a run of this scenario.
+impl RunView<'_> {
+    /// Returns the fields of the observation, in its order, for a run of this scenario.
     pub fn observation_fields(&self, scenario: &Scenario) -> Vec<ObservationField> {
         let field = |group, name, unit, count| ObservationField { group, name, unit, count };
         let state = |name, unit, count| field(ObservationGroup::True, name, unit, count);
-        let mut fields = match &self.plant {
+        let mut fields = match self.plant {
             Plant::OneAxis(plant) => {
                 let modes = Some(plant.state().modes.len());
                 vec![
@@ -92,15 +70,15 @@ impl Simulation {
             }
         };
         let actuator = &self.loads.actuator;
-        let wheels = match &self.plant {
-            Plant::OneAxis(_) => usize::from(actuator.wheel(0, 0.0).is_some()),
-            Plant::ThreeAxis(_) => actuator.wheels(self.now, [0.0; 3]).len(),
+        let wheels = match self.plant {
+            Plant::OneAxis(_) => usize::from(actuator.response(self.now, 0, [0.0; 2]).rotor.is_some()),
+            Plant::ThreeAxis(_) => actuator.capabilities().wheels(self.now, [0.0; 3]).len(),
         };
         if wheels > 0 {
-            let count = (self.estimates.len() > 1).then_some(wheels);
+            let count = (self.estimation.axis_count() > 1).then_some(wheels);
             fields.push(state(if count.is_some() { "wheel_speeds" } else { "wheel_speed" }, "rad/s", count));
         }
-        if let Some(gimbals) = actuator.gimbal_row(self.now) {
+        if let Some(gimbals) = self.gyros() {
             let count = Some(gimbals.gyros.len());
             fields.push(state("gimbal_angles", "rad", count));
             fields.push(state("gimbal_rates", "rad/s", count));
@@ -110,7 +88,7 @@ impl Simulation {
             fields.push(state("hinge_angles", "rad", count));
             fields.push(state("hinge_rates", "rad/s", count));
         }
-        let count = (self.estimates.len() > 1).then_some(3);
+        let count = (self.estimation.axis_count() > 1).then_some(3);
         let angle = if count.is_some() { "error" } else { "angle" };
         for group in [ObservationGroup::Measured, ObservationGroup::Estimated] {
             fields.push(field(group, angle, "rad", count));
@@ -119,28 +97,22 @@ impl Simulation {
         fields
     }
 
-    /// Writes the current state into a vector with the fields of [`Simulation::observation_fields`]. With a sensor that measures at
-    /// every instant, measurements and estimates are current too; otherwise they are those of the last sample.
-    ///
-    /// # Errors
-    /// Fails if the state is no longer finite.
-    ///
-    /// # Panics
-    /// Panics if the length of `row` differs from the total width of the fields.
-    pub fn observe(&mut self, row: &mut [f64]) -> Result<(), SimulationError> {
+    /// Writes the state into a vector with the fields of [`RunView::observation_fields`].
+    pub fn write_observation(&self, row: &mut [f64]) {
         let now = self.now;
-        self.plant.evaluate(now)?;
         let truth = self.plant.truth();
         let mut row = RowWriter(row);
         let origin = self.guidance.origin(now);
-        match &self.plant {
+        match self.plant {
             Plant::OneAxis(plant) => {
                 let state = plant.state();
                 row.write(&[truth.sensor_angles()[0], truth.rate[0], state.rigid_angle, state.rigid_rate]);
                 row.write_all(state.modes.iter().map(|mode| mode.displacement));
                 row.write_all(plant.mode_rates());
                 row.write(&[self.torque(0, truth)]);
-                row.write_all(self.loads.actuator.wheel(0, truth.rigid[0]).map(|wheel| wheel.speed_rad_s));
+                let rates = [truth.rate[0], truth.rigid[0]];
+                let rotor = self.loads.actuator.response(now, 0, rates).rotor;
+                row.write_all(rotor.map(|wheel| wheel.speed_rad_s));
             }
             Plant::ThreeAxis(plant) => {
                 let q = plant.attitude();
@@ -152,9 +124,9 @@ impl Simulation {
                 row.write_all(plant.mode_rates());
                 let magnetic = plant.magnetic_torque();
                 row.write(&[0, 1, 2].map(|axis| magnetic[axis] + self.torque(axis, truth)));
-                let wheels = self.loads.actuator.wheels(now, truth.rate);
+                let wheels = self.loads.actuator.capabilities().wheels(now, truth.rate);
                 row.write_all(wheels.iter().map(|wheel| wheel.speed_rad_s));
-                if let Some(gimbals) = self.loads.actuator.gimbal_row(now) {
+                if let Some(gimbals) = self.gyros() {
                     row.write_all(gimbals.gyros.iter().map(|gyro| gyro.angle_rad));
                     row.write_all(gimbals.gyros.iter().map(|gyro| gyro.rate_rad_s));
                 }
@@ -164,14 +136,14 @@ impl Simulation {
                 }
             }
         }
-        let axes = self.estimates.len();
-        if self.sensors.next.is_none() {
+        let axes = self.estimation.axis_count();
+        if self.sensors.is_continuous() {
             let error = truth.orientation.rotated_by(truth.sensor_angles()).error_from(&origin);
             for _ in 0..2 {
                 row.write(&error[..axes]);
                 row.write(&truth.rate[..axes]);
             }
-            return Ok(());
+            return;
         }
         let reported = self.sensors.reading.is_some();
         let measured = |part: usize| {
@@ -179,19 +151,23 @@ impl Simulation {
         };
         row.write_all(measured(0));
         row.write_all(measured(1));
-        row.write_all(self.estimates.iter().map(|state_estimate| state_estimate.angle));
-        row.write_all(self.estimates.iter().map(|state_estimate| state_estimate.rate));
-        Ok(())
+        row.write_all(self.estimation.estimates.iter().map(|state_estimate| state_estimate.angle));
+        row.write_all(self.estimation.estimates.iter().map(|state_estimate| state_estimate.rate));
     }
 
     /// Returns the motion of the appendages' hinges; `None` without hinges.
     fn hinges(&self) -> Option<Hinges> {
-        if let Plant::ThreeAxis(plant) = &self.plant { plant.hinges() } else { None }
+        if let Plant::ThreeAxis(plant) = self.plant { plant.hinges() } else { None }
+    }
+
+    /// Returns the row of the control moment gyros; `None` without any.
+    fn gyros(&self) -> Option<ControlMomentGyros> {
+        self.loads.actuator.capabilities().momentum?.gyros(self.now)
     }
 
     /// Returns the torque that the actuator applies about an axis (N m).
     fn torque(&self, axis: usize, truth: &Truth) -> f64 {
-        self.loads.actuator.applied_torque(self.now, axis, [truth.rate[axis], truth.rigid[axis]])
+        self.loads.actuator.response(self.now, axis, [truth.rate[axis], truth.rigid[axis]]).applied
     }
 }
 

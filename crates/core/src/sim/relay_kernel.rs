@@ -40,7 +40,7 @@ impl Simulation {
             PieceDemand::Beyond(band) if band > 0.0 => band,
             PieceDemand::Beyond(_) | PieceDemand::All => return Ok(()),
         };
-        if self.now != Instant::START || self.decisions_at_now > 0 || !self.runs_uninterrupted() {
+        if !self.clock.is_at_start() || !self.runs_uninterrupted() {
             return Ok(());
         }
         let Some(setup) = self.kernel_setup.take() else { return Ok(()) };
@@ -66,14 +66,14 @@ impl Simulation {
     /// Returns true if nothing is due on the way but the law's switchings and windows, and nothing commands the run
     /// from outside.
     fn runs_uninterrupted(&self) -> bool {
-        self.recorder.due().is_none()
-            && self.recorder.scene.is_none()
+        self.recorder.is_idle()
             && self.loads.due.is_none()
-            && self.sensors.next.is_none()
-            && self.next_origin_change.is_none()
-            && self.meter.is_none()
-            && self.sample_read_ahead.is_none()
-            && !(self.bearing_event || self.external_command_pending || self.controllers.is_external())
+            && self.sensors.is_continuous()
+            && self.estimation.origin_is_fixed()
+            && self.laws.objective.is_none()
+            && !(self.clock.has_bearing_event()
+                || self.laws.external_command_pending
+                || self.laws.is_external())
     }
 
     /// Continues the run in the loop from the segment start at which the kernel stopped.
@@ -82,18 +82,17 @@ impl Simulation {
         if now == Instant::START {
             return Ok(());
         }
-        (self.now, self.decisions_at_now) = (now, 1);
-        self.switchings = (rest.switched.0, instant(rest.switched.1));
-        self.controllers.begin(law_state(place, rest.from.side), now, instant(rest.push_start));
-        let Command::Torque(torque) = self.controllers.outputs()[0] else { return Ok(()) };
+        self.clock.take_over(now, rest.switched.0, instant(rest.switched.1));
+        self.laws.begin(law_state(place, rest.from.side), now, instant(rest.push_start));
+        let Command::Torque(torque) = self.laws.outputs()[0] else { return Ok(()) };
         self.begin_relay_segment(&rest.from, torque);
         let Plant::OneAxis(plant) = &mut self.plant else { return Ok(()) };
         let (sensed, rigid) = (plant.view(now), plant.state().rigid_rate);
-        for state_estimate in &mut self.estimates {
+        for state_estimate in &mut self.estimation.estimates {
             (state_estimate.angle, state_estimate.rate) = (sensed.angle, sensed.rate);
         }
-        self.loads.command(now, self.controllers.outputs(), &self.estimates, [rigid, 0.0, 0.0]);
-        if let Some(monitor) = &mut self.monitor {
+        self.loads.command(now, self.laws.outputs(), &self.estimation.estimates, [rigid, 0.0, 0.0]);
+        if let Some(monitor) = &mut self.estimation.monitor {
             monitor.take_over(instant(rest.integrated_to), rest.integral, &rest.tracks);
         }
         self.find_crossing(record)
@@ -101,7 +100,7 @@ impl Simulation {
 
     /// Begins a motion segment from the kernel's state `from`, under a constant torque (N m).
     fn begin_relay_segment(&mut self, from: &LaneState, torque: f64) {
-        self.applied = AppliedTorque { constant: torque, feedback: torque, back_emf: (0.0, false) };
+        self.loads.applied = AppliedTorque { constant: torque, feedback: torque, back_emf: (0.0, false) };
         if let Plant::OneAxis(plant) = &mut self.plant {
             plant.set_state(instant(from.time), |state| apply_state(state, from));
             plant.begin_under_torque(0.0 + torque);
@@ -194,13 +193,13 @@ impl LaneHost for SingleRunHost<'_> {
 
     fn on_window(&mut self, _: usize, at: (u64, u64), integral: f64, gain: f64) -> f64 {
         let (now, run) = (instant(at), &mut *self.run);
-        let Some(monitor) = &mut run.monitor else { return gain };
+        let Some(monitor) = &mut run.estimation.monitor else { return gain };
         let closed = monitor.close_with(now, integral, gain);
         let learned = closed.step.as_ref().map(|(row, _)| row.gain);
         if let (Some(learned), Some(search)) = (learned, monitor.search()) {
-            run.controllers.tune(search.parameter().0, learned);
+            run.laws.tune(search.parameter().0, learned);
         }
-        let reported = run.recorder.record_window(now, &closed, &mut self.record);
+        let reported = run.recorder.record_envelope_window(now, Some(&closed), &mut self.record);
         self.keep_error(reported);
         learned.unwrap_or(gain)
     }
@@ -208,7 +207,7 @@ impl LaneHost for SingleRunHost<'_> {
     fn on_possible_band_exit(&mut self, _: usize, place: CyclePhase, from: &LaneState, until: (u64, u64)) {
         self.run.begin_relay_segment(from, self.setup.torque(place, from.side));
         let Plant::OneAxis(plant) = &self.run.plant else { return };
-        let reported = plant.record_pieces(instant(until), &self.run.applied, &mut self.record);
+        let reported = plant.record_pieces(instant(until), &self.run.loads.applied, &mut self.record);
         self.keep_error(reported);
     }
 
@@ -246,8 +245,8 @@ mod tests {
             simulation.run_until(Instant::START + Span::from_seconds(until), &mut trace).expect("a run");
         }
         let topics = ["/command", "/envelope_mean", "/adaptation"].map(|topic| trace.topic(topic).cloned());
-        let sensed = simulation.controllers.about(0).state();
-        format!("{topics:?} {:?} {sensed:?} {:?}", simulation.state(), simulation.estimates)
+        let sensed = simulation.laws.state();
+        format!("{topics:?} {:?} {sensed:?} {:?}", simulation.state(), simulation.estimation.estimates)
     }
 
     /// Compares event records, which use the kernel, with full records, whose rows at fixed times need the loop from

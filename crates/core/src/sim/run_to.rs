@@ -1,10 +1,14 @@
-//! Motion at instants chosen by the caller: between events, and exactly at them.
+//! Access to a run from outside: motion at instants chosen by the caller, between events and exactly at them, its state
+//! as a vector, and its parameters.
 
+use flexsc_dynamics::AxisState;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{Record, Sample};
+use flexsc_record::Record;
+use flexsc_spacecraft::flow::ThreeAxisState;
 
 use super::plant::Plant;
-use super::{Simulation, SimulationError};
+use super::{ObservationField, Simulation, SimulationError};
+use crate::scenario::Scenario;
 
 const FEMTOSECONDS: i128 = 1_000_000_000_000_000;
 
@@ -17,21 +21,21 @@ impl Simulation {
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub fn run_to(&mut self, seconds: f64, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let named = (Instant::START + Span::from_seconds(seconds)).min(self.end);
+        let named = (Instant::START + Span::from_seconds(seconds)).min(self.clock.end());
         let early = named.before(Span::from_seconds(seconds * f64::EPSILON));
-        self.run_until(early.max(self.now), record)?;
+        self.run_until(early.max(self.clock.now()), record)?;
         let mut met = false;
         loop {
-            let next = self.next();
-            if next > self.end || next.seconds() > seconds {
+            let next = self.next_due();
+            if next > self.clock.end() || next.seconds() > seconds {
                 break;
             }
             self.run_until(next, record)?;
-            met = self.now.seconds() == seconds;
+            met = self.clock.now().seconds() == seconds;
         }
-        let row = self.nearest_row_instant(named).min(self.end);
+        let row = self.nearest_row_instant(named).min(self.clock.end());
         let is_row = row.seconds() == seconds;
-        if (is_row || !met) && self.now < if is_row { row } else { named } {
+        if (is_row || !met) && self.clock.now() < if is_row { row } else { named } {
             self.run_until(if is_row { row } else { named }, record)?;
         }
         Ok(())
@@ -43,18 +47,53 @@ impl Simulation {
     /// # Errors
     /// Fails if the state is no longer finite or the record cannot be written.
     pub fn record_now(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        self.plant.evaluate(now)?;
-        match &self.plant {
-            Plant::OneAxis(_) => {
-                self.record_motion(record)?;
-                record.record(now, Sample::Law(&self.law_row()))?;
-            }
-            Plant::ThreeAxis(plant) => {
-                record.record(now, Sample::SpatialMotion(&self.spatial_motion(plant)))?;
-            }
-        }
+        self.plant.evaluate(self.clock.now())?;
+        let (run, recorder) = self.view();
+        Ok(recorder.record_now(&run, record)?)
+    }
+
+    /// Returns the state of a one-axis body at the current instant.
+    pub fn state(&self) -> Option<&AxisState> {
+        if let Plant::OneAxis(plant) = &self.plant { Some(plant.state()) } else { None }
+    }
+
+    /// Returns the state of a three-axis body at the current instant.
+    pub fn spatial_state(&self) -> Option<&ThreeAxisState> {
+        if let Plant::ThreeAxis(plant) = &self.plant { Some(plant.state()) } else { None }
+    }
+
+    /// Returns the mean of the total envelope over the last closed window (rad).
+    pub fn window_mean(&self) -> Option<f64> {
+        self.estimation.monitor.as_ref().map(|monitor| monitor.mean)
+    }
+
+    /// Sets a tunable parameter of the law, such as `k_t`, as an adaptation does.
+    pub fn set_parameter(&mut self, key: &str, value: f64) {
+        self.laws.tune(key, value);
+    }
+
+    /// Returns the fields of the vector of [`Simulation::observe`], in its order, for a run of this scenario.
+    pub fn observation_fields(&self, scenario: &Scenario) -> Vec<ObservationField> {
+        self.read_view().observation_fields(scenario)
+    }
+
+    /// Writes the current state into a vector with the fields of [`Simulation::observation_fields`]. With a sensor that measures at
+    /// every instant, measurements and estimates are current too; otherwise they are those of the last sample.
+    ///
+    /// # Errors
+    /// Fails if the state is no longer finite.
+    ///
+    /// # Panics
+    /// Panics if the length of `row` differs from the total width of the fields.
+    pub fn observe(&mut self, row: &mut [f64]) -> Result<(), SimulationError> {
+        self.plant.evaluate(self.clock.now())?;
+        self.read_view().write_observation(row);
         Ok(())
+    }
+
+    /// Enables drawing of the scene for records that want it; to be called before the run begins.
+    pub fn enable_scene(&mut self, scenario: &Scenario) {
+        self.recorder.draw(scenario);
     }
 
     /// Returns the instant of the dense log's row that is nearest to `at`.
@@ -63,7 +102,7 @@ impl Simulation {
             let (whole, part) = instant.parts();
             i128::from(whole) * FEMTOSECONDS + i128::from(part)
         };
-        let period = femtoseconds(Instant::START + self.recorder.log_period).max(1);
+        let period = femtoseconds(Instant::START + self.recorder.log_period()).max(1);
         let rows = (femtoseconds(at) + period / 2) / period;
         let nearest = rows * period;
         Instant::from_parts((nearest / FEMTOSECONDS) as u64, (nearest % FEMTOSECONDS) as u64)
@@ -73,7 +112,6 @@ impl Simulation {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scenario::Scenario;
     use flexsc_record::{Columns, Detail, Trace};
 
     const SCENARIOS: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../scenarios");

@@ -1,13 +1,17 @@
 //! Sensors of a run: when each samples, and the latest measurements about each axis.
 
 use flexsc_control::custom::PartError;
+use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::sensor::{ExposureMean, Orientation, Reading, Sensor, SensorKind, Truth};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::Record;
+use flexsc_record::Report;
 use flexsc_spacecraft::environment::to_body;
 
-use super::Simulation;
+use super::SimulationError;
+use super::exposures::Exposures;
 use super::plant::Plant;
 use crate::scenario::Scenario;
 
@@ -23,16 +27,19 @@ pub struct Sensors {
     pub measured: Vec<[f64; 2]>,
     /// Instant and value of the last measured magnetic field in body axes (T); `field_rate` is its rate of change
     /// (T/s).
-    pub field: Option<(Instant, Vector)>,
+    field: Option<(Instant, Vector)>,
     /// Rate of change of `field` (T/s); `None` before the second sample.
     pub field_rate: Option<Vector>,
     /// Next sampling instant of all sensors; `None` with a continuous sensor.
-    pub next: Option<Instant>,
+    next: Option<Instant>,
+    exposures: Exposures,
+    /// True if the sample that was read ahead for the current instant has a measurement; `None` if none was read ahead.
+    sample_read_ahead: Option<bool>,
 }
 
 /// Sensor with its sampling schedule.
 #[derive(Clone, Debug)]
-struct SensorSchedule {
+pub struct SensorSchedule {
     sensor: Box<dyn Sensor>,
     /// True if the sensor measures the attitude or angle, not only rates.
     provides_attitude: bool,
@@ -78,12 +85,70 @@ impl Sensors {
             field_rate: None,
             next: sensors.iter().filter_map(|due| due.next).min(),
             schedules: sensors,
+            exposures: Exposures::new(scenario),
+            sample_read_ahead: None,
         }
+    }
+
+    /// Returns true if the sensor measures at every instant and not at samples.
+    #[inline]
+    pub fn is_continuous(&self) -> bool {
+        self.next.is_none()
+    }
+
+    /// Returns the next instant at which a sensor samples, or an exposure opens or closes.
+    #[inline]
+    pub fn next_event(&self) -> Option<Instant> {
+        self.next.into_iter().chain(self.exposures.due()).min()
+    }
+
+    /// Returns true if a sample is due at `now`, or was read ahead for it.
+    #[inline]
+    pub fn sample_is_due(&self, now: Instant) -> bool {
+        self.next == Some(now) || self.sample_read_ahead.is_some()
+    }
+
+    /// Copies the plant before it advances from `now`, if an exposure is open.
+    #[inline]
+    pub fn copy_plant(&mut self, now: Instant, plant: &Plant) {
+        self.exposures.copy_plant(now, plant);
+    }
+
+    /// Closes and opens the exposures that are due at `now`.
+    pub fn update_exposures(
+        &mut self,
+        now: Instant,
+        plant: &Plant,
+        record: &mut dyn Record,
+    ) -> Result<(), SimulationError> {
+        self.exposures.update(now, plant, &mut self.schedules, record)
+    }
+
+    /// Ends the motion segment of open exposures at `now`, before the body begins its next segment.
+    pub fn end_segment(
+        &mut self,
+        now: Instant,
+        plant: &Plant,
+        record: &mut dyn Record,
+    ) -> Result<(), SimulationError> {
+        self.exposures.end_segment(now, plant, record)
+    }
+
+    /// Reads the sample at `now` before the estimator uses it; returns true if anything was measured.
+    pub fn read_ahead(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
+        let measured = self.read(now, plant, origin);
+        self.sample_read_ahead = Some(measured);
+        measured
+    }
+
+    /// Takes the sample of `now`, which may have been read ahead; returns true if anything was measured.
+    pub fn sample(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
+        self.sample_read_ahead.take().unwrap_or_else(|| self.read(now, plant, origin))
     }
 
     /// Reads the sensors that are due at `now`, with angles counted from `origin`; returns true if anything was
     /// measured. The plant has to be evaluated at `now`.
-    pub fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
+    fn read(&mut self, now: Instant, plant: &Plant, origin: &Orientation) -> bool {
         let mut any = false;
         for (index, due) in self.schedules.iter_mut().enumerate() {
             let fresh = &mut self.new_readings[index];
@@ -123,38 +188,42 @@ impl Sensors {
         any
     }
 
-    /// Hands the mean of the exposure that ends now to a sensor.
-    pub fn close_exposure(&mut self, sensor: usize, exposure: &ExposureMean) {
-        self.schedules[sensor].sensor.close_exposure(exposure);
-    }
-
-    /// Returns the error of a custom sensor that cannot go on.
-    pub fn halted(&self) -> Option<PartError> {
-        self.schedules.iter().find_map(|due| due.sensor.failure())
-    }
-
     /// Returns the current true bias of the first gyro (rad/s); 0 without a gyro.
     pub fn gyro_bias(&self) -> [f64; 3] {
         self.schedules.iter().find_map(|due| due.sensor.true_bias()).unwrap_or_default()
     }
-}
 
-impl Simulation {
-    /// Sets the magnetic field in the actuator: the last measured one, or the true one if no sensor measures it.
-    pub(super) fn set_magnetic_field(&mut self) {
-        let truth = self.plant.truth();
-        let measured = self.sensors.field.map(|(_, field)| field);
-        let here = || match (truth.orientation, truth.sky.field) {
+    /// Returns the magnetic field in body axes for the actuator (T): the last measured one, or the true one if no sensor
+    /// measures it; `None` without a field.
+    pub fn magnetic_field(&self, truth: &Truth) -> Option<Vector> {
+        let measured = self.field.map(|(_, field)| field);
+        measured.or_else(|| match (truth.orientation, truth.sky.field) {
             (Orientation::Attitude(attitude), Some(field)) => Some(to_body(&attitude, &field)),
             _ => None,
-        };
-        if let Some(field) = measured.or_else(here) {
-            self.loads.actuator.set_magnetic_field(field);
-        }
+        })
+    }
+}
+
+impl Part for Sensors {
+    fn due(&self) -> Option<Instant> {
+        self.next
+    }
+
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        self.schedules.iter().for_each(|due| due.sensor.report(at, report));
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.schedules.iter().find_map(|due| due.sensor.failure())
     }
 }
 
 impl SensorSchedule {
+    /// Hands the mean of the exposure that ends now to the sensor.
+    pub fn close_exposure(&mut self, exposure: &ExposureMean) {
+        self.sensor.close_exposure(exposure);
+    }
+
     /// Returns the rates (rad/s) of a sensor that measures angles only: differences over the period, and the true rates
     /// at first.
     fn differentiated_rates(&self, now: Instant, reading: &Reading, truth: &Truth) -> Option<[f64; 3]> {

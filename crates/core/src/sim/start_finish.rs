@@ -8,26 +8,31 @@ use super::{Simulation, SimulationError};
 impl Simulation {
     /// Begins the run after its first sample: first decision, first motion segment, first rows.
     pub(super) fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        self.plant.evaluate(self.now)?;
-        self.ask_laws(Event::Start);
-        self.set_magnetic_field();
-        let rigid = self.plant.truth().rigid;
-        self.loads.command(self.now, self.controllers.outputs(), &self.estimates, rigid);
-        self.external_command_pending = false;
-        self.loads.serve(self.now, rigid);
+        let now = self.clock.now();
+        self.plant.evaluate(now)?;
+        self.laws.ask(now, Event::Start, &self.guidance, &mut self.estimation.estimates);
+        self.command_actuator();
+        self.loads.serve(now, self.plant.truth().rigid);
         self.begin_segment(record)?;
-        self.declare_tuned_parameter();
-        self.update_rotor_states(self.now);
-        self.record_initial_bearings();
+        if let Some(search) = self.estimation.search().or(self.laws.objective.search()) {
+            // The value of a tuned parameter is logged from the start on.
+            let (key, value) = search.parameter();
+            let key = key.to_owned();
+            self.laws.tune(&key, value);
+        }
+        self.loads.update_rotor_states(now, &self.plant);
         self.check_custom_parts()?;
-        self.record_start(record)
+        self.clock.begin_cycles();
+        let (run, recorder) = self.view();
+        Ok(recorder.record_start(&run, record)?)
     }
 
     /// Ends the run if it is at its end and has not been ended yet.
     pub(super) fn finish(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if self.now == self.end && self.recorder.close() {
-            self.plant.record_pieces(self.now, &self.applied, record)?;
-            self.recorder.journal_end(self.now, record)?;
+        let now = self.clock.now();
+        if now == self.clock.end() && self.recorder.close() {
+            self.plant.record_pieces(now, &self.loads.applied, record)?;
+            self.recorder.journal_end(now, record)?;
         }
         Ok(())
     }

@@ -36,18 +36,17 @@ impl Simulation {
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     pub fn set_external_command(&mut self, commands: [Command; 3]) {
-        self.controllers.set_external(commands);
-        self.external_command_pending = true;
+        self.laws.set_external(commands);
     }
 
     /// Returns the current instant of the run.
     pub fn time(&self) -> Instant {
-        self.now
+        self.clock.now()
     }
 
     /// Returns true if the run is at its end.
     pub fn is_finished(&self) -> bool {
-        self.now == self.end
+        self.clock.now() == self.clock.end()
     }
 
     /// Reads the sensors for the first sample, if the run has not begun, so that measurements and estimates exist.
@@ -55,9 +54,11 @@ impl Simulation {
     /// # Errors
     /// Fails like [`Simulation::run_until`].
     pub fn open(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if self.recorder.open(self.now, record)? {
-            self.update_estimates(record)?;
-            self.pending_event = Some(Event::Start);
+        let now = self.clock.now();
+        if self.recorder.open(now, record)? {
+            self.plant.evaluate(now)?;
+            self.take_sample(record)?;
+            self.laws.pending_event = Some(Event::Start);
         }
         Ok(())
     }
@@ -91,8 +92,9 @@ impl Simulation {
     /// Fails if the record cannot be written.
     pub fn record_interruption(&self, record: &mut dyn Record) -> Result<(), SimulationError> {
         if !self.is_finished() {
-            self.plant.record_pieces(self.now, &self.applied, record)?;
-            self.recorder.events.interrupted(self.now, record)?;
+            let now = self.clock.now();
+            self.plant.record_pieces(now, &self.loads.applied, record)?;
+            self.recorder.journal_interruption(now, record)?;
         }
         Ok(())
     }
@@ -103,25 +105,24 @@ impl Simulation {
         occasion: Option<StopAt>,
         record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
-        let until = until.min(self.end);
+        let until = until.min(self.clock.end());
         self.open(record)?;
-        if until <= self.now && !self.is_finished() {
+        if until <= self.clock.now() && !self.is_finished() {
             return Ok(false);
         }
         let mut came = self.resume(occasion, record)?;
         while !came && self.advance_to_next(until, record)? {
-            let closes = self.monitor.as_ref().is_some_and(|monitor| monitor.closes == self.now);
-            let event = self.law_event();
-            self.sense_and_estimate(record)?;
+            let now = self.clock.now();
+            let closes = self.estimation.window_closes() == Some(now);
+            let event = self.sense(record)?;
             came = match occasion {
                 Some(StopAt::Sample) => event == Event::Due { sampled: true },
-                Some(StopAt::Decision) => self.laws_must_decide(event),
+                Some(StopAt::Decision) => self.laws.must_decide(now, event, &self.estimation.estimates),
                 Some(StopAt::Window) => closes,
                 Some(StopAt::Switching) | None => false,
             };
-            self.pending_event = Some(event);
-            if (came || self.now == until) && !self.is_finished() {
-                self.plant.evaluate(self.now)?;
+            self.laws.pending_event = Some(event);
+            if (came || now == until) && !self.is_finished() {
                 return Ok(came);
             }
             // At the end of the run, the response follows immediately.
@@ -143,28 +144,22 @@ impl Simulation {
         occasion: Option<StopAt>,
         record: &mut dyn Record,
     ) -> Result<bool, SimulationError> {
-        let event = self.pending_event.take();
-        let Some(event) = event.or(self.external_command_pending.then_some(Event::Due { sampled: false }))
-        else {
+        let event = self.laws.pending_event.take();
+        let is_external = self.laws.external_command_pending;
+        let Some(event) = event.or(is_external.then_some(Event::Due { sampled: false })) else {
             return Ok(false);
         };
-        if occasion != Some(StopAt::Switching) {
-            return self.respond(event, record).map(|()| false);
+        let before = self.laws.states(self.estimation.axis_count());
+        if event == Event::Start {
+            self.begin(record)?;
+            return Ok(false);
         }
-        let states =
-            |of: &Self| [0, 1, 2].map(|axis| of.controllers.about(axis.min(of.estimates.len() - 1)).state());
-        let before = states(self);
+        if is_external {
+            // No law has decided here, for which the target would have been set.
+            self.estimation.update_angle_origin(self.clock.now(), &self.guidance);
+        }
         self.respond(event, record)?;
-        Ok(event != Event::Start && states(self) != before)
-    }
-
-    fn respond(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if event == Event::Start { self.begin(record) } else { self.control_and_actuate(event, record) }
-    }
-
-    /// Returns true if the laws have to decide on `event`.
-    pub(super) fn laws_must_decide(&self, event: Event) -> bool {
-        let sampled = event == Event::Due { sampled: true };
-        matches!(event, Event::Guard(_)) || self.controllers.must_decide(self.now, sampled, &self.estimates)
+        let after = self.laws.states(self.estimation.axis_count());
+        Ok(occasion == Some(StopAt::Switching) && after != before)
     }
 }

@@ -24,16 +24,17 @@ from __future__ import annotations
 import json
 import os
 from importlib import import_module
+from operator import index as _index
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
 from flexsc._campaign import campaign, read_campaign, sweep
 from flexsc._damping import identify, observer_margin, observer_region, persistence, relay_damping
-from flexsc._loop import gain_region, robust_gains, stability_map
 from flexsc._native import LogError, ScenarioError, SimulationError, __version__
 from flexsc._plan import Plan
 from flexsc._quantities import Quantities
 from flexsc._result import Log, Result, Samples
+from flexsc._sampled_loop import gain_region, robust_gains, stability_map
 from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator, Snapshot
 from flexsc._simulators import Simulators
@@ -46,6 +47,7 @@ from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, H
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
     from flexsc._linear import Linear, Margins, Signal
+    from flexsc._result import Detail
     from flexsc.structure import (
         StateSpace,
         Structure,
@@ -92,6 +94,7 @@ __all__ = [
     "appendage_from_matrices",
     "appendage_from_nastran",
     "campaign",
+    "estimate",
     "examples",
     "from_csv",
     "from_nastran",
@@ -156,6 +159,31 @@ def __dir__() -> list[str]:
     return list(__all__)
 
 
+def estimate(scenario: Scenario, runs: int = 1, log: Detail = "none") -> dict[str, Any]:
+    """Return the estimated work of runs before they begin. It is within a factor of about two.
+
+    Args:
+        scenario: The scenario to simulate.
+        runs: The number of runs of a campaign; 1 for `Scenario.simulate`.
+        log: The detail of the log of each run, as in `Scenario.simulate`.
+
+    Returns:
+        `seconds`, the time of all runs on one core (s); `steps`, the number of steps of a run that take most
+        of it, and `key`, the key that causes them; `memory_bytes`; and `needs_yes`, True if the work exceeds
+        10 h on one core, 4 GB of memory or 20 GB of logs, so that `simulate` and `campaign` need `yes=True`.
+
+    >>> import flexsc
+    >>> work = flexsc.estimate(flexsc.Scenario.example("relay-sampled"), runs=1000)
+    >>> 20.0 < work["seconds"] < 500.0, work["key"], work["steps"], work["needs_yes"]
+    (True, 'sensor.sampled.period', 200000.0, False)
+    """
+    count = _index(runs)
+    if count < 1:
+        raise ValueError(f"runs must be at least 1, got {runs}")
+    values: dict[str, Any] = json.loads(engine.estimate_json(_checked(scenario)._native, count, log))
+    return values
+
+
 def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
     """Return the limit cycles of the scenario's relay law on its body without modes, in closed form.
 
@@ -164,12 +192,12 @@ def rigid_cycles(scenario: Scenario) -> dict[str, list[dict[str, Any]]]:
         harmonic of the two-sided cycle coincides with a mode. Units are in the names.
 
     >>> import flexsc
-    >>> told = flexsc.rigid_cycles(flexsc.Scenario.example("relay-fixed"))
-    >>> round(told["cycles"][0]["period_s"], 2)
+    >>> values = flexsc.rigid_cycles(flexsc.Scenario.example("relay-fixed"))
+    >>> round(values["cycles"][0]["period_s"], 2)
     44.14
     """
-    told: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(_checked(scenario)._native))
-    return told
+    values: dict[str, list[dict[str, Any]]] = json.loads(engine.rigid_cycles_json(_checked(scenario)._native))
+    return values
 
 
 def read_log(path: str | os.PathLike[str]) -> Log:
@@ -206,8 +234,8 @@ def schema() -> dict[str, Any]:
     >>> flexsc.schema()["properties"]["duration"]["description"]
     'Simulated time (s).'
     """
-    told: dict[str, Any] = json.loads(engine.schema_json())
-    return told
+    values: dict[str, Any] = json.loads(engine.schema_json())
+    return values
 
 
 def metrics() -> dict[str, dict[str, str]]:
@@ -217,8 +245,8 @@ def metrics() -> dict[str, dict[str, str]]:
     >>> flexsc.metrics()["cycle_period_s"]["unit"]
     's'
     """
-    told: dict[str, dict[str, str]] = json.loads(engine.metrics_json())
-    return told
+    values: dict[str, dict[str, str]] = json.loads(engine.metrics_json())
+    return values
 
 
 def topics() -> dict[str, dict[str, Any]]:
@@ -228,5 +256,5 @@ def topics() -> dict[str, dict[str, Any]]:
     >>> flexsc.topics()["rate"]["fields"][0]
     {'name': 'rate_rad_s', 'doc': 'Rate, elastic part included (rad/s).', 'kind': 'number'}
     """
-    told: dict[str, dict[str, Any]] = json.loads(engine.topics_json())
-    return told
+    values: dict[str, dict[str, Any]] = json.loads(engine.topics_json())
+    return values

@@ -96,7 +96,7 @@ class _Filter:
             self.beyond = [shown - self.angle if reads else shown, *self.beyond[:-1]]
         self._take(now, [each for each in self.exposed if each + self.sensor.latency == now])
 
-    def believed(self, now: int) -> tuple[Matrix, Matrix]:
+    def estimates(self, now: int) -> tuple[Matrix, Matrix]:
         """Angle and rate that a law reads."""
         rate = self.rate - self.bias
         return self.angle + (now % self.gyro.period) / _TICKS * rate, rate
@@ -185,7 +185,7 @@ def attitude_loop(
     for now, after in pairwise(instants):
         filtered.act(now, x)
         if now in laws:
-            read = np.stack(filtered.believed(now), axis=1).reshape(6, -1)
+            read = np.stack(filtered.estimates(now), axis=1).reshape(6, -1)
             commands.append(law.c @ remembered + law.d @ read)
             remembered = law.a @ remembered + law.b @ read
             first = size + 3 * (now // step)

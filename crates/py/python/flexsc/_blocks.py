@@ -150,25 +150,25 @@ def estimator(observers: Sequence[Mapping[str, Any]], prefixes: Sequence[str]) -
     import numpy as np
 
     blocks, pushes = [], []
-    for told, prefix in zip(observers, prefixes, strict=True):
-        transition, push = np.array(told["transition"]), np.array(told["push"])
+    for filter_values, prefix in zip(observers, prefixes, strict=True):
+        transition, push = np.array(filter_values["transition"]), np.array(filter_values["push"])
         order = len(push)
         seen = np.zeros((2, order))
         seen[0, 0::2] = seen[1, 1::2] = 1.0
         # After a sample the state is kept x + learnt y.
         kept, learnt = np.eye(order), np.zeros((order, 2))
-        for row, gain in enumerate(np.array(told["gains"])):
+        for row, gain in enumerate(np.array(filter_values["gains"])):
             learnt = learnt - np.outer(gain, seen[row] @ learnt)
             learnt[:, row] += gain
             kept = kept - np.outer(gain, seen[row] @ kept)
-        read = seen if not told["rigid"] else np.eye(2, order)
+        read = seen if not filter_values["rigid"] else np.eye(2, order)
         names = ["rigid_angle", "rigid_rate"]
         names += [f"mode{k}_{what}" for k in range(order // 2 - 1) for what in ("displacement", "rate")]
         states = [
             Signal(f"{prefix}expected_{each}", "rad/s" if each.endswith("rate") else "rad") for each in names
         ]
         blocks.append(Block(transition @ kept, transition @ learnt, read @ kept, read @ learnt, states))
-        pushes.append((push / float(told["inertia"])).reshape(-1, 1))
+        pushes.append((push / float(filter_values["inertia"])).reshape(-1, 1))
     return Block.beside(blocks), _diagonal(pushes)
 
 

@@ -95,12 +95,12 @@ def campaign(
     part_s = None if executor is None else task_s
     work = engine.Work.create(scenario._native, span, [], sample, replicas, names, part_s, yes, True)
     if out is None and executor is None and progress is None:
-        return _made(work, jobs)
+        return _completed_table(work, jobs)
     if executor is not None and out is None and scenario.parts:
-        from flexsc import _brought
+        from flexsc import _own_parts
 
         study = (span, sample, replicas, names)
-        return _checked(_brought.run(scenario, study, work, executor, _threads(jobs), task_s, progress))
+        return _checked(_own_parts.run(scenario, study, work, executor, _threads(jobs), task_s, progress))
     from flexsc._executor import run
 
     return _checked(run(work, out, executor, _threads(jobs), task_s, force, progress))
@@ -168,7 +168,7 @@ def sweep(
     work = engine.Work.create(
         scenario._native, (0, runs), grids, "random", replicas, names, None, yes, uncertain
     )
-    return _made(work, jobs)
+    return _completed_table(work, jobs)
 
 
 def read_campaign(path: str | os.PathLike[str]) -> Table:
@@ -195,7 +195,7 @@ def read_campaign(path: str | os.PathLike[str]) -> Table:
     return place(path).table()
 
 
-def _made(work: engine.Work, jobs: int | None) -> Table:
+def _completed_table(work: engine.Work, jobs: int | None) -> Table:
     columns, summaries = work.make(work.runs, _threads(jobs))
     return _checked(Table(work, columns.__getitem__, lambda: summaries))
 

@@ -6,7 +6,7 @@ import json
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
-from flexsc._loop import _columns, _floats
+from flexsc._sampled_loop import _columns, _floats
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-    from flexsc._loop import Numbers
+    from flexsc._sampled_loop import Numbers
 
 WEIGHTS = (0.05, 0.2, 0.15)
 

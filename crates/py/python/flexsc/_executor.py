@@ -154,7 +154,7 @@ def run(
                 _write(store.name, work.hash, [part], jobs)
                 done([part])
         elif kept is None:
-            hand_out(
+            distribute(
                 executor,
                 missing,
                 task_s,
@@ -163,11 +163,11 @@ def run(
             )
         else:
 
-            def keep(told: list[tuple[str, bytes]]) -> None:
-                for name, data in told:
+            def keep(results: list[tuple[str, bytes]]) -> None:
+                for name, data in results:
                     (kept.path / _RUNS / name).write_bytes(data)
 
-            hand_out(
+            distribute(
                 executor, missing, task_s, done, lambda parts: (_bytes, work.manifest, parts, jobs or 1), keep
             )
     finally:
@@ -177,7 +177,7 @@ def run(
     return of_directory(kept.path, kept)
 
 
-def hand_out(
+def distribute(
     executor: Executor,
     missing: list[Span],
     task_s: float,
@@ -210,7 +210,7 @@ def hand_out(
         for future in ended:
             parts, tries = out.pop(future)
             try:
-                took, told = future.result()
+                took, results = future.result()
             except Exception as error:
                 if type(error).__name__ not in _GIVEN_UP or tries == _AGAIN:
                     for other in out:
@@ -219,7 +219,7 @@ def hand_out(
                 again.append((parts, tries + 1))
                 continue
             if keep is not None:
-                keep(told)
+                keep(results)
             parts_done, seconds = parts_done + len(parts), seconds + took
             done(parts)
 
@@ -265,8 +265,8 @@ def _write(name: str, hashed: str, parts: Sequence[Span], jobs: int) -> tuple[fl
 def _bytes(manifest: str, parts: Sequence[Span], jobs: int) -> tuple[float, list[tuple[str, bytes]]]:
     """Run parts, and return their files."""
     began = time.perf_counter()
-    told = [_parsed(manifest).part(part, jobs) for part in parts]
-    return time.perf_counter() - began, told
+    results = [_parsed(manifest).part(part, jobs) for part in parts]
+    return time.perf_counter() - began, results
 
 
 def _file_system(name: str) -> tuple[Any, str]:

@@ -74,6 +74,24 @@ class Linear:
         missing = self._rigid() - int(np.count_nonzero(found == 0.0))
         return np.sort(np.concatenate([found, np.zeros(max(missing, 0))]))
 
+    def spectral_radius(self) -> float:
+        """Return the largest magnitude |z| of the poles of a sampled model: it is stable below 1.
+
+        Raises:
+            ValueError: The model is one of continuous time.
+
+        >>> scenario = flexsc.Scenario.example("earth-observer")
+        >>> scenario.linearise(loop="command").closed().spectral_radius() < 1.0
+        True
+        """
+        import numpy as np
+
+        if self.period is None:
+            raise ValueError(
+                "only a sampled model has a spectral radius: give `linearise` a period or a loop"
+            )
+        return float(np.abs(np.linalg.eigvals(self.a)).max(initial=0.0))
+
     def _rigid(self) -> int:
         """The number of poles at rest."""
         import numpy as np
@@ -172,7 +190,7 @@ class Linear:
         """Close the loop that `linearise(loop=...)` opened: the inputs are added at the break.
 
         >>> scenario = flexsc.Scenario.example("rotation-robust")
-        >>> bool(abs(numpy.linalg.eigvals(scenario.linearise(loop="command").closed().a)).max() < 1.0)
+        >>> scenario.linearise(loop="command").closed().spectral_radius() < 1.0
         True
         """
         import numpy as np

@@ -25,14 +25,18 @@ def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:
         raise ValueError("only an opened loop, with as many outputs as inputs, has margins")
     off = _chosen(opened, inputs)
 
-    def beyond(factor: complex) -> float:
+    def poles(factor: complex) -> npt.NDArray[np.complex128]:
         back = np.linalg.inv(np.eye(len(off)) + opened.d * np.where(off, factor, 1.0))
-        poles = np.linalg.eigvals(opened.a - opened.b * np.where(off, factor, 1.0) @ back @ opened.c)
-        return float(poles.real.max() if opened.period is None else np.abs(poles).max() - 1.0)
+        closed = opened.a - opened.b * np.where(off, factor, 1.0) @ back @ opened.c
+        return np.linalg.eigvals(closed).astype(np.complex128)
+
+    def beyond(factor: complex) -> float:
+        found = poles(factor)
+        return float(found.real.max() if opened.period is None else np.abs(found).max() - 1.0)
 
     nominal = beyond(1.0)
     if nominal > _ROUNDING:
-        raise ValueError("the closed loop is not stable: it has no margins")
+        raise ValueError(_unstable_text(poles(1.0), opened.period))
     # A pole that the loop leaves on the limit, such as an undamped mode, stays there.
     limit = -_ROUNDING if nominal < -2.0 * _ROUNDING else _ROUNDING
 
@@ -47,6 +51,20 @@ def margins(opened: Linear, inputs: Sequence[str] | None) -> Margins:
         float("inf") if up is None else float(10.0**up),
         min((float(turn) for turn in turns if turn is not None), default=pi),
     )
+
+
+def _unstable_text(poles: npt.NDArray[np.complex128], period: float | None) -> str:
+    """The error of a loop that is not stable: its worst pole and the frequency of that pole."""
+    import numpy as np
+
+    if period is None:
+        worst = poles[np.argmax(poles.real)]
+        where = f"a pole at {worst.real:.5g} {worst.imag:+.5g}i rad/s"
+    else:
+        worst = poles[np.argmax(np.abs(poles))]
+        frequency = abs(np.angle(worst)) / period
+        where = f"the spectral radius {abs(worst):.5g}, of a pole at {frequency:.4g} rad/s"
+    return f"the closed loop is not stable and has no margins: it has {where}"
 
 
 def _chosen(opened: Linear, inputs: Sequence[str] | None) -> npt.NDArray[np.bool_]:

@@ -2,6 +2,7 @@
 
 import os
 from collections.abc import Sequence
+from pathlib import Path
 from typing import Any, Final, Literal, TypeAlias, final
 
 import numpy as np
@@ -39,6 +40,7 @@ __all__ = [
     "campaign_figures",
     "campaign_statistics",
     "directory_figures",
+    "estimate_json",
     "examples",
     "exponential",
     "gain_regions_json",
@@ -526,6 +528,12 @@ class Figure:
 class Log:
     @staticmethod
     def open(path: str | os.PathLike[str]) -> Log: ...
+    @staticmethod
+    def read(path: str | os.PathLike[str], contents: bytes) -> Log: ...
+    @property
+    def path(self) -> Path: ...
+    @property
+    def contents(self) -> bytes: ...
     @property
     def topics(self) -> list[str]: ...
     @property
@@ -617,6 +625,7 @@ def simulate(
 def to_mcap(
     scenario: Scenario, run: int, log: str, path: str | os.PathLike[str], stepped: Commands | None
 ) -> int: ...
+def estimate_json(scenario: Scenario, runs: int, log: str) -> str: ...
 def rigid_cycles_json(scenario: Scenario) -> str: ...
 def plan_json(scenario: Scenario, band: float) -> str: ...
 def plan_torque(scenario: Scenario, times: npt.NDArray[np.float64]) -> npt.NDArray[np.float64]: ...

@@ -11,6 +11,8 @@ from flexsc import _native as engine
 if TYPE_CHECKING:
     import numpy.typing as npt
 
+    from flexsc._scenario import Scenario
+
 
 class Plan(Mapping[str, Any]):
     """The plan of a scenario's manoeuvre, with the names of `flexsc plan --json`.
@@ -25,10 +27,10 @@ class Plan(Mapping[str, Any]):
     ((2,), True)
     """
 
-    def __init__(self, scenario: engine.Scenario, band: float) -> None:
+    def __init__(self, scenario: Scenario, band: float) -> None:
         self._scenario = scenario
         self._band = band
-        self._told: dict[str, Any] = json.loads(engine.plan_json(scenario, band))
+        self._values: dict[str, Any] = json.loads(engine.plan_json(scenario._native, band))
 
     def torque(self, time: npt.ArrayLike) -> npt.NDArray[Any]:
         """Return the command at times (s), in their shape (N m, or rad/s² if the hub's motion is
@@ -36,7 +38,7 @@ class Plan(Mapping[str, Any]):
         import numpy as np
 
         times = np.asarray(time, dtype=np.float64)
-        return engine.plan_torque(self._scenario, times.ravel()).reshape(times.shape)
+        return engine.plan_torque(self._scenario._native, times.ravel()).reshape(times.shape)
 
     def compare(self, peak_torque: float | None = None) -> list[dict[str, Any]]:
         """Return the plans with every command for the same body, one dictionary each.
@@ -45,17 +47,22 @@ class Plan(Mapping[str, Any]):
             peak_torque: Plan each for this peak torque (N m), in its own time; if omitted, for the time of
                 the scenario.
         """
-        rows: list[dict[str, Any]] = json.loads(engine.rivals_json(self._scenario, self._band, peak_torque))
+        rows: list[dict[str, Any]] = json.loads(
+            engine.rivals_json(self._scenario._native, self._band, peak_torque)
+        )
         return rows
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return Plan, (self._scenario, self._band)
+
     def __getitem__(self, name: str) -> Any:
-        return self._told[name]
+        return self._values[name]
 
     def __iter__(self) -> Iterator[str]:
-        return iter(self._told)
+        return iter(self._values)
 
     def __len__(self) -> int:
-        return len(self._told)
+        return len(self._values)
 
     def __repr__(self) -> str:
         return f"<flexsc.Plan: {self['angle_rad']:g} rad in {self['time_s']:g} s>"

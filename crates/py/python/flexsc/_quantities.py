@@ -42,9 +42,17 @@ class Quantities(Mapping[str, "npt.NDArray[np.float64]"]):
     def __len__(self) -> int:
         return len(self._values)
 
+    def __reduce__(self) -> tuple[object, ...]:
+        return _with_units, (self._values, dict(self.units))
+
     def __repr__(self) -> str:
         each = (f"{name}: {values} {self.units[name]}".rstrip() for name, values in self._values.items())
         return "\n".join(each)
+
+
+def _with_units(values: dict[str, npt.NDArray[np.float64]], units: dict[str, str]) -> Quantities:
+    """Create the quantities of a pickle, whose units are read-only again."""
+    return Quantities(values, MappingProxyType(units))
 
 
 class Fields:
@@ -66,7 +74,7 @@ class Fields:
         return Quantities(values, self._units[group])
 
 
-def commands_of(given: npt.ArrayLike, shape: tuple[int, ...], unit: str) -> npt.NDArray[np.float64]:
+def parse_commands(given: npt.ArrayLike, shape: tuple[int, ...], unit: str) -> npt.NDArray[np.float64]:
     import numpy as np
 
     try:

@@ -14,6 +14,8 @@ from flexsc._units import Metrics
 from flexsc._values import arrays
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     import numpy as np
     import numpy.typing as npt
 
@@ -280,6 +282,9 @@ class Log(_Topics):
             self._read[name] = Topic(name, columns, self._known(), about)
         return self._read[name]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _from_bytes, (self._native.path, self._native.contents)
+
     def _known(self) -> Scenario | None:
         try:
             return self.scenario
@@ -288,3 +293,8 @@ class Log(_Topics):
 
     def __repr__(self) -> str:
         return f"<flexsc.Log: {', '.join(self.topics)}>"
+
+
+def _from_bytes(path: Path, contents: bytes) -> Log:
+    """Create the log of a pickle."""
+    return Log(engine.Log.read(path, contents))

@@ -21,7 +21,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
     from flexsc._linear import Linear
-    from flexsc._opened import Break
+    from flexsc._open_loop import Break
     from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor
     from flexsc.scenario import Keys
 
@@ -271,7 +271,7 @@ class Scenario:
             ScenarioError: The body is not a linear system, because it has driven appendages.
             ValueError: The loop is not linear, or a time is not accepted.
         """
-        from flexsc._opened import linearise
+        from flexsc._open_loop import linearise
 
         return linearise(self, at, period, delay, loop)
 
@@ -329,7 +329,7 @@ class Scenario:
         Raises:
             ValueError: The scenario has no manoeuvre, or the band is not between 0 and 1.
         """
-        return Plan(self._native, band)
+        return Plan(self, band)
 
     def simulate(
         self,

@@ -6,7 +6,7 @@ import os
 from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
-from flexsc._quantities import Fields, Quantities, commands_of
+from flexsc._quantities import Fields, Quantities, parse_commands
 from flexsc._result import Detail, Logged, Result
 from flexsc._scenario import Scenario
 from flexsc._units import Metrics
@@ -136,7 +136,7 @@ class Simulator:
         of shape (modes,); the `torque` of the actuator (N m); and `wheel_speeds` (rad/s) of shape (wheels,)
         if there are wheels.
         """
-        return self._fields.view("state", self._look())
+        return self._fields.view("state", self._observe_row())
 
     @property
     def measured(self) -> Quantities:
@@ -145,15 +145,15 @@ class Simulator:
 
         NaN before the first sample. Without a sampled sensor they are the true motion at the present time.
         """
-        return self._fields.view("measured", self._look())
+        return self._fields.view("measured", self._observe_row())
 
     @property
     def believed(self) -> Quantities:
         """The input of the laws, from the estimators: the same quantities as `measured`, at the last
         sample."""
-        return self._fields.view("believed", self._look())
+        return self._fields.view("believed", self._observe_row())
 
-    def _look(self) -> npt.NDArray[np.float64]:
+    def _observe_row(self) -> npt.NDArray[np.float64]:
         if self._row is None:
             self._row = self._native.look()
             self._row.flags.writeable = False
@@ -174,7 +174,7 @@ class Simulator:
             SimulationError: The state is no longer finite, or the law switches without end.
         """
         if command is not None:
-            self._native.steer(commands_of(command, (self.axes,), self.command_unit))
+            self._native.steer(parse_commands(command, (self.axes,), self.command_unit))
         self._row = self._metrics = None
         self._native.step(dt)
 

@@ -6,7 +6,7 @@ from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
 from flexsc import _native as engine
-from flexsc._quantities import Fields, Quantities, commands_of
+from flexsc._quantities import Fields, Quantities, parse_commands
 from flexsc._scenario import Scenario
 from flexsc._simulator import Simulator
 from flexsc._values import run_number
@@ -125,19 +125,19 @@ class Simulators:
     @property
     def state(self) -> Quantities:
         """The true states at the present time: those of `Simulator.state`, of shape (n,) or (n, k)."""
-        return self._fields.view("state", self._look())
+        return self._fields.view("state", self._observe_row())
 
     @property
     def measured(self) -> Quantities:
         """The latest measurements of the sensors: see `Simulator.measured`."""
-        return self._fields.view("measured", self._look())
+        return self._fields.view("measured", self._observe_row())
 
     @property
     def believed(self) -> Quantities:
         """The input of the laws: see `Simulator.believed`."""
-        return self._fields.view("believed", self._look())
+        return self._fields.view("believed", self._observe_row())
 
-    def _look(self) -> npt.NDArray[np.float64]:
+    def _observe_row(self) -> npt.NDArray[np.float64]:
         if self._rows is None:
             self._keep(self._native.look())
         assert self._rows is not None
@@ -179,7 +179,7 @@ class Simulators:
         """
         native, n = self._native, len(self)
         if commands is not None:
-            commands = commands_of(commands, (n, native.axes), native.command_unit)
+            commands = parse_commands(commands, (n, native.axes), native.command_unit)
         self._keep(native.step(commands, dt, _mask(mask, n)))
         self._raise()
         return self.state

@@ -44,7 +44,8 @@ class Table:
         self._columns: dict[str, npt.NDArray[Any]] = {}
         self._statistics: dict[str, dict[str, Any]] | None = None
         self._kept: object = None
-        self._work = work
+        self._work: engine.Work | None = work
+        self._manifest: str | None = None
 
     @property
     def columns(self) -> dict[str, npt.NDArray[Any]]:
@@ -93,19 +94,43 @@ class Table:
         """
         if column not in self._names:
             raise KeyError(f"no column {column!r}; there are {', '.join(self._names)}")
-        return self._told()(column)
+        return self._unit_lookup()(column)
 
-    def _told(self) -> Callable[[str], str]:
-        told = _units.meanings(self.scenario)
-        return lambda column: told.get(column, {"unit": ""})["unit"]
+    def _unit_lookup(self) -> Callable[[str], str]:
+        meanings = _units.meanings(self.scenario)
+        return lambda column: meanings.get(column, {"unit": ""})["unit"]
 
     def __arrow_c_stream__(self, requested_schema: object = None) -> object:
         """Return the rows through Arrow's PyCapsule interface: null where a run has no value."""
-        return _arrow.stream(self.columns.items(), self._told(), {"scenario": self.scenario.name})
+        return _arrow.stream(self.columns.items(), self._unit_lookup(), {"scenario": self.scenario.name})
 
     def __arrow_c_schema__(self) -> object:
         """Return the schema of the rows through Arrow's PyCapsule interface."""
-        return _arrow.schema(self.columns.items(), self._told(), {"scenario": self.scenario.name})
+        return _arrow.schema(self.columns.items(), self._unit_lookup(), {"scenario": self.scenario.name})
+
+    def __getstate__(self) -> dict[str, Any]:
+        """Return the state for pickles and copies: all columns, statistics, and the manifest of the work."""
+        unpicklable = ("_read", "_summaries", "_kept", "_work")
+        state = {name: value for name, value in self.__dict__.items() if name not in unpicklable}
+        if self._work is not None and not self.scenario.parts:
+            state["_manifest"] = self._work.manifest
+        return {**state, "_columns": self.columns, "_statistics": self.statistics()}
+
+    def __setstate__(self, state: dict[str, Any]) -> None:
+        self.__dict__.update(state)
+        self._kept = self._work = None
+        # All columns and statistics are in the state.
+        self._read = self._columns.__getitem__
+        self._summaries = list
+
+    def _recreated_work(self) -> engine.Work:
+        """Return the work, which a pickled or copied table creates from its manifest."""
+        if self._work is None:
+            if self._manifest is None:
+                why = "a pickled or copied table of a scenario with parts in Python has no figures"
+                raise ValueError(f"{self.scenario.name}: {why}")
+            self._work = engine.Work.parse(self._manifest)
+        return self._work
 
     def _figures(self, kind: str | None, metrics: Sequence[str]) -> list[tuple[str, engine.Figure]]:
         """The engine's figures of the table, each with its name, as drawn by `flexsc.plot`."""
@@ -114,17 +139,18 @@ class Table:
             for name, values in self.columns.items()
             if values.dtype.kind == "U" or values.dtype in ("float64", "int64")
         }
-        return engine.campaign_figures(self._work, columns, kind, list(metrics))
+        return engine.campaign_figures(self._recreated_work(), columns, kind, list(metrics))
 
     def _repr_html_(self) -> str:
         from flexsc import _html
 
         rows = [
-            (name, told["unit"], told["mean"], told["sd"], told["quantiles"][0.05], told["quantiles"][0.95])
-            for name, told in self.statistics().items()
+            (name, row["unit"], row["mean"], row["sd"], row["quantiles"][0.05], row["quantiles"][0.95])
+            for name, row in self.statistics().items()
         ]
         head = ("metric", "unit", "mean", "sd", "5 %", "95 %")
-        drawn = self._figures(None, ()) if len(self) > 1 else []
+        can_draw = self._work is not None or self._manifest is not None
+        drawn = self._figures(None, ()) if len(self) > 1 and can_draw else []
         figure = _html.picture(drawn[0][1]) if drawn else ""
         statistics = _html.folded(f"{len(rows)} metrics", _html.table(head, rows))
         return _html.heading(self.scenario.name, counted(len(self), "run")) + figure + statistics

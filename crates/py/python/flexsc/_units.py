@@ -38,8 +38,8 @@ _REDUCED = {"N m": "rad/s²", "N m s": "rad/s"}
 def meanings(scenario: Scenario | None) -> dict[str, dict[str, str]]:
     """Return `unit` and `doc` of the metrics by name, for runs of a scenario if it is given."""
     text = engine.metrics_json() if scenario is None else engine.meanings_json(scenario._native)
-    told: dict[str, dict[str, str]] = json.loads(text)
-    return told
+    values: dict[str, dict[str, str]] = json.loads(text)
+    return values
 
 
 def is_reduced(scenario: Scenario | None) -> bool:

@@ -57,20 +57,20 @@ class _Executor(Executor):
 
     def submit(self, fn: Callable[..., Any], /, *args: Any, **kwargs: Any) -> Future[Any]:
         """Submit a task. A deleted part is made again: tasks are not identified by their arguments."""
-        told: Future[Any] = Future()
+        result: Future[Any] = Future()
         task = self._client.submit(fn, *args, **kwargs, pure=False, retries=10)
-        self._kept[task] = told
+        self._kept[task] = result
 
         def done(task: Any) -> None:
             try:
-                told.set_result(task.result())
+                result.set_result(task.result())
             except BaseException as error:
-                told.set_exception(error)
+                result.set_exception(error)
             finally:
                 self._kept.pop(task, None)
 
         task.add_done_callback(done)
-        return told
+        return result
 
     def check(self) -> None:
         """Raise an error if the scheduler is lost: its tasks never end.

@@ -131,12 +131,12 @@ class _Task:
         """Observations of shape (n, numbers)."""
         sims = self.simulators
         if callable(self._observe):
-            told = np.asarray(self._observe(sims), dtype=np.float32)
-            if told.ndim != 2 or len(told) != len(sims):
+            observation = np.asarray(self._observe(sims), dtype=np.float32)
+            if observation.ndim != 2 or len(observation) != len(sims):
                 raise ValueError(
-                    f"observe must give an array of shape ({len(sims)}, numbers), got {told.shape}"
+                    f"observe must give an array of shape ({len(sims)}, numbers), got {observation.shape}"
                 )
-            return told
+            return observation
         groups = {"state": sims.state, "measured": sims.measured, "believed": sims.believed}
         columns = []
         for name, scale in self._observe.items():
@@ -146,8 +146,8 @@ class _Task:
                     f"observe must name `state.`, `measured.` or `believed.` quantities, got {name!r}"
                 )
             columns.append(groups[group][quantity].reshape(len(sims), -1) / scale)
-        told = np.concatenate(columns, axis=1, dtype=np.float32, casting="same_kind")
-        return told
+        observation = np.concatenate(columns, axis=1, dtype=np.float32, casting="same_kind")
+        return observation
 
     def step(self, actions: npt.ArrayLike, mask: Mask | None) -> tuple[Array, Mask, Mask]:
         """Advance; return the rewards and which episodes were terminated and truncated."""
@@ -162,12 +162,12 @@ class _Task:
         return reward, terminated, sims.done
 
     def _told(self, values: npt.ArrayLike, dtype: Any, name: str) -> npt.NDArray[Any]:
-        told = np.array(values, dtype=dtype)
-        if told.shape != (len(self.simulators),):
+        array = np.array(values, dtype=dtype)
+        if array.shape != (len(self.simulators),):
             raise ValueError(
-                f"{name} must give an array of shape ({len(self.simulators)},), got {told.shape}"
+                f"{name} must give an array of shape ({len(self.simulators)},), got {array.shape}"
             )
-        return told
+        return array
 
 
 def _run(random: np.random.Generator) -> int:

@@ -225,15 +225,15 @@ def _panel(ax: Axes, panel: dict[str, Any], below: str, plot: int) -> None:
         _bar(ax, *panel["bar"])
 
 
-def _axis(ax: Axes, side: str, axis: Any, told: dict[str, Any], most: int) -> None:
+def _axis(ax: Axes, side: str, axis: Any, description: dict[str, Any], most: int) -> None:
     from matplotlib.ticker import FuncFormatter
 
-    if told["logarithmic"]:
+    if description["logarithmic"]:
         getattr(ax, f"set_{side}scale")("log")
     else:
-        axis.set_major_locator(_in_units_of(told["factor"], most))
-        axis.set_major_formatter(FuncFormatter(partial(_number, axis, told["factor"])))
-    getattr(ax, f"set_{side}lim")(told["low"], told["high"])
+        axis.set_major_locator(_in_units_of(description["factor"], most))
+        axis.set_major_formatter(FuncFormatter(partial(_number, axis, description["factor"])))
+    getattr(ax, f"set_{side}lim")(description["low"], description["high"])
 
 
 def _in_units_of(factor: float, most: int) -> Any:

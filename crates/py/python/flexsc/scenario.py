@@ -13,7 +13,7 @@
 
 Their keys, units and meanings are those of a scenario file. A key that is left out, or None, has its
 default. Parts of which a file has several, such as its `[[sensor]]`, are a list. What values have to be is
-checked when a scenario is made of them; all mistakes are told at once.
+checked when a scenario is made of them; all mistakes are reported at once.
 """
 
 # Made by crates/py/scenario_classes.py: a change here is lost.

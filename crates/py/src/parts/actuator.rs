@@ -2,8 +2,11 @@
 
 use std::any::Any;
 
-use flexsc_core::control::actuator::{Actuator, ActuatorSpec, AxisActuatorContext as EngineSetting, Demand};
+use flexsc_core::control::actuator::{
+    Actuator, ActuatorInput, ActuatorSpec, AxisActuatorContext as EngineSetting, AxisEffort, Demand,
+};
 use flexsc_core::control::custom::PartError;
+use flexsc_core::control::part::Part;
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::{Instant as Exact, Span};
 use flexsc_core::spacecraft::wrench::Wrench;
@@ -227,6 +230,16 @@ impl Acting {
     }
 }
 
+impl Part for Acting {
+    fn due(&self) -> Option<Exact> {
+        self.due
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.method.halted()
+    }
+}
+
 impl Actuator for Acting {
     fn command(&mut self, now: Exact, demands: &[Demand], rigid: [f64; 3]) {
         self.demands = demands.iter().take(self.inertias.len()).copied().collect();
@@ -236,38 +249,25 @@ impl Actuator for Acting {
         self.act(now, rigid);
     }
 
-    fn set_magnetic_field(&mut self, field: Vector) {
-        self.field = Some(field);
-    }
-
-    fn due(&self) -> Option<Exact> {
-        self.due
-    }
-
-    fn update(&mut self, now: Exact, rigid: [f64; 3]) {
-        if self.due == Some(now) {
-            self.act(now, rigid);
-        }
-    }
-
     fn apply(&self, _: Exact, onto: &mut Wrench) {
         onto.hub.iter_mut().zip(&self.torques).for_each(|(hub, torque)| *hub += torque);
     }
 
-    fn demanded_torque(&self, axis: usize) -> f64 {
-        self.demanded[axis]
+    fn update(&mut self, now: Exact, input: ActuatorInput<'_>) {
+        match input {
+            ActuatorInput::MagneticField(field) => self.field = Some(field),
+            ActuatorInput::Due(rigid) if self.due == Some(now) => self.act(now, rigid),
+            _ => {}
+        }
     }
 
-    fn held_torque(&self, axis: usize) -> f64 {
-        self.torques[axis]
-    }
-
-    fn reduced_moment(&self, axis: usize) -> f64 {
-        self.torques[axis] / self.inertias[axis]
-    }
-
-    fn failure(&self) -> Option<PartError> {
-        self.method.halted()
+    fn effort(&self, axis: usize) -> AxisEffort {
+        AxisEffort {
+            demanded: self.demanded[axis],
+            held: self.torques[axis],
+            firing: 0.0,
+            reduced_moment: self.torques[axis] / self.inertias[axis],
+        }
     }
 
     fn copy(&self) -> Box<dyn Actuator> {

@@ -4,6 +4,7 @@ use std::any::Any;
 
 use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
 use flexsc_core::control::custom::PartError;
+use flexsc_core::control::part::Part;
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::{Instant, Span};
 use pyo3::exceptions::PyValueError;
@@ -76,6 +77,12 @@ struct Learning {
     last: f64,
 }
 
+impl Part for Learning {
+    fn failure(&self) -> Option<PartError> {
+        self.method.halted()
+    }
+}
+
 impl Adaptation for Learning {
     fn learn(&mut self, now: Instant, measured: f64) -> Option<SearchStep> {
         let before = std::mem::replace(&mut self.last, measured);
@@ -89,10 +96,6 @@ impl Adaptation for Learning {
         let change = ((measured - before) / measured).abs();
         let decision = if before.is_nan() { Decision::Begin } else { Decision::Keep };
         Some(SearchStep { decision, change, draw: 0.0, gain: self.value, settled: 0 })
-    }
-
-    fn halted(&self) -> Option<PartError> {
-        self.method.halted()
     }
 
     fn copy(&self) -> Box<dyn Adaptation> {

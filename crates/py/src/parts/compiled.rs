@@ -4,8 +4,10 @@ use std::any::Any;
 
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::law::{
-    Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, Phase, Setpoint,
+    Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, LawState, Phase,
+    Setpoint,
 };
+use flexsc_core::control::part::Part;
 use flexsc_core::control::state_estimate::StateEstimate;
 use flexsc_core::dynamics::guard::Guard;
 use flexsc_core::numerics::time::{Instant, Span};
@@ -98,6 +100,12 @@ struct Deciding {
     halted: Option<PartError>,
 }
 
+impl Part for Deciding {
+    fn failure(&self) -> Option<PartError> {
+        self.halted.clone()
+    }
+}
+
 impl Law for Deciding {
     #[expect(unsafe_code, reason = "the function is foreign")]
     fn decide(
@@ -154,12 +162,8 @@ impl Law for Deciding {
         ControlOutput { command: Command::Torque(torque), until: after.map(|after| now + after), guards }
     }
 
-    fn state(&self) -> Phase {
-        self.phase
-    }
-
-    fn failure(&self) -> Option<PartError> {
-        self.halted.clone()
+    fn state(&self) -> LawState<'_> {
+        LawState::new(self.phase)
     }
 
     fn copy(&self) -> Box<dyn Law> {

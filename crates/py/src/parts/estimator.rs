@@ -6,11 +6,12 @@ use flexsc_core::control::custom::PartError;
 use flexsc_core::control::estimator::{
     Estimator, EstimatorContext as EngineKnown, EstimatorSpec, SampleContext as EngineTaken,
 };
+use flexsc_core::control::part::{Occasion, Part, ReportContext};
 use flexsc_core::control::sensor::Orientation;
 use flexsc_core::control::state_estimate::{DominantMode, EstimateNeeds, StateEstimate};
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::{Instant as Exact, Span};
-use flexsc_core::record::AttitudeEstimate;
+use flexsc_core::record::{AttitudeEstimate, Report};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
@@ -252,6 +253,33 @@ fn write(returned: &Bound<'_, PyAny>, estimates: &mut [StateEstimate]) -> PyResu
     Ok(())
 }
 
+impl Observing {
+    /// Returns the log row of the attitude that the estimator reports, if it reports one.
+    fn attitude_row(&self, now: Exact, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+        if !self.also.attitude {
+            return None;
+        }
+        let reported = |part: &Bound<'_, PyAny>| {
+            super::attitude::from_python(&part.call_method1("attitude", (Instant(now),))?)
+        };
+        let filter = Python::attach(|py| self.method.other(py, reported))??;
+        super::attitude::row(&filter, truth, bias)
+    }
+}
+
+impl Part for Observing {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        if at.occasion == Occasion::Sample {
+            let row = self.attitude_row(at.now, &at.truth.orientation(), at.truth.gyro_bias());
+            row.into_iter().for_each(|row| report.add(row));
+        }
+    }
+
+    fn failure(&self) -> Option<PartError> {
+        self.method.halted()
+    }
+}
+
 impl Estimator for Observing {
     fn input_changed(&mut self, now: Exact, moments: [f64; 3]) {
         if self.also.given {
@@ -277,7 +305,7 @@ impl Estimator for Observing {
                 .collect(),
             origin: *context.origin,
             truth: axes.clone().map(truth).collect(),
-            torque: axes.map(|axis| context.actuator.held_torque(axis)).collect(),
+            torque: axes.map(context.held_torque).collect(),
         };
         Python::attach(|py| {
             let argument = || Ok(Bound::new(py, reported)?.into_any());
@@ -309,21 +337,6 @@ impl Estimator for Observing {
                 self.method.other(py, |part| part.call_method1("shift", (by,)).map(drop));
             });
         }
-    }
-
-    fn attitude_row(&self, now: Exact, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
-        if !self.also.attitude {
-            return None;
-        }
-        let reported = |part: &Bound<'_, PyAny>| {
-            super::attitude::from_python(&part.call_method1("attitude", (Instant(now),))?)
-        };
-        let filter = Python::attach(|py| self.method.other(py, reported))??;
-        super::attitude::row(&filter, truth, bias)
-    }
-
-    fn failure(&self) -> Option<PartError> {
-        self.method.halted()
     }
 
     fn copy(&self) -> Box<dyn Estimator> {

@@ -6,9 +6,10 @@ use std::sync::{Mutex, OnceLock, PoisonError};
 
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::law::{
-    Authority as EngineAuthority, ControlOutput as Held, DecisionCause, ErrorBand, Law, LawSpec, Phase,
-    Setpoint, Tunable,
+    Authority as EngineAuthority, ControlOutput as Held, DecisionCause, ErrorBand, Law, LawSpec, LawState,
+    Phase, ReferenceNeeds, Setpoint, Tunable,
 };
+use flexsc_core::control::part::Part;
 use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::numerics::time::{Instant as Exact, Span};
 use pyo3::exceptions::{PyTypeError, PyValueError};
@@ -276,6 +277,12 @@ struct Deciding {
     phase: Phase,
 }
 
+impl Part for Deciding {
+    fn failure(&self) -> Option<PartError> {
+        self.method.halted()
+    }
+}
+
 impl Law for Deciding {
     fn decide(
         &mut self,
@@ -307,20 +314,16 @@ impl Law for Deciding {
         hold.engine_output(now, self.period)
     }
 
-    fn state(&self) -> Phase {
-        self.phase
+    fn state(&self) -> LawState<'_> {
+        LawState::with_tuned(self.phase, self.tuned.map_or(f64::NAN, |(_, value)| value))
     }
 
-    fn failure(&self) -> Option<PartError> {
-        self.method.halted()
+    fn reference_needs(&self) -> ReferenceNeeds {
+        ReferenceNeeds { tracks_manoeuvre: self.tracks, ..ReferenceNeeds::default() }
     }
 
     fn copy(&self) -> Box<dyn Law> {
         Box::new(Self { method: self.method.copy("decide"), ..*self })
-    }
-
-    fn tuned_value(&self) -> f64 {
-        self.tuned.map_or(f64::NAN, |(_, value)| value)
     }
 
     fn tune(&mut self, key: &str, value: f64) {
@@ -332,9 +335,5 @@ impl Law for Deciding {
         Python::attach(|py| {
             self.method.other(py, |part| part.call_method1(pyo3::intern!(py, "tune"), (key, value)).map(drop))
         });
-    }
-
-    fn tracks_manoeuvre(&self) -> bool {
-        self.tracks
     }
 }

@@ -3,6 +3,7 @@
 use std::any::Any;
 
 use flexsc_core::control::custom::PartError;
+use flexsc_core::control::part::Part;
 use flexsc_core::control::sensor::{Reading as EngineReading, Sensor, SensorSpec, Truth as EngineTruth};
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::{Instant, Span};
@@ -66,6 +67,12 @@ impl SensorSpec for PythonSensor {
 #[derive(Debug)]
 struct Reads(Method);
 
+impl Part for Reads {
+    fn failure(&self) -> Option<PartError> {
+        self.0.halted()
+    }
+}
+
 impl Sensor for Reads {
     fn read(
         &mut self,
@@ -88,10 +95,6 @@ impl Sensor for Reads {
             })
         })
         .flatten()
-    }
-
-    fn failure(&self) -> Option<PartError> {
-        self.0.halted()
     }
 
     fn copy(&self) -> Box<dyn Sensor> {

@@ -9,19 +9,9 @@ use super::row::{Topic, TopicRow};
 use super::states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 use crate::enum_label::LoggedEnum;
 
-pub use one_angle::{
-    Adaptation, Arrival, Attitude, Command, Decision, Envelope, Estimate, GoalMotion, Law, ModeEnvelope,
-    ModeEstimate, ModeMotion, Modes, Objective, OutputMotion, Outputs, Rate, Residual, Torque, Trigger,
-    WheelMotion, WindowMean,
-};
-pub use run::{FaultEvent, Metric, MetricLine, MetricPage, Metrics, OutputName, Params, Summary};
-pub use three_axes::{
-    Acceleration, Accelerations, AttitudeEstimate, AxisEstimate, AxisRate, BearingMotion, Bearings,
-    ChannelState, ControlMomentGyro, ControlMomentGyros, DriveMotion, DrivenMode, DrivesMotion,
-    ElasticEstimate, ElasticEstimates, Energy, Estimates, HingeMotion, Hinges, Jets, Magnetorquer,
-    Magnetorquers, Orbit, OrbitAxis, Pointing, Position, Rates, Sliding, ThrusterPulse, Thrusters, Torques,
-    TrackedMode, Tracking, Vibration, Vibrations, Wheel, WheelEvent, Wheels,
-};
+pub use one_angle::*;
+pub use run::*;
+pub use three_axes::*;
 
 /// Topic declarations, in the order of the list.
 const PARTS: [&[Topic]; 4] = [one_angle::DECLARED, three_axes::DECLARED, run::DECLARED, foxglove::DECLARED];
@@ -48,8 +38,55 @@ pub const TOPICS: &[Topic] = {
     &ALL
 };
 
+/// Topics whose rows precede those of all others in a report, in their order. The rows of other topics follow in the
+/// order of [`TOPICS`], and those of custom topics come last.
+const REPORT_ORDER: [&str; 21] = [
+    "/attitude",
+    "/rate",
+    "/modes",
+    "/outputs",
+    "/goal",
+    "/torque",
+    "/wheel",
+    "/pointing",
+    "/rates",
+    "/vibrations",
+    "/energy",
+    "/position",
+    "/torques",
+    "/orbit",
+    "/magnetorquers",
+    "/envelope",
+    "/drives",
+    "/hinges",
+    "/bearings",
+    "/control_moment_gyros",
+    "/wheels",
+];
+
+/// Place of each topic's rows in a report, in the order of [`TOPICS`].
+const REPORT_RANKS: [usize; COUNT] = {
+    let mut ranks = [0; COUNT];
+    let mut index = 0;
+    while index < COUNT {
+        ranks[index] = REPORT_ORDER.len() + index;
+        index += 1;
+    }
+    let mut place = 0;
+    while place < REPORT_ORDER.len() {
+        ranks[index_of(REPORT_ORDER[place])] = place;
+        place += 1;
+    }
+    ranks
+};
+
+/// Returns the place of a topic's rows in a report; `None` stands for a custom topic.
+pub(crate) fn report_rank(topic: Option<usize>) -> usize {
+    topic.map_or(usize::MAX, |topic| REPORT_RANKS[topic])
+}
+
 /// Returns the index of a topic in [`TOPICS`], at compile time.
-pub const fn index_of(name: &str) -> usize {
+pub(crate) const fn index_of(name: &str) -> usize {
     let mut index = 0;
     while !same(TOPICS[index].name.as_bytes(), name.as_bytes()) {
         index += 1;
@@ -66,7 +103,7 @@ const fn same(a: &[u8], b: &[u8]) -> bool {
 }
 
 /// Returns the label of an enumeration's value, by its identifier in the schema of a log.
-pub fn label_of(identifier: &str) -> String {
+pub(crate) fn label_of(identifier: &str) -> String {
     let states = [
         &Lock::LABELS,
         &Onset::LABELS,

@@ -60,7 +60,7 @@ rows! {
         gain: f64,
     }
     /// State and command of the law: at the start, and once a second in a full log.
-    Law = "/law" {
+    Law = "/law" at Sample {
         /// State of the law.
         state: Phase,
         /// Torque that the law commands (N m; rad/s² on a body without inertia); for a wheel: its gain times the law's command.
@@ -69,7 +69,7 @@ rows! {
         gain: f64,
     }
     /// Angles.
-    Attitude = "/attitude" {
+    Attitude = "/attitude" at Period {
         /// Angle, elastic part included (rad).
         angle_rad: f64,
         /// Rigid angle (rad).
@@ -78,7 +78,7 @@ rows! {
         measured_rad: f64,
     }
     /// Rates.
-    Rate = "/rate" {
+    Rate = "/rate" at Period {
         /// Rate, elastic part included (rad/s).
         rate_rad_s: f64,
         /// Rigid rate (rad/s).
@@ -92,7 +92,7 @@ rows! {
         rate_rad_s: f64,
     }
     /// The elastic modes, in the order of the scenario.
-    Modes = "/modes" {
+    Modes = "/modes" at Period {
         /// Sum of all displacements (rad).
         elastic_rad: f64,
         /// Each mode.
@@ -106,12 +106,12 @@ rows! {
         rate: f64,
     }
     /// The observed coordinates, in the order of `/params`.
-    Outputs = "/outputs" {
+    Outputs = "/outputs" at Period {
         /// Each coordinate.
         outputs: Vec<OutputMotion>,
     }
     /// The torques on the body; all are rad/s² on a body without inertia, or where the hub's motion is commanded.
-    Torque = "/torque" {
+    Torque = "/torque" at Period {
         /// Torque commanded by the manoeuvre (N m).
         feedforward_nm: f64,
         /// Torque commanded by the law (N m); for a wheel: its gain times the law's command.
@@ -122,14 +122,14 @@ rows! {
         disturbance_nm: f64,
     }
     /// The flywheel.
-    WheelMotion = "/wheel" {
+    WheelMotion = "/wheel" at Period {
         /// Speed (rad/s).
         speed_rad_s: f64,
         /// Momentum (N m s; rad/s on a body without inertia).
         momentum_nm_s: f64,
     }
     /// The goal: during a manoeuvre, the motion that a rigid body would have.
-    GoalMotion = "/goal" {
+    GoalMotion = "/goal" at Period {
         /// Angle (rad).
         angle_rad: f64,
         /// Rate (rad/s).
@@ -161,7 +161,7 @@ rows! {
         envelope_rad: f64,
     }
     /// Envelope of the elastic modes, as estimated by the monitor.
-    Envelope = "/envelope" {
+    Envelope = "/envelope" at Period {
         /// Total envelope: the sum over the modes (rad).
         envelope_rad: f64,
         /// The envelope of each mode.
@@ -222,7 +222,7 @@ rows! {
         amplitude_sd_rad: f64,
     }
     /// A Kalman filter, after a sample.
-    Estimate = "/estimator" {
+    Estimate = "/estimator" at Sample {
         /// Index of the dominant mode.
         dominant: u64,
         /// Natural frequency of the dominant mode as read by the law (rad/s).

@@ -48,17 +48,17 @@ rows! {
         believed_rad_s: f64,
     }
     /// Rates of a spatial body, in its own axes.
-    Rates = "/rates" {
+    Rates = "/rates" at Period {
         /// About x, y and z.
         axes: Vec<AxisRate>,
     }
     /// Torques on a spatial body with actuators other than jets, or with an environment.
-    Torques = "/torques" {
+    Torques = "/torques" at Period {
         /// About x, y and z.
         axes: Vec<Torque>,
     }
     /// Kalman filters about each of three axes, after a sample.
-    Estimates = "/estimators" {
+    Estimates = "/estimators" at Sample {
         /// About x, y and z; angles are measured from the target.
         axes: Vec<Estimate>,
     }
@@ -78,7 +78,7 @@ rows! {
         innovation_rad: f64,
     }
     /// An attitude filter, after a sample.
-    AttitudeEstimate = "/attitude_filter" {
+    AttitudeEstimate = "/attitude_filter" at Sample {
         /// Real part of the estimated quaternion that turns vectors of the body into inertial ones.
         q_w: f64,
         /// The x component of that quaternion.
@@ -112,12 +112,12 @@ rows! {
         true_frequency_rad_s: f64,
     }
     /// The modes in an attitude filter, after a sample.
-    ElasticEstimates = "/attitude_filter_modes" {
+    ElasticEstimates = "/attitude_filter_modes" at Sample {
         /// Each mode, in the order of the scenario.
         modes: Vec<ElasticEstimate>,
     }
     /// Wheels of a spatial body.
-    Wheels = "/wheels" {
+    Wheels = "/wheels" at Period {
         /// Each wheel, in the order of the scenario.
         wheels: Vec<Wheel>,
     }
@@ -138,7 +138,7 @@ rows! {
         rate_rad_s: f64,
     }
     /// Control moment gyros of a spacecraft.
-    ControlMomentGyros = "/control_moment_gyros" {
+    ControlMomentGyros = "/control_moment_gyros" at Period {
         /// Each, in the order of the scenario.
         gyros: Vec<ControlMomentGyro>,
         /// Angular momentum of their rotors along the body's x (N m s).
@@ -160,7 +160,7 @@ rows! {
         bias_m_s2: f64,
     }
     /// An accelerometer outputs a sample.
-    Accelerations = "/accelerations" {
+    Accelerations = "/accelerations" at Sample {
         /// Index of the sensor in the scenario, from 0.
         sensor: u64,
         /// Along each of its axes.
@@ -172,7 +172,7 @@ rows! {
         moment_am2: f64,
     }
     /// Magnetorquers of a spatial body.
-    Magnetorquers = "/magnetorquers" {
+    Magnetorquers = "/magnetorquers" at Period {
         /// Along x, y and z.
         axes: Vec<Magnetorquer>,
     }
@@ -190,7 +190,7 @@ rows! {
         sun: f64,
     }
     /// Orbital position, magnetic field and Sun of a spatial body.
-    Orbit = "/orbit" {
+    Orbit = "/orbit" at Period {
         /// Along x, y and z.
         axes: Vec<OrbitAxis>,
         /// Whether the body is in sunlight.
@@ -209,7 +209,7 @@ rows! {
         frequency_rad_s: f64,
     }
     /// Drives of a spacecraft's appendages, and the natural frequencies, which change with the drive angles.
-    DrivesMotion = "/drives" {
+    DrivesMotion = "/drives" at Period {
         /// Each drive, in the order of the appendages.
         drives: Vec<DriveMotion>,
         /// Each mode, in the order at the start.
@@ -223,12 +223,12 @@ rows! {
         rate_rad_s: f64,
     }
     /// Hinges of a spacecraft's appendages.
-    Hinges = "/hinges" {
+    Hinges = "/hinges" at Period {
         /// Each hinge, in the order of the appendages.
         hinges: Vec<HingeMotion>,
     }
     /// Bearings of the wheels of a spatial body with friction, imbalance or a tachometer.
-    Bearings = "/bearings" {
+    Bearings = "/bearings" at Period {
         /// The bearing of each wheel, in the order of the scenario.
         wheels: Vec<BearingMotion>,
     }
@@ -261,7 +261,7 @@ rows! {
         torque_nm: f64,
     }
     /// Attitude of a spatial body.
-    Pointing = "/pointing" {
+    Pointing = "/pointing" at Period {
         /// Real part of the quaternion that turns vectors of the body into inertial ones.
         q_w: f64,
         /// The x component of the quaternion.
@@ -293,12 +293,12 @@ rows! {
         energy_j: f64,
     }
     /// The elastic modes of a spatial body, in the order of the scenario.
-    Vibrations = "/vibrations" {
+    Vibrations = "/vibrations" at Period {
         /// Each mode.
         modes: Vec<Vibration>,
     }
     /// Energies of a spatial body.
-    Energy = "/energy" {
+    Energy = "/energy" at Period {
         /// Rotational energy (J).
         rotational_j: f64,
         /// Elastic energy of all modes, kinetic and potential (J).
@@ -309,7 +309,7 @@ rows! {
         momentum_nm_s: f64,
     }
     /// Displacement of the first point of a spacecraft at which jets or forces act, from its start, in inertial axes.
-    Position = "/position" {
+    Position = "/position" at Period {
         /// Along x (m).
         x_m: f64,
         /// Along y (m).
@@ -388,7 +388,7 @@ rows! {
         amplitude_rad_s: f64,
     }
     /// Estimates of the adaptive observers of a spatial body.
-    Tracking = "/tracking" {
+    Tracking = "/tracking" at Sample {
         /// About x, y and z.
         channels: Vec<ChannelState>,
         /// The tracked modes, by axis and then by frequency.

@@ -125,7 +125,7 @@ fn signals(path: &Path) -> Result<Vec<SignalFan>, CliError> {
         let length = |v: [f64; 3]| v.iter().map(|x| x * x).sum::<f64>().sqrt();
         signals.push(signal("pointing error", "rad", cycles.over_time(|c| length(c.error_rad)), false));
         signals.push(signal("elastic energy", "J", cycles.over_time(|c| c.elastic_energy_j), false));
-        signals.push(signal("propellant", "kg", cycles.over_time(|c| c.jets.fuel_kg), false));
+        signals.push(signal("propellant", "kg", cycles.fuel(), false));
         signals.extend(adaptation_fans(&story));
     } else if story.switches() {
         if !story.means.is_empty() {

@@ -16,8 +16,9 @@ use std::path::Path;
 use flexsc_core::campaign::{ColumnCells, RowMaker};
 use flexsc_figure::{Figure, Named};
 
-use super::Args;
+use super::PlotArgs;
 use super::figure_kind::{FigureKind, select};
+use super::figure_name::FigureName;
 use crate::campaign::MAIN;
 use crate::error::CliError;
 use crate::figure_files::FigureTarget;
@@ -29,14 +30,19 @@ const MOST: usize = 4;
 /// Number of worst runs that are listed for each metric.
 const WORST: usize = 3;
 
-pub fn run(args: &Args) -> Result<(), CliError> {
+pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     let directory = args.path.as_path();
     let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &[], args.force)?;
     let files = files(directory)?;
     let mut tables = table::read(directory, &files)?;
     tables.extend(parts::read(directory, &files, &args.metric)?);
-    let fans = if args.what.is_empty() || args.what.contains(&FigureKind::Fan) {
-        fan::logs(directory, &files, tables.is_empty() || !args.what.is_empty())?
+    let (asked, topics) = FigureName::split(&args.what);
+    if let Some(topic) = topics.first() {
+        let path = directory.display();
+        return Err(CliError::Arguments(format!("--what: {topic} is for logs, and {path} is a directory")));
+    }
+    let fans = if asked.is_empty() || asked.contains(&FigureKind::Fan) {
+        fan::logs(directory, &files, tables.is_empty() || !asked.is_empty())?
     } else {
         BTreeMap::new()
     };
@@ -50,17 +56,15 @@ pub fn run(args: &Args) -> Result<(), CliError> {
     }
     let mut available: Vec<FigureKind> = tables.iter().flat_map(drawable).collect();
     available.extend((!fans.is_empty()).then_some(FigureKind::Fan));
-    let all = select(&args.what, &available).map_err(|(missing, accepted)| {
+    let all = select(&asked, &available).map_err(|(missing, there)| {
         let path = directory.display();
-        CliError::Arguments(format!(
-            "{path}: there is no figure `{missing}` for it\n\nhint: it has {accepted}"
-        ))
+        CliError::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
     })?;
     let mut figures = Vec::new();
     for runs in &tables {
         let metrics = metrics(&args.metric, &args.path, runs)?;
         let natural = natural(runs);
-        let wanted = |kind: &&FigureKind| !args.what.is_empty() || natural.contains(kind);
+        let wanted = |kind: &&FigureKind| !asked.is_empty() || natural.contains(kind);
         for kind in drawable(runs).iter().filter(|kind| all.contains(kind)).filter(wanted) {
             figures.extend(drawn(*kind, runs, &metrics));
         }

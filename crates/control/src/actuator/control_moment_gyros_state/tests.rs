@@ -28,7 +28,7 @@ fn demand(gimbals: &mut ControlMomentGyrosState, now: Instant, torque: [f64; 3])
 }
 
 fn applied(gimbals: &ControlMomentGyrosState, now: Instant) -> Vector {
-    Vector::from_fn(|axis, _| gimbals.applied_torque(now, axis, [0.0; 2]))
+    Vector::from_fn(|axis, _| gimbals.response(now, axis, [0.0; 2]).applied)
 }
 
 #[track_caller]
@@ -55,7 +55,7 @@ fn the_pseudo_inverse_is_that_of_numpy() {
     demand(&mut gimbals, at(0.0), TORQUE);
     assert_near(&gimbals.rates, PINV);
     assert!((applied(&gimbals, at(0.0)) - Vector::from(TORQUE)).norm() < 1e-14);
-    let row = gimbals.gimbal_row(at(0.0)).unwrap();
+    let row = gimbals.gyros(at(0.0)).unwrap();
     assert!((row.singularity - MEASURE).abs() < 1e-14, "{}", row.singularity);
     // Far from singular angles the robust rule gives nearly the same rates.
     let mut robust = start(ANGLES);
@@ -113,12 +113,12 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
         torque.cross(&Vector::from(TORQUE)).norm() < 1e-14
             && torque.norm() < 0.9 * Vector::from(TORQUE).norm()
     );
-    let steered = gimbals.steering_record().unwrap();
+    let steered = gimbals.steered;
     assert!((steered.largest_rate_rad_s - 0.02).abs() < 1e-16);
     assert!((steered.largest_error_nm - (torque - Vector::from(TORQUE)).norm()).abs() < 1e-14);
     // The torque they counteract is part of their torque.
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
-    gimbals.set_counter_torque(Vector::new(0.1, 0.2, -0.3));
+    gimbals.update(Instant::START, ActuatorInput::CounterTorque(Vector::new(0.1, 0.2, -0.3)));
     demand(&mut gimbals, at(0.0), TORQUE);
     let torque = applied(&gimbals, at(0.0));
     assert!((torque - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
@@ -132,10 +132,10 @@ fn driven(keys: &str, updates: u32) -> (f64, f64) {
     let mut most = 0.0_f64;
     for _ in 1..updates {
         let now = gimbals.due().expect("an update");
-        gimbals.update(now, [0.0; 3]);
+        gimbals.update(now, ActuatorInput::Due([0.0; 3]));
         most = most.max(gimbals.stored_momentum(now)[0] / 15.0);
     }
-    (most, gimbals.steering_record().unwrap().largest_rate_rad_s)
+    (most, gimbals.steered.largest_rate_rad_s)
 }
 
 /// Checks steering from angles of 0: the momentum along x ends at -90, 0, 90 and 0 degrees, an elliptic singularity
@@ -224,15 +224,15 @@ fn a_gimbal_that_fails_stands_still_and_nobody_knows() {
     let mut gimbals = start(&format!("{faults}\nsteering = \"pseudo_inverse\"\n{ANGLES}"));
     demand(&mut gimbals, at(0.0), TORQUE);
     assert_eq!(gimbals.due(), Some(at(1.0)));
-    gimbals.update(at(1.0), [0.0; 3]);
+    gimbals.update(at(1.0), ActuatorInput::Due([0.0; 3]));
     assert_eq!(gimbals.rates[1], 0.0);
     assert!(gimbals.rates[0] != 0.0);
-    let reduced_moments = [0, 1, 2].map(|axis| gimbals.reduced_moment(axis) * 100.0);
+    let believed = [0, 1, 2].map(|axis| gimbals.effort(axis).reduced_moment * 100.0);
     let torque = applied(&gimbals, at(1.0));
-    assert!((torque - Vector::from(reduced_moments)).norm() > 0.1);
+    assert!((torque - Vector::from(believed)).norm() > 0.1);
     let held = gimbals.angles_at(at(1.9))[1];
     assert_eq!(held, gimbals.angles_at(at(1.0))[1]);
-    gimbals.update(at(2.0), [0.0; 3]);
+    gimbals.update(at(2.0), ActuatorInput::Due([0.0; 3]));
     assert_eq!(gimbals.rates[1], gimbals.commanded[1]);
 }
 

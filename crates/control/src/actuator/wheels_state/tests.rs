@@ -1,6 +1,8 @@
 //! Tests of reaction wheels: stored momentum, limits, and cancelling torques.
 
 use super::*;
+use crate::actuator::MomentumStorage;
+use crate::part::Part;
 
 const PERIOD: f64 = 0.25;
 
@@ -31,7 +33,7 @@ fn demand(wheels: &mut WheelsState, now: Instant, torque: [f64; 3]) {
 }
 
 fn applied(wheels: &WheelsState) -> [f64; 3] {
-    [0, 1, 2].map(|axis| wheels.held_torque(axis))
+    [0, 1, 2].map(|axis| wheels.effort(axis).held)
 }
 
 #[test]
@@ -70,7 +72,7 @@ fn a_wheel_stops_at_its_limit_exactly() {
     let mut wheels = start("torque = 0.4\nmomentum = 9.0");
     demand(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
     assert_eq!(wheels.due(), Some(at(2.5)));
-    wheels.update(at(2.5), [0.0; 3]);
+    wheels.update(at(2.5), ActuatorInput::Due([0.0; 3]));
     let motion = wheels.wheels(at(9.0), [0.0; 3]);
     assert!((motion[0].momentum_nm_s - 9.0).abs() < 1e-14 && (motion[1].momentum_nm_s + 4.4).abs() < 1e-13);
     // The two wheels away from the limit continue; all do away from the limit.

@@ -1,10 +1,12 @@
 //! Run-time state of the adaptive observers: inputs, state estimate, and log row with the true values.
 
 use flexsc_numerics::time::Instant;
-use flexsc_record::{ChannelState, TrackedMode, Tracking};
+use flexsc_record::{ChannelState, Report, TrackedMode, Tracking};
 
 use super::{AxisObserver, MergedTracker, ModeEstimate, ObserverDesign};
+use crate::actuator::PulsedActuator;
 use crate::estimator::{self, AppliedPulses, SampleContext};
+use crate::part::{Occasion, Part, ReportContext};
 use crate::state_estimate::DampingStatus;
 use crate::state_estimate::{DominantMode, ElasticRateEstimate, StateEstimate};
 
@@ -29,44 +31,9 @@ impl ObserverSet {
     }
 }
 
-impl estimator::Estimator for ObserverSet {
-    fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
-        self.applied_pulses.input_changed(now, moments);
-    }
-
-    fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let executed = self.applied_pulses.take_executed(context.now, context.actuator);
-        if std::mem::replace(&mut self.sampled, true) {
-            self.channels.iter_mut().for_each(|channel| channel.advance(&executed));
-        }
-        let waiting = context.actuator.pending_pulses();
-        for (axis, (channel, state_estimate)) in self.channels.iter_mut().zip(state_estimates).enumerate() {
-            if let Some(measured) = context.measured {
-                let [angle, rate] = measured[axis];
-                channel.update(rate);
-                state_estimate.angle = angle;
-            }
-            channel.write_modes(&mut self.modes[axis]);
-            state_estimate.rate = channel.rate();
-            let rates = channel.predict(context.ahead, &waiting).into_iter();
-            let mode = |(rate, mode): (f64, &ModeEstimate)| ElasticRateEstimate {
-                rate,
-                frequency: mode.frequency,
-                influence: channel.influence(mode),
-            };
-            state_estimate.elastic.clear();
-            state_estimate.elastic.extend(rates.zip(&self.modes[axis]).map(mode));
-            state_estimate.elastic_is_trusted = channel.is_trusted();
-            state_estimate.dominant = dominant(&self.modes[axis]);
-        }
-    }
-
-    fn observer_row(
-        &self,
-        rates: &dyn Fn() -> Vec<f64>,
-        damped: &dyn Fn() -> Vec<DampingStatus>,
-    ) -> Option<Tracking> {
-        let (rates, damped) = (rates(), damped());
+impl ObserverSet {
+    /// Returns the log row, with the true rates of the modes and the status of active damping about each axis.
+    fn row(&self, rates: &[f64], damped: &[DampingStatus]) -> Tracking {
         let mut tracking = Tracking { channels: Vec::with_capacity(3), trackers: Vec::new() };
         for (axis, (channel, design)) in self.channels.iter().zip(&self.plan.axes).enumerate() {
             let measured_rate = |mode: &usize| design.visibilities[*mode] * rates[*mode];
@@ -101,7 +68,48 @@ impl estimator::Estimator for ObserverSet {
             };
             tracking.trackers.extend(modes.iter().zip(&design.modes).map(state));
         }
-        Some(tracking)
+        tracking
+    }
+}
+
+impl Part for ObserverSet {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        if at.occasion == Occasion::Cycle {
+            report.add(self.row(&at.truth.mode_rates(), at.damping));
+        }
+    }
+}
+
+impl estimator::Estimator for ObserverSet {
+    fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
+        self.applied_pulses.input_changed(now, moments);
+    }
+
+    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        let executed = self.applied_pulses.take_executed(taken.now, taken.pulses);
+        if std::mem::replace(&mut self.sampled, true) {
+            self.channels.iter_mut().for_each(|channel| channel.advance(&executed));
+        }
+        let waiting = taken.pulses.map_or_else(Vec::new, PulsedActuator::pending_pulses);
+        for (axis, (channel, state_estimate)) in self.channels.iter_mut().zip(state_estimates).enumerate() {
+            if let Some(measured) = taken.measured {
+                let [angle, rate] = measured[axis];
+                channel.update(rate);
+                state_estimate.angle = angle;
+            }
+            channel.write_modes(&mut self.modes[axis]);
+            state_estimate.rate = channel.rate();
+            let rates = channel.predict(taken.ahead, &waiting).into_iter();
+            let mode = |(rate, mode): (f64, &ModeEstimate)| ElasticRateEstimate {
+                rate,
+                frequency: mode.frequency,
+                influence: channel.influence(mode),
+            };
+            state_estimate.elastic.clear();
+            state_estimate.elastic.extend(rates.zip(&self.modes[axis]).map(mode));
+            state_estimate.elastic_is_trusted = channel.is_trusted();
+            state_estimate.dominant = dominant(&self.modes[axis]);
+        }
     }
 
     fn copy(&self) -> Box<dyn estimator::Estimator> {

@@ -3,7 +3,7 @@
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
 use flexsc_numerics::random::Stream;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates};
+use flexsc_record::{AttitudeEstimate, AxisEstimate, ElasticEstimate, ElasticEstimates, Report};
 use nalgebra::Quaternion;
 
 use super::elastic_states::ElasticFilterStates;
@@ -11,6 +11,7 @@ use super::spec::{AttitudeFilter, FilterSetup, SensorRole};
 use super::{AttitudeFilterState, AttitudeMeasurement, Correction, DelayedMeasurement, FilterHistory};
 use crate::estimator::kalman::Prior;
 use crate::estimator::{Estimator, SampleContext};
+use crate::part::{Occasion, Part, ReportContext};
 use crate::sensor::{Orientation, Reading};
 use crate::state_estimate::StateEstimate;
 
@@ -148,11 +149,73 @@ impl FilterSetup {
     fn readings_of_role<'a>(
         &'a self,
         readings: &'a [Option<Reading>],
-        is_selected: &'a dyn Fn(&SensorRole) -> bool,
+        wanted: &'a dyn Fn(&SensorRole) -> bool,
     ) -> impl Iterator<Item = (&'a SensorRole, (usize, Reading))> {
         let all = self.roles.iter().zip(readings).enumerate();
-        let selected = all.filter(move |(_, (role, _))| is_selected(role));
-        selected.filter_map(|(sensor, (role, reading))| Some((role, (sensor, (*reading)?))))
+        let wanted = all.filter(move |(_, (role, _))| wanted(role));
+        wanted.filter_map(|(sensor, (role, reading))| Some((role, (sensor, (*reading)?))))
+    }
+}
+
+impl AttitudeFilterRun {
+    /// Returns the filter's log row, with its errors against the true orientation and the true gyro bias (rad/s).
+    fn attitude_row(&self, now: Instant, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
+        let (Orientation::Attitude(truth), filter) = (truth, self.history.as_ref()?.latest()) else {
+            return None;
+        };
+        let (estimate, bias) = (AttitudeFilterRun::attitude(self, now)?, Vector::from(bias));
+        let [angle_sd, bias_sd] = filter.deviations();
+        let error = [rotation_vector(&estimate, truth), bias - filter.bias];
+        let [angle_error, bias_error] = error;
+        let axis = |axis: usize| AxisEstimate {
+            angle_error_rad: -angle_error[axis],
+            angle_sd_rad: angle_sd[axis],
+            bias_rad_s: filter.bias[axis],
+            bias_error_rad_s: -bias_error[axis],
+            bias_sd_rad_s: bias_sd[axis],
+            innovation_rad: self.last_correction.innovation[axis],
+        };
+        Some(AttitudeEstimate {
+            q_w: estimate.w,
+            q_x: estimate.i,
+            q_y: estimate.j,
+            q_z: estimate.k,
+            axes: [0, 1, 2].map(axis).into(),
+            nees: filter.normalised(&error) / AttitudeEstimate::STATES,
+            nis: self.last_correction.nis / AttitudeEstimate::MEASUREMENTS,
+            numbers: self.last_correction.numbers,
+            measured: self.used.into(),
+        })
+    }
+
+    /// Returns the log row of the elastic modes; `None` if the filter does not estimate any.
+    fn elastic_row(&self) -> Option<ElasticEstimates> {
+        let elastic = self.history.as_ref()?.latest().elastic.as_deref()?;
+        let each = elastic.known.each.iter().zip(&elastic.state).zip(&elastic.frequencies);
+        let modes = each.zip(elastic.deviations()).map(|(((mode, state), frequency), deviation)| {
+            let [displacement, rate_over_frequency] = *state;
+            ElasticEstimate {
+                displacement,
+                rate_over_frequency,
+                frequency_rad_s: *frequency,
+                frequency_sd_rad_s: deviation,
+                true_frequency_rad_s: mode.true_frequency,
+            }
+        });
+        Some(ElasticEstimates { modes: modes.collect() })
+    }
+}
+
+impl Part for AttitudeFilterRun {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        if at.occasion != Occasion::Sample {
+            return;
+        }
+        let (orientation, bias) = (at.truth.orientation(), at.truth.gyro_bias());
+        if let Some(row) = self.attitude_row(at.now, &orientation, bias) {
+            report.add(row);
+            self.elastic_row().into_iter().for_each(|row| report.add(row));
+        }
     }
 }
 
@@ -200,51 +263,6 @@ impl Estimator for AttitudeFilterRun {
             .iter_mut()
             .zip(angles)
             .for_each(|(state_estimate, angle)| state_estimate.angle = angle);
-    }
-
-    fn attitude_row(&self, now: Instant, truth: &Orientation, bias: [f64; 3]) -> Option<AttitudeEstimate> {
-        let (Orientation::Attitude(truth), filter) = (truth, self.history.as_ref()?.latest()) else {
-            return None;
-        };
-        let (estimate, bias) = (AttitudeFilterRun::attitude(self, now)?, Vector::from(bias));
-        let [angle_sd, bias_sd] = filter.deviations();
-        let error = [rotation_vector(&estimate, truth), bias - filter.bias];
-        let [angle_error, bias_error] = error;
-        let axis = |axis: usize| AxisEstimate {
-            angle_error_rad: -angle_error[axis],
-            angle_sd_rad: angle_sd[axis],
-            bias_rad_s: filter.bias[axis],
-            bias_error_rad_s: -bias_error[axis],
-            bias_sd_rad_s: bias_sd[axis],
-            innovation_rad: self.last_correction.innovation[axis],
-        };
-        Some(AttitudeEstimate {
-            q_w: estimate.w,
-            q_x: estimate.i,
-            q_y: estimate.j,
-            q_z: estimate.k,
-            axes: [0, 1, 2].map(axis).into(),
-            nees: filter.normalised(&error) / AttitudeEstimate::STATES,
-            nis: self.last_correction.nis / AttitudeEstimate::MEASUREMENTS,
-            numbers: self.last_correction.numbers,
-            measured: self.used.into(),
-        })
-    }
-
-    fn elastic_row(&self) -> Option<ElasticEstimates> {
-        let elastic = self.history.as_ref()?.latest().elastic.as_deref()?;
-        let each = elastic.known.each.iter().zip(&elastic.state).zip(&elastic.frequencies);
-        let modes = each.zip(elastic.deviations()).map(|(((mode, state), frequency), deviation)| {
-            let [displacement, rate_over_frequency] = *state;
-            ElasticEstimate {
-                displacement,
-                rate_over_frequency,
-                frequency_rad_s: *frequency,
-                frequency_sd_rad_s: deviation,
-                true_frequency_rad_s: mode.true_frequency,
-            }
-        });
-        Some(ElasticEstimates { modes: modes.collect() })
     }
 
     fn copy(&self) -> Box<dyn Estimator> {

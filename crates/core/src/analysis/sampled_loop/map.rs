@@ -3,7 +3,7 @@
 use rayon::prelude::*;
 use serde::Serialize;
 
-use super::{DiscretePlant, SampledLoop, Scaling, SettlingWindow};
+use super::{ClosedLoop, DiscretePlant, SampledLoop, Scaling, SettlingWindow};
 
 /// Cell of the map.
 #[derive(Copy, Clone, Debug, PartialEq, Serialize)]
@@ -31,23 +31,48 @@ pub fn map(
     gain: impl Fn(f64) -> f64 + Sync,
     window: SettlingWindow,
 ) -> Vec<MapCell> {
-    let row = |frequency: &f64| -> Vec<MapCell> {
-        let ratios = sampled_loop.ratios(*frequency, scaling);
-        let mut changed = sampled_loop.clone();
+    evaluate(sampled_loop, frequencies, periods, scaling, gain, |frequency_rad_s, period_s, closed| {
+        let settling = closed.settle(window);
+        MapCell {
+            frequency_rad_s,
+            period_s,
+            spectral_radius: closed.spectral_radius(),
+            settling_s: settling.time_s,
+            itae_rad_s2: settling.itae_rad_s2,
+        }
+    })
+}
+
+/// Returns the spectral radii of a map, in the order of its cells.
+pub fn spectral_radii(
+    of: &SampledLoop,
+    frequencies: &[f64],
+    periods: &[f64],
+    scaling: Scaling,
+    gain: impl Fn(f64) -> f64 + Sync,
+) -> Vec<f64> {
+    evaluate(of, frequencies, periods, scaling, gain, |_, _, closed| closed.spectral_radius())
+}
+
+/// Evaluates the closed loop at each frequency and period.
+fn evaluate<T: Send>(
+    of: &SampledLoop,
+    frequencies: &[f64],
+    periods: &[f64],
+    scaling: Scaling,
+    gain: impl Fn(f64) -> f64 + Sync,
+    value: impl Fn(f64, f64, &ClosedLoop) -> T + Sync,
+) -> Vec<T> {
+    let row = |frequency: &f64| -> Vec<T> {
+        let ratios = of.ratios(*frequency, scaling);
+        let mut changed = of.clone();
         let cell = |period: &f64| {
-            (changed.period, changed.delay) = (*period, sampled_loop.delay / sampled_loop.period * period);
+            (changed.period, changed.delay) = (*period, of.delay / of.period * period);
             let closed = DiscretePlant::new(&changed, &ratios).closed(gain(*frequency));
-            let settling = closed.settle(window);
-            MapCell {
-                frequency_rad_s: *frequency,
-                period_s: *period,
-                spectral_radius: closed.spectral_radius(),
-                settling_s: settling.time_s,
-                itae_rad_s2: settling.itae_rad_s2,
-            }
+            value(*frequency, *period, &closed)
         };
         periods.iter().map(cell).collect()
     };
-    let rows: Vec<Vec<MapCell>> = frequencies.par_iter().map(row).collect();
+    let rows: Vec<Vec<T>> = frequencies.par_iter().map(row).collect();
     rows.into_iter().flatten().collect()
 }

@@ -21,7 +21,7 @@ use flexsc_spacecraft::body::{Mode, Planar};
 pub use closed::ClosedLoop;
 pub use discrete_plant::DiscretePlant;
 pub use gain_region::{GainRegion, Gains, Scaling, midpoints, region, regions};
-pub use map::{MapCell, map};
+pub use map::{MapCell, map, spectral_radii};
 pub use robust_gain::{ModelUncertainty, RobustGain, RobustGoal, RobustSearch, optimize};
 pub use settling::{Settling, SettlingWindow};
 pub use spectrum::SlowestMode;

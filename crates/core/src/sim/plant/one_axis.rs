@@ -5,7 +5,7 @@ mod pieces;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::{AngleObservation, AxisState};
+use flexsc_dynamics::{AngleObservation, AxisState, is_bounded};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
 use flexsc_spacecraft::body::{Output, Planar};
@@ -96,6 +96,11 @@ impl OneAxisPlant {
         self.frequencies.iter().zip(&self.state.modes).map(|(w, phase)| w * phase.quadrature)
     }
 
+    /// Returns the rate, elastic part included, and the rigid rate (rad/s) at the current instant.
+    pub fn rates(&self) -> [f64; 2] {
+        [self.sight.rate, self.state.rigid_rate]
+    }
+
     /// Integrates motions without a closed form up to `now`, unless the record fails, so that evaluating the body there
     /// is cheap.
     pub fn approach(&mut self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
@@ -142,7 +147,7 @@ impl OneAxisPlant {
     /// Advances the body to `now` and returns its true state; `None` if the motion is no longer finite.
     pub fn evaluate(&mut self, now: Instant) -> Option<&Truth> {
         let AngleObservation { angle, rate, .. } = self.view(now);
-        if !(angle.is_finite() && rate.is_finite()) {
+        if !(is_bounded(angle) && is_bounded(rate)) {
             return None;
         }
         let truth = &mut self.truth;

@@ -71,7 +71,7 @@ def main(arguments: list[str] | None = None) -> int:
     )
     if given.check:
         if {"w", "mag"} <= set(found):
-            print(_told(model, found))
+            print(_summary(model, found))
         began = time.process_time()
         run = scenario.simulate(log="none")
         spent = time.process_time() - began
@@ -86,7 +86,7 @@ def main(arguments: list[str] | None = None) -> int:
     return 0
 
 
-def _told(model: StateSpace, found: dict[str, Any]) -> str:
+def _summary(model: StateSpace, found: dict[str, Any]) -> str:
     """How far the response is from the file's magnitudes: a row a frequency, the outputs for each input."""
     import numpy as np
 

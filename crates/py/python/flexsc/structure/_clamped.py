@@ -111,10 +111,10 @@ def appendage_from_nastran(
     mass_root = float(np.sqrt(mass_unit))
     modes = []
     for at, frequency in enumerate(solution.frequencies.tolist()):
-        told = {}
+        at_points = {}
         for point, number in points.items():
             shape = shapes[number][at] / (norms[at] * mass_root)
-            told[point] = {
+            at_points[point] = {
                 "translation": shape[:3].tolist(),
                 "rotation": (shape[3:] / length_unit).tolist(),
             }
@@ -125,7 +125,7 @@ def appendage_from_nastran(
                 "translation": (mass_root * t[at]).tolist(),
                 "rotation": (mass_root * length_unit * r[at]).tolist(),
                 "moments": (mass_root * length_unit * n[at]).tolist(),
-                "shapes": told,
+                "shapes": at_points,
             }
         )
     return {
@@ -166,8 +166,8 @@ def _dampings(damping: float | Sequence[float], modes: int) -> list[float]:
     given = np.asarray(damping, dtype=np.float64)
     if given.shape not in ((), (modes,)):
         raise ValueError(f"damping: must be one number, or one for each of {modes} modes, got {given.shape}")
-    told: list[float] = np.broadcast_to(given, modes).tolist()
-    return told
+    ratios: list[float] = np.broadcast_to(given, modes).tolist()
+    return ratios
 
 
 def _place(root: int | Sequence[float], bulk: Any, deck: Path) -> Numbers:
@@ -192,11 +192,11 @@ def _check(sums: Integrals, path: Path, deck: Path) -> None:
     if off[i, j] <= AGREES:
         return
     if i == j:
-        told = f"must be normalised by the masses of {deck}, and mode {i + 1} has"
+        why = f"must be normalised by the masses of {deck}, and mode {i + 1} has"
     else:
-        told = f"must be orthogonal by the masses of {deck}, and modes {i + 1} and {j + 1} have"
+        why = f"must be orthogonal by the masses of {deck}, and modes {i + 1} and {j + 1} have"
     raise ValueError(
-        f"{path}: shapes {told} the generalised mass {sums.generalised[i, j]:.6g}, not {float(i == j):g}: "
+        f"{path}: shapes {why} the generalised mass {sums.generalised[i, j]:.6g}, not {float(i == j):g}: "
         f"another deck, density or normalisation, or masses that are not lumped at grid points"
     )
 

@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 SYMMETRIC = 1e-9
 # Of the largest element: what force a rigid motion may leave.
 RIGID = 1e-6
-# So many modes, unless it is told.
+# Number of modes, unless it is given.
 KEPT = 10
 # Dense matrices above this order take minutes.
 DENSE = 4000
@@ -92,9 +92,9 @@ def appendage_from_matrices(
         raise ValueError(f"stiffness: must have the shape of the mass, {mass.shape}, got {stiffness.shape}")
     of_node, direction = _directions(dofs, rows, len(where))
     points = {} if points is None else points
-    for told, numbers in (("clamped", list(clamped)), *((f"points: `{p}`", [n]) for p, n in points.items())):
+    for label, numbers in (("clamped", list(clamped)), *((f"points: `{p}`", [n]) for p, n in points.items())):
         if wrong := [number for number in numbers if not 0 <= number < len(where)]:
-            raise ValueError(f"{told}: must be nodes from 0 to {len(where) - 1}, got {wrong[0]}")
+            raise ValueError(f"{label}: must be nodes from 0 to {len(where) - 1}, got {wrong[0]}")
     origin = _place(root, where)
     motions = _linear_motions(where - origin, of_node, direction)
     rigid = np.column_stack([motions[:, :3], motions[:, 3:] @ _curls()])
@@ -243,10 +243,10 @@ def _check_free(stiffness: Any, rigid: Numbers) -> None:
     scale = abs(stiffness).max() * np.abs(rigid).max(axis=0)
     left = np.abs(np.asarray(stiffness @ rigid)).max(axis=0)
     names = ("along x", "along y", "along z", "about x", "about y", "about z")
-    for told, force, most in zip(names, left.tolist(), scale.tolist(), strict=True):
+    for direction, force, most in zip(names, left.tolist(), scale.tolist(), strict=True):
         if force > RIGID * most:
             raise ValueError(
-                f"stiffness: must be that of a free structure, and a rigid motion {told} is met by "
+                f"stiffness: must be that of a free structure, and a rigid motion {direction} is met by "
                 f"{force / most:.3g} of its largest elements: matrices with the supports already removed, "
                 f"another order of rows (`dofs`), or positions in another unit"
             )

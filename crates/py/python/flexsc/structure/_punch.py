@@ -76,8 +76,8 @@ def read_punch(path: Path, subcase: int | None = None) -> Solution:
         else:
             last = None  # a scalar point
     if not squares:
-        told = "" if subcase is None else f" of subcase {subcase}"
-        raise ValueError(f"{path}: must have eigenvectors{told}, and has none")
+        of_subcase = "" if subcase is None else f" of subcase {subcase}"
+        raise ValueError(f"{path}: must have eigenvectors{of_subcase}, and has none")
     shapes = {}
     for grid, by_mode in rows.items():
         if set(by_mode) == set(squares) and all(len(row) == 6 for row in by_mode.values()):

@@ -142,9 +142,9 @@ def _oscillating(poles: Complex) -> npt.NDArray[np.intp]:
         worst = poles[np.argmax(poles.real)]
         raise ValueError(f"A: must be stable, and has the pole {worst.real:g} {worst.imag:+g}i")
     if (real := np.abs(poles.imag) <= 1e-9 * size).any():
-        told = ", ".join(f"{pole:g}" for pole in np.sort(poles[real].real)[-4:])
+        listed = ", ".join(f"{pole:g}" for pole in np.sort(poles[real].real)[-4:])
         raise ValueError(
-            f"A: must have modes that oscillate, and has real poles ({told}): overdamped pairs, or the "
+            f"A: must have modes that oscillate, and has real poles ({listed}): overdamped pairs, or the "
             "dynamics of sensors and actuators, which do not belong to the structure"
         )
     return np.flatnonzero(poles.imag > 0.0)

@@ -171,12 +171,12 @@ def write_modes(path: str | os.PathLike[str], modes: Sequence[Mapping[str, Any]]
         for part, names in (("translation", COMPONENTS[:3]), ("rotation", COMPONENTS[3:])):
             for index, name in enumerate(names):
                 columns[f"{point}.{name}"] = [float(mode["shapes"][point][part][index]) for mode in modes]
-    # A point that no mode moves keeps one column, which tells of it.
-    told = {name for name, column in columns.items() if any(column)} | {"frequency"}
+    # A point that no mode moves keeps one column, so that it is listed.
+    written = {name for name, column in columns.items() if any(column)} | {"frequency"}
     for point in modes[0]["shapes"] if modes else ():
-        if not any(f"{point}.{component}" in told for component in COMPONENTS):
-            told.add(f"{point}.tx")
-    kept = {name: column for name, column in columns.items() if name in told}
+        if not any(f"{point}.{component}" in written for component in COMPONENTS):
+            written.add(f"{point}.tx")
+    kept = {name: column for name, column in columns.items() if name in written}
     text = io.StringIO()
     writer = csv.writer(text, lineterminator="\n")
     writer.writerow(kept)

@@ -4,7 +4,7 @@ use flexsc_dynamics::ModeState;
 use flexsc_numerics::attitude::Vector;
 use flexsc_record::{
     DriveMotion, DrivenMode, DrivesMotion, Energy, HingeMotion, Hinges, Orbit, OrbitAxis, Pointing, Position,
-    Vibration, Vibrations,
+    Report, Vibration, Vibrations,
 };
 use flexsc_spacecraft::environment::to_body;
 use flexsc_spacecraft::flow::RigidBody;
@@ -13,6 +13,16 @@ use super::super::coupled::CoupledMotion;
 use super::ThreeAxisPlant;
 
 impl ThreeAxisPlant {
+    /// Adds the rows of the plant that depend on nothing else to a report.
+    pub fn add_rows(&self, report: &mut Report) {
+        report.add(self.vibrations());
+        report.add(self.energy());
+        self.position().into_iter().for_each(|row| report.add(row));
+        self.orbit().into_iter().for_each(|row| report.add(row));
+        self.drives().into_iter().for_each(|row| report.add(row));
+        self.hinges().into_iter().for_each(|row| report.add(row));
+    }
+
     /// Returns the row of the energies.
     pub fn energy(&self) -> Energy {
         let one_way = || {

@@ -3,11 +3,11 @@
 use flexsc_control::sensor::{Accelerometer, AccelerometerState, MeasuredAcceleration};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Acceleration, Accelerations, Record, Sample};
+use flexsc_record::{Accelerations, Record, RecordError, Sample};
 
-use super::plant::{AccelerometerMount, Plant};
-use super::{Simulation, SimulationError};
 use crate::scenario::Scenario;
+use crate::sim::plant::{AccelerometerMount, Plant};
+use crate::sim::run_view::RunView;
 
 /// Run-time state of the accelerometers, each with its index among the sensors and its mount.
 #[derive(Clone, Debug)]
@@ -30,30 +30,22 @@ impl Accelerometers {
     pub fn due(&self) -> Option<Instant> {
         self.0.iter().map(|(.., sensor)| sensor.due()).min()
     }
-}
 
-impl Simulation {
     /// Samples the accelerometers that are due, after all loads have changed, and records the samples whose latency has
     /// elapsed.
-    pub(super) fn record_accelerations(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let now = self.now;
-        if self.recorder.accelerometers.due().is_none_or(|due| due > now) {
+    pub fn record_due(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
+        let now = run.now;
+        if self.due().is_none_or(|due| due > now) {
             return Ok(());
         }
-        self.plant.evaluate(now)?;
-        let Plant::ThreeAxis(plant) = &self.plant else { return Ok(()) };
-        for (index, mount, sensor) in &mut self.recorder.accelerometers.0 {
+        let Plant::ThreeAxis(plant) = run.plant else { return Ok(()) };
+        for (index, mount, sensor) in &mut self.0 {
             if sensor.samples_now(now) {
                 sensor.sample(now, &plant.specific_force(mount));
             }
             while let Some(felt) = sensor.take_due(now) {
-                let axis = |felt: &MeasuredAcceleration| Acceleration {
-                    measured_m_s2: felt.measured,
-                    true_m_s2: felt.exact,
-                    bias_m_s2: felt.bias,
-                };
-                let row = Accelerations { sensor: *index as u64, axes: felt.iter().map(axis).collect() };
-                record.record(now, Sample::Accelerations(&row))?;
+                let axes = felt.iter().map(MeasuredAcceleration::row).collect();
+                record.record(now, Sample::Row(&Accelerations { sensor: *index as u64, axes }))?;
             }
         }
         Ok(())

@@ -4,7 +4,7 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::foxglove::LogLevel;
 use flexsc_record::{Command, FaultEvent, Onset, Record, RecordError, Sample};
 
-use super::Simulation;
+use super::journal_events::JournalEvents;
 use crate::scenario::{FailureInterval, Scenario};
 
 /// Pending beginnings and ends of failures, latest first.
@@ -35,13 +35,15 @@ impl Failures {
         let (_, onset, failing) = self.0.pop_if(|(at, ..)| *at <= now)?;
         Some((onset, failing))
     }
-}
 
-impl Simulation {
-    /// Records the failures that begin or end now.
-    pub(super) fn record_failures(&mut self, record: &mut dyn Record) -> Result<(), RecordError> {
-        let now = self.now;
-        while let Some((onset, FailureInterval { part, of, fault, .. })) = self.recorder.failures.next(now) {
+    /// Records the failures that begin or end by `now`.
+    pub fn record_due(
+        &mut self,
+        now: Instant,
+        journal: &JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        while let Some((onset, FailureInterval { part, of, fault, .. })) = self.next(now) {
             let (time_s, time_whole_s, time_fs) = Command::times(now);
             let whose = if of.is_empty() { String::new() } else { format!("{of}: ") };
             let (level, line) = match onset {
@@ -57,8 +59,8 @@ impl Simulation {
                 fault: fault.to_owned(),
                 onset,
             };
-            record.record(now, Sample::Fault(&event))?;
-            self.recorder.events.failure_changed(now, (level, &part), line, record)?;
+            record.record(now, Sample::Row(&event))?;
+            journal.failure_changed(now, (level, &part), line, record)?;
         }
         Ok(())
     }

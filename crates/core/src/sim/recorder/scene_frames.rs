@@ -1,47 +1,73 @@
 //! Scene of a run for viewers: its parts, its frames when they are due, its plumes when they change.
 
-use flexsc_record::{Hinges, Record, Sample};
+use flexsc_control::actuator::PulsedActuator;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Hinges, Record, RecordError, Sample};
 use flexsc_spacecraft::flow::ThreeAxisState;
 
-use super::plant::Plant;
-use super::{Simulation, SimulationError};
+use super::journal_events::JournalEvents;
 use crate::scenario::Scenario;
 use crate::scene::{OneAxisPose, Scene};
+use crate::sim::plant::Plant;
+use crate::sim::run_view::RunView;
 
-impl Simulation {
-    /// Enables drawing of the scene for records that want it; to be called before the run begins.
-    pub fn enable_scene(&mut self, scenario: &Scenario) {
-        self.recorder.draw(scenario);
+/// Scene of a run with the schedule of its frames.
+#[derive(Clone, Debug, Default)]
+pub struct SceneFrames {
+    /// Scene of the run; `None` if it is not drawn.
+    scene: Option<Box<Scene>>,
+    next: Option<Instant>,
+}
+
+impl SceneFrames {
+    /// Enables drawing of the scenario's scene.
+    pub fn draw(&mut self, scenario: &Scenario) {
+        self.scene = Some(Box::new(Scene::new(scenario)));
+    }
+
+    /// Returns true if the scene is drawn.
+    pub fn is_drawn(&self) -> bool {
+        self.scene.is_some()
+    }
+
+    /// Returns the instant at which frames are due next.
+    pub fn due(&self) -> Option<Instant> {
+        self.next
     }
 
     /// Records the parts of the scene; discards a scene that no record wants.
-    pub(super) fn record_scene(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (now, telling) = (self.now, &mut self.recorder);
-        match &telling.scene {
+    pub fn record_scene(
+        &mut self,
+        now: Instant,
+        journal: &JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        match &self.scene {
             Some(scene) if record.wants_scene() => {
-                record.record(now, Sample::Scene(&scene.parts(telling.events.stamp(now))))?;
-                telling.next_frames = Some(now);
+                record.record(now, Sample::Row(&scene.parts(journal.stamp(now))))?;
+                self.next = Some(now);
             }
-            _ => telling.scene = None,
+            _ => self.scene = None,
         }
         Ok(())
     }
 
     /// Records the frames that are due and the plumes that have changed.
-    pub(super) fn record_frames(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
-        if self.recorder.scene.is_none() {
-            return Ok(());
-        }
-        let now = self.now;
-        let stamp = self.recorder.events.stamp(now);
-        self.plant.evaluate(now)?;
-        let frames = self.recorder.next_frames == Some(now);
-        let Some(scene) = &mut self.recorder.scene else { return Ok(()) };
+    pub fn record_due(
+        &mut self,
+        run: &RunView<'_>,
+        journal: &JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let now = run.now;
+        let Some(scene) = &mut self.scene else { return Ok(()) };
+        let stamp = journal.stamp(now);
+        let frames = self.next == Some(now);
         if frames {
-            self.recorder.next_frames = Some(now + scene.period());
+            self.next = Some(now + scene.period());
         }
-        let truth = self.plant.truth();
-        let plumes = match (&mut **scene, &self.plant) {
+        let truth = run.plant.truth();
+        let plumes = match (&mut **scene, run.plant) {
             (Scene::Planar(scene), Plant::OneAxis(plant)) => {
                 let state = plant.state();
                 if frames {
@@ -54,9 +80,10 @@ impl Simulation {
                         modes: &state.modes,
                         sections: &sections,
                     };
-                    record.record(now, Sample::Frames(scene.frames(stamp, view)))?;
+                    record.record(now, Sample::Row(scene.frames(stamp, view)))?;
                 }
-                let torque = self.loads.actuator.applied_torque(now, 0, [truth.rate[0], truth.rigid[0]]);
+                let rates = [truth.rate[0], truth.rigid[0]];
+                let torque = run.loads.actuator.response(now, 0, rates).applied;
                 scene.plumes(stamp, torque)
             }
             (Scene::Spatial(scene), Plant::ThreeAxis(plant)) => {
@@ -73,15 +100,15 @@ impl Simulation {
                         }
                         None => scene.frames(stamp, &turn.attitude, modes, &angles),
                     };
-                    record.record(now, Sample::Frames(frames))?;
+                    record.record(now, Sample::Row(frames))?;
                 }
-                let cycle = self.loads.actuator.jet_cycle();
+                let cycle = run.loads.actuator.capabilities().pulses.map(PulsedActuator::cycle);
                 let (burning, open) =
                     cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
                 scene.plumes(stamp, burning, open)
             }
             _ => None,
         };
-        Ok(plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Plumes(&plumes)))?)
+        plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Row(&plumes)))
     }
 }

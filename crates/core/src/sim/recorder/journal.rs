@@ -29,7 +29,7 @@ impl Journal {
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         let timestamp = self.date_of(now);
-        record.record(now, Sample::Log(&Log { timestamp, level, message, name: name.to_owned() }))
+        record.record(now, Sample::Row(&Log { timestamp, level, message, name: name.to_owned() }))
     }
 
     /// Returns the date of an instant.

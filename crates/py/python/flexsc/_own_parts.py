@@ -9,7 +9,7 @@ from concurrent.futures import Executor, ThreadPoolExecutor
 from typing import Any
 
 from flexsc import _native as engine
-from flexsc._executor import Span, hand_out
+from flexsc._executor import Span, distribute
 from flexsc._scenario import Scenario
 from flexsc._table import Table
 from flexsc.parts import CompiledLaw
@@ -36,8 +36,8 @@ def run(
     rows: dict[Span, dict[str, Any]] = {}
     finished = 0
 
-    def keep(told: list[tuple[Span, dict[str, Any]]]) -> None:
-        rows.update(told)
+    def keep(results: list[tuple[Span, dict[str, Any]]]) -> None:
+        rows.update(results)
 
     def done(made: Sequence[Span]) -> None:
         nonlocal finished
@@ -45,7 +45,7 @@ def run(
         if progress is not None:
             progress(finished, end - first)
 
-    hand_out(executor, parts, task_s, done, lambda some: (_rows, scenario, study, some, jobs or 1), keep)
+    distribute(executor, parts, task_s, done, lambda some: (_rows, scenario, study, some, jobs or 1), keep)
     columns = {name: _joined([rows[part][name] for part in parts]) for name in rows[parts[0]]}
 
     def statistics() -> Any:
@@ -90,8 +90,8 @@ def _rows(
     began = time.perf_counter()
     runs, sample, replicas, names = study
     work = engine.Work.create(scenario._native, runs, [], sample, replicas, names, None, True, True)
-    told = [(part, work.make(part, jobs)[0]) for part in parts]
-    return time.perf_counter() - began, told
+    results = [(part, work.make(part, jobs)[0]) for part in parts]
+    return time.perf_counter() - began, results
 
 
 def _joined(pieces: list[Any]) -> Any:

@@ -9,13 +9,22 @@ use flexsc_record::row::LogDate;
 use flexsc_record::{Adaptation, Arrival, Record, RecordError, Sliding, WheelEvent};
 use nalgebra::Quaternion;
 
+use super::journal::{Journal, adaptation_line, opening};
 use crate::scenario::Scenario;
-use crate::sim::journal::{Journal, adaptation_line, opening};
+
+/// Stage of the journal: not yet opened, open, or closed.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+enum JournalStage {
+    Before,
+    Within,
+    After,
+}
 
 /// Last reported states, to detect changes for the journal.
 #[derive(Clone, Debug)]
 pub struct JournalEvents {
     journal: Journal,
+    stage: JournalStage,
     opening: String,
     target: Option<(Frame, Quaternion<f64>)>,
     /// True while the body turns towards the target and has not arrived.
@@ -34,6 +43,7 @@ impl JournalEvents {
     pub fn new(scenario: &Scenario, run: u64) -> Self {
         Self {
             journal: Journal::new(scenario),
+            stage: JournalStage::Before,
             opening: opening(scenario, run),
             target: None,
             is_slewing: false,
@@ -50,9 +60,19 @@ impl JournalEvents {
         self.journal.date_of(now)
     }
 
-    /// Writes the line of the run's start.
-    pub fn begin(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
-        self.journal.write_line(now, (LogLevel::Info, "run"), self.opening.clone(), record)
+    /// Writes the line of the run's start once; returns true if this call wrote it.
+    pub fn open(&mut self, now: Instant, record: &mut dyn Record) -> Result<bool, RecordError> {
+        if self.stage != JournalStage::Before {
+            return Ok(false);
+        }
+        self.stage = JournalStage::Within;
+        self.journal.write_line(now, (LogLevel::Info, "run"), self.opening.clone(), record)?;
+        Ok(true)
+    }
+
+    /// Marks the journal as closed; returns true the first time.
+    pub fn close(&mut self) -> bool {
+        std::mem::replace(&mut self.stage, JournalStage::After) != JournalStage::After
     }
 
     /// Writes the line of the run's end.

@@ -27,10 +27,10 @@ def linearise(
     """Return the body of a scenario, or its open loop."""
     import numpy as np
 
-    told = json.loads(engine.linear_json(scenario._native, at))
-    a, b, c = (np.array(told[name], dtype=np.float64) for name in "abc")
+    model = json.loads(engine.linear_json(scenario._native, at))
+    a, b, c = (np.array(model[name], dtype=np.float64) for name in "abc")
     states, inputs, outputs = (
-        tuple(Signal(**each) for each in told[kind]) for kind in ("states", "inputs", "outputs")
+        tuple(Signal(**each) for each in model[kind]) for kind in ("states", "inputs", "outputs")
     )
     body = Linear(a, b.reshape(len(a), -1), c, np.zeros((len(c), b.shape[1])), states, inputs, outputs)
     keys = scenario.to_dict()
@@ -56,8 +56,8 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
     count = len(body.inputs)
     prefixes = [""] if count == 1 else [f"{axis}_" for axis in AXES]
     gain = _gain(name, keys["actuator"], count)
-    told = json.loads(engine.loop_json(scenario._native))
-    laws = [law_about(name, keys, told["filters"][k], k, prefix) for k, prefix in enumerate(prefixes)]
+    parts = json.loads(engine.loop_json(scenario._native))
+    laws = [law_about(name, keys, parts["filters"][k], k, prefix) for k, prefix in enumerate(prefixes)]
     period = laws[0].period
     if any(law.period != period for law in laws):
         raise refused(name, "the laws of the axes have different periods: a linear loop has one")
@@ -78,11 +78,11 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
             # Accelerations become torques J a + w x (J w + h), and J times this block is the cross of h.
             own_inertia = np.linalg.inv(body.b[3:6])
             law.d[:, 1::2] -= own_inertia @ body.a[3:6, 3:6]
-    if told["attitude"]:
+    if parts["attitude"]:
         if loop == "measurement":
             why = "an attitude filter reads gyro and attitude sensor: open its loop at `command` or `torque`"
             raise refused(name, why)
-        return attitude_loop(name, body, law, (period, delay), told["attitude"], loop)
+        return attitude_loop(name, body, law, (period, delay), parts["attitude"], loop)
     names = ["angle", "rate"] if count == 1 else [f"{axis}{what}" for axis in AXES for what in ("", "_rate")]
     plant = body.select(outputs=names).sampled(period, delay)
     seen = Block.gain(np.eye(2 * count))
@@ -98,8 +98,8 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
         )
     inner = seen
     pushed = np.zeros((len(seen.a), count))
-    if told["estimators"]:
-        observer, push = estimator(told["estimators"], prefixes)
+    if parts["estimators"]:
+        observer, push = estimator(parts["estimators"], prefixes)
         inner, pushed = seen.then(observer), np.vstack([pushed, push])
     inner = inner.then(law)
     pushed = np.vstack([pushed, np.zeros((len(law.a), count))])

@@ -1,0 +1,70 @@
+//! Figures by the names that `--what` accepts: the kinds of figures, and topics of a log.
+
+use std::ffi::OsStr;
+
+use clap::builder::{EnumValueParser, PossibleValue, TypedValueParser};
+
+use super::FigureKind;
+
+/// Figure by its name.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum FigureName {
+    /// Kind of figure.
+    Kind(FigureKind),
+    /// Topic of a log, with its leading slash.
+    Topic(String),
+}
+
+impl FigureName {
+    /// Parses a name.
+    ///
+    /// # Errors
+    /// A name that is neither a topic nor a kind.
+    pub fn parse(name: &str) -> Result<Self, String> {
+        if name.starts_with('/') {
+            return Ok(Self::Topic(name.to_owned()));
+        }
+        clap::ValueEnum::from_str(name, false).map(Self::Kind)
+    }
+
+    /// Splits names into kinds and topics.
+    pub fn split(names: &[Self]) -> (Vec<FigureKind>, Vec<&str>) {
+        let mut kinds = Vec::new();
+        let mut topics = Vec::new();
+        for name in names {
+            match name {
+                Self::Kind(kind) => kinds.push(*kind),
+                Self::Topic(topic) if !topics.contains(&topic.as_str()) => topics.push(topic.as_str()),
+                Self::Topic(_) => {}
+            }
+        }
+        (kinds, topics)
+    }
+}
+
+/// Parser of figure names, which lists the kinds.
+#[derive(Copy, Clone, Debug)]
+pub struct FigureNameParser;
+
+impl TypedValueParser for FigureNameParser {
+    type Value = FigureName;
+
+    fn parse_ref(
+        &self,
+        command: &clap::Command,
+        argument: Option<&clap::Arg>,
+        value: &OsStr,
+    ) -> Result<FigureName, clap::Error> {
+        match value.to_str() {
+            Some(topic) if topic.starts_with('/') => Ok(FigureName::Topic(topic.to_owned())),
+            _ => {
+                EnumValueParser::<FigureKind>::new().parse_ref(command, argument, value).map(FigureName::Kind)
+            }
+        }
+    }
+
+    fn possible_values(&self) -> Option<Box<dyn Iterator<Item = PossibleValue> + '_>> {
+        let kinds = <FigureKind as clap::ValueEnum>::value_variants();
+        Some(Box::new(kinds.iter().filter_map(clap::ValueEnum::to_possible_value)))
+    }
+}

@@ -1,0 +1,60 @@
+//! Rows of a cycle of three axes: errors, rates, jets, wheels, and adaptive observers.
+
+use flexsc_control::actuator::Saturation;
+use flexsc_record::{LoggedRevisions, Record, RecordError, Tracking};
+
+use super::journal_events::JournalEvents;
+use crate::scenario::Scenario;
+use crate::sim::plant::Plant;
+use crate::sim::run_view::RunView;
+
+/// Memory of the rows of the cycles.
+#[derive(Clone, Debug)]
+pub struct CycleRows {
+    /// Revisions of the rows that are logged only when they change.
+    revisions: LoggedRevisions,
+    /// How wheels and magnetorquers reach their limits.
+    saturation: Saturation,
+}
+
+impl CycleRows {
+    /// Creates the memory of a scenario's rows, before its start.
+    pub fn new(scenario: &Scenario) -> Self {
+        let saturation = Saturation::new(&scenario.actuator, scenario.duration.seconds());
+        Self { revisions: LoggedRevisions::default(), saturation }
+    }
+
+    /// Returns the warning of the run's end that wheels or magnetorquers have reached their limits.
+    pub fn saturation_warning(&self) -> Option<String> {
+        self.saturation.warning()
+    }
+
+    /// Records the rows of the cycle that begins now.
+    pub fn record(
+        &mut self,
+        run: &RunView<'_>,
+        journal: &mut JournalEvents,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let Plant::ThreeAxis(plant) = run.plant else { return Ok(()) };
+        let (now, truth) = (run.now, run.plant.truth());
+        let mut report = run.actuator_cycle_report(plant);
+        report.skip_repeated(&mut self.revisions);
+        self.saturation.observe(now.seconds(), &report);
+        run.record_report(&report, record)?;
+        if let Some(written) = run.guidance.target_as_written(now) {
+            let error = || truth.orientation.error_from(&run.guidance.target(now));
+            journal.target(now, written, error, record)?;
+        }
+        if run.estimation.has_estimator {
+            let damped = run.laws.damping_status();
+            let report = run.estimator_cycle_report(&damped);
+            run.record_report(&report, record)?;
+            if report.row::<Tracking>().is_some() {
+                let trusted = |axis: usize| run.estimation.estimates[axis].elastic_is_trusted;
+                journal.damping_changed(now, &damped, [0, 1, 2].map(trusted), record)?;
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,205 @@
+//! Recorder of a run: when its rows and journal lines are due. It reads the parts of the run and changes none of them.
+
+mod accelerometers;
+mod bearing_rows;
+mod cycle_rows;
+mod failures;
+mod journal;
+mod journal_events;
+mod manoeuvre_end;
+mod motion_rows;
+mod reports;
+mod scene_frames;
+
+use flexsc_control::estimator::{EnvelopeWindow, ObjectiveWindow};
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Record, RecordError, Sample};
+
+use super::controllers::LawDecision;
+use super::guidance::Guidance;
+use super::run_view::RunView;
+use crate::scenario::Scenario;
+use accelerometers::Accelerometers;
+use bearing_rows::BearingRows;
+use cycle_rows::CycleRows;
+use failures::Failures;
+use journal_events::JournalEvents;
+use manoeuvre_end::ManoeuvreEnd;
+use motion_rows::MotionRows;
+use scene_frames::SceneFrames;
+
+/// Schedule and memory of everything that a run writes to its record.
+#[derive(Clone, Debug)]
+pub struct Recorder {
+    journal: JournalEvents,
+    motion: MotionRows,
+    cycles: CycleRows,
+    bearings: BearingRows,
+    /// Pending end of the manoeuvre, if any.
+    manoeuvre_end: Option<ManoeuvreEnd>,
+    accelerometers: Accelerometers,
+    failures: Failures,
+    frames: SceneFrames,
+}
+
+impl Recorder {
+    /// Creates the schedule of a scenario's run, before its start.
+    pub fn new(scenario: &Scenario, guidance: &Guidance, run: u64) -> Self {
+        Self {
+            journal: JournalEvents::new(scenario, run),
+            motion: MotionRows::new(scenario),
+            cycles: CycleRows::new(scenario),
+            bearings: BearingRows::default(),
+            manoeuvre_end: ManoeuvreEnd::new(scenario, &guidance.setpoint),
+            accelerometers: Accelerometers::new(scenario, run),
+            failures: Failures::new(scenario),
+            frames: SceneFrames::default(),
+        }
+    }
+
+    /// Enables drawing of the scenario's scene.
+    pub fn draw(&mut self, scenario: &Scenario) {
+        self.frames.draw(scenario);
+    }
+
+    /// Returns the instant at which the next row or journal line is due.
+    pub fn due(&self) -> Option<Instant> {
+        let due = [
+            self.manoeuvre_end.as_ref().map(|end| end.at),
+            self.motion.due(),
+            self.frames.due(),
+            self.failures.due(),
+            self.accelerometers.due(),
+        ];
+        due.into_iter().flatten().min()
+    }
+
+    /// Returns true if no row is due at an instant of its own, and no scene is drawn.
+    pub fn is_idle(&self) -> bool {
+        self.due().is_none() && !self.frames.is_drawn()
+    }
+
+    /// Returns the period of the rows of a dense record.
+    pub fn log_period(&self) -> Span {
+        self.motion.period()
+    }
+
+    /// Opens the journal once; returns true if this call opened it.
+    pub fn open(&mut self, now: Instant, record: &mut dyn Record) -> Result<bool, RecordError> {
+        self.journal.open(now, record)
+    }
+
+    /// Closes the journal once; returns true if this call closed it.
+    pub fn close(&mut self) -> bool {
+        self.journal.close()
+    }
+
+    /// Records the last lines of the run's journal.
+    pub fn journal_end(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
+        if let Some(line) = self.cycles.saturation_warning() {
+            self.journal.warned(now, "actuators", line, record)?;
+        }
+        self.journal.end(now, record)
+    }
+
+    /// Records that the run is stopped before its end.
+    pub fn journal_interruption(&self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
+        self.journal.interrupted(now, record)
+    }
+
+    /// Records the rows of the start.
+    pub fn record_start(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
+        self.bearings.begin(run.plant);
+        self.motion.record_start(run, record)?;
+        self.frames.record_scene(run.now, &self.journal, record)
+    }
+
+    /// Records the rows that are due, after all parts have acted; those of a cycle of three axes if `is_cycle`.
+    pub fn record_instant(
+        &mut self,
+        run: &RunView<'_>,
+        is_cycle: bool,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        self.bearings.record_events(run, &self.journal, record)?;
+        self.failures.record_due(run.now, &self.journal, record)?;
+        self.accelerometers.record_due(run, record)?;
+        if is_cycle {
+            self.cycles.record(run, &mut self.journal, record)?;
+        }
+        self.motion.record_due(run, record)?;
+        self.frames.record_due(run, &self.journal, record)
+    }
+
+    /// Records the motion at the current instant, and the law's row of a one-axis body.
+    pub fn record_now(&self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
+        self.motion.record_now(run, record)
+    }
+
+    /// Records a decision in which the one-axis law has changed its state.
+    pub fn record_switching(
+        &self,
+        run: &RunView<'_>,
+        decision: LawDecision,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        self.motion.record_switching(run, decision, record)
+    }
+
+    /// Records the estimates after the current sample, and journals losses of lock.
+    pub fn record_estimates(
+        &mut self,
+        run: &RunView<'_>,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let estimation = run.estimation;
+        self.journal.lock_changed(
+            run.now,
+            estimation.estimator.lock_lost(),
+            estimation.axis_count(),
+            record,
+        )?;
+        if record.wants_estimates() { run.record_report(&run.sample_report(), record) } else { Ok(()) }
+    }
+
+    /// Records the end of the manoeuvre, if it is at the current instant.
+    pub fn record_manoeuvre_end(
+        &mut self,
+        run: &RunView<'_>,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let now = run.now;
+        let Some(end) = self.manoeuvre_end.take_if(|end| end.at == now) else { return Ok(()) };
+        let row = end.row(run.plant.truth(), &run.plant.about_axis(0, run.estimation.origin()));
+        record.record(now, Sample::Row(&row))?;
+        self.journal.manoeuvre_ended(now, &row, record)
+    }
+
+    /// Records a closed window of the envelope, if there is one, and the step of the adaptation.
+    pub fn record_envelope_window(
+        &self,
+        now: Instant,
+        closed: Option<&EnvelopeWindow>,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let Some(closed) = closed else { return Ok(()) };
+        record.record(now, Sample::Row(&closed.mean))?;
+        let Some((row, before)) = &closed.step else { return Ok(()) };
+        record.record(now, Sample::Row(row))?;
+        self.journal.adaptation_step(now, row, *before, record)
+    }
+
+    /// Records a closed window of the objective, if there is one, and the step of the adaptation.
+    pub fn record_objective_window(
+        &self,
+        now: Instant,
+        measured: Option<&ObjectiveWindow>,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        let Some(measured) = measured else { return Ok(()) };
+        record.record(now, Sample::Row(&measured.row))?;
+        let Some((row, before)) = &measured.step else { return Ok(()) };
+        record.record(now, Sample::Row(row))?;
+        self.journal.adaptation_step(now, row, *before, record)
+    }
+}
