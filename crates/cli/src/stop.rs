@@ -91,7 +91,7 @@ pub fn run_watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
                     drop(files);
                     return print_interrupted();
                 }
-                if waited >= PATIENCE && !is_noted {
+                if waited >= STOP_TIMEOUT && !is_noted {
                     is_noted = true;
                     note_second_signal();
                 }
