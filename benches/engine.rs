@@ -64,7 +64,7 @@ fn run(c: &mut Criterion) {
     group.bench_function("windows and metrics", |b| b.iter(|| Campaign::simulate(black_box(&run), ())));
     group.bench_function("windows, metrics, log", |b| {
         b.iter(|| {
-            let from = Campaign::provenance(&run, Detail::Events);
+            let from = Campaign::provenance(&run);
             let mut log = LogBytes::new(&from, Detail::Events).expect("a log");
             let metrics = Campaign::simulate(&run, &mut log).expect("a run");
             log.finish(&metrics, RunEnd::Complete).expect("a log")
@@ -160,7 +160,7 @@ fn log(c: &mut Criterion) {
     group.sample_size(10).throughput(Throughput::Elements(4 * 200_000));
     group.bench_function("dense MCAP", |b| {
         b.iter(|| {
-            let from = Campaign::provenance(&run, Detail::Full);
+            let from = Campaign::provenance(&run);
             let mut log = LogBytes::new(&from, Detail::Full).expect("a log");
             simulate(&full, &mut log);
             log.finish(&Metrics::default(), RunEnd::Complete).expect("a log")

@@ -91,6 +91,8 @@ fn what_is_off_is_identified_on_the_way() {
         // The modes that ring are yaw's first and pitch's first.
         for run in &runs {
             let errors = numbers(run, "frequency_estimate_errors");
+            // Over the 48 runs the two errors have standard deviations of 0.5 % and 0.2 %: 2 % is four of the
+            // larger.
             assert!(errors[2].abs() < 0.02 && errors[4].abs() < 0.02, "{errors:?}");
         }
     }
@@ -105,8 +107,9 @@ fn a_turn_ends_quieter_and_excites_a_third_for_a_few_percent_of_propellant() {
     let off = twelve("iss-manoeuvre", &[("law.phase_plane.damping.threshold", "[1, 1, 1]"), until]);
     let on = twelve("iss-manoeuvre", &[until]);
     within(median(&on, "fuel_kg") / median(&off, "fuel_kg"), [1.0, 1.1]);
-    assert!(median(&on, "elastic_energy_peak_j") < 0.4 * median(&off, "elastic_energy_peak_j"));
-    assert!(median(&on, "elastic_rate_rms_rad_s") < 0.4 * median(&off, "elastic_rate_rms_rad_s"));
+    // A third: 0.28 and 0.21 are found.
+    assert!(3.0 * median(&on, "elastic_energy_peak_j") < median(&off, "elastic_energy_peak_j"));
+    assert!(3.0 * median(&on, "elastic_rate_rms_rad_s") < median(&off, "elastic_rate_rms_rad_s"));
     assert!(sorted(&on, "damping_cycles")[11] < 80.0);
     assert!(sorted(&off, "damping_cycles")[11] == 0.0);
 }
@@ -131,8 +134,9 @@ fn whatever_is_wrong_at_the_start_a_turn_excites_less() {
         (sorted("fuel_kg"), sorted("elastic_energy_peak_j"), sorted("elastic_rate_rms_rad_s"));
     within(0.5 * (fuel[5] + fuel[6]), [5.5, 6.2]);
     within(fuel[11], [5.5, 7.0]);
-    assert!(peak[11] < 0.38, "{peak:?}");
-    assert!(0.5 * (rate[5] + rate[6]) < 1.2e-5 && rate[11] < 3e-5, "{rate:?}");
+    // The worst run has a third of that energy; the rates are less in the median, and at most twice as large.
+    assert!(peak[11] < 0.83 / 3.0, "{peak:?}");
+    assert!(0.5 * (rate[5] + rate[6]) < 7.3e-6 && rate[11] < 2.0 * 7.3e-6, "{rate:?}");
 }
 
 #[test]
@@ -168,7 +172,8 @@ fn the_watchdog_limits_what_a_wrong_relay_burns() {
     let watched = metrics(scenario("iss-delay-limit", &only(guards)));
     assert!(watched.number("damping_pauses").expect("a count") > 0.0);
     let fuel = |of: &Metrics| of.number("fuel_kg").expect("fuel");
-    assert!(fuel(&watched) < 0.7 * fuel(&free), "{} {}", fuel(&watched), fuel(&free));
+    // 42 kg of 116 kg.
+    assert!(fuel(&watched) < 0.5 * fuel(&free), "{} {}", fuel(&watched), fuel(&free));
     assert_eq!(free.number("damping_pauses"), Some(0.0));
 }
 
@@ -197,13 +202,14 @@ fn turns_identify_frequencies_and_influences() {
     for run in &runs {
         let [frequencies, influences] =
             ["frequency_estimate_errors", "influence_estimate_errors"].map(|name| numbers(run, name));
+        // Three standard deviations over the runs: 0.2 % of frequencies, and 2.6 % of influences.
         for index in [1, 2, 3, 4] {
-            assert!(frequencies[index].abs() < 0.02, "{frequencies:?}");
+            assert!(frequencies[index].abs() < 0.006, "{frequencies:?}");
         }
         for index in [2, 3, 4] {
-            assert!(influences[index].abs() < 0.2, "{influences:?}");
+            assert!(influences[index].abs() < 0.08, "{influences:?}");
         }
-        close(numbers(run, "frequency_estimates_hz")[4], 0.2476, 0.02);
+        close(numbers(run, "frequency_estimates_hz")[4], 0.2476, 0.006);
         assert_eq!(run.number("damping_cycles"), Some(0.0));
     }
 }
@@ -240,6 +246,8 @@ fn an_axis_that_knows_the_jets_of_the_others_sees_no_motion_that_is_not() {
         (rate, off(0), off(2))
     };
     let (alone, with) = (errors("false"), errors("true"));
+    // One run each: alone 0.25, 0.070 and 0.061, with the jets of the others 0.094, 0.027 and 0.017. The
+    // bounds lie between.
     assert!(alone.0 > 0.18 && with.0 < 0.12, "{alone:?} {with:?}");
     assert!(alone.1 > 0.05 && with.1 < 0.04, "{alone:?} {with:?}");
     assert!(alone.2 > 0.04 && with.2 < 0.025, "{alone:?} {with:?}");
@@ -322,7 +330,7 @@ fn modes_can_be_given() {
     let run = metrics(scenario("iss-ringdown", &keys));
     let estimates = numbers(&run, "frequency_estimates_hz");
     assert_eq!(estimates.len(), 1);
-    close(estimates[0], 0.2476, 0.02);
+    close(estimates[0], 0.2476, 0.006);
     // Only yaw is damped: pitch rings on.
     assert!(run.number("elastic_energy_end_j").expect("a number") < 0.6);
     assert!(run.number("damping_cycles").expect("a count") > 20.0);

@@ -157,7 +157,8 @@ fn the_command_tells_how_often_modes_are_found() {
     // Two modes that no run of 300 s distinguishes.
     let near = IdentificationTrial::published(vec![(TAU * 0.6049, 1.5), (TAU * 0.6096, 1.6)], 0.05).table(4);
     let apart = IdentificationTrial::published(vec![(TAU * 0.2476, 2.89), (TAU * 0.6, 3.0)], 0.05).table(4);
-    assert!(near.persistence.expect("excited") < 0.05 && apart.persistence.expect("excited") > 0.7);
+    // Of 1, which orthogonal motions would have: 0.02 and 0.90.
+    assert!(near.persistence.expect("excited") < 0.05 && apart.persistence.expect("excited") > 0.85);
     for (bad, why) in [
         ("identify --modes 1.2", "must be W:MU,W:MU"),
         ("identify --modes 20:1", "got 20"),
@@ -230,10 +231,11 @@ fn one_tracker_follows_a_near_pair() {
         let mode = observer.modes().remove(0);
         let hertz = mode.frequency / (2.0 * PI);
         assert!((0.600..0.613).contains(&hertz), "{hertz}");
-        assert!(error(mode.influence[0], 3.1) < 0.15, "{:?}", mode.influence);
+        // Over the six runs the errors are 1 % to 4 %: a pair has no influence of its own.
+        assert!(error(mode.influence[0], 3.1) < 0.05, "{:?}", mode.influence);
         found.push(rms(&wrong) / rms(&elastic));
     }
-    assert!(median(found.clone()) < 0.08, "{found:?}");
+    assert!(median(found.clone()) < 0.025, "{found:?}");
 }
 
 /// Returns the observer's relative errors, and the largest error of a frequency, of a roll channel whose modes yaw

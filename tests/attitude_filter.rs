@@ -81,7 +81,9 @@ fn a_mean_over_an_exposure_is_an_attitude_of_its_middle() {
     let exposed = scenario(&[("latency = 0.6", "latency = 0.6, exposure = 0.8")]).expect("valid");
     let names = ["nis_mean", "nees_mean", "attitude_estimate_error_rms_rad"];
     let [nis, nees, error] = means(&exposed, 40, names);
+    // Four standard errors each, as above.
     assert!((nis - 1.0).abs() < 0.03 && (nees - 1.0).abs() < 0.37, "{nis} {nees}");
+    // A standard error of a root mean square of 40 independent errors of six numbers: 1/sqrt(2 40 6) = 0.046.
     let [_, _, instant] = means(&scenario(&[]).expect("valid"), 40, names);
     assert!((error / instant - 1.0).abs() < 0.05 && error != instant, "{error:e} {instant:e}");
 }
@@ -103,6 +105,7 @@ fn a_bias_that_wanders_is_tracked() {
     let wandering = scenario(&[("rate_random_walk = 1e-8", keys)]).expect("valid");
     let names = ["nees_mean", "nis_mean", "bias_estimate_error_rms_rad_s"];
     let [nees, nis, bias] = means(&wandering, 40, names);
+    // Four standard errors each, as above.
     assert!((nis - 1.0).abs() < 0.03 && (nees - 1.0).abs() < 0.37, "{nis} {nees}");
     // A filter that does not model the wander trusts its bias too long.
     let deaf = scenario(&[
@@ -123,9 +126,12 @@ fn rates_of_a_late_gyro_are_of_when_they_were_measured() {
     };
     let names = ["nis_mean", "attitude_estimate_error_rms_rad", "pointing_error_end_rad"];
     let [nis, _, pointing] = means(&late(3.0, ""), 20, names);
-    assert!((nis - 1.0).abs() < 0.04 && pointing < 2e-4, "{nis} {pointing:e}");
+    // Four standard errors of 20 runs: 4 sqrt(2/(20 897)) = 0.042.
+    assert!((nis - 1.0).abs() < 0.042 && pointing < 2e-4, "{nis} {pointing:e}");
     let [[_, prompt, _], [_, delayed, _]] =
         [0.0, 3.0].map(|periods| means(&late(periods, "assess = [220.0, 300.0]"), 20, names));
+    // A standard error and a half of a root mean square of 20 independent errors of six numbers: 1.5/sqrt(2
+    // 20 6) = 0.097.
     assert!(delayed < 1.1 * prompt, "{prompt:e} {delayed:e}");
     // Samples without latency are reported at once.
     let error = ["attitude_estimate_error_rms_rad"];

@@ -75,7 +75,9 @@ fn wheels_pass_through_zero_and_compensation_helps() {
     // Without noise of the gyro the error is that of friction.
     let error = |change: &[(&str, &str)]| worst(&traced(&changed("wheel-friction", change)), 30.0);
     let (plain, helped) = (error(&[SILENT]), error(&[SILENT, COMPENSATED]));
-    assert!(plain > 8e-4 && helped < 0.6 * plain, "{plain:e} {helped:e}");
+    // 1.5 mrad, as the comment says; nine tenths of the friction are compensated, and 0.16 of the error is
+    // left.
+    assert!((1.4e-3..1.6e-3).contains(&plain) && helped < 0.2 * plain, "{plain:e} {helped:e}");
 }
 
 #[test]
@@ -129,6 +131,8 @@ fn a_run_up_shakes_the_modes_that_it_passes() {
         let rows = speeds.iter().zip(&size).filter(|(speed, _)| (from..to).contains(*speed));
         rows.map(|(_, size)| *size).fold(0.0, f64::max)
     };
+    // Near its line at 47 rad/s the mode swings 10 and 4 times as far as beside it, at half of it 13 and 5
+    // times.
     assert!(most(45.0, 49.0) > 4.0 * most(35.0, 40.0) && most(45.0, 49.0) > 3.0 * most(50.0, 54.0));
     assert!(most(91.0, 95.0) > 8.0 * most(80.0, 84.0) && most(91.0, 95.0) > 5.0 * most(98.0, 110.0));
     // 115 - 85 exp(-2.4) rad/s.

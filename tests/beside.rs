@@ -6,11 +6,11 @@
 use std::convert::Infallible;
 use std::sync::Arc;
 
-use flexsc_core::Scenario;
 use flexsc_core::batch::{self, BatchJob};
 use flexsc_core::campaign::{Campaign, CampaignRun, Grid, RunOutcome};
 use flexsc_core::metrics::Selection;
 use flexsc_core::numerics::lanes::Processor;
+use flexsc_core::{Scenario, Simulation, SimulationError};
 
 use crate::study::{pairs, scenario};
 
@@ -172,6 +172,34 @@ fn rows_depend_on_no_thread_and_no_neighbour() {
         for threads in [1, 2, 8] {
             assert_eq!(rows(threads, true), alone, "{name} on {threads} threads");
         }
+    }
+}
+
+/// The first run is that of the study; the others switch faster than any mode.
+#[test]
+fn a_run_that_chatters_has_the_same_error_in_a_batch_and_alone() {
+    let torques = Grid::linspace("law.relay.strong".to_owned(), 4e-5, 1e13, 13);
+    let study = Campaign::new(scenario("relay-fixed", &[("duration", "60.0")]), "chatter", Some(torques));
+    let study = Arc::new(study.expect("a campaign"));
+    assert!(batch::accepts(study.scenario()));
+    let work = |run: &CampaignRun| Ok(Campaign::simulate(run, ())?);
+    let mut errors = Vec::new();
+    let report = |outcome: Option<RunOutcome>| -> Result<(), Infallible> {
+        errors.extend(
+            outcome.map(|outcome| (outcome.number, outcome.metrics.err().map(|why| why.to_string()))),
+        );
+        Ok(())
+    };
+    let Ok(()) = study.for_each_run_in_batches(0..13, 1, &Selection::ALL, work, report);
+    assert_eq!(errors.iter().filter(|(_, error)| error.is_some()).count(), 12);
+    for (number, error) in errors {
+        let run = study.run(number).expect("a run");
+        let alone = Simulation::new(&run.scenario, number).run(&mut ()).err();
+        assert!(
+            alone.as_ref().is_none_or(|why| matches!(why, SimulationError::LawChatter { .. })),
+            "{alone:?}"
+        );
+        assert_eq!(error, alone.map(|why| why.to_string()), "run {number}");
     }
 }
 

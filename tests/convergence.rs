@@ -54,6 +54,8 @@ fn the_turning_regressor_allows_far_less() {
         [([0.05, 0.2, 0.15], 0.0429, 0.0187, 0.9539), ([0.05, 0.1, 0.05], 0.0255, 0.0046, 0.9684)]
     {
         let margin = observer(weights).margin().expect("a margin");
+        // The known gains are steps of 5 % of a search: the limit lies less than one above the last with
+        // which it converges, and the best, about which the radius is flat, within one.
         close(margin.gain_max, gain, 0.035);
         close(margin.gain_best, best, 0.06);
         close(margin.spectral_radius, radius, 1e-3);

@@ -132,7 +132,8 @@ fn one_sided_law_ends_in_its_cycle() {
     let LawKind::Relay(law) = &scenario.law else { panic!("a relay law") };
     let closed = cycles(law, scenario.one_angle().expect("one angle"), 0.31)[0];
     close(closed.period_s, 120.343, 1e-5);
-    close(closed.angle_min_rad, -1.25e-3, 0.05);
+    // Three digits are known.
+    close(closed.angle_min_rad, -1.25e-3, 4e-3);
     let simulated = metrics(scenario.clone());
     assert_eq!(simulated.get("cycle_kind"), Some(&MetricValue::Word("one-sided")));
     close(simulated.number("cycle_period_s").expect("a period"), closed.period_s, 1e-9);

@@ -149,7 +149,8 @@ fn beyond_that_gain_the_delay_equation_grows() {
     let after = |part: f64| {
         delayed(TURN, 0.2, 0.005, part * limit, 60.0) / delayed(TURN, 0.2, 0.005, part * limit, 20.0)
     };
-    assert!(after(0.97) < 0.7 && after(1.03) > 1.4, "{} {}", after(0.97), after(1.03));
+    // Within 40 s the amplitude falls to 0.53 of itself, or doubles.
+    assert!(after(0.97) < 0.55 && after(1.03) > 2.0, "{} {}", after(0.97), after(1.03));
 }
 
 #[test]
@@ -231,9 +232,11 @@ fn a_sampled_relay_damps_the_yaw_mode() {
             let foreseen = decay.amplitude(5e-4, CYCLE * cycle as f64);
             close(foreseen, closed[index], 2e-4);
             close(runs[0][cycle], exact[index], 1e-6);
-            close(runs[0][cycle], foreseen, 0.05);
+            // The closed form is the mean over all phases between swings and cycles: one phase is off by up
+            // to 2.8 %, the mean of eight by up to 1.0 %, and a cycle late by up to 3.7 %.
+            close(runs[0][cycle], foreseen, 0.03);
             let mean = runs.iter().map(|run| run[cycle]).sum::<f64>() / 8.0;
-            close(mean, foreseen, if late == 0 { 0.02 } else { 0.05 });
+            close(mean, foreseen, if late == 0 { 0.01 } else { 0.04 });
         }
     }
 }
@@ -269,7 +272,9 @@ fn a_delayed_relay_ends_in_a_limit_cycle() {
         let swings = periods as f64 / (crossings[periods] - crossings[0]);
         close(largest, rate, 0.01);
         close(swings, seen, 0.005);
-        close(border.limit_cycle(acceleration), largest, 0.25);
+        // The describing function neglects the harmonics of the relay: its amplitudes are 19 % and 17 %
+        // smaller.
+        close(border.limit_cycle(acceleration), largest, 0.2);
         close(border.frequency, TURN * swings, 0.01);
     }
 }

@@ -69,8 +69,9 @@ fn its_filter_is_as_good_as_it_says() {
             .sum::<f64>()
             / runs as f64
     };
-    // 480 innovations a run of three numbers: the mean is 1 within 1.96 sqrt(2/(3 480 12)) = 0.021; errors of a run are
-    // hardly independent, of runs they are.
+    // 480 innovations a run of three numbers: 0.03 is 2.8 standard errors, sqrt(2/(3 480 12)) = 0.011. Errors
+    // of a run are hardly independent, of runs they are: 0.4 is 2.4 standard errors of 12 errors of six
+    // numbers, sqrt(2/(12 6)) = 0.17.
     let (nis, nees) = (mean("nis_mean"), mean("nees_mean"));
     assert!((nis - 1.0).abs() < 0.03, "NIS {nis}");
     assert!((0.6..1.4).contains(&nees), "NEES {nees}");

@@ -89,6 +89,41 @@ fn runs_of_minutes_are_announced() {
     }
 }
 
+/// Values at which a search, a series or an integration would never end are answered or refused at once.
+#[test]
+#[cfg(target_os = "linux")]
+fn values_without_end_are_answered_or_refused() {
+    let dir = Dir::with(&["relay-fixed", "relay-one-sided", "rotation-sine", "wheel-friction"]);
+    // A coast of up to 1e296 s, in closed form.
+    for (weak, told) in [("1e-15", "two-sided cycle, stable"), ("1e-300", "no limit cycle exists")] {
+        dir.run_bounded(&format!("cycle relay-fixed.toml --set law.relay.weak={weak}"))
+            .exits(0)
+            .says(&[told]);
+        dir.run_bounded(&format!("cycle relay-one-sided.toml --set law.relay.weak={weak}"))
+            .exits(0)
+            .says(&["one-sided cycle, stable", "0.0000 under strong torque"]);
+        dir.run_bounded(&format!("simulate relay-fixed.toml --log none --set law.relay.weak={weak}"))
+            .exits(0);
+    }
+    // A command of 1e7 periods, and one of no number of them.
+    for (peak, told) in
+        [("1e-9", "lasts at most 2e4 periods of the fastest mode"), ("1e-300", "in some time")]
+    {
+        dir.run_bounded(&format!("plan rotation-sine.toml --peak-torque {peak}")).exits(2).says(&[
+            "--peak-torque: must be enough for",
+            told,
+            &format!("got {peak} N m"),
+        ]);
+    }
+    // Bearings that stop a wheel at once, and bearings that no motor turns.
+    let friction = "simulate wheel-friction.toml --log none --set actuator.wheels.friction";
+    dir.run_bounded(&format!("{friction}.coulomb=1000")).exits(2).says(&[
+        "`actuator.wheels.friction.coulomb` must be at most 10 times the torque of the motor",
+        "got 1000",
+    ]);
+    dir.run_bounded(&format!("{friction}.breakaway=1000")).exits(0).says(&["4 stops"]);
+}
+
 #[test]
 #[cfg(unix)]
 #[cfg_attr(not(feature = "full"), ignore = "not in a light build")]

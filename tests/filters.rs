@@ -65,6 +65,9 @@ fn extended_filter_follows_the_drift() {
     let (runs, astray): (Vec<_>, Vec<_>) = runs.into_iter().partition(follows);
     assert!(astray.len() <= 4, "{astray:?}");
     let largest = sorted(&runs, "frequency_error_max_rad_s");
+    // Squares of errors have long tails: the rms of two sets of 200 runs differ by 8 %, and 0.15 is twice
+    // that. The median of the largest error, which has none, is that of the other set within 4 %, and 0.1 is
+    // two and a half times that.
     assert!((rms(&runs) / 1.11e-3 - 1.0).abs() < 0.15, "{}", rms(&runs));
     assert!(
         (largest[100] / 3.4e-3 - 1.0).abs() < 0.1 && *largest.last().expect("runs") < 0.015,
@@ -72,15 +75,19 @@ fn extended_filter_follows_the_drift() {
     );
     let [nees, nis, inside] =
         ["nees_mean", "nis_mean", "nis_inside_95"].map(|name| mean(&sorted(&runs, name)));
-    assert!((nees - 1.01).abs() < 0.15, "{nees}");
-    assert!((nis - 1.012).abs() < 0.03 && (inside - 0.94).abs() < 0.02, "{nis} {inside}");
+    // Errors of a run are hardly independent: three standard errors of two sets of 200 such runs, if each has
+    // 10 independent numbers, are 3 sqrt(2 2/(200 10)) = 0.13. Innovations are, 667 a run: 3 sqrt(2 2/(200
+    // 667)) = 0.016; 0.94 has two digits.
+    assert!((nees - 1.01).abs() < 0.13, "{nees}");
+    assert!((nis - 1.012).abs() < 0.016 && (inside - 0.94).abs() < 0.011, "{nis} {inside}");
     assert_eq!(sorted(&runs, "lock_lost").last(), Some(&0.0));
 }
 
 #[test]
 fn unscented_filter_follows_it_and_is_less_sure() {
     let runs = runs(&unscented(&[WATCHING, ("duration", "200")]), 60);
-    assert!((rms(&runs) / 1.11e-3 - 1.0).abs() < 0.2, "{}", rms(&runs));
+    // The same error of the other set of 200, of 60 runs.
+    assert!((rms(&runs) / 1.11e-3 - 1.0).abs() < 0.15, "{}", rms(&runs));
     let nees = mean(&sorted(&runs, "nees_mean"));
     assert!((0.75..1.0).contains(&nees) && sorted(&runs, "lock_lost")[59] == 0.0, "{nees}");
 }
@@ -91,7 +98,8 @@ fn scheduled_gain_follows_the_filter() {
     // s. The page that this study comes from says 173.4 s. With the mode known the loop settles in 172.0 s.
     let runs = runs(&ekf(&[]), 60);
     let settling = sorted(&runs, "settling_time_s");
-    assert!((settling[30] - 172.0).abs() < 0.8, "{settling:?}");
+    // A sample of 0.3 s.
+    assert!((settling[30] - 172.0).abs() < 0.31, "{settling:?}");
     assert!(settling[0] > 138.0 && settling[59] < 200.0, "{settling:?}");
 }
 
@@ -128,6 +136,7 @@ fn robust_schedule_beats_the_middle_and_none() {
 fn bad_priors_lose_the_body_and_the_filter_says_so() {
     // The other implementation lost 3 of 200 for good.
     let runs = runs(&ekf(&[WATCHING, ("duration", "200"), ("filter.ratio_sd", "0.1")]), 200);
+    // Of a rate of 3 in 200 runs 95 % of the counts are 1 to 14, of a rate of 7, which is found here, 99 %.
     let lost = sorted(&runs, "lock_lost").iter().sum::<f64>();
     assert!((1.0..=14.0).contains(&lost), "{lost}");
     // Runs without a loss of lock are as good as with a good prior.
@@ -159,9 +168,10 @@ fn quiet_body_teaches_nothing() {
         (rms(|end| end.0), rms(|end| end.1))
     };
     let (error, claim) = end("0.0");
-    assert!(error > 0.08 && claim < 0.03, "{error} {claim}");
+    assert!(error > 0.1 && claim < 0.01, "{error} {claim}");
     let (error, claim) = end("3.0");
-    assert!(error < 1.5 * claim, "{error} {claim}");
+    // Three standard errors of a root mean square of 30 errors: 3/sqrt(2 30) = 0.39.
+    assert!(error < 1.39 * claim, "{error} {claim}");
 }
 
 #[test]
@@ -172,6 +182,7 @@ fn a_drifting_body_is_followed_where_its_vibration_is_ten_times_the_noise() {
         runs(&ekf(&[&[("duration", "200"), ("sensor.sampled.noise", "1e-4")], gate].concat()), 100)
     };
     let (with, without) = (noisy(&[]), noisy(&[("filter.gate", "0.0")]));
+    // With equal draws the gate costs 5 %; one that shuts off costs a factor of five.
     assert!(rms(&with) < 1.1 * rms(&without), "{} {}", rms(&with), rms(&without));
     assert!(mean(&sorted(&with, "nees_mean")) < 3.0);
 }
@@ -239,8 +250,10 @@ fn filters_in_the_loop_are_honest() {
     // Without noise in the moment: a filter with this knowledge, and with the frequencies, is optimal.
     let linear = metrics(looped("kalman]\nprior = 'drawn'\nmoment_noise = 0.0"));
     let number = |name: &str| linear.number(name).expect("a metric");
-    assert!((number("nis_mean") - 1.0).abs() < 0.2, "{linear:?}");
-    assert!((number("nis_inside_95") - 0.95).abs() < 0.04, "{linear:?}");
+    // Three standard errors of 400 innovations: 3 sqrt(2/400) = 0.21 and 3 sqrt(0.95 0.05/400) = 0.033. The
+    // errors of one run are a few independent numbers.
+    assert!((number("nis_mean") - 1.0).abs() < 0.21, "{linear:?}");
+    assert!((number("nis_inside_95") - 0.95).abs() < 0.033, "{linear:?}");
     assert!((0.2..2.0).contains(&number("nees_mean")), "{linear:?}");
     assert_eq!(number("frequency_error_max_rad_s"), 0.0);
     for kind in ["extended_kalman", "unscented_kalman"] {
@@ -297,11 +310,13 @@ fn gyro_sharpens_the_estimate() {
     let error = |gyro: &str| {
         let text = looped(spec).to_toml().replace("[sensor.sampled]\n", &format!("[sensor.sampled]\n{gyro}"));
         let metrics = metrics(Scenario::parse("gyro", &text).expect("valid"));
+        // Two and a half standard errors of 300 innovations: 2.5 sqrt(2/300) = 0.2.
         assert!((metrics.number("nis_mean").expect("a metric") - 1.0).abs() < 0.2, "{metrics:?}");
         metrics.number("frequency_error_rms_rad_s").expect("a metric")
     };
     let (without, with) = (error(""), error("rate_noise = 1e-6\n"));
-    assert!(with < 0.8 * without, "{with} {without}");
+    // 0.37 of the error is left.
+    assert!(with < 0.5 * without, "{with} {without}");
 }
 
 #[test]

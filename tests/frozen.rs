@@ -28,7 +28,8 @@ fn shipped() -> Vec<String> {
 }
 
 /// Compares a text with the snapshot of that name in `tests/frozen`.
-fn is_frozen(name: &str, text: &str) {
+#[track_caller]
+pub fn is_frozen(name: &str, text: &str) {
     let mut settings = insta::Settings::clone_current();
     settings.set_snapshot_path("frozen");
     settings.set_prepend_module_to_snapshot(false);

@@ -186,7 +186,8 @@ fn magnetorquers_unload_them() {
         .map(|axis| column(&trace, "/control_moment_gyros", &format!("momentum_{axis}_nm_s"))[0]);
     let start = (x * x + y * y + z * z).sqrt();
     let end = metrics.number("gyro_momentum_end_nm_s").expect("a momentum");
-    assert!(start > 5.0 && end < 0.9 * start, "{end} of {start}");
+    // 0.73 is left after 300 s, a twentieth of the orbit.
+    assert!(start > 5.0 && end < 0.75 * start, "{end} of {start}");
     assert_eq!(metrics.get("goal"), Some(&MetricValue::Word("met")));
 }
 

@@ -49,7 +49,7 @@ fn canted_thrusters_turn_a_body_by_what_is_cheapest() {
         ["x_m_s", "y_m_s", "z_m_s"].map(last).iter().map(|v| v * v).sum::<f64>().sqrt()
     };
     assert!(free.number("fuel_kg").expect("propellant") > fuel);
-    assert!(speed(&calm) < 0.02 * speed(&trace), "{} {}", speed(&calm), speed(&trace));
+    assert!(speed(&calm) < 5e-3 * speed(&trace), "{} {}", speed(&calm), speed(&trace));
 }
 
 /// The pulses of a cycle turn a rigid body by the impulse that was demanded: J w' = torque over the cycle, but for the
@@ -110,8 +110,8 @@ fn wheels_are_unloaded_by_the_least_propellant() {
     let ((by_groups, _), (by_itself, trace)) = (flown(&unloading), flown(&alone));
     assert_eq!(by_itself.get("goal"), Some(&MetricValue::Word("met")));
     let fuel = |metrics: &Metrics| metrics.number("fuel_kg").expect("propellant");
-    // Each group turns the body about its axis alone, nearly: there is little to gain.
-    assert!(fuel(&by_itself) < 1.01 * fuel(&by_groups) && fuel(&by_itself) > 0.8 * fuel(&by_groups));
+    // Only the axis that a group turns is unloaded: there is nothing to gain.
+    assert!((fuel(&by_itself) / fuel(&by_groups) - 1.0).abs() < 1e-12);
     assert!(!pulses(&trace).is_empty());
 }
 

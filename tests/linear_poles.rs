@@ -188,6 +188,8 @@ fn bounds_are_never_exceeded() {
                 before = Some(then.clone());
             }
         }
+        // A bound over a window is attained to a third and more somewhere: a stride is at most three times
+        // too short.
         assert!(nearest > 0.3, "plant {plant}: bounds are far too large, {nearest}");
     }
 }

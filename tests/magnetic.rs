@@ -130,7 +130,8 @@ fn the_b_dot_law_takes_the_rotation_away() {
     let across = |row: usize| norm(&cross(&rates[row], &field[row]));
     let work: f64 = (0..rows).map(|row| 4e5 * across(row).powi(2) * 20.0).sum();
     let lost = first - energy[rows];
-    assert!((work / lost - 1.0).abs() < 0.15, "{work} {lost}");
+    // The rate at the start of each 20 s, in which it falls: 5 % too much work.
+    assert!((0.0..0.06).contains(&(work / lost - 1.0)), "{work} {lost}");
 }
 
 /// Laws along and across the field: torquers give an attitude law what is across.
@@ -144,7 +145,7 @@ fn an_attitude_law_points_by_torquers_alone() {
     let text = text.replace("[0.995, 0.0998333, 0, 0]", "[0.9950041652780258, 0.09983341664682815, 0, 0]");
     let (metrics, _) = flown(&Scenario::parse("torquers.toml", &text).expect("a scenario"), 0, Detail::Full);
     let error = metrics.number("pointing_error_end_rad").expect("a number");
-    assert!(error < 0.01, "{error}");
+    assert!(error < 1e-6, "{error}");
 }
 
 #[test]
@@ -179,7 +180,8 @@ fn a_filter_of_vectors_is_as_good_as_it_says() {
         }
     }
     let [nees, nis] = sums;
-    // Errors of a run are hardly independent: 6 numbers and a handful of correlation times a run, 50 runs.
+    // Errors of a run are hardly independent: 6 numbers and a handful of correlation times a run, 50 runs:
+    // 0.15 is four standard errors of five times as many, sqrt(2/(5 6 50)) = 0.037.
     assert!((nees - 1.0).abs() < 0.15, "NEES {nees}");
     assert!((nis - 1.0).abs() < 0.02, "NIS {nis}");
 }
@@ -204,6 +206,7 @@ fn filters_with_constant_gains_are_as_good_as_they_say() {
             }
         }
         // Slow filters: the errors of a run are few numbers, with a standard deviation of 0.45 over the runs.
+        // 0.2 is 2.8 standard errors, 0.45/sqrt(40) = 0.071.
         assert!(sums.iter().all(|mean| (mean - 1.0).abs() < 0.2), "{form}: NEES and NIS {sums:?}");
     }
 }

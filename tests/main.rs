@@ -1,80 +1,123 @@
 //! All integration tests of flexsc, one binary.
+//!
+//! The modules by topic, in the order below:
+//!
+//! - motion: physics against oracles, closed forms and invariants;
+//! - control: laws, estimators, actuators, adaptation and manoeuvres, alone and in the loop;
+//! - semantics of the loop: instants, records, pieces, batches, failures, custom parts, every combination;
+//! - formats: scenarios, structures, results and logs, and what is refused;
+//! - command: verbs, campaigns, figures, limits and live runs;
+//! - rules of the house: sources, words, habits, and bytes that do not change;
+//! - helpers of the tests.
 
+// Motion: physics against oracles, closed forms and invariants.
 mod accelerometers;
+mod axes;
+mod calculix;
+mod coupled;
+mod craft;
+mod crossings;
+mod drifting_axes;
+mod drives;
+mod environment;
+mod forces;
+mod gimbals;
+mod hinges;
+mod imbalance;
+mod invariants;
+mod linear;
+mod linear_poles;
+mod model;
+mod outside;
+mod rotation;
+mod spacecraft;
+mod spatial;
+mod structure;
+mod waveforms;
+mod wheel;
+
+// Control: laws, estimators, actuators, adaptation and manoeuvres, alone and in the loop.
 mod active_damping;
 mod adaptation;
 mod adaptive;
 mod attitude_filter;
-mod axes;
+mod bearings;
+mod convergence;
+mod cycles;
+mod damping;
+mod damping_relay;
+mod earth_observer;
+mod envelopes;
+mod exposure;
+mod filters;
+mod jets;
+mod loops;
+mod lqg;
+mod magnetic;
+mod manoeuvres;
+mod objectives;
+mod plants;
+mod relay;
+mod rivals;
+mod saturation;
+mod several_actuators;
+mod several_sensors;
+mod shaped;
+mod state_space;
+mod station;
+mod swinging;
+mod tuning;
+mod unloading;
+
+// Semantics of the loop: instants, records, pieces, batches, failures, custom parts, every combination.
+mod beside;
+mod combinations;
+mod determinism;
+mod events;
+mod exact;
+mod failures;
+mod kinds;
+mod own_parts;
+mod properties;
+mod stepping;
+mod unwatched;
+
+// Formats: scenarios, structures, results and logs, and what is refused.
 mod bad_files;
 mod bad_manoeuvres;
 mod bad_scenarios;
 mod bad_spatial;
 mod bad_structures;
-mod bearings;
-mod beside;
-mod calculix;
-mod campaign_figures;
-mod campaigns;
-mod cli;
-mod combinations;
-mod convergence;
-#[cfg(target_os = "linux")]
-mod costs;
-mod coupled;
-mod craft;
 mod craft_written;
-mod cycles;
-mod damping;
-mod damping_relay;
-mod determinism;
 mod documented;
-mod drawing;
-mod drifting_axes;
-mod drives;
-mod earth_observer;
-mod envelopes;
-mod environment;
-mod events;
-mod exact;
-mod exposure;
-mod extending;
-mod extremes;
-mod failures;
-mod filters;
-mod forces;
 mod foreign;
 #[cfg(feature = "full")]
 mod foreign_campaigns;
 mod foreign_logs;
-mod frozen;
 #[cfg(all(unix, feature = "live"))]
 mod fuzz_corpus;
-mod gimbals;
-mod habits;
-mod help;
-mod hinges;
-mod imbalance;
-mod jets;
 mod layout;
+mod logs;
+mod results;
+mod scene;
+mod typos;
+mod units;
+
+// Command: verbs, campaigns, figures, limits and live runs.
+mod campaign_figures;
+mod campaigns;
+mod cli;
+#[cfg(target_os = "linux")]
+mod costs;
+mod extremes;
+mod help;
 #[cfg(not(feature = "full"))]
 mod light;
-mod linear;
-mod linear_poles;
 #[cfg(feature = "live")]
 mod live;
 #[cfg(feature = "live")]
 mod live_limits;
-mod logs;
-mod loops;
-mod lqg;
-mod magnetic;
-mod manoeuvres;
-mod model;
 mod newcomers;
-mod objectives;
-mod outside;
-mod own_parts;
 #[cfg(feature = "parquet")]
 mod paper_figures;
 mod parts;
@@ -83,42 +126,26 @@ mod parts_killed;
 mod places;
 mod plan;
 mod plan_figures;
-mod plants;
 mod plot;
-mod relay;
 mod reproduce;
-mod results;
-mod rivals;
-mod rooms;
-mod rotation;
-mod saturation;
-mod scene;
-mod several_actuators;
-mod several_sensors;
-mod shaped;
 mod sheets;
-mod spacecraft;
-mod spatial;
-mod state_space;
-mod station;
-mod stepping;
 mod stops;
 #[cfg(unix)]
 mod stops_soon;
-mod structure;
-mod study;
 mod summaries;
-mod swinging;
+mod wheel_figures;
+
+// Rules of the house: sources, words, habits, and bytes that do not change.
+mod extending;
+mod frozen;
+mod habits;
+mod rooms;
+mod words;
+
+// Helpers of the tests.
+mod drawing;
+mod study;
 mod traces;
-mod tuning;
-mod typos;
-mod units;
-mod unloading;
-mod unwatched;
 mod util;
 #[cfg(feature = "live")]
 mod viewer;
-mod waveforms;
-mod wheel;
-mod wheel_figures;
-mod words;

@@ -158,7 +158,7 @@ fn objectives_about_three_axes_are_those_of_the_log() {
     let all: Vec<f64> = (0..power[0].len()).map(|row| power.iter().map(|of| of[row]).sum()).collect();
     let exact = mean(&all, false);
     assert_eq!(exact.len(), 2);
-    assert!(pairs(&found, exact).all(|(found, exact)| (found / exact - 1.0).abs() < 0.02));
+    close(&found, &exact, Objective::WheelPowerMean);
 }
 
 #[test]
@@ -310,7 +310,8 @@ fn a_number_that_is_tuned_is_the_number_that_acts() {
         let angle = |run: &Simulation| run.state().expect("one angle").rigid_angle;
         let moved = (angle(&tuned) - angle(&constant)).abs();
         assert!(moved > 1e-9, "{tunes}: {moved}");
-        assert!((angle(&adapted) - angle(&tuned)).abs() < 0.05 * moved, "{tunes}");
+        // A sample of 0.2 s near the end of 10 s moves the angle by a thousandth of that.
+        assert!((angle(&adapted) - angle(&tuned)).abs() < 2e-3 * moved, "{tunes}");
     }
 }
 

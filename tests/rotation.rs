@@ -71,6 +71,7 @@ fn a_pd_law_takes_over_at_the_end() {
     let fast = with(&[("law.pd.period", "0.002"), ("log.period", "0.01")]);
     close(number(&fast, "angle_error_peak_rad"), 0.0175, 5e-3);
     close(number(&fast, "peak_feedback_torque_nm"), 81.7, 5e-3);
+    // Two digits are known of a law that acts at every instant; this one acts each 2 ms.
     close(number(&fast, "angle_error_late_rad"), 1.1e-6, 0.1);
     close(numbers(&fast, "output_swings_late")[3], 1.4e-5, 0.1);
     // Without the law the pulse makes the body drift, and its panels ring.
@@ -101,10 +102,10 @@ fn on_the_exact_chain_more_suppressed_modes_leave_more_vibration() {
         let after = column(&trace, "/attitude", "angle_rad").iter().skip(12 * 50).map(|angle| angle - end);
         let (low, high) =
             after.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
-        // Two digits are known.
-        assert!((0.5 * (low + high) - angle).abs() < 0.06 * angle, "{kind} {modes}: {low} {high}");
+        // Two digits are known: 1.5 and 1.6 to half a unit of the second, 3.3 %.
+        assert!((0.5 * (low + high) - angle).abs() < 0.033 * angle, "{kind} {modes}: {low} {high}");
         let swing = numbers(&metrics(chain), "output_swings")[3];
-        assert!((swing - vibration).abs() < 0.05 * vibration, "{kind} {modes}: {swing}");
+        assert!((swing - vibration).abs() < 0.033 * vibration, "{kind} {modes}: {swing}");
     }
 }
 
@@ -187,14 +188,15 @@ fn thrusters_give_the_planned_impulse_in_pulses() {
     let (applied, planned) =
         (column(&trace, "/torque", "applied_nm"), column(&trace, "/torque", "feedforward_nm"));
     assert!(applied.iter().all(|torque| [0.0, 600.0].contains(&torque.abs())));
-    // Over the first half, the impulse is that of the plan to the shortest pulse and the sampling of this log.
+    // Over the first half, the impulse is that of the plan to the shortest pulse, 0.02 s, and the sampling of
+    // this log, 5 ms.
     let times = times(&trace, "torque");
     let half = |torque: &[f64]| -> f64 {
         let rows = times.windows(2).zip(torque).filter(|(row, _)| row[1] <= 6.0);
         rows.map(|(row, torque)| torque * (row[1] - row[0])).sum()
     };
     assert!(
-        (half(applied) - half(planned)).abs() < 600.0 * 0.02 + 20.0,
+        (half(applied) - half(planned)).abs() < 600.0 * (0.02 + 0.005),
         "{} {}",
         half(applied),
         half(planned)
@@ -210,7 +212,8 @@ fn thrusters_give_the_planned_impulse_in_pulses() {
         ("actuator.thrusters.minimum_on", "0.0"),
         ("actuator.thrusters.quantum", "0.0"),
     ];
-    assert!(rate(&fine) < 0.1 * rate(&[]));
+    // A quarter of the period, and pulses of any length.
+    assert!(rate(&fine) < 0.05 * rate(&[]));
 }
 
 #[test]

@@ -71,7 +71,8 @@ fn peaks_of_wheels_are_those_of_the_impulse() {
         ("wheel_momentum_peak_nm_s", 3.0),
         ("wheel_speed_peak_rad_s", 150.0),
     ] {
-        assert!((number(name) / exact - 1.0).abs() < 0.02, "{name}: {}", number(name));
+        // The law overshoots by 1.0 % when the torque ends.
+        assert!((0.0..0.011).contains(&(number(name) / exact - 1.0)), "{name}: {}", number(name));
     }
     assert_eq!(number("wheel_torque_limit_share"), 0.0);
 }
@@ -95,6 +96,6 @@ fn slews_have_errors_of_their_own() {
     let of = metrics(&body(0.2, target));
     let [peak, rms] =
         ["slew_error_peak_rad", "slew_error_rms_rad"].map(|name| of.number(name).expect("a metric"));
-    assert!(peak > rms && rms > 0.0 && peak < 0.1, "{peak} {rms}");
+    assert!(peak > rms && rms > 0.0 && peak < 1e-3, "{peak} {rms}");
     assert!(metrics(&body(0.2, "")).get("slew_error_peak_rad").is_none());
 }

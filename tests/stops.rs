@@ -180,7 +180,7 @@ fn a_killed_run_loses_at_most_2000_messages() {
     document.set_text("duration", "1e5").expect("a key");
     let scenario = Scenario::from_document(&document).expect("a scenario");
     let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
-    let provenance = Campaign::provenance(&run, Detail::Events);
+    let provenance = Campaign::provenance(&run);
     let mut log = LogFile::create(&dir.path("x.mcap"), &provenance, Detail::Events).expect("created");
     let mut killer = Killer { dir: &dir, written: 1, looks: 0 };
     Campaign::simulate(&run, (&mut log, &mut killer)).expect("a run");

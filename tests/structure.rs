@@ -4,7 +4,6 @@ use std::f64::consts::PI;
 use std::fmt::Write as _;
 
 use flexsc_core::campaign::{Campaign, CampaignRun, Grid};
-use flexsc_core::record::Detail;
 use flexsc_core::spacecraft::body::{Body, Planar};
 use flexsc_core::{Document, Scenario};
 
@@ -344,7 +343,7 @@ fn modes_are_solved_once_and_kept_in_the_log() {
     assert!(error.contains("`body.matrices.mass` cannot be used") && error.contains("m.csv"), "{error}");
     // What the log holds repeats alone, to the same bytes.
     let run = CampaignRun { number: 0, scenario: scenario.clone(), drawn: Vec::new() };
-    let toml = Campaign::provenance(&run, Detail::Events).toml;
+    let toml = Campaign::provenance(&run).toml;
     let again = Scenario::from_document(&Document::parse("log", toml).expect("TOML")).expect("valid");
     assert_eq!(again.model, scenario.model);
     assert!(matches!(again.body, Some(Body::Planar(_))));

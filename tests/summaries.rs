@@ -1,5 +1,8 @@
 //! Summaries of runs and modes: digits, units, and nothing that does not apply.
 
+use std::fmt::Write as _;
+
+use crate::frozen::is_frozen;
 use crate::util::Dir;
 
 fn summary(name: &str, more: &str) -> String {
@@ -52,44 +55,31 @@ fn units_are_those_that_are_asked_for() {
 fn analyses_print_the_units_that_are_asked_for() {
     let dir = Dir::with(&["rotation-sine", "relay-fixed", "wheel-fixed-gain", "wheel-scheduled-gain"]);
     let (map, tune) = ("--frequency 0.5:2:2 --period 0.1:1:2", "--frequency 0.2:0.3:2 --gain 0:2:3");
-    let verbs: [(String, &[&str], &[&str]); 5] = [
-        (
-            "plan rotation-sine.toml".to_owned(),
-            &["90 deg in", "72.95  arcsec", "17.46 deg", "718.3 N m"],
-            &["1.571 rad in", "3.537e-4  rad", "0.3048 rad", "718.3 N m"],
-        ),
-        (
-            "plan rotation-sine.toml --compare".to_owned(),
-            &["kN m", "deg", "0.7183"],
-            &["N m", "rad", "718.3", "3.537e-4"],
-        ),
-        (
-            "cycle relay-fixed.toml".to_owned(),
-            &["37.63 µrad/s", "-106.8 to 106.8 arcsec", "1.814 deg/s per hour"],
-            &["3.763e-5 rad/s", "-5.177e-4 to 5.177e-4 rad", "0.03165 rad/s per hour"],
-        ),
-        (
-            format!("tune wheel-scheduled-gain.toml {tune}"),
-            &[" Hz ", " 0.03183 ", " 0.04775 "],
-            &[" rad/s ", " 0.2 ", " 0.3 "],
-        ),
-        (
-            format!("map wheel-fixed-gain.toml {map}"),
-            &["4 cells, 2 stable\n", "0.07958 to 0.3183 Hz", "0.1 to 1 s", "423.1 s at 0.3183 Hz"],
-            &["4 cells, 2 stable\n", "0.5 to 2 rad/s", "0.1 to 1 s", "423.1 s at 2 rad/s"],
-        ),
+    let verbs = [
+        "plan rotation-sine.toml".to_owned(),
+        "plan rotation-sine.toml --compare".to_owned(),
+        "cycle relay-fixed.toml".to_owned(),
+        format!("tune wheel-scheduled-gain.toml {tune}"),
+        format!("map wheel-fixed-gain.toml {map}"),
     ];
-    for (verb, engineering, si) in verbs {
+    let mut text = String::new();
+    for verb in verbs {
         let plain = dir.run(&verb).exits(0);
-        holds(&plain.err, engineering, &["1.571 rad", " rad/s "]);
+        holds(&plain.err, &[], &["1.571 rad", " rad/s "]);
         let other = dir.run(&format!("{verb} --units si")).exits(0);
-        holds(&other.err, si, &["90 deg", "deg/s", "arcsec", "Hz", "kN", "µ"]);
+        holds(&other.err, &[], &["90 deg", "deg/s", "arcsec", "Hz", "kN", "µ"]);
+        // The table of a comparison ends in digits of rounding.
+        if !verb.ends_with("--compare") {
+            writeln!(text, "### {verb}\n{}\n### {verb} --units si\n{}", plain.err, other.err)
+                .expect("memory");
+        }
         // The table of a map is in SI units always.
         assert_eq!(plain.out, other.out, "{verb}");
         let json = |units: &str| dir.run(&format!("{verb} --json --units {units}")).exits(0).out;
         assert_eq!(json("engineering"), json("si"), "{verb}");
         dir.run(&format!("{verb} --units feet")).exits(2).says(&["feet", "engineering", "si"]);
     }
+    is_frozen("analyses", &text);
     let schedule = |units: &str| {
         let tune = format!("tune wheel-scheduled-gain.toml {tune} --schedule --units {units}");
         dir.run(&tune).exits(0).out

@@ -146,7 +146,9 @@ fn a_filter_that_knows_the_mode_is_consistent_and_points_better() {
     let [with, without] =
         [&[][..], &[NONE]].map(|change| flown(&changed(change).expect("it"), 0, Detail::Full));
     let number = |(metrics, _): &(Metrics, Trace), name: &str| metrics.number(name).expect(name);
-    assert!((number(&with, "nis_mean") - 1.0).abs() < 0.1, "{}", number(&with, "nis_mean"));
+    // Three standard errors of 760 innovations of three numbers, 3 sqrt(2/(3 760)) = 0.09; errors of one run
+    // are few numbers.
+    assert!((number(&with, "nis_mean") - 1.0).abs() < 0.09, "{}", number(&with, "nis_mean"));
     assert!((0.5..1.5).contains(&number(&with, "nees_mean")), "{}", number(&with, "nees_mean"));
     assert!((32.0..34.0).contains(&number(&without, "nis_mean")), "{}", number(&without, "nis_mean"));
     let [known, unknown] = [&with, &without].map(|run| number(run, "attitude_estimate_error_rms_rad"));

@@ -2,9 +2,10 @@
 
 use flexsc_core::dynamics::{AxisState, MotionPiece};
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::record::{Detail, PieceDemand, Record, RecordError, Sample, Trace};
+use flexsc_core::record::{Detail, PieceDemand, Record, RecordError, Sample, SceneSource, Trace};
 use flexsc_core::spacecraft::flow::ThreeAxisState;
 use flexsc_core::{Document, Scenario, Simulation};
+use flexsc_view::scene::Scene;
 
 use crate::axes::{FILTERED, together};
 use crate::lqg::lqg;
@@ -92,15 +93,18 @@ fn a_copy_goes_on_as_the_run_itself() {
 }
 
 /// Record that needs everything.
-struct Everything(u64);
+struct Everything {
+    scene: Scene,
+    samples: u64,
+}
 
 impl Record for Everything {
     fn wants_motion(&self) -> bool {
         true
     }
 
-    fn wants_scene(&self) -> bool {
-        true
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        self.scene.scene()
     }
 
     fn piece_demand(&self) -> PieceDemand {
@@ -108,12 +112,12 @@ impl Record for Everything {
     }
 
     fn piece(&mut self, _: Instant, _: &MotionPiece) -> Result<(), RecordError> {
-        self.0 += 1;
+        self.samples += 1;
         Ok(())
     }
 
     fn record(&mut self, _: Instant, _: Sample<'_>) -> Result<(), RecordError> {
-        self.0 += 1;
+        self.samples += 1;
         Ok(())
     }
 }
@@ -130,11 +134,10 @@ fn whatever_looks_at_a_run_changes_nothing() {
             let looked = Scenario::from_document(&document).expect("valid");
             let full = end(Simulation::new(&looked, 5), &mut Trace::new(Detail::Full));
             assert_eq!(full, exact, "{name}: a row each {period} s");
-            let mut simulation = Simulation::new(&looked, 5);
-            simulation.enable_scene(&looked);
-            let mut everything = Everything(0);
+            let simulation = Simulation::new(&looked, 5);
+            let mut everything = Everything { scene: Scene::new(&looked), samples: 0 };
             assert_eq!(end(simulation, &mut everything), exact, "{name}: a scene, each {period} s");
-            assert!(everything.0 > 0, "{name}");
+            assert!(everything.samples > 0, "{name}");
         }
     }
 }

@@ -17,26 +17,28 @@ dT/d alpha; the balance with it is asserted here.
 import sys
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from scipy.linalg import eigh
 from two_panels import (
+    DURATION,
     ETA,
+    H_WHEEL,
     MASS,
     O2,
     RATE,
-    WHEEL_INERTIA,
     D,
     appendage,
+    derivative,
+    integrated,
     linear,
+    mean_axes,
     quaternion,
     quaternion_rate,
     spacecraft,
+    wheels,
 )
 
-WHEEL_AXIS, WHEEL_SPEED = np.array([0.0, 0, 1]), 60.0
 TORQUE, FORCE, AT = np.array([0.0, 0.02, 0]), np.array([0.3, 0.1, -0.2]), np.array([0.4, 0.3, 0.2])
 FORCED = (6.0, 9.0)
-DURATION = 40.0
 
 
 def drives(t):
@@ -55,10 +57,6 @@ def drives(t):
     return np.array(a), np.array(rate), np.array(acc)
 
 
-# Three wheels across each other, of which one spins.
-H_WHEEL = WHEEL_INERTIA * (WHEEL_SPEED * WHEEL_AXIS + RATE)
-
-
 def split(t, y):
     """w, eta' and what else is of use, from momenta."""
     angles, rate, _ = drives(t)
@@ -72,17 +70,16 @@ def split(t, y):
     return full, m, changes, c, dc, angles
 
 
-def slope(angles, eta, full, k, step=1e-3):
-    """dT/d alpha of a drive, at fixed z, by a difference of order 6."""
+def slope(angles, eta, full, k):
+    """dT/d alpha of a drive, at fixed z."""
 
     def t_at(s):
         a = angles.copy()
-        a[k] += s * step
+        a[k] += s
         m0, changes, _, _ = linear(a)
         return 0.5 * full @ (m0 + sum(e * d for e, d in zip(eta, changes, strict=False))) @ full
 
-    parts = [(1, 45 / 60), (2, -9 / 60), (3, 1 / 60)]
-    return sum(w * (t_at(s) - t_at(-s)) for s, w in parts) / step
+    return derivative(t_at)
 
 
 def rates(t, y, forced, work=False):
@@ -114,15 +111,14 @@ def rates(t, y, forced, work=False):
     return np.concatenate(out)
 
 
-def centre_rate(angles, rate, eta, step=1e-3):
+def centre_rate(angles, rate, eta):
     """How fast drives move the centre of mass in the hub."""
 
     def centre(s):
-        _, _, c, d = linear(angles + s * step * rate)
+        _, _, c, d = linear(angles + s * rate)
         return c + d @ eta
 
-    parts = [(1, 45 / 60), (2, -9 / 60), (3, 1 / 60)]
-    return sum(w * (centre(s) - centre(-s)) for s, w in parts) / step
+    return derivative(centre)
 
 
 def rotated(q, v):
@@ -136,8 +132,7 @@ def start():
     m0, changes, _, _ = linear(angles)
     m = m0 + sum(e * d for e, d in zip(ETA, changes, strict=False))
     p = m @ np.concatenate([RATE, rate, np.zeros(4)])
-    # The attitude of the scenario is that of the mean axes, which modes do not turn: phi q = -J^-1 delta eta.
-    bent = -np.linalg.solve(m0[:3, :3], m0[:3, 5:] @ ETA)
+    bent = mean_axes(m0, ETA, 5)
     return np.concatenate([quaternion(bent), p[:3] + H_WHEEL, ETA, p[5:], np.zeros(3), np.zeros(3), [0, 0]])
 
 
@@ -156,29 +151,21 @@ def row(t, y, first):
 
 
 def fly(work):
-    y, t, rows = start(), 0.0, []
+    begun = start()
     _, _, c, dc = linear(drives(0.0)[0])
-    first = rotated(y[:4], AT - c - dc @ ETA)
-    values, e0, p0 = row(0.0, y, first)
-    rows.append(values)
-    for end in (5.0, 6.0, 7.0, 9.0, 20.0, 22.0, DURATION):
-        forced = FORCED[0] <= t < FORCED[1]
-        marks = [s for s in np.arange(0.5, DURATION + 0.1, 0.5) if t < s <= end]
+    first = rotated(begun[:4], AT - c - dc @ ETA)
+
+    def between(begin, end):
+        forced = FORCED[0] <= begin < FORCED[1]
         # Just before the end, where rates would already change.
-        known = solve_ivp(
-            lambda s, y, end=end, forced=forced: rates(min(s, end - 1e-13), y, forced, work),
-            (t, end),
-            y,
-            method="DOP853",
-            rtol=1e-9 if work else 1e-13,
-            atol=1e-11 if work else 1e-15,
-            t_eval=marks,
-        )
-        assert known.success
-        rows += [row(s, known.y[:, i], first)[0] for i, s in enumerate(marks)]
-        y, t = known.y[:, -1], end
-    _, e1, p1 = row(t, y, first)
-    return rows, y, e1 - e0, p1 - p0
+        return lambda t, y: rates(min(t, end - 1e-13), y, forced, work)
+
+    ends = [5.0, 6.0, 7.0, 9.0, 20.0, 22.0, DURATION]
+    rtol, atol = (1e-9, 1e-11) if work else (1e-13, 1e-15)
+    states = [(0.0, begun), *integrated(between, begun, ends, rtol, atol)]
+    rows = [row(t, y, first) for t, y in states]
+    (_, e0, p0), (_, e1, p1) = rows[0], rows[-1]
+    return [values for values, *_ in rows], states[-1][1], e1 - e0, p1 - p0
 
 
 def scenario():
@@ -201,11 +188,7 @@ def scenario():
         f"from = {FORCED[0]}",
         f"to = {FORCED[1]}",
         "[law.open]",
-        "[actuator.wheels]",
-        f"axes = [{WHEEL_AXIS.tolist()}, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]",
-        f"inertia = {WHEEL_INERTIA}",
-        f"speeds = [{WHEEL_SPEED}, 0.0, 0.0]",
-        "torque = 0.1",
+        *wheels(),
         "[log]",
         "period = 0.5",
     ]

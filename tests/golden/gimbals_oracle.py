@@ -19,8 +19,8 @@ equations: t, Q, w, |H|, energy.
 import sys
 
 import numpy as np
-from scipy.integrate import solve_ivp
 from two_panels import (
+    DURATION,
     ETA,
     HUB_INERTIA,
     O2,
@@ -28,14 +28,16 @@ from two_panels import (
     WHEEL_INERTIA,
     D,
     appendage,
+    integrated,
     linear,
+    mean_axes,
     quaternion,
     quaternion_rate,
     spacecraft,
     written,
 )
 
-MOMENTUM, CANT, DURATION = 4.0, 0.9, 40.0
+MOMENTUM, CANT = 4.0, 0.9
 ANGLES = np.array([0.3, 0.0])
 STARTS = np.array([0.2, -0.4, 0.1, 0.7])
 # Gimbal (from 0), from, to, rate.
@@ -81,8 +83,7 @@ class Flexible:
         self.changes = [d[np.ix_(free, free)] for d in self.changes]
         delta, inertia = self.m0[:3, 3:], self.m0[:3, :3]
         self.stiff = self.m0[3:, 3:] - delta.T @ np.linalg.solve(inertia, delta)
-        # The attitude of the scenario is that of the mean axes, which modes do not turn.
-        self.bent = -np.linalg.solve(inertia, delta @ ETA)
+        self.bent = mean_axes(self.m0, ETA, 3)
 
     def matrix(self, eta):
         return self.m0 + sum(e * d for e, d in zip(eta, self.changes, strict=True))
@@ -132,25 +133,14 @@ class Rigid:
 
 
 def fly(body):
-    y, t, rows = body.start(), 0.0, []
-    rows.append(body.row(0.0, y))
-    ends = sorted({edge for _, a, b, _ in TURNS for edge in (a, b) if edge > 0} | {DURATION})
-    for end in ends:
+    def between(_, end):
         turning = gimbals(end)[1]
-        marks = [s for s in np.arange(0.5, DURATION + 0.1, 0.5) if t < s <= end]
-        known = solve_ivp(
-            lambda s, y, turning=turning: body.rates(s, y, turning),
-            (t, end),
-            y,
-            method="DOP853",
-            rtol=3e-14,
-            atol=1e-16,
-            t_eval=marks,
-        )
-        assert known.success
-        rows += [body.row(s, known.y[:, i]) for i, s in enumerate(marks)]
-        y, t = known.y[:, -1], end
-    return rows
+        return lambda t, y: body.rates(t, y, turning)
+
+    begun = body.start()
+    ends = sorted({edge for _, a, b, _ in TURNS for edge in (a, b) if edge > 0} | {DURATION})
+    states = integrated(between, begun, ends, rtol=3e-14, atol=1e-16)
+    return [body.row(t, y) for t, y in [(0.0, begun), *states]]
 
 
 def scenario():

@@ -1,5 +1,6 @@
 """A spacecraft with two panels of point masses, for driven_oracle.py, gimbals_oracle.py
-and swung_oracle.py.
+and swung_oracle.py: its data, its kinetic energy, its integration from one change of what acts to the next,
+and its scenario.
 
 The panels are lattices of point masses with two clamped modes each, shapes that are orthonormal by mass. The
 data of scenarios are sums over the points. The oracles know the points alone: with the place of each as a
@@ -9,13 +10,18 @@ those of eta', as the model has it; the first order is a difference quotient of 
 """
 
 import numpy as np
+from scipy.integrate import solve_ivp
 
 HUB_MASS, HUB_CENTRE = 200.0, np.array([0.05, -0.02, 0.1])
 HUB_INERTIA = np.array([[90.0, 6, -4], [6, 100, 5], [-4, 5, 80]])
 O2_DAMPING = [(0.9, 0.01), (3.1, 0.02), (1.0, 0.01), (2.7, 0.02)]
-# Of a wheel about each axis, which M leaves out.
-WHEEL_INERTIA = 0.05
 RATE = np.array([0.01, -0.02, 0.015])
+# Of three wheels across each other, which M leaves out; one of them spins.
+WHEEL_INERTIA = 0.05
+WHEEL_AXIS, WHEEL_SPEED = np.array([0.0, 0, 1]), 60.0
+H_WHEEL = WHEEL_INERTIA * (WHEEL_SPEED * WHEEL_AXIS + RATE)
+# Duration, and the period of the rows (s).
+DURATION, ROW = 40.0, 0.5
 ETA = np.array([0.02, -0.01, 0.015, 0.01])
 AXIS = np.array([0.0, 1, 0])
 
@@ -111,6 +117,36 @@ def linear(angles):
     return m0, changes, c, mean[:, 2:]
 
 
+def derivative(of, step=1e-3):
+    """The derivative of a function of a scalar at 0, by a difference of order 6."""
+    parts = [(1, 45 / 60), (2, -9 / 60), (3, 1 / 60)]
+    return sum(w * (of(s * step) - of(-s * step)) for s, w in parts) / step
+
+
+def integrated(rates_between, y, ends, rtol, atol):
+    """The instants of the rows after the start with the states there, by DOP853.
+
+    `rates_between(begin, end)` is y' between two neighbours of the instants 0 and `ends`, which are among the rows.
+    """
+    t, states = 0.0, []
+    for end in ends:
+        marks = [s for s in np.arange(ROW, DURATION + 0.1, ROW) if t < s <= end]
+        rates = rates_between(t, end)
+        known = solve_ivp(rates, (t, end), y, method="DOP853", rtol=rtol, atol=atol, t_eval=marks)
+        assert known.success
+        states += [(s, known.y[:, i]) for i, s in enumerate(marks)]
+        y, t = known.y[:, -1], end
+    return states
+
+
+def mean_axes(m0, eta, first):
+    """The turn of the hub to the mean axes, which modes at `eta` do not turn: the attitude of a scenario is theirs.
+
+    M has the modes from the index `first` on.
+    """
+    return -np.linalg.solve(m0[:3, :3], m0[:3, first:] @ eta)
+
+
 def quaternion(turn):
     """The attitude after a turn about a vector by its length."""
     angle = np.linalg.norm(turn)
@@ -135,6 +171,17 @@ def spacecraft():
         written(HUB_INERTIA, "inertia"),
         written(RATE, "rate"),
         "whole_damping = true",
+    ]
+
+
+def wheels():
+    """The wheels in a scenario."""
+    return [
+        "[actuator.wheels]",
+        f"axes = [{WHEEL_AXIS.tolist()}, [1.0, 0.0, 0.0], [0.0, 1.0, 0.0]]",
+        f"inertia = {WHEEL_INERTIA}",
+        f"speeds = [{WHEEL_SPEED}, 0.0, 0.0]",
+        "torque = 0.1",
     ]
 
 

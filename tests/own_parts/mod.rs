@@ -97,7 +97,7 @@ fn parts_from_outside_log_their_states() {
         let mut trace = Trace::new(Detail::Full);
         Simulation::new(&study, 0).run(&mut trace).expect("a run");
         let run = CampaignRun { number: 0, scenario: study.clone(), drawn: Vec::new() };
-        let provenance = Campaign::provenance(&run, Detail::Full);
+        let provenance = Campaign::provenance(&run);
         let layout = String::from_utf8(provenance.attachments[0].data.clone()).expect("a text");
         let mut bytes = LogBytes::new(&provenance, Detail::Full).expect("a log");
         Simulation::new(&study, 0).run(&mut bytes).expect("a run");

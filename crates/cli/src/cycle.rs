@@ -4,7 +4,7 @@ use std::io::Write;
 
 use flexsc_core::Scenario;
 use flexsc_core::analysis::rigid_cycle::{Resonance, RigidCycle, cycles, resonances};
-use flexsc_core::control::law::{LawKind, RelaySides};
+use flexsc_core::control::law::RelaySides;
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
@@ -38,7 +38,7 @@ pub struct RelayCycles {
 /// Computes the limit cycles of a scenario's relay law on a rigid body.
 pub fn results(scenario: &Scenario, args: &CycleArgs) -> Result<RelayCycles, CliError> {
     let body = scenario.one_angle()?;
-    let LawKind::Relay(law) = &scenario.law else {
+    let Some(law) = scenario.law.relay() else {
         return Err(CliError::Arguments(format!(
             "{}: limit cycles are computed for a law `relay`",
             scenario.name

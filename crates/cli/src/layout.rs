@@ -3,8 +3,8 @@
 use std::path::{Path, PathBuf};
 
 use flexsc_core::Scenario;
-use flexsc_core::layout::Layout;
 use flexsc_core::record::{Detail, Log};
+use flexsc_view::layout::Layout;
 
 use crate::error::CliError;
 use crate::memory_log::logged;

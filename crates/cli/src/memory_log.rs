@@ -35,7 +35,7 @@ fn bytes(
     until: Instant,
     detail: Detail,
 ) -> Result<Vec<u8>, SimulationError> {
-    let mut log = LogBytes::new(&commanded.provenance(run, detail), detail)?;
+    let mut log = LogBytes::new(&commanded.provenance(run), detail)?;
     let metrics = commanded.simulate(run, until, (&mut log, StopRecord))?;
     Ok(log.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
 }

@@ -9,7 +9,7 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::Report;
 
 use crate::custom::PartError;
-use crate::sensor::Orientation;
+use crate::orientation::Orientation;
 use crate::state_estimate::DampingStatus;
 
 /// Part of a run: it may act by itself, report rows for the log, and fail.

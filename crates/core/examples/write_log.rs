@@ -21,7 +21,7 @@ fn main() -> Result<(), Box<dyn Error>> {
 
     // The log holds the scenario and the seed, from which the run can be repeated.
     let path = env::temp_dir().join(format!("flexsc-attitude-hold-{}.mcap", process::id()));
-    let mut file = LogFile::create(&path, &Campaign::provenance(&run, DETAIL), DETAIL)?;
+    let mut file = LogFile::create(&path, &Campaign::provenance(&run), DETAIL)?;
     let metrics = Campaign::simulate(&run, &mut file)?;
     let bytes = file.finish(&metrics, RunEnd::Complete)?;
 

@@ -23,11 +23,10 @@ mod workers;
 use std::time::Instant as WallInstant;
 
 use flexsc_formats::document::{Document, ScenarioError, key};
-use flexsc_record::{Attachment, Detail, OutputName, Provenance, Record};
+use flexsc_record::{Detail, OutputName, Provenance, Record};
 use thiserror::Error;
 use toml::{Table, Value};
 
-use crate::layout::Layout;
 use crate::metrics::{self, Metrics, MetricsCollector, Selection};
 use crate::scenario::{Cost, MOST_RUNS, Scenario};
 use crate::sim::{Simulation, SimulationError};
@@ -243,9 +242,6 @@ impl Campaign {
     ) -> Result<Metrics, SimulationError> {
         let mut both = (MetricsCollector::for_selection(&run.scenario, selection), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);
-        if both.wants_scene() {
-            simulation.enable_scene(&run.scenario);
-        }
         simulation.run(&mut both)?;
         Ok(selection.select(both.0.finish(&run.scenario)))
     }
@@ -273,9 +269,8 @@ impl Campaign {
         &self.design
     }
 
-    /// Returns the provenance in the log of a run in this detail, with a layout for viewers.
-    pub fn provenance(run: &CampaignRun, detail: Detail) -> Provenance {
-        let layout = Layout::for_scenario(&run.scenario).for_detail(detail).to_json();
+    /// Returns the provenance in the log of a run, without attachments.
+    pub fn provenance(run: &CampaignRun) -> Provenance {
         Provenance {
             scenario: run.scenario.name.clone(),
             toml: run.scenario.self_contained().to_toml(),
@@ -290,11 +285,7 @@ impl Campaign {
                 .map(|output| OutputName { name: output.name.clone(), unit: output.unit.clone() })
                 .collect(),
             own_parts: run.scenario.custom_parts().each(),
-            attachments: vec![Attachment {
-                name: "layout.json",
-                media_type: "application/json",
-                data: layout.into_bytes(),
-            }],
+            attachments: Vec::new(),
         }
     }
 

@@ -44,12 +44,10 @@
 pub mod analysis;
 pub mod batch;
 pub mod campaign;
-pub mod layout;
 pub mod metrics;
 pub mod prelude;
 mod relay_setup;
 pub mod scenario;
-pub mod scene;
 mod sim;
 pub mod statistics;
 pub mod uncertain;

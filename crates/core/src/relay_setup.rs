@@ -1,9 +1,8 @@
 //! Runs of the relay law in the relay kernel: which scenarios it supports, their initial setup, and conversions of its
 //! state.
 
-use flexsc_control::adaptation::AdaptationKind;
 use flexsc_control::estimator::{EnvelopeMethod, EstimatorKind};
-use flexsc_control::law::{Guards, LawKind, Phase, Relay, RelaySides};
+use flexsc_control::law::{Guards, Phase, Relay, RelaySides};
 use flexsc_dynamics::damping::Damped;
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{self, AxisState};
@@ -20,7 +19,7 @@ pub use flexsc_relay_kernel::{
 
 /// Returns the body and the law of a scenario that the relay kernel can run; `None` otherwise.
 pub fn is_supported(scenario: &Scenario) -> Option<(&Planar, &Relay)> {
-    let (Some(body), LawKind::Relay(law)) = (scenario.model.planar(), &scenario.law) else { return None };
+    let (Some(body), Some(law)) = (scenario.model.planar(), scenario.law.relay()) else { return None };
     suits(scenario, body, law).then_some((body, law))
 }
 
@@ -42,9 +41,9 @@ fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
     let observes = scenario.estimator.as_ref().is_none_or(|estimator| {
         estimator.envelope().is_some_and(|envelope| envelope.form == EnvelopeMethod::Dynamic)
     });
-    let learns = scenario.adaptation.as_ref().is_none_or(
-        |adaptation| matches!(adaptation, AdaptationKind::RandomSearch(search) if search.tunes == "k_t" && search.objective.is_default()),
-    );
+    let learns = scenario.adaptation.as_ref().is_none_or(|adaptation| {
+        adaptation.custom().is_none() && adaptation.tunes() == "k_t" && adaptation.objective().is_default()
+    });
     let duration = scenario.duration.seconds();
     let are_exact = model
         .modes

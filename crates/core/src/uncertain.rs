@@ -98,14 +98,14 @@ impl Distribution {
                 values[((probability * values.len() as f64) as usize).min(values.len() - 1)].get()
             }
             Self::Normal(_) | Self::RelativeNormal(_) => {
-                return self.of_normal(nominal, normal::quantile(probability));
+                return self.value_at_deviation(nominal, normal::quantile(probability));
             }
         };
         like(nominal, value)
     }
 
     /// Returns the value with the same cumulative probability as `z` has in a standard normal distribution.
-    pub fn of_normal(&self, nominal: &Value, z: f64) -> Value {
+    pub fn value_at_deviation(&self, nominal: &Value, z: f64) -> Value {
         let own = nominal.as_float().or(nominal.as_integer().map(|i| i as f64)).unwrap_or(f64::NAN);
         match self {
             Self::Normal(Normal { mean, sd }) => like(nominal, mean.get() + sd.get() * z),

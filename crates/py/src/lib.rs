@@ -29,7 +29,6 @@ use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::{Campaign, CampaignRun};
-use flexsc_core::control::law::LawKind;
 use flexsc_core::metrics;
 use flexsc_core::numerics::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, LogFile, RunEnd, Trace};
@@ -38,6 +37,8 @@ use flexsc_core::spacecraft::manoeuvre::{
     CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
 };
 use flexsc_core::{Document, ScenarioError, record::atomic_file};
+use flexsc_view::scene::Scene;
+use flexsc_view::with_layout;
 use numpy::{IntoPyArray, PyArray1, PyReadonlyArray1};
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
@@ -258,8 +259,11 @@ fn to_mcap(
     let Commands { commands, until } = Commands::from_stepped(stepped);
     let (place, is_own) = (path.clone(), scenario.inner.has_custom_parts());
     let written = aside(py, move |stop| {
-        let mut file = LogFile::create(&place, &commands.provenance(&run, detail), detail)?;
-        let metrics = parts::known_thread(is_own, || commands.simulate(&run, until, (&mut file, stop)))?;
+        let provenance = with_layout(given.provenance(&run), &run.scenario, detail);
+        let mut file = LogFile::create(&place, &provenance, detail)?;
+        let scene = Scene::for_detail(&run.scenario, detail);
+        let metrics =
+            parts::known_thread(is_own, || given.simulate(&run, until, ((&mut file, scene), stop)))?;
         Ok(file.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
     })?;
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))
@@ -287,7 +291,7 @@ fn estimate_json(scenario: &Scenario, runs: u64, log: &str) -> PyResult<String> 
 #[pyfunction]
 fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
     let body = scenario.inner.one_angle().map_err(scenario_error)?;
-    let LawKind::Relay(law) = &scenario.inner.law else {
+    let Some(law) = scenario.inner.law.relay() else {
         let why = format!("{}: limit cycles are computed for a law `relay`", scenario.inner.name);
         return Err(PyValueError::new_err(why));
     };

@@ -3,6 +3,7 @@
 use std::time::Instant as WallInstant;
 
 use flexsc_core::campaign::CommandLog;
+use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_core::control::law::Command;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Record, RecordError, Sample};
@@ -31,21 +32,13 @@ pub fn fields(fields: &[ObservationField]) -> Vec<FieldRow> {
 
 /// The unit of commands to a scenario.
 pub fn command_unit(scenario: &flexsc_core::Scenario) -> &'static str {
-    use flexsc_core::control::actuator::ActuatorKind;
-    match scenario.actuator.only_actuator() {
-        Some(ActuatorKind::Wheel(_)) => "",
-        _ => scenario.model.commanded_quantity().1,
-    }
+    let is_torque = scenario.actuator.only_actuator().and_then(ActuatorKind::command_gain).is_none();
+    if is_torque { scenario.model.commanded_quantity().1 } else { "" }
 }
 
 /// The largest command about each axis that the actuator of a scenario can execute; infinite without a limit.
 pub fn command_limit(scenario: &flexsc_core::Scenario) -> Vec<f64> {
-    use flexsc_core::control::actuator::ActuatorKind;
-    let gain = if let Some(ActuatorKind::Wheel(wheel)) = scenario.actuator.only_actuator() {
-        wheel.gain.get()
-    } else {
-        1.0
-    };
+    let gain = scenario.actuator.only_actuator().and_then(ActuatorKind::command_gain).unwrap_or(1.0);
     let axes = scenario.study.axes.iter().zip(&scenario.study.authorities);
     axes.map(|(axis, can)| can.accelerations[0].min(can.accelerations[1]) * axis.commanded_inertia() / gain)
         .collect()

@@ -3,7 +3,7 @@
 use flexsc_dynamics::MotionPiece;
 use flexsc_numerics::time::Instant;
 
-use super::{PieceDemand, Record, RecordError, Sample};
+use super::{PieceDemand, Record, RecordError, Sample, SceneSource};
 
 /// Record that stores nothing, at no cost.
 impl Record for () {
@@ -21,8 +21,8 @@ impl<R: Record + ?Sized> Record for &mut R {
         (**self).wants_motion()
     }
 
-    fn wants_scene(&self) -> bool {
-        (**self).wants_scene()
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        (**self).scene()
     }
 
     fn wants_estimates(&self) -> bool {
@@ -56,8 +56,8 @@ impl<R: Record> Record for Option<R> {
         self.as_ref().is_some_and(Record::wants_motion)
     }
 
-    fn wants_scene(&self) -> bool {
-        self.as_ref().is_some_and(Record::wants_scene)
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        self.as_ref().and_then(Record::scene)
     }
 
     fn wants_estimates(&self) -> bool {
@@ -91,8 +91,8 @@ impl<A: Record, B: Record> Record for (A, B) {
         self.0.wants_motion() || self.1.wants_motion()
     }
 
-    fn wants_scene(&self) -> bool {
-        self.0.wants_scene() || self.1.wants_scene()
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        self.0.scene().or_else(|| self.1.scene())
     }
 
     fn wants_estimates(&self) -> bool {

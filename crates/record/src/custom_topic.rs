@@ -1,16 +1,10 @@
 //! Topics that parts outside the engine declare while a program runs: names, units and values of their rows.
 
-use std::collections::BTreeMap;
 use std::sync::Arc;
 
-use prost_types::field_descriptor_proto::Type;
 use thiserror::Error;
 
-use super::Detail;
 use super::columns::{Column, Columns};
-use super::proto::{self, Encoder};
-use super::report::LogRow;
-use super::row::Sink;
 use super::topics::TOPICS;
 
 /// Largest number of fields of a custom topic.
@@ -166,6 +160,11 @@ impl CustomTopic {
         Ok(Arc::new(Self { name, message, doc, fields }))
     }
 
+    /// Returns the full name of the message.
+    pub fn message(&self) -> &str {
+        &self.message
+    }
+
     /// Returns the name with its leading slash.
     pub fn name(&self) -> &str {
         &self.name
@@ -181,127 +180,12 @@ impl CustomTopic {
         &self.fields
     }
 
-    /// Creates a row with one value for each field.
-    ///
-    /// # Errors
-    /// [`TopicError::Values`] for another number of values.
-    pub fn row(self: &Arc<Self>, values: impl Into<Vec<f64>>) -> Result<CustomRow, TopicError> {
-        let (values, fields) = (values.into(), self.fields.len());
-        if values.len() == fields {
-            Ok(CustomRow { topic: Arc::clone(self), values })
-        } else {
-            Err(TopicError::Values { topic: self.name.clone(), fields, count: values.len() })
-        }
-    }
-
     /// Returns empty columns for the rows.
     pub(crate) fn columns(&self) -> Columns {
         let column = |field: &CustomField| (field.name.clone(), Column::Numbers(Vec::new()));
         Columns { columns: self.fields.iter().map(column).collect() }
     }
 }
-
-/// Row of a custom topic.
-#[derive(Clone, Debug, PartialEq)]
-pub struct CustomRow {
-    topic: Arc<CustomTopic>,
-    values: Vec<f64>,
-}
-
-impl CustomRow {
-    /// Returns the values, in the order of the topic's fields.
-    pub fn values(&self) -> &[f64] {
-        &self.values
-    }
-}
-
-impl LogRow for CustomRow {
-    fn topic(&self) -> LogTopic<'_> {
-        LogTopic::Custom(&self.topic)
-    }
-
-    fn encode(&self, buffer: &mut Vec<u8>) {
-        let mut encoder = Encoder::new(buffer);
-        self.values.iter().for_each(|value| encoder.number(*value));
-    }
-
-    fn fill(&self, columns: &mut Columns) {
-        for ((_, column), value) in columns.columns.iter_mut().zip(&self.values) {
-            if let Column::Numbers(values) = column {
-                values.push(*value);
-            }
-        }
-    }
-
-    fn copy(&self) -> Box<dyn LogRow> {
-        Box::new(self.clone())
-    }
-}
-
-/// Topic of a row: one of the engine, or a custom one.
-#[derive(Copy, Clone, Debug)]
-pub enum LogTopic<'a> {
-    /// Topic of the engine, as an index into [`TOPICS`].
-    Declared(usize),
-    /// Topic of a part outside the engine.
-    Custom(&'a Arc<CustomTopic>),
-}
-
-impl LogTopic<'_> {
-    /// Returns the index into [`TOPICS`] of a topic of the engine.
-    pub fn declared_index(&self) -> Option<usize> {
-        if let Self::Declared(index) = self { Some(*index) } else { None }
-    }
-
-    /// Returns the least detail of a log that has the topic.
-    pub fn detail(&self) -> Detail {
-        match self {
-            Self::Declared(index) => TOPICS[*index].logged.detail(),
-            Self::Custom(_) => Detail::Full,
-        }
-    }
-
-    /// Returns the name with its leading slash.
-    pub fn name(&self) -> &str {
-        match self {
-            Self::Declared(index) => TOPICS[*index].name,
-            Self::Custom(topic) => &topic.name,
-        }
-    }
-
-    /// Returns the full name of the message.
-    pub fn message(&self) -> &str {
-        match self {
-            Self::Declared(index) => TOPICS[*index].message,
-            Self::Custom(topic) => &topic.message,
-        }
-    }
-
-    /// Returns the schema: a serialised `FileDescriptorSet`.
-    pub fn schema(&self) -> Vec<u8> {
-        match self {
-            Self::Declared(index) => TOPICS[*index].schema(),
-            Self::Custom(topic) => proto::flat_schema(
-                &topic.message,
-                &topic.doc,
-                topic.fields.iter().map(|field| {
-                    let unit =
-                        if field.unit.is_empty() { String::new() } else { format!(" ({})", field.unit) };
-                    (field.name.as_str(), Type::Double, format!("{}{unit}", field.doc))
-                }),
-            ),
-        }
-    }
-
-    /// Returns the metadata of the topic's channel: the unit of each field of a custom topic.
-    pub fn channel_metadata(&self) -> BTreeMap<String, String> {
-        let Self::Custom(topic) = self else { return BTreeMap::new() };
-        topic.fields.iter().map(|field| (format!("{UNIT_KEY}{}", field.name), field.unit.clone())).collect()
-    }
-}
-
-/// Prefix of the keys of units in a channel's metadata.
-pub(crate) const UNIT_KEY: &str = "unit.";
 
 /// Custom topics of a run, numbered after those of the engine in the order of their first rows.
 #[derive(Clone, Debug, Default)]

@@ -5,6 +5,7 @@
 pub mod atomic_file;
 mod columns;
 mod composite;
+mod custom_row;
 pub mod custom_topic;
 mod decoder;
 pub mod description;
@@ -12,6 +13,7 @@ mod descriptor;
 pub mod enum_label;
 pub mod foxglove;
 mod log_file;
+mod log_topic;
 mod mcap;
 mod mcap_reader;
 mod memory_budget;
@@ -22,6 +24,7 @@ mod provenance_check;
 mod recover;
 mod report;
 pub mod row;
+mod scene_source;
 mod states;
 mod summary;
 mod three_axis;
@@ -38,13 +41,16 @@ use flexsc_numerics::time::Instant;
 use thiserror::Error;
 
 pub use columns::{Column, Columns};
-pub use custom_topic::{CustomField, CustomRow, CustomTopic, LogTopic, TopicError};
+pub use custom_row::CustomRow;
+pub use custom_topic::{CustomField, CustomTopic, TopicError};
 pub use log_file::{Log, LogError};
+pub use log_topic::LogTopic;
 pub use mcap::{LogBytes, LogFile};
 pub use message::{Attachment, COMMANDS, Message, MessageEncoder, MessageSink, Provenance, RunEnd};
 pub use provenance_check::{ExistingLog, difference, existing_log};
 pub use recover::recover;
 pub use report::{LogRow, LoggedRevisions, Report, ReportValue};
+pub use scene_source::{OneAxisPose, ScenePose, SceneSource, SceneThrust, ThreeAxisPose};
 pub use states::{Gate, Latch, Light, Lock, Onset, Phase, Trust, Use, Watch};
 pub use three_axis::{SteeringRecord, StoredMomentum, ThreeAxisCycle};
 pub use topics::*;
@@ -125,9 +131,9 @@ pub trait Record {
         Ok(())
     }
 
-    /// Returns true if the record needs the scene, which a simulation has only if it was requested.
-    fn wants_scene(&self) -> bool {
-        false
+    /// Returns the scene that the run records for viewers; `None` if the record supplies none. Called at the start.
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        None
     }
 
     /// Records a sample.

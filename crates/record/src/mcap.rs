@@ -187,10 +187,6 @@ macro_rules! records_within {
                 self.log.wants_motion()
             }
 
-            fn wants_scene(&self) -> bool {
-                self.log.wants_scene()
-            }
-
             fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
                 self.log.record(now, sample)
             }

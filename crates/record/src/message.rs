@@ -193,10 +193,6 @@ impl<M: MessageSink> Record for MessageEncoder<M> {
         self.detail >= Detail::Full
     }
 
-    fn wants_scene(&self) -> bool {
-        self.detail >= Detail::Scene
-    }
-
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         let detail = self.detail;
         self.rows().take_sample_rows(now, sample, detail)

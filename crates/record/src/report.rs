@@ -4,7 +4,7 @@ use std::any::Any;
 use std::fmt;
 
 use super::columns::Columns;
-use super::custom_topic::LogTopic;
+use super::log_topic::LogTopic;
 use super::proto::Encoder;
 use super::row::TopicRow;
 use super::topics::{TOPICS, index_of, report_rank};

@@ -16,9 +16,21 @@ pub struct Topic {
     pub fields: &'static [RowField],
     /// Instants at which the topic has rows.
     pub logged: Logging,
-    /// Panels of viewer layouts, each with its title and the name of the fields that it shows. Topics whose panels depend
-    /// on more than their rows have none here.
-    pub panels: &'static [(&'static str, &'static str)],
+    /// Panels of viewer layouts that depend on nothing but the rows.
+    pub panels: &'static [TopicPanel],
+}
+
+/// Panel of viewer layouts that shows a field of a topic.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct TopicPanel {
+    /// Name of the panel, unique among all panels.
+    pub name: &'static str,
+    /// Title with the unit.
+    pub title: &'static str,
+    /// Label of the line; in nested rows, the number of the row follows.
+    pub label: &'static str,
+    /// Name of the field.
+    pub field: &'static str,
 }
 
 /// Instants at which a topic has rows, from which the least detail of a log that has it follows.
@@ -195,10 +207,11 @@ pub const fn field_name(name: &'static str) -> &'static str {
 }
 
 /// Declares row types of a package, and topics for the types with a topic name. `at` gives the instants of the rows, by
-/// default events, and `panels` the panels of viewer layouts with their fields.
+/// default events, and `panels` the panels of viewer layouts, each with name, title, label and field.
 macro_rules! rows {
     (package $package:literal; $($(#[doc = $doc:literal])* $name:ident
-        $(= $topic:literal $(at $logging:ident)? $(panels [$($title:literal: $shown:ident),+ $(,)?])?)? {
+        $(= $topic:literal $(at $logging:ident)?
+            $(panels [$($panel:literal: $title:literal, $label:literal $shown:ident);+ $(;)?])?)? {
         $($(#[doc = $field_doc:literal])* $field:ident: $of:ty),+ $(,)?
     })+) => {
         $(
@@ -253,7 +266,12 @@ macro_rules! rows {
                     doc: <$name as $crate::row::Row>::DOC,
                     fields: <$name as $crate::row::Row>::FIELDS,
                     logged: $crate::row::logging!($($logging)?),
-                    panels: &[$($(($title, stringify!($shown))),+)?],
+                    panels: &[$($($crate::row::TopicPanel {
+                        name: $panel,
+                        title: $title,
+                        label: $label,
+                        field: stringify!($shown),
+                    }),+)?],
                 };
             })?
         )+

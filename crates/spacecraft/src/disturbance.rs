@@ -100,6 +100,40 @@ impl Disturbance {
         }
     }
 
+    /// Checks that the disturbances of a one-axis body are torques without an axis; returns a key within the list and the reason.
+    pub fn validate_one_axis(list: &[Self]) -> Option<ConfigError> {
+        let forced = |disturbance: &Self| disturbance.force.is_some() || disturbance.point.is_some();
+        if let Some(index) = list.iter().position(forced) {
+            let why = "acts on a body with three axes: use a `torque` for a body with one angle";
+            return Some(ConfigError::new(format!("[{index}].force"), why));
+        }
+        let about = list.iter().position(|disturbance| disturbance.about.is_some())?;
+        let why = "names one of three axes, and the body has one angle";
+        Some(ConfigError::new(format!("[{about}].about"), why))
+    }
+
+    /// Checks that the times of disturbances are in order, and within their periods; returns a key within the list and the
+    /// reason.
+    pub fn validate_times(list: &[Self]) -> Option<ConfigError> {
+        let ordered = |d: &Self| d.to.is_none_or(|to| d.from < to);
+        if let Some(index) = list.iter().position(|d| !ordered(d)) {
+            let (from, to) = (list[index].from.get(), list[index].to.map_or(f64::NAN, Time::get));
+            let why = format!("must be later than `from`, {from} s, got {to}");
+            return Some(ConfigError::new(format!("[{index}].to"), why));
+        }
+        let heldless = |d: &Self| d.noise.get() > 0.0 && d.period.is_none();
+        if let Some(index) = list.iter().position(heldless) {
+            let why = "must be given: how long (s) each draw of the noise is held";
+            return Some(ConfigError::new(format!("[{index}].period"), why));
+        }
+        list.iter().enumerate().find_map(|(index, disturbance)| {
+            let Pulses { period, on } = disturbance.pulse.filter(|pulse| pulse.on >= pulse.period)?;
+            let (period, on) = (period.seconds(), on.seconds());
+            let why = format!("must be shorter than the period of {period} s, got {on}");
+            Some(ConfigError::new(format!("[{index}].pulse.on"), why))
+        })
+    }
+
     /// Returns true if `now` is between the start and the end of the disturbance.
     fn acts(&self, now: Instant) -> bool {
         at(self.from) <= now && self.to.is_none_or(|to| now < at(to))

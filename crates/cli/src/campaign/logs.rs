@@ -9,6 +9,8 @@ use flexsc_core::SimulationError;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::record::{Detail, ExistingLog, LogFile, Record, RecordError, RunEnd, existing_log};
+use flexsc_view::scene::Scene;
+use flexsc_view::with_layout;
 
 use super::{CampaignJob, run as run_all};
 use crate::error::{CliError, NotReplaced};
@@ -75,7 +77,7 @@ pub fn simulate_to_log(
     (detail, force): (Detail, bool),
     record: impl Record,
 ) -> Result<(Metrics, u64), SimulationError> {
-    let provenance = Campaign::provenance(run, detail);
+    let provenance = with_layout(Campaign::provenance(run), &run.scenario, detail);
     let mut log = LogFile::create(path, &provenance, detail)?;
     // From here on, this process has the file to itself.
     if let (ExistingLog::Other(description), false) = (existing_log(path, &provenance), force) {
@@ -85,7 +87,8 @@ pub fn simulate_to_log(
         );
         return Err(RecordError::Io(NotReplaced(text).into()).into());
     }
-    match Campaign::simulate(run, (&mut log, record)) {
+    let scene = Scene::for_detail(&run.scenario, detail);
+    match Campaign::simulate(run, ((&mut log, scene), record)) {
         Ok(metrics) => {
             let bytes = log.finish(&metrics, RunEnd::Complete)?;
             Ok((metrics, bytes))

@@ -24,7 +24,9 @@ use std::time::{Duration, Instant as WallInstant};
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::metrics::Metrics;
 use flexsc_core::numerics::time::Instant;
-use flexsc_core::record::{Detail, MessageEncoder, Record, RecordError, RunEnd, Sample};
+use flexsc_core::record::{Detail, MessageEncoder, Record, RecordError, RunEnd, Sample, SceneSource};
+use flexsc_view::scene::Scene;
+use flexsc_view::with_layout;
 
 use crate::error::CliError;
 use crate::{say, stop};
@@ -78,6 +80,7 @@ fn address(text: &str) -> Result<String, String> {
 pub struct Live {
     hub: Arc<Hub>,
     messages: Option<MessageEncoder<Publisher>>,
+    scene: Scene,
 }
 
 impl LiveArgs {
@@ -97,8 +100,9 @@ impl LiveArgs {
         if !self.wait {
             clock.begin(wall);
         }
-        let provenance = Campaign::provenance(run, Detail::Scene);
-        let state = ServerState::new(clock, topics::expected(run, &provenance));
+        let provenance = with_layout(Campaign::provenance(run), &run.scenario, Detail::Scene);
+        let scene = Scene::new(&run.scenario);
+        let state = ServerState::new(clock, topics::expected(run, &provenance, &scene));
         let hub = Arc::new(Hub::new(&run.scenario.name, state));
         let messages = MessageEncoder::new(Publisher(hub.clone()), &provenance, Detail::Scene);
         let messages = messages.map_err(|error| failed(io::Error::other(error)))?;
@@ -110,7 +114,7 @@ impl LiveArgs {
             move || accept(&hub, &gate, &listener)
         });
         keys::listen(hub.clone());
-        Ok(Some(Live { hub, messages: Some(messages) }))
+        Ok(Some(Live { hub, messages: Some(messages), scene }))
     }
 }
 
@@ -144,8 +148,8 @@ impl Record for Live {
         true
     }
 
-    fn wants_scene(&self) -> bool {
-        true
+    fn scene(&self) -> Option<Box<dyn SceneSource>> {
+        self.scene.scene()
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {

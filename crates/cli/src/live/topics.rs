@@ -5,20 +5,19 @@ use std::collections::BTreeSet;
 use flexsc_core::campaign::CampaignRun;
 use flexsc_core::control::actuator::FiringMethod;
 use flexsc_core::control::estimator::EstimatorKind;
-use flexsc_core::control::law::LawKind;
 use flexsc_core::dynamics::three_axis::Bearing;
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{Detail, Message, MessageEncoder, MessageSink, Provenance, RecordError, TOPICS};
 use flexsc_core::{Scenario, Simulation};
+use flexsc_view::scene::Scene;
 
 /// Returns the expected topics of a run as indices into [`TOPICS`]: of its first instant, and of possible later events.
-pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
+pub fn expected(run: &CampaignRun, from: &Provenance, scene: &Scene) -> BTreeSet<usize> {
     let mut topics = TopicCollector::default();
     if let Ok(mut messages) = MessageEncoder::new(&mut topics, from, Detail::Scene) {
         // A run that fails at its start reports the error when it is made.
         let mut simulation = Simulation::new(&run.scenario, run.number);
-        simulation.enable_scene(&run.scenario);
-        let _ = simulation.run_until(Instant::START, &mut messages);
+        let _ = simulation.run_until(Instant::START, &mut (&mut messages, scene.clone()));
     }
     let late_topics = later(&run.scenario);
     // Custom topics are advertised with their first messages.
@@ -31,7 +30,7 @@ pub fn expected(run: &CampaignRun, from: &Provenance) -> BTreeSet<usize> {
 fn later(scenario: &Scenario) -> Vec<&'static str> {
     let envelope = scenario.estimator.as_ref().and_then(EstimatorKind::envelope);
     let topics = [
-        ("/command", scenario.axis_count() == 1 && !matches!(scenario.law, LawKind::Open(_))),
+        ("/command", scenario.axis_count() == 1 && !scenario.law.offers().is_open),
         ("/envelope_mean", envelope.is_some()),
         ("/objective", scenario.adaptation.as_ref().is_some_and(|adaptation| adaptation.window().is_some())),
         ("/adaptation", scenario.adaptation.is_some()),
@@ -80,9 +79,9 @@ mod tests {
             }
             let scenario = Scenario::load(&file.path()).expect("a scenario");
             let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
-            let from = Campaign::provenance(&run, Detail::Scene);
-            let (expected, mut topics) = (expected(&run, &from), TopicCollector::default());
-            let mut messages = MessageEncoder::new(&mut topics, &from, Detail::Scene).expect("messages");
+            let (from, scene) = (Campaign::provenance(&run), Scene::new(&run.scenario));
+            let (expected, mut seen) = (expected(&run, &from, &scene), TopicCollector::default());
+            let messages = MessageEncoder::new(&mut seen, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, the windows of an adaptation, and a zero crossing of a wheel.
             let grips = run.scenario.study.bearings.iter().any(Bearing::can_stick);
             let seconds = match (run.scenario.adaptation.is_some(), grips) {
@@ -92,8 +91,7 @@ mod tests {
             };
             let until = Instant::START + Span::from_seconds(seconds);
             let mut simulation = Simulation::new(&run.scenario, 0);
-            simulation.enable_scene(&run.scenario);
-            simulation.run_until(until, &mut messages).expect("a run");
+            simulation.run_until(until, &mut (messages, scene)).expect("a run");
             let name = |index: &usize| TOPICS[*index].name;
             let unknown: Vec<_> = topics.0.difference(&expected).map(name).collect();
             assert!(unknown.is_empty(), "{}: {unknown:?}", file.path().display());

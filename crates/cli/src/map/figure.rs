@@ -70,14 +70,18 @@ fn divided(values: &[f64], steps: usize) -> Vec<f64> {
     values.windows(2).flat_map(between).chain(values.last().copied()).collect()
 }
 
-/// Returns the positions of the spectral radii on the colour scale, on a grid that divides each step of the map evenly.
-/// They are computed at every point of it: interpolated between the cells of the map, the limit of stability and narrow
-/// resonances would have steps.
-fn field(family: &LoopFamily, frequencies: &[f64], periods: &[f64]) -> ScalarField {
+/// Returns the number of parts into which the figure divides each step of the map; 1 for a loop of many modes, whose
+/// spectral radii take long.
+fn subdivision(family: &LoopFamily, frequencies: &[f64], periods: &[f64]) -> usize {
     let fine = (WORK / family.cost()).sqrt().min(FINE as f64);
-    let steps = (fine as usize / frequencies.len().max(periods.len()).max(1)).max(1);
+    (fine as usize / frequencies.len().max(periods.len()).max(1)).max(1)
+}
+
+/// Returns the spectral radii on a grid that divides each step of the map evenly. They are computed at every point of it:
+/// interpolated between the cells of the map, the limit of stability and narrow resonances would have steps.
+fn refined(family: &LoopFamily, frequencies: &[f64], periods: &[f64], steps: usize) -> ScalarField {
     let (x, y) = (divided(frequencies, steps), divided(periods, steps));
-    let values = family.radii(&x, &y).into_iter().map(place).collect();
+    let values = family.radii(&x, &y);
     ScalarField { x, y, values }
 }
 
@@ -87,7 +91,16 @@ pub fn figure(map: &MapResults) -> Figure {
     let mut frequencies: Vec<f64> = cells.iter().map(|cell| cell.frequency_rad_s).collect();
     frequencies.dedup();
     let periods = cells.iter().take(cells.len() / frequencies.len().max(1)).map(|cell| cell.period_s);
-    let field = field(family, &frequencies, &periods.collect::<Vec<_>>());
+    let periods: Vec<f64> = periods.collect();
+    let mut field = match subdivision(family, &frequencies, &periods) {
+        1 => {
+            let radii = cells.iter().map(|cell| cell.spectral_radius).collect();
+            ScalarField { x: frequencies, y: periods, values: radii }
+        }
+        steps => refined(family, &frequencies, &periods, steps),
+    };
+    // Contours of the positions on the colour scale cross the edges of cells where the colours change.
+    field.values.iter_mut().for_each(|radius| *radius = place(*radius));
     let ends = |values: &[f64]| values[0]..values[values.len() - 1];
     let x = FigureAxis::exact("frequency of the dominant mode (rad/s)", "", ends(&field.x));
     let y = FigureAxis::exact("period of the samples (s)", "", ends(&field.y));
@@ -150,7 +163,11 @@ mod tests {
         let even = |low: f64, high: f64, count: u32| -> Vec<f64> {
             (0..count).map(|i| low + f64::from(i) / f64::from(count - 1) * (high - low)).collect()
         };
-        let line = field(&family, &even(0.5, 2.0, 12), &even(0.1, 1.0, 10)).lines(0.0);
+        let (frequencies, periods) = (even(0.5, 2.0, 12), even(0.1, 1.0, 10));
+        let steps = subdivision(&family, &frequencies, &periods);
+        let mut field = refined(&family, &frequencies, &periods, steps);
+        field.values.iter_mut().for_each(|radius| *radius = place(*radius));
+        let line = field.lines(0.0);
         let points: Vec<&Point> = line.iter().filter(|point| point.0.is_finite()).collect();
         assert!(points.len() > 100, "{}", points.len());
         for (frequency, period) in points {

@@ -85,8 +85,9 @@ impl LoopFamily {
 
     /// Returns the number of floating-point operations of about one spectral radius.
     fn cost(&self) -> f64 {
-        let order = 2 * (self.of.body.modes.len() + 2);
-        25.0 * (order as f64).powi(3)
+        // Angle and rate of each coordinate, the last measurement, and the commands under way.
+        let order = 2.0 * (self.of.body.modes.len() as f64 + 2.0) + (self.of.delay / self.of.period).ceil();
+        25.0 * order.powi(3)
     }
 }
 

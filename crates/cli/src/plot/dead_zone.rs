@@ -1,6 +1,6 @@
 //! Figure `angle` for a switching law: the angle at the end of the run, with the dead zone and the switchings.
 
-use flexsc_core::control::law::{LawKind, RelaySides};
+use flexsc_core::control::law::RelaySides;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;
@@ -18,12 +18,12 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
             .filter(|s| s.timeout == timeout && s.time >= shown.start && s.time <= shown.end);
         angles.map(|s| (s.time, s.angle)).collect()
     };
-    let borders: Vec<f64> = match &story.scenario.law {
-        LawKind::Relay(relay) => match relay.sides {
+    let borders: Vec<f64> = match story.scenario.law.relay() {
+        Some(relay) => match relay.sides {
             RelaySides::Two => vec![relay.dead_zone.get(), -relay.dead_zone.get()],
             RelaySides::One => vec![relay.dead_zone.get()],
         },
-        _ => Vec::new(),
+        None => Vec::new(),
     };
     let y =
         FigureAxis::around("angle x", "rad", line.iter().map(|point| point.1).chain(borders.iter().copied()));

@@ -1,7 +1,7 @@
 //! Figure `extra`: the gain of the extra loop over the run, and the frequency of the dominant mode that schedules it.
 
 use flexsc_core::Scenario;
-use flexsc_core::control::law::{Extra, LawKind};
+use flexsc_core::control::law::Extra;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;
@@ -10,10 +10,7 @@ use super::{filter_lock, time, title};
 
 /// Returns the extra loop of a scenario, if it has one.
 pub fn extra(story: &RunEvents) -> Option<&Extra> {
-    match &story.scenario.law {
-        LawKind::Pd(pd) => pd.extra.as_ref(),
-        _ => None,
-    }
+    story.scenario.law.pd()?.extra.as_ref()
 }
 
 pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {

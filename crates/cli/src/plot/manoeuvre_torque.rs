@@ -1,6 +1,5 @@
 //! Figure `torque` of a rotation: the planned torque, the actuator's torque, the law's part and disturbances.
 
-use flexsc_core::control::actuator::ActuatorKind;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;
@@ -40,7 +39,7 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     if acts(feedback) {
         rest.push(("feedback", colour::BLUE, feedback));
     }
-    let wheel = matches!(story.scenario.actuator.only_actuator(), Some(ActuatorKind::Wheel(_)));
+    let wheel = story.scenario.actuator.only_actuator().is_some_and(|kind| kind.command_gain().is_some());
     let panels = match (rest.is_empty(), executed || acts(planned)) {
         _ if wheel => {
             // A wheel has no planned manoeuvre, and the law's demand may be far above the wheel's torque.

@@ -1,6 +1,6 @@
 //! Figure `phase-plane`: rate against angle, with the law's switching lines and switchings.
 
-use flexsc_core::control::law::{LawKind, Relay, RelaySides};
+use flexsc_core::control::law::{Relay, RelaySides};
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, Point, colour};
 
 use super::motion::MotionData;
@@ -38,10 +38,7 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         let switchings = story.switchings.iter().filter(shown).filter(|s| s.timeout == timeout);
         switchings.map(|s| (s.angle, s.rate)).collect()
     };
-    let relay = match &story.scenario.law {
-        LawKind::Relay(relay) => Some(relay),
-        _ => None,
-    };
+    let relay = story.scenario.law.relay();
     let zone = relay.into_iter().flat_map(|relay| [-relay.dead_zone.get(), relay.dead_zone.get()]);
     let all = || first.iter().chain(&last).copied();
     let x = FigureAxis::around("angle x", "rad", all().map(|p| p.0).chain(zone));

@@ -1,6 +1,5 @@
 //! Figure `pointing` of three axes: the pointing error about each axis, with its goal and the dead zone.
 
-use flexsc_core::control::law::LawKind;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Panel, band, colour};
 
 use super::run_events::RunEvents;
@@ -75,9 +74,6 @@ fn bands(story: &RunEvents, axis: usize) -> [Option<f64>; 2] {
     let scenario = &story.scenario;
     let own = scenario.study.expected_bands.get(axis).copied().flatten();
     let goal = scenario.reference.band.map(flexsc_core::numerics::quantity::Positive::get).or(own);
-    let zone = match scenario.law.about(axis) {
-        LawKind::PhasePlane(law) => Some(law.dead_zone.get()),
-        _ => None,
-    };
+    let zone = scenario.law.about(axis).coasting_zone();
     [goal.filter(|half| *half > 0.0), zone.filter(|half| *half > 0.0)]
 }

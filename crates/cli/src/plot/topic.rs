@@ -14,10 +14,10 @@ use crate::error::CliError;
 const COLOURS: [RGBColor; 5] = [colour::BLUE, colour::VERMILLION, colour::GREEN, colour::ORANGE, colour::SKY];
 /// Largest number of panels and of lines in a panel.
 const MOST: usize = 12;
-/// Columns of indices, by which rows of one topic are told apart.
+/// Columns of indices, that distinguish the rows of one topic.
 const INDICES: [&str; 3] = ["axis", "sensor", "wheel"];
 /// Endings of the engine's field names with their units.
-const UNITS: [(&str, &str); 20] = [
+const UNITS: [(&str, &str); 15] = [
     ("_rad_s", "rad/s"),
     ("_rad", "rad"),
     ("_nm_s", "N m s"),
@@ -33,11 +33,6 @@ const UNITS: [(&str, &str); 20] = [
     ("_j", "J"),
     ("_t", "T"),
     ("_1_s", "1/s"),
-    ("_n", "N"),
-    ("_w", "W"),
-    ("_v", "V"),
-    ("_k", "K"),
-    ("_hz", "Hz"),
 ];
 
 /// Line of a figure: name, unit, and points.
@@ -55,7 +50,7 @@ pub fn figure(log: &Log, path: &Path, topic: &str) -> Result<Figure, CliError> {
     let columns = log.columns(topic)?;
     let times = columns.numbers("time_s").unwrap_or_default();
     let mut lines = Vec::new();
-    collect(&columns, "", times, &log.units(topic), &mut lines);
+    collect(&columns, times, &log.units(topic), &mut lines);
     let mut panels: Vec<(String, Vec<NumberLine>)> = Vec::new();
     for line in lines {
         match panels.iter_mut().find(|(unit, own)| *unit == line.unit && own.len() < MOST) {
@@ -75,7 +70,7 @@ pub fn figure(log: &Log, path: &Path, topic: &str) -> Result<Figure, CliError> {
         let single = if let [line] = &lines[..] { line.name.clone() } else { String::new() };
         let mut y = FigureAxis::around(&single, "", values);
         if !unit.is_empty() {
-            y.name = format!("{single} ({unit})").trim_start().to_owned();
+            format!("{single} ({unit})").trim_start().clone_into(&mut y.name);
         }
         let x = time(start..end);
         let is_alone = !single.is_empty();
@@ -91,20 +86,14 @@ pub fn figure(log: &Log, path: &Path, topic: &str) -> Result<Figure, CliError> {
     Ok(Figure { title, panels, panel_height: 180 })
 }
 
-/// Collects the lines of the numbers in columns; the names of nested ones begin with `before`.
-fn collect(
-    columns: &Columns,
-    before: &str,
-    times: &[f64],
-    units: &BTreeMap<String, String>,
-    lines: &mut Vec<NumberLine>,
-) {
+/// Collects the lines of the numbers in columns.
+fn collect(columns: &Columns, times: &[f64], units: &BTreeMap<String, String>, lines: &mut Vec<NumberLine>) {
     let indices = indices(columns);
     for (name, column) in &columns.columns {
         match column {
             Column::Numbers(values) if name != "time_s" && !INDICES.contains(&name.as_str()) => {
                 let unit = unit(name, units);
-                let readable = format!("{before}{}", words(name, &unit));
+                let readable = words(name, &unit);
                 if indices.is_empty() {
                     let points = times.iter().copied().zip(values.iter().copied()).collect();
                     lines.push(NumberLine { name: readable, unit, points });
@@ -120,7 +109,7 @@ fn collect(
                     points,
                 }));
             }
-            Column::Rows(counts, inner) => collect_nested((counts, inner), name, times, units, lines),
+            Column::Rows(counts, inner) => collect_nested(counts, inner, name, times, units, lines),
             _ => {}
         }
     }
@@ -128,7 +117,8 @@ fn collect(
 
 /// Collects the lines of nested rows: one for each field and place within a row.
 fn collect_nested(
-    (counts, inner): (&[u32], &Columns),
+    counts: &[u32],
+    inner: &Columns,
     name: &str,
     times: &[f64],
     units: &BTreeMap<String, String>,
@@ -171,7 +161,7 @@ fn unit(field: &str, units: &BTreeMap<String, String>) -> String {
 
 /// Returns the name of a field in words, without the ending for its unit.
 fn words(field: &str, unit: &str) -> String {
-    let ending = UNITS.iter().find(|(ending, own)| *own == unit && field.ends_with(ending));
-    let stem = ending.map_or(field, |(ending, _)| field.trim_end_matches(ending));
-    stem.replace('_', " ")
+    let stem =
+        UNITS.iter().filter(|(_, own)| *own == unit).find_map(|(ending, _)| field.strip_suffix(ending));
+    stem.unwrap_or(field).replace('_', " ")
 }

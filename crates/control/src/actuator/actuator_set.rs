@@ -7,7 +7,7 @@ use flexsc_spacecraft::wrench::Wrench;
 
 use super::unloading::UnloaderState;
 use super::{
-    Actuator, ActuatorInput, ActuatorKind, ActuatorTask, AxisEffort, AxisResponse, Capabilities, Demand,
+    Actuator, ActuatorEvent, ActuatorKind, ActuatorTask, AxisEffort, AxisResponse, Capabilities, Demand,
     JetCycle, MomentumStorage, Pulse, PulsedActuator, WaveformActuator,
 };
 use crate::custom::PartError;
@@ -88,7 +88,7 @@ impl ActuatorSet {
     /// Makes the actuator that stores momentum counteract a torque (N m) from the next command on.
     fn hold(&mut self, now: Instant, torque: Vector) {
         if let Some(index) = self.keepers.first() {
-            self.executing[*index].0.update(now, ActuatorInput::CounterTorque(torque));
+            self.executing[*index].0.update(now, ActuatorEvent::CounterTorque(torque));
         }
     }
 
@@ -97,7 +97,7 @@ impl ActuatorSet {
         let stored = Vector::from(self.stored_momentum(now));
         let held = self.unloader.as_mut().and_then(|of| of.serve(now, rigid, stored, &self.demands));
         let executing = self.executing.iter_mut();
-        executing.for_each(|(actuator, _)| actuator.update(now, ActuatorInput::Due(rigid)));
+        executing.for_each(|(actuator, _)| actuator.update(now, ActuatorEvent::Due(rigid)));
         if let (Some(held), Some(index)) = (held, self.keepers.first().copied()) {
             self.hold(now, held);
             self.pass_on(index, now, rigid);
@@ -116,7 +116,7 @@ impl Part for ActuatorSet {
     }
 
     fn failure(&self) -> Option<PartError> {
-        self.each().find_map(|actuator| actuator.failure())
+        self.each().find_map(Part::failure)
     }
 }
 
@@ -130,16 +130,16 @@ impl Actuator for ActuatorSet {
         (0..self.executing.len()).for_each(|index| self.pass_on(index, now, rigid));
     }
 
-    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
-        match input {
-            ActuatorInput::Due(rigid) => self.serve(now, rigid),
-            ActuatorInput::CounterTorque(torque) => self.hold(now, torque),
-            ActuatorInput::MagneticField(_) => {
-                self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, input));
-                self.unloader.iter_mut().for_each(|unloader| unloader.actuator.update(now, input));
+    fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
+        match event {
+            ActuatorEvent::Due(rigid) => self.serve(now, rigid),
+            ActuatorEvent::CounterTorque(torque) => self.hold(now, torque),
+            ActuatorEvent::MagneticField(_) => {
+                self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, event));
+                self.unloader.iter_mut().for_each(|unloader| unloader.actuator.update(now, event));
             }
-            ActuatorInput::Rotors(_) => {
-                self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, input));
+            ActuatorEvent::Rotors(_) => {
+                self.executing.iter_mut().for_each(|(actuator, _)| actuator.update(now, event));
             }
         }
     }

@@ -40,6 +40,16 @@ impl AssignedMember<'_> {
         }
     }
 
+    /// Returns true if the actuator executes commands of the laws, and does not unload wheels.
+    pub fn executes(&self) -> bool {
+        matches!(self.task, ActuatorTask::Executes(_))
+    }
+
+    /// Returns true if the actuator is given within another, whose momentum it unloads.
+    pub fn is_nested(&self) -> bool {
+        matches!(self.kind, Cow::Owned(_))
+    }
+
     /// Returns the key of the unloading settings: `actuator[1].unloads`, or the table within wheels that contains it.
     pub fn unloading_key(&self) -> String {
         let prefix = self.key.rsplit_once('.').map_or("", |(prefix, _)| prefix);
@@ -108,7 +118,7 @@ impl OneOrMany<AssignedActuator> {
 
     /// Returns true if laws are executed exactly, without failures.
     pub fn is_ideal(&self) -> bool {
-        matches!(self.only_actuator(), Some(ActuatorKind::Ideal(ideal)) if ideal.faults.is_empty())
+        self.only_actuator().is_some_and(ActuatorKind::is_ideal)
     }
 
     /// Returns true if any actuator satisfies `is`.
@@ -140,7 +150,7 @@ impl OneOrMany<AssignedActuator> {
 
     /// Returns the jets, for control or for unloading, with their key.
     pub fn jets(&self) -> Option<(&Jets, String)> {
-        self.first(|kind| if let ActuatorKind::Jets(jets) = kind { Some(jets) } else { None }).or_else(|| {
+        self.first(ActuatorKind::jets).or_else(|| {
             let (wheels, key) = self.wheels()?;
             Some((wheels.unloading.as_ref()?.jets.as_ref()?, format!("{key}.unloading.jets")))
         })

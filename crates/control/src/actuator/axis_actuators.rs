@@ -13,7 +13,7 @@ use flexsc_spacecraft::wrench::Wrench;
 use super::failure::FailureScope;
 use super::faulty::FaultyActuator;
 use super::{
-    Actuator, ActuatorInput, ActuatorKind, AxisEffort, AxisResponse, Capabilities, Demand, WaveformActuator,
+    Actuator, ActuatorEvent, ActuatorKind, AxisEffort, AxisResponse, Capabilities, Demand, WaveformActuator,
 };
 use crate::custom::PartError;
 use crate::part::{Part, ReportContext};
@@ -184,8 +184,8 @@ impl Actuator for AxisActuators {
         }
     }
 
-    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
-        let ActuatorInput::Due(rigid) = input else { return };
+    fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
+        let ActuatorEvent::Due(rigid) = event else { return };
         for (actuator, rate) in self.0.iter_mut().zip(rigid) {
             if let Some((actuator, _)) = actuator {
                 actuator.serve(now, rate);

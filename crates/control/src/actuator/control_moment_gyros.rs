@@ -11,6 +11,8 @@ use serde::{Deserialize, Serialize};
 use super::Failure;
 use super::failure::{ActiveFailures, FailureScope};
 use super::steering::{self, GyroAxes, NullMotion, Robustness, Steering};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
+use crate::requirement::{Requirements, Rule};
 
 /// Single-gimbal control moment gyros, identical except for their axes and gimbal angles.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -73,6 +75,40 @@ const SQUARE: f64 = 1e-6;
 const PARALLEL: f64 = 1e-9;
 
 impl ControlMomentGyros {
+    /// Returns the offers of the gyros to the other parts of a scenario.
+    pub(super) fn offers() -> ActuatorOffers {
+        ActuatorOffers {
+            limits: [TorqueLimit::Varying; 3],
+            turns_with_gimbals: true,
+            ..ActuatorOffers::default()
+        }
+    }
+
+    /// Adds the requirements of the gyros on the other parts of a scenario.
+    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        needs.require(
+            Rule::GimbalAxes,
+            offers.body.axes == 3,
+            "",
+            "turn a body about three axes, and the body has one angle: use `[actuator.wheel]`",
+        );
+        place
+            .require_single(needs, "write all of them in one `control_moment_gyros`, by their `gimbal_axes`");
+        needs.require(
+            Rule::GimbalPeriod,
+            self.period.is_some() || !offers.laws.iter().any(|law| law.offers.finds_crossings),
+            "period",
+            "must be given with a law `relay`, which holds its torque: gimbals at constant rates turn theirs",
+        );
+        needs.require(
+            Rule::GimbalBody,
+            offers.body.is_two_way,
+            "",
+            "are for a `[spacecraft]`, which needs no appendages: the modes of a `[body.spatial]` are pushed by \
+             torques that are constant for a while, and gimbals turn theirs",
+        );
+    }
+
     /// Returns the number of control moment gyros.
     pub fn count(&self) -> usize {
         match self.arrangement {

@@ -15,7 +15,7 @@ use super::control_moment_gyros::ControlMomentGyros;
 use super::failure::ActiveFailures;
 use super::steering::{self, GyroAxes, Robustness};
 use super::{
-    Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Capabilities, Demand,
+    Actuator, ActuatorEvent, AxisActuatorContext, AxisEffort, AxisResponse, Capabilities, Demand,
     MomentumStorage,
 };
 use crate::part::{Occasion, Part, ReportContext};
@@ -230,11 +230,11 @@ impl Actuator for ControlMomentGyrosState {
         onto.gimbals.extend(self.rotors(now));
     }
 
-    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
-        match input {
-            ActuatorInput::CounterTorque(torque) => self.against = torque,
-            ActuatorInput::Due(_) => self.serve(now),
-            ActuatorInput::MagneticField(_) | ActuatorInput::Rotors(_) => {}
+    fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
+        match event {
+            ActuatorEvent::CounterTorque(torque) => self.against = torque,
+            ActuatorEvent::Due(_) => self.serve(now),
+            ActuatorEvent::MagneticField(_) | ActuatorEvent::Rotors(_) => {}
         }
     }
 

@@ -1,12 +1,12 @@
-//! Inputs, efforts and responses of actuators.
+//! Events, efforts and responses of actuators.
 
 use flexsc_dynamics::three_axis::RotorObservation;
 use flexsc_numerics::attitude::Vector;
 use flexsc_record::WheelMotion;
 
-/// Input of an actuator other than a command.
+/// Event of an actuator other than a command.
 #[derive(Copy, Clone, Debug)]
-pub enum ActuatorInput<'a> {
+pub enum ActuatorEvent<'a> {
     /// Changes that are due, after the laws have decided, of a body with these rigid rates (rad/s).
     Due([f64; 3]),
     /// Measured magnetic field in the body's axes (T), before the commands that depend on it.

@@ -9,7 +9,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuator, AxisActuatorContext, AxisProperties, AxisResponse, AxisTorques, Failure};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
 use crate::part::{Occasion, Part, ReportContext};
+use crate::requirement::{Requirements, Rule};
 
 /// A flywheel on a motor with back-EMF: the body's torque is gain u - `back_emf` times a rate of the body.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -101,6 +103,53 @@ pub struct FlywheelState {
 }
 
 impl Wheel {
+    /// Returns the offers of the wheel to the other parts of a scenario.
+    pub(super) fn offers(&self) -> ActuatorOffers {
+        let limit = self.limit.map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
+        ActuatorOffers {
+            limits: [limit; 3],
+            is_delayed: self.delay.get() > 0.0,
+            has_wheel_speeds: self.rotor.is_some(),
+            ..ActuatorOffers::default()
+        }
+    }
+
+    /// Adds the requirements of the wheel on the other parts of a scenario.
+    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        let is_passive = self.back_emf.get() <= 0.0;
+        needs.require(
+            Rule::BackEmf,
+            is_passive || offers.body.axes == 1,
+            "back_emf",
+            "couples the modes of one angle: leave it out for a body with three axes",
+        );
+        needs.require(
+            Rule::Repetition,
+            self.rotor.is_none() || place.members <= 1,
+            "rotor",
+            "gets its speed from the rate of the body, which other actuators change too: leave it out, or use \
+             `[actuator.wheels]` on a body with three axes",
+        );
+        if place.meets_twin {
+            place.require_single(needs, "an axis has one flywheel: give it the gain of both");
+        }
+        let is_limited = self.rotor.as_ref().is_some_and(|rotor| rotor.speed_limit.is_some());
+        let crosses =
+            offers.sample_period.is_none() && offers.laws.iter().any(|law| law.offers.finds_crossings);
+        needs.require(
+            Rule::Crossings,
+            !(is_limited && crosses),
+            "rotor.speed_limit",
+            "is checked at the law's commands: with a law `relay` it needs a `[sensor.sampled]`",
+        );
+        needs.require(
+            Rule::EnvelopeBackEmf,
+            is_passive || offers.estimator.is_none_or(|of| !of.is_envelope),
+            "back_emf",
+            "must be 0 with an `[estimator.envelope]`, which follows each mode on its own",
+        );
+    }
+
     /// Creates the wheel before its first command.
     pub fn start(&self, setting: &AxisActuatorContext) -> FlywheelState {
         FlywheelState {

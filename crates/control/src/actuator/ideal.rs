@@ -11,7 +11,9 @@ use serde::{Deserialize, Serialize};
 use super::{
     AxisActuator, AxisActuatorContext, AxisProperties, AxisResponse, AxisTorques, AxisWaves, Failure,
 };
+use crate::offers::{ActuatorOffers, Offers};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 
 /// The ideal actuator.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -20,6 +22,25 @@ pub struct Ideal {
     /// Intervals in which it fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
+}
+
+impl Ideal {
+    /// Returns the offers of the actuator to the other parts of a scenario.
+    pub(super) fn offers() -> ActuatorOffers {
+        ActuatorOffers { follows_waveform: true, ..ActuatorOffers::default() }
+    }
+
+    /// Adds the requirements of the actuator on the other parts of a scenario.
+    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+        let Some(matrix) = &offers.body.damping_matrix else { return };
+        needs.require_elsewhere(
+            Rule::DampingMatrix,
+            !offers.body.has_manoeuvre,
+            matrix,
+            "needs torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]` or \
+             thrusters",
+        );
+    }
 }
 
 /// Run-time state of the ideal actuator.

@@ -14,7 +14,7 @@ use flexsc_spacecraft::wrench::{ForceEffect, Wrench};
 
 use super::valves::Valves;
 use super::{
-    Actuator, ActuatorInput, AxisEffort, Capabilities, Demand, GroupEffect, JetCycle, Jets, PulseWidth,
+    Actuator, ActuatorEvent, AxisEffort, Capabilities, Demand, GroupEffect, JetCycle, Jets, PulseWidth,
     PulsedActuator, ThrusterEffect,
 };
 use crate::part::{Occasion, Part, ReportContext};
@@ -231,8 +231,8 @@ impl Actuator for AllocatedJets {
         }
     }
 
-    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
-        let ActuatorInput::Due(_) = input else { return };
+    fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
+        let ActuatorEvent::Due(_) = event else { return };
         self.ends.iter_mut().for_each(|end| *end = end.filter(|end| *end > now));
         if self.next == Some(now) {
             self.begin(now);

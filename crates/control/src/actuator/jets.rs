@@ -10,6 +10,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Actuator, AllocatedJets, Failure, JetsState, PulseWidth, jet_allocation};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
+use crate::requirement::{OFF_HUB, Requirements, Rule};
 
 /// Standard gravity (m/s²), to which the specific impulse refers.
 const G_0: f64 = 9.806_65;
@@ -149,6 +151,59 @@ pub struct ThrusterEffect {
 }
 
 impl Jets {
+    /// Returns the offers of the jets to the other parts of a scenario.
+    pub(super) fn offers(&self) -> ActuatorOffers {
+        ActuatorOffers {
+            pulses: true,
+            has_jets: true,
+            programs_pulses: self.allocation == FiringMethod::LeastPropellant,
+            ..ActuatorOffers::default()
+        }
+    }
+
+    /// Adds the requirements of the jets on the other parts of a scenario.
+    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        // With wheels about three axes, the wheels are reported.
+        if !offers.lists_actuator(|actuator| actuator.has_reaction_wheels) {
+            let instead = ": `[actuator.thrusters]` push a body with one angle";
+            offers.require_three_axes(needs, Rule::JetAxes, "", instead);
+        }
+        place.require_single(needs, "write all thrusters in one `jets`");
+        let moves = |thruster: &Thruster| !offers.body.has_motion_at(&thruster.point);
+        if let Some(index) = self.thrusters.iter().position(moves) {
+            needs.require(Rule::FixedJets, false, &format!("thrusters[{index}].point"), OFF_HUB);
+        }
+        if place.executes {
+            self.require_cycle(offers, needs);
+        }
+    }
+
+    /// Adds the requirements on the cycle of jets that execute commands.
+    fn require_cycle(&self, offers: &Offers, needs: &mut Requirements) {
+        let mut laws = offers.laws.iter().map(|law| law.offers.period);
+        let first = laws.next().flatten();
+        let Some(period) = self.period.or(first) else {
+            let why = "must be given with a law that has none of its own";
+            return needs.require(Rule::JetCycle, false, "period", why);
+        };
+        needs.require(
+            Rule::JetCycle,
+            self.period.is_some() || laws.all(|other| other == first),
+            "period",
+            "must be given where the laws of the axes have periods that differ",
+        );
+        let period = period.seconds();
+        for (key, value) in [("minimum_on", self.minimum_on.get()), ("quantum", self.quantum.get())] {
+            needs.require_with(Rule::JetCycle, value <= period, key, || {
+                let whose = if self.period.is_some() { "" } else { "law's " };
+                format!("must be at most the {whose}period of {period} s, got {value}")
+            });
+        }
+        needs.require_with(Rule::JetCycle, self.delay <= 1, "delay", || {
+            format!("must be 0 or 1 cycles, got {}", self.delay)
+        });
+    }
+
     /// Returns the effect of each thruster on a body that has the thrusters' points.
     pub fn thruster_effects(&self, body: &Spatial) -> Vec<ThrusterEffect> {
         let nozzle = |thruster: &Thruster| {

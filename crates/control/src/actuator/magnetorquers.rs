@@ -13,8 +13,10 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::failure::{ActiveFailures, FailureScope};
-use super::{Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Demand, Failure};
+use super::{Actuator, ActuatorEvent, AxisActuatorContext, AxisEffort, AxisResponse, Demand, Failure};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers};
 use crate::part::{Occasion, Part, ReportContext};
+use crate::requirement::{Requirements, Rule};
 
 /// Magnetorquers along the body's axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -28,6 +30,26 @@ pub struct Magnetorquers {
 }
 
 impl Magnetorquers {
+    /// Returns the offers of the torquers to the other parts of a scenario.
+    pub(super) fn offers() -> ActuatorOffers {
+        ActuatorOffers { turns_with_field: true, ..ActuatorOffers::default() }
+    }
+
+    /// Adds the requirements of the torquers on the other parts of a scenario.
+    pub(super) fn requires(place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        // With wheels about three axes, the wheels are reported.
+        if !offers.lists_actuator(|actuator| actuator.has_reaction_wheels) {
+            offers.require_three_axes(needs, Rule::MagnetorquerAxes, "", "");
+        }
+        place.require_single(needs, "they act along all three axes: write one `magnetorquers`");
+        needs.require(
+            Rule::MagneticField,
+            offers.environment.magnetic_field,
+            "",
+            "need the field of `[environment.magnetic_field]`, and there is none",
+        );
+    }
+
     /// Creates the torquers before their first command.
     pub fn start(&self, settings: &[AxisActuatorContext]) -> MagnetorquersState {
         MagnetorquersState {
@@ -139,17 +161,17 @@ impl Actuator for MagnetorquersState {
         onto.moment += self.held();
     }
 
-    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
-        match input {
-            ActuatorInput::MagneticField(field) => self.field = Some(field),
-            ActuatorInput::Due(_) => {
+    fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
+        match event {
+            ActuatorEvent::MagneticField(field) => self.field = Some(field),
+            ActuatorEvent::Due(_) => {
                 for (failing, moment) in self.failing.iter_mut().zip(&self.moment) {
                     if let Some(failing) = failing {
                         failing.update(now, *moment);
                     }
                 }
             }
-            ActuatorInput::CounterTorque(_) | ActuatorInput::Rotors(_) => {}
+            ActuatorEvent::CounterTorque(_) | ActuatorEvent::Rotors(_) => {}
         }
     }
 
@@ -197,15 +219,15 @@ mod tests {
         let mut torquers = start("moment = 100.0");
         let (field, torque) = (Vector::new(2e-5, -1e-5, 3e-5), Vector::new(1e-4, 2e-4, -1e-4));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
-        assert_eq!(torquers.torque_in_field(), Vector::zeros(), "no field is known");
-        torquers.update(Instant::START, ActuatorInput::MagneticField(field));
+        assert_eq!(torquers.given(), Vector::zeros(), "no field is known");
+        torquers.update(Instant::START, ActuatorEvent::MagneticField(field));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         let along = field.normalize();
         let exact = torque - along * along.dot(&torque);
         assert!((torquers.torque_in_field() - exact).norm() < 1e-18);
         // Ten times the torque exceeds the limit: all of it is scaled down.
         let mut weak = start("moment = [4.0, 100.0, 100.0]");
-        weak.update(Instant::START, ActuatorInput::MagneticField(field));
+        weak.update(Instant::START, ActuatorEvent::MagneticField(field));
         weak.command(Instant::START, &(torque * 10.0).data.0[0].map(Demand::Torque), [0.0; 3]);
         assert!((weak.moment.x.abs() - 4.0).abs() < 1e-14);
         assert!(

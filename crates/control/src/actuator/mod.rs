@@ -19,8 +19,10 @@ mod jets;
 mod jets_state;
 mod magnetorquers;
 mod per_wheel;
+mod placement;
 mod pulse_timing;
 mod pulse_width;
+mod requirements;
 mod saturation;
 mod steering;
 mod thrusters;
@@ -51,7 +53,7 @@ pub use axis_actuators::{
 pub use capabilities::{Capabilities, JetCycle, MomentumStorage, PulsedActuator, WaveformActuator};
 pub use control_moment_gyros::{ControlMomentGyros, GimbalArrangement};
 pub use control_moment_gyros_state::ControlMomentGyrosState;
-pub use effort::{ActuatorInput, AxisEffort, AxisResponse};
+pub use effort::{ActuatorEvent, AxisEffort, AxisResponse};
 pub use failure::{Failure, FailureScope};
 pub use flywheel::{BackEmfRate, FlywheelRotor, Wheel};
 pub use friction::Friction;
@@ -62,6 +64,7 @@ pub use jets::{FiringMethod, GroupEffect, GroupPair, Jets, Thruster, ThrusterEff
 pub use jets_state::{JetsState, Pulse};
 pub use magnetorquers::{Magnetorquers, MagnetorquersState};
 pub use per_wheel::PerWheel;
+pub use placement::{ActuatorAuthority, ActuatorPlacement, LinearDrive};
 pub use pulse_timing::PulseTiming;
 pub use pulse_width::PulseWidth;
 pub use saturation::{EndState, Saturation};
@@ -130,8 +133,8 @@ pub trait Actuator: Part {
     /// Sets the demands about the axes from `now` on, of a body with these rigid rates (rad/s).
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]);
 
-    /// Applies an input other than a command at `now`.
-    fn update(&mut self, _now: Instant, _input: ActuatorInput<'_>) {}
+    /// Responds to an event other than a command at `now`.
+    fn update(&mut self, _now: Instant, _event: ActuatorEvent<'_>) {}
 
     /// Adds the actuator's output from `now` on to `onto`.
     fn apply(&self, now: Instant, onto: &mut Wrench);
@@ -183,6 +186,20 @@ impl ActuatorKind {
             Self::Jets(_) => "jets",
             Self::Magnetorquers(_) => "magnetorquers",
             Self::Own(_) => "own",
+        }
+    }
+
+    /// Returns the torque per unit of a torque command (N m).
+    pub fn torque_per_command(&self) -> f64 {
+        if let Self::Wheel(wheel) = self { wheel.gain.get() } else { 1.0 }
+    }
+
+    /// Returns the largest torque (N m) for the largest planned torque (N m) and the largest command of the law.
+    pub fn expected_torque(&self, planned: f64, command: f64) -> f64 {
+        match self {
+            Self::Wheel(wheel) => planned.max(wheel.gain.get() * wheel.execute_command(command)),
+            Self::Thrusters(thrusters) => thrusters.torque.about(0).get(),
+            _ => planned.max(command),
         }
     }
 

@@ -7,7 +7,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AxisActuator, AxisActuatorContext, AxisTorques, Failure, PulseWidth};
+use crate::offers::{ActuatorOffers, Offers};
 use crate::part::Part;
+use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 
 /// A pair of thrusters for each direction, with pulse-width modulation.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -43,6 +45,23 @@ impl Thrusters {
     /// Returns the quantisation of pulse lengths.
     pub fn width(&self) -> PulseWidth {
         PulseWidth { minimum: self.minimum_on, quantum: self.quantum }
+    }
+
+    /// Returns the offers of the thrusters to the other parts of a scenario.
+    pub(super) fn offers() -> ActuatorOffers {
+        ActuatorOffers { pulses: true, ..ActuatorOffers::default() }
+    }
+
+    /// Adds the requirements of the thrusters on the other parts of a scenario.
+    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+        let is_one = offers.body.axes == 3 || !self.torque.is_three();
+        needs.require(Rule::OneNumber, is_one, "torque", ONE_NUMBER);
+        let period = self.period.seconds();
+        for (key, value) in [("minimum_on", self.minimum_on.get()), ("quantum", self.quantum.get())] {
+            needs.require_with(Rule::PulseLength, value <= period, key, || {
+                format!("must be at most the period of {period} s, got {value}")
+            });
+        }
     }
 
     /// Creates the thrusters before their first period.

@@ -12,7 +12,7 @@ use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Actuator, ActuatorInput, ActuatorKind, Demand, Jets, Magnetorquers, PulsedActuator};
+use super::{Actuator, ActuatorEvent, ActuatorKind, Demand, Jets, Magnetorquers, PulsedActuator};
 
 /// How an actuator of a list unloads the wheels of the list.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -220,8 +220,8 @@ impl UnloaderState {
                 self.actuator.command(now, &demanded.data.0[0].map(Demand::Torque), [0.0; 3]);
             }
         }
-        self.actuator.update(now, ActuatorInput::Due(rigid));
-        if !begins || is_commanded {
+        self.actuator.update(now, ActuatorEvent::Due(rigid));
+        if !begins || taken {
             return None;
         }
         let mean = if self.gain.is_some() {

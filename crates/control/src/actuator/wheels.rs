@@ -15,6 +15,8 @@ use super::per_wheel::PerWheel;
 use super::unloading::WheelUnloading;
 use super::wheel_allocation::{Allocation, AllocationCriterion};
 use super::{Failure, Friction, Imbalance};
+use crate::offers::{ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
+use crate::requirement::{ROTATION, Requirements, Rule};
 
 /// Reaction wheels, identical except for their axes and initial speeds.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -105,6 +107,38 @@ pub struct SpeedBias {
 const EQUAL_CANT: f64 = 0.615_479_708_670_387_3;
 
 impl Wheels {
+    /// Returns the offers of the wheels to the other parts of a scenario.
+    pub(super) fn offers(&self) -> ActuatorOffers {
+        let limit = self.torque.map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
+        ActuatorOffers {
+            limits: [limit; 3],
+            has_reaction_wheels: true,
+            has_wheel_speeds: true,
+            ..ActuatorOffers::default()
+        }
+    }
+
+    /// Adds the requirements of the wheels on the other parts of a scenario.
+    pub(super) fn requires(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        needs.require(
+            Rule::WheelAxes,
+            offers.body.axes == 3,
+            "",
+            "are for three axes: use `[actuator.wheel]` for a body with one angle",
+        );
+        place.require_single(needs, "write all wheels in one `wheels`, by their `axes`");
+        if let Some(key) = self.bearing_key() {
+            needs.require(Rule::Bearings, offers.body.is_two_way, key, ROTATION);
+        }
+        if offers.body.turns_appendages
+            && let Some(key) = self.friction_or_imbalance_key()
+        {
+            let why = "needs appendages that do not turn, on drives or hinges: the instants at which wheels stick, and the excitation of modes by \
+                       imbalance, are searched for with constant modes";
+            needs.require(Rule::FixedBearings, false, key, why);
+        }
+    }
+
     /// Returns the number of wheels.
     pub fn count(&self) -> usize {
         match self.arrangement {

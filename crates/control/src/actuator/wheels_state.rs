@@ -14,7 +14,7 @@ use flexsc_spacecraft::wrench::Wrench;
 use super::failure::ActiveFailures;
 use super::wheel_allocation::Allocation;
 use super::wheels::{FrictionCompensation, SpeedBias, Wheels};
-use super::{Actuator, ActuatorInput, AxisActuatorContext, AxisEffort, AxisResponse, Capabilities, Demand};
+use super::{Actuator, ActuatorEvent, AxisActuatorContext, AxisEffort, AxisResponse, Capabilities, Demand};
 use crate::sensor::{Tachometer, TachometerState};
 
 /// Relative distance from its limit at which a wheel with friction counts as being at the limit.
@@ -309,11 +309,11 @@ impl Actuator for WheelsState {
         onto.rotors.extend(self.allocation.axes().iter().zip(&self.wheels).map(rotor));
     }
 
-    fn update(&mut self, now: Instant, input: ActuatorInput<'_>) {
-        match input {
-            ActuatorInput::CounterTorque(torque) => self.against = torque,
-            ActuatorInput::Due(rigid) => self.serve(now, rigid),
-            ActuatorInput::Rotors(rotors) => {
+    fn update(&mut self, now: Instant, event: ActuatorEvent<'_>) {
+        match event {
+            ActuatorEvent::CounterTorque(torque) => self.against = torque,
+            ActuatorEvent::Due(rigid) => self.serve(now, rigid),
+            ActuatorEvent::Rotors(rotors) => {
                 self.turn(now);
                 for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
                     wheel.momentum = rotor.momentum;
@@ -321,7 +321,7 @@ impl Actuator for WheelsState {
                 self.observations.clear();
                 self.observations.extend_from_slice(rotors);
             }
-            ActuatorInput::MagneticField(_) => {}
+            ActuatorEvent::MagneticField(_) => {}
         }
     }
 

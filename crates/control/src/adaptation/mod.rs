@@ -5,12 +5,15 @@ mod random_search;
 
 use std::any::Any;
 
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::custom::Custom;
+use crate::law::Tunable;
+use crate::offers::Offers;
 use crate::part::Part;
 
 pub use flexsc_record::Decision;
@@ -68,6 +71,12 @@ impl Clone for Box<dyn Adaptation> {
     }
 }
 
+impl From<Custom<dyn AdaptationSpec>> for AdaptationKind {
+    fn from(adaptation: Custom<dyn AdaptationSpec>) -> Self {
+        Self::Own(adaptation)
+    }
+}
+
 impl AdaptationKind {
     /// Returns the key of the law's parameter that is tuned.
     pub fn tunes(&self) -> &str {
@@ -91,6 +100,42 @@ impl AdaptationKind {
             Self::RandomSearch(search) => search.window,
             Self::Own(own) => own.window(),
         }
+    }
+
+    /// Checks the bounds against the parameter that is tuned; returns a key within the adaptation and the reason.
+    pub fn bounds_error(&self, number: &Tunable) -> Option<ConfigError> {
+        if let Self::RandomSearch(search) = self { search.bounds_error(number) } else { None }
+    }
+
+    /// Returns the reason why the initial value of the parameter is outside the bounds, if it is.
+    pub fn start_error(&self, value: f64) -> Option<String> {
+        if let Self::RandomSearch(search) = self { search.start_error(value) } else { None }
+    }
+
+    /// Checks that the objective can be measured; returns a key within the adaptation and the reason.
+    pub fn objective_error(&self, offers: &Offers) -> Option<ConfigError> {
+        let (objective, window) = (self.objective(), self.window());
+        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+        if objective == Objective::EnvelopeMean {
+            if offers.estimator.is_none_or(|estimator| !estimator.is_envelope) {
+                let why = "needs the window means of an `[estimator.envelope]`, and there is none: give it one, or another \
+                           `objective`";
+                return at("", why.to_owned());
+            }
+            let why =
+                "follows from the `[estimator.envelope]`: leave it out for the objective `envelope_mean`";
+            return window.and_then(|_| at("window", why.to_owned()));
+        }
+        let word = objective.key();
+        if window.is_none_or(|window| window == Span::ZERO) {
+            return at("window", format!("must be given for the objective `{word}`"));
+        }
+        objective.obstacle(offers).and_then(|why| at("objective", format!("`{word}` {why}")))
+    }
+
+    /// Returns the adaptation of another crate, if it is one.
+    pub fn custom(&self) -> Option<&Custom<dyn AdaptationSpec>> {
+        if let Self::Own(own) = self { Some(own) } else { None }
     }
 
     /// Returns the name of the kind, as in a scenario.

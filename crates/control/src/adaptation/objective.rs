@@ -3,6 +3,8 @@
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use crate::offers::Offers;
+
 /// Quantity that is measured over each window.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
@@ -68,6 +70,36 @@ impl Objective {
             Self::Switchings => "switchings",
             Self::Firings => "firings",
             Self::WheelPowerMean => "wheel_power_mean",
+        }
+    }
+
+    /// Returns the reason why the objective cannot be measured with these parts, if it cannot.
+    pub fn obstacle(self, offers: &Offers) -> Option<&'static str> {
+        let has_jets = offers.has_actuator(|actuator| actuator.has_jets);
+        let listed = || offers.actuators.iter().filter(|member| member.is_listed).count();
+        match self {
+            Self::ElasticRms if offers.body.modes == 0 || offers.body.is_chain => {
+                Some("needs elastic modes, and the body has none")
+            }
+            Self::WheelPowerMean if !offers.lists_actuator(|actuator| actuator.has_wheel_speeds) => {
+                Some("needs wheels whose speed is known: an `[actuator.wheels]`, or a wheel with a `rotor`")
+            }
+            Self::Firings if !offers.has_actuator(|actuator| actuator.pulses) => {
+                Some("counts pulses of thrusters or jets, and there are none")
+            }
+            Self::Firings if !has_jets && listed() > 1 => Some(
+                "counts the pulses of thrusters in the torque on the body, which is theirs alone if there are no other actuators",
+            ),
+            Self::Switchings if !offers.laws.iter().any(|law| law.offers.has_states) => {
+                Some("counts the switchings of a law `relay` or `phase_plane`, and there is none")
+            }
+            Self::TorqueMean if offers.lists_actuator(|actuator| actuator.turns_with_field) => {
+                Some("is not known for magnetorquers, whose torque changes with the field")
+            }
+            Self::TorqueMean if offers.lists_actuator(|actuator| actuator.turns_with_gimbals) => Some(
+                "is not known for control moment gyros, whose torque changes with the gimbal angles between commands",
+            ),
+            _ => None,
         }
     }
 

@@ -5,6 +5,7 @@
 //! falls and reversed when it rises, except for one rise after `memory` falls. From `earliest_freeze` on, the gain
 //! is frozen once the objective has changed by less than `tolerance` in `settled` consecutive windows.
 
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::random::{Seed, Stream};
 use flexsc_numerics::time::{Instant, Span};
@@ -13,6 +14,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Adaptation, Objective};
+use crate::law::Tunable;
 use crate::part::Part;
 
 /// The constants of the search.
@@ -48,6 +50,25 @@ pub struct RandomSearch {
     /// Whether the gain is ever frozen.
     #[serde(default = "yes")]
     pub freeze: bool,
+}
+
+impl RandomSearch {
+    /// Checks the bounds against the parameter that is tuned; returns a key within the search and the reason.
+    pub fn bounds_error(&self, number: &Tunable) -> Option<ConfigError> {
+        let [low, high] = self.bounds.map(Finite::get);
+        if low >= high {
+            let why = format!("must be [low, high] in this order, got [{low}, {high}]");
+            return Some(ConfigError::new("bounds", why));
+        }
+        number.validate_bounds([low, high]).map(|why| ConfigError::new("bounds", why))
+    }
+
+    /// Returns the reason why the initial value of the parameter is outside the bounds, if it is.
+    pub fn start_error(&self, value: f64) -> Option<String> {
+        let [low, high] = self.bounds.map(Finite::get);
+        let is_inside = (low..=high).contains(&value);
+        (!is_inside).then(|| format!("must lie within the adaptation's bounds [{low}, {high}], got {value}"))
+    }
 }
 
 fn k_t() -> String {

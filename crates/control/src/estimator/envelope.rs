@@ -7,6 +7,8 @@
 //! On three axes x is the size of the rotation that a free mode causes at the first sensor, and c follows from its
 //! modal force.
 
+use crate::offers::{BodyOffers, Offers};
+use crate::requirement::{Requirements, Rule};
 use flexsc_dynamics::AxisState;
 use flexsc_numerics::exp_branch_free::exp;
 use flexsc_numerics::phasor::{Complex, Phasor, abs, polar};
@@ -31,6 +33,68 @@ pub struct Envelope {
     /// Modes of the monitor's model; default: the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub modes: Option<Vec<Mode>>,
+}
+
+impl Envelope {
+    /// Adds the requirements of the monitor on the other parts of a scenario.
+    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+        let (body, rule) = (&offers.body, Rule::EnvelopeModes);
+        if let Some(matrix) = &body.damping_matrix {
+            let why = "couples modes, and an `[estimator.envelope]` treats each mode on its own";
+            needs.require_elsewhere(Rule::DampingMatrix, false, matrix, why);
+        }
+        needs.require(
+            Rule::EnvelopeTorques,
+            !offers.follows_waveform(),
+            "",
+            "follows torques that are constant for a while: execute the `[manoeuvre]` by an `[actuator.hold]`, \
+             thrusters or a wheel",
+        );
+        if body.axes == 1 {
+            needs.require(
+                rule,
+                self.form != EnvelopeMethod::Truth || self.modes.is_none(),
+                "modes",
+                "must be left out for the form `truth`, which reads the body's",
+            );
+            return self.require_oscillation(body, needs);
+        }
+        needs.require(
+            rule,
+            self.modes.is_none(),
+            "modes",
+            "apply only to one angle: about three axes the monitor uses the body's",
+        );
+        needs.require(rule, body.modes > 0, "", "has no modes to follow: the body has none");
+        needs.require(
+            rule,
+            !body.turns_appendages,
+            "",
+            "needs constant modes, and an appendage that turns changes them",
+        );
+        needs.require(
+            rule,
+            !offers.lists_actuator(|actuator| actuator.turns_with_gimbals),
+            "",
+            "needs torques that are constant between commands, and those of control moment gyros change with the gimbal \
+             angles",
+        );
+        self.require_oscillation(body, needs);
+    }
+
+    /// Adds the requirement of modes below critical damping: of the monitor's model, or of the body.
+    fn require_oscillation(&self, body: &BodyOffers, needs: &mut Requirements) {
+        let why = |ratio: f64| format!("must be below 1 for a mode to have an envelope, got {ratio}");
+        if let Some(modes) = &self.modes {
+            let mut ratios = modes.iter().map(|mode| mode.damping.get()).enumerate();
+            if let Some((index, ratio)) = ratios.find(|(_, ratio)| *ratio >= 1.0) {
+                let key = format!("modes[{index}].damping");
+                needs.require_with(Rule::EnvelopeModes, false, &key, || why(ratio));
+            }
+        } else if let Some((key, ratio)) = &body.overdamped {
+            needs.require_elsewhere(Rule::EnvelopeModes, false, key, &why(*ratio));
+        }
+    }
 }
 
 /// How the phasors are computed. All forms agree to rounding if the model is right.

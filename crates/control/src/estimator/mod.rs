@@ -10,7 +10,9 @@ mod envelope_monitor;
 pub mod kalman;
 mod objective_meter;
 mod pass_through;
+mod requirements;
 mod rigid_rate;
+mod sample_cost;
 mod sampled;
 
 use std::any::Any;

@@ -8,7 +8,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{AppliedPulses, Estimator, SampleContext};
+use crate::offers::Offers;
 use crate::part::Part;
+use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
 /// w^(n) = w^- + l (y - w^-), w^- = w^(n-1) + du + c^(n-1), c^(n) = c^(n-1) + l²/4 (y - w^-): for what is no pulse a low pass of
@@ -36,6 +38,12 @@ pub struct RigidRateState {
 }
 
 impl RigidRate {
+    /// Adds the requirements of the estimator on the other parts of a scenario.
+    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+        let is_one = offers.body.axes == 3 || !self.rate.is_three();
+        needs.require(Rule::Filter, is_one, "rate", ONE_NUMBER);
+    }
+
     /// Returns the estimator's state at the start of a run of a body with `axes` axes.
     pub fn start(&self, axes: usize) -> RigidRateState {
         RigidRateState {

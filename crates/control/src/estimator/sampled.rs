@@ -58,7 +58,9 @@ impl Part for AxisEstimators {
         }
         let row = |axis: usize| self.0[axis].row(at.now.seconds(), &at.truth.about_axis(axis));
         if self.0.len() == 1 {
-            row(0).into_iter().for_each(|row| report.add(row));
+            if let Some(row) = row(0) {
+                report.add(row);
+            }
         } else if let Some(axes) = (0..self.0.len()).map(row).collect() {
             report.add(Estimates { axes });
         }

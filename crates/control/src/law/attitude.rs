@@ -15,9 +15,11 @@ use serde::{Deserialize, Serialize};
 use super::filter::Filter;
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, Tunable,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
+use crate::offers::{LawPlace, Offers};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
 /// The attitude law.
@@ -64,12 +66,6 @@ fn damping() -> Positive {
 }
 
 impl AttitudeLaw {
-    /// Returns the size of the torque (N m) on a body at rest with this angle error (rad) and inertia (kg m²).
-    pub fn first_torque(&self, angle: f64, inertia: f64) -> f64 {
-        let wn = self.bandwidth.get();
-        inertia * wn * wn * angle.abs()
-    }
-
     /// Checks the settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<ConfigError> {
         if let Some(inertia) = &self.inertia {
@@ -114,8 +110,25 @@ impl LawSpec for AttitudeLaw {
         ErrorBand::Fraction(0.05)
     }
 
+    /// Returns the torque on a body at rest; along a profile, whose angle error is small, the torque of its acceleration.
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        let (inertia, wn) = (conditions.inertia, self.bandwidth.get());
+        let at_rest = inertia * wn * wn * conditions.angle.abs();
+        conditions.profile_acceleration.map_or(at_rest, |acceleration| inertia * acceleration)
+    }
+
     fn needs(&self) -> EstimateNeeds {
         EstimateNeeds::Motion
+    }
+
+    fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        needs.require(
+            Rule::Law,
+            self.inertia.is_none() || offers.body.axes == 3 && !place.is_per_axis,
+            "inertia",
+            "is the tensor for one law about three axes: it needs a `[law.attitude]` for all of them",
+        );
+        super::requirements::require_measure(self.error, offers, needs);
     }
 
     fn tunable(&self) -> Vec<Tunable> {

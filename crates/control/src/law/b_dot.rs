@@ -11,9 +11,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Guards, Law, LawSpec, LawState, Phase,
-    Setpoint, Tunable,
+    Setpoint, TorqueConditions, Tunable,
 };
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
 /// The B-dot law.
@@ -26,7 +28,27 @@ pub struct BDot {
     pub gain: Positive,
 }
 
+/// Adds the requirements of a law that commands magnetic moments from the measured field, at `key` within the part.
+pub(super) fn require_field(key: &str, offers: &Offers, needs: &mut Requirements) {
+    needs.require(
+        Rule::Law,
+        offers.sensors.magnetic_field,
+        key,
+        "reads the field of a `[sensor.magnetometer]`, and there is none",
+    );
+    needs.require(
+        Rule::Law,
+        offers.has_actuator(|actuator| actuator.turns_with_field),
+        key,
+        "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them",
+    );
+}
+
 impl LawSpec for BDot {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.magnetorquers
+    }
+
     fn start(&self, _: &Authority) -> Box<dyn Law> {
         Box::new(BDotState { law: *self, gain: self.gain.get(), tuned: f64::NAN })
     }
@@ -37,6 +59,15 @@ impl LawSpec for BDot {
 
     fn needs(&self) -> EstimateNeeds {
         EstimateNeeds::Field
+    }
+
+    fn offers(&self) -> LawOffers {
+        LawOffers { commands_moments: true, ..LawOffers::new(self.period(), self.needs()) }
+    }
+
+    fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        offers.require_three_axes(needs, Rule::MomentAxes, "", "");
+        require_field("", offers, needs);
     }
 
     fn tunable(&self) -> Vec<Tunable> {

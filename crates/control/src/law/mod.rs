@@ -14,13 +14,16 @@ mod open_loop;
 mod pd;
 mod per_axis_laws;
 mod phase_plane;
+mod properties;
 mod relay;
+mod requirements;
 mod shaped_slew;
 #[cfg(test)]
 mod slew_tests;
 mod stages;
 mod state_space;
 mod switching_lines;
+mod torque_conditions;
 mod tunable;
 
 use std::any::Any;
@@ -28,13 +31,14 @@ use std::ops::Deref;
 
 use flexsc_dynamics::guard::Guard;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::actuator::PulseWidth;
 use crate::custom::Custom;
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
+use crate::requirement::Requirements;
 pub use crate::state_estimate::EstimateNeeds;
 use flexsc_numerics::time::{Instant, Span};
 
@@ -59,6 +63,7 @@ pub use relay::{Relay, RelaySides};
 pub use stages::{Stage, Stages};
 pub use state_space::{OutputQuantity, StateSpace, TimeDomain};
 pub use switching_lines::{SwitchingLines, error_band};
+pub use torque_conditions::TorqueConditions;
 pub use tunable::{Tunable, TunedNumbers};
 
 /// The kinds of law.
@@ -108,10 +113,54 @@ pub trait LawSpec {
         ErrorBand::None
     }
 
+    /// Returns the half width of the zone without torque (rad); 0 without a zone.
+    fn dead_zone(&self) -> f64 {
+        0.0
+    }
+
+    /// Returns the torque command per angle error (1/rad); 0 if the law is no spring.
+    fn stiffness(&self) -> f64 {
+        0.0
+    }
+
+    /// Returns an estimate of the largest torque (N m) that the law commands.
+    fn expected_torque(&self, _conditions: &TorqueConditions) -> f64 {
+        0.0
+    }
+
+    /// Returns the half width (rad) of the band about the target that the law keeps with an actuator authority, if it depends
+    /// on that.
+    fn band_with(&self, _: &Authority) -> Option<f64> {
+        None
+    }
+
+    /// Returns the half width (rad) of the zone about the target in which the body coasts, of a law that plans pulses.
+    fn coasting_zone(&self) -> Option<f64> {
+        None
+    }
+
+    /// Returns the number of steps per radian of the fastest mode in which the law's crossings are searched; 0 if it has none.
+    fn search_steps(&self, _is_coupled: bool) -> f64 {
+        0.0
+    }
+
+    /// Returns the mean time between switchings on a rigid body of this inertia (s), if the law switches at crossings.
+    fn switching_interval(&self, _inertia: f64) -> Option<f64> {
+        None
+    }
+
     /// Returns the estimates that the law reads.
     fn needs(&self) -> EstimateNeeds {
         EstimateNeeds::Motion
     }
+
+    /// Returns the offers of the law to the other parts of a scenario.
+    fn offers(&self) -> LawOffers {
+        LawOffers::new(self.period(), self.needs())
+    }
+
+    /// Adds the requirements of the law on the other parts of a scenario.
+    fn requires(&self, _place: &LawPlace, _offers: &Offers, _needs: &mut Requirements) {}
 
     /// Returns the parameters that an adaptation may tune.
     fn tunable(&self) -> Vec<Tunable> {
@@ -203,27 +252,13 @@ impl LawKind {
     /// Checks the law's own settings against each other; returns a key within the law and the reason.
     pub fn inconsistency(&self) -> Option<ConfigError> {
         match self {
+            Self::Relay(law) => law.inconsistency(),
             Self::Attitude(law) => law.inconsistency(),
             Self::StateSpace(law) => law.inconsistency(),
             Self::PhasePlane(law) => law.inconsistency(),
             Self::Stages(laws) => laws.inconsistency(),
-            Self::Relay(_)
-            | Self::Pd(_)
-            | Self::Open(_)
-            | Self::PerAxis(_)
-            | Self::BDot(_)
-            | Self::Own(_) => None,
+            Self::Pd(_) | Self::Open(_) | Self::PerAxis(_) | Self::BDot(_) | Self::Own(_) => None,
         }
-    }
-
-    /// Returns the parameter that an adaptation tunes by default; NaN if the law has none.
-    pub fn tuned(&self) -> f64 {
-        self.tunable().first().map_or(f64::NAN, |number| number.value)
-    }
-
-    /// Returns the inertia tensor in the law's model of a three-axis body, row by row (kg m²), if the law has its own.
-    pub fn inertia(&self) -> Option<&[[Finite; 3]; 3]> {
-        if let Self::Attitude(law) = self { law.inertia.as_ref() } else { None }
     }
 
     /// Returns the name of the kind, as in a scenario.

@@ -7,6 +7,7 @@ use serde::{Deserialize, Serialize};
 use super::{
     Authority, ControlOutput, DecisionCause, EstimateNeeds, Law, LawSpec, LawState, Phase, Setpoint,
 };
+use crate::offers::LawOffers;
 use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
@@ -22,6 +23,10 @@ impl LawSpec for Open {
 
     fn needs(&self) -> EstimateNeeds {
         EstimateNeeds::Nothing
+    }
+
+    fn offers(&self) -> LawOffers {
+        LawOffers { is_open: true, ..LawOffers::new(None, self.needs()) }
     }
 }
 

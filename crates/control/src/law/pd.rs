@@ -3,6 +3,7 @@
 //! y is the measured angle, or with an extra loop y = x + gain x_d, where x_d is the estimated displacement of the
 //! dominant mode (\[Wheel11, Sukhanov\], equations (5), (7) and (8)).
 
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive};
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
@@ -10,9 +11,11 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
-    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, Tunable, TunedNumbers,
+    Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable, TunedNumbers,
 };
+use crate::offers::{LawPlace, Offers};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
 /// The PD law.
@@ -92,6 +95,17 @@ impl Pd {
 }
 
 impl Extra {
+    /// Checks that the points of a schedule are in order; returns a key within the schedule and the reason.
+    fn disorder(&self) -> Option<ConfigError> {
+        let Self::Schedule(points) = self else { return None };
+        if points.is_empty() {
+            return Some(ConfigError::new("", "must have at least one point"));
+        }
+        let index = points.windows(2).position(|pair| pair[0].frequency >= pair[1].frequency)? + 1;
+        let why = format!("must be above the one before, got {}", points[index].frequency.get());
+        Some(ConfigError::new(format!("[{index}].frequency"), why))
+    }
+
     /// Returns the gain at a frequency of the dominant mode (rad/s).
     pub fn gain(&self, frequency: f64) -> f64 {
         match self {
@@ -125,6 +139,21 @@ impl LawSpec for Pd {
     /// Returns the usual 5 % of a step.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Fraction(0.05)
+    }
+
+    fn stiffness(&self) -> f64 {
+        self.k_p.get()
+    }
+
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        let limit = self.limit.filter(|_| conditions.detailed).map_or(f64::INFINITY, Positive::get);
+        conditions.torque_per_command * limit.min(self.k_p.get() * conditions.angle)
+    }
+
+    fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        super::requirements::require_measure(self.error, offers, needs);
+        let disorder = self.extra.as_ref().and_then(Extra::disorder);
+        needs.report(Rule::GainSchedule, disorder.map(|fault| fault.within("extra.schedule")));
     }
 
     fn needs(&self) -> EstimateNeeds {

@@ -5,6 +5,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Authority, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, Tunable};
+use crate::offers::{LawPlace, Offers};
+use crate::requirement::{Requirements, Rule};
 
 /// A law of one angle for each of three axes.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -47,6 +49,10 @@ impl LawSpec for PerAxisLaws {
 
     fn is_switching(&self) -> bool {
         self.all().into_iter().all(|law| law.is_switching())
+    }
+
+    fn requires(&self, _: &LawPlace, _: &Offers, needs: &mut Requirements) {
+        needs.require(Rule::Law, false, "", "must be a law of one axis");
     }
 
     fn expected_band(&self) -> ErrorBand {

@@ -19,9 +19,11 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
 use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, LawState,
-    Phase, ReferenceNeeds, Setpoint, SwitchingLines, Tunable,
+    Phase, ReferenceNeeds, Setpoint, SwitchingLines, TorqueConditions, Tunable, error_band,
 };
+use crate::offers::{LawOffers, LawPlace, Offers, TorqueLimit};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::{DampingStatus, StateEstimate};
 
 /// The phase-plane law.
@@ -174,7 +176,42 @@ impl PhasePlane {
     }
 }
 
+impl PhasePlane {
+    /// Adds the requirements on the actuator about an axis, whose largest torque the switching lines depend on.
+    fn require_torque(&self, axis: usize, offers: &Offers, needs: &mut Requirements) {
+        let Some(actuator) = offers.serving(axis).map(|member| member.offers) else { return };
+        if actuator.pulses {
+            let is_met = actuator.period.is_none_or(|own| own == self.period);
+            return needs.require(Rule::Law, is_met, "", "needs thrusters with the law's own period");
+        }
+        needs.require(
+            Rule::Law,
+            !actuator.is_delayed,
+            "",
+            "needs a wheel without delay, whose commands it does not see",
+        );
+        let limit = actuator.limits[axis];
+        needs.require(
+            Rule::Law,
+            limit != TorqueLimit::Varying,
+            "",
+            "needs a largest torque that is constant, and that of control moment gyros changes with their gimbal angles",
+        );
+        needs.require(
+            Rule::Law,
+            limit != TorqueLimit::Unlimited,
+            "",
+            "needs the largest torque, on which its switching lines depend: thrusters, jets, a wheel with a \
+             `limit`, or wheels with a `torque`",
+        );
+    }
+}
+
 impl LawSpec for PhasePlane {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.jets
+    }
+
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
         Box::new(PhasePlaneState {
             damping: self
@@ -192,6 +229,41 @@ impl LawSpec for PhasePlane {
 
     fn period(&self) -> Option<Span> {
         Some(self.period)
+    }
+
+    fn band_with(&self, authority: &Authority) -> Option<f64> {
+        Some(error_band(self, authority))
+    }
+
+    fn coasting_zone(&self) -> Option<f64> {
+        Some(self.dead_zone.get())
+    }
+
+    fn offers(&self) -> LawOffers {
+        LawOffers { plans_pulses: true, has_states: true, ..LawOffers::new(self.period(), self.needs()) }
+    }
+
+    fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        let has_targets = !self.targets.is_empty();
+        needs.require(
+            Rule::Law,
+            !has_targets || offers.body.axes == 3,
+            "targets",
+            "are for a body with three axes: a `[manoeuvre]` turns a body with one angle",
+        );
+        needs.require(
+            Rule::Law,
+            !has_targets || !place.is_per_axis,
+            "targets",
+            "are those of all axes: write them as `[[target]]`",
+        );
+        self.require_torque(place.axis, offers, needs);
+        needs.require(
+            Rule::ElasticRates,
+            self.damping.is_none() || offers.estimator.is_some_and(|of| of.elastic_rates),
+            "damping",
+            "needs the elastic rates of an `[estimator.adaptive]`, and there is none",
+        );
     }
 
     fn needs(&self) -> EstimateNeeds {

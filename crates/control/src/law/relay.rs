@@ -6,6 +6,7 @@
 //! brake's condition has the wrong sign, and its OR and AND clauses are a state machine's memory.
 
 use flexsc_dynamics::guard::Guard;
+use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Fraction, NonNegative, Positive};
 use flexsc_numerics::time::{Instant, Span};
 use schemars::JsonSchema;
@@ -13,10 +14,18 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, LawState, Phase,
-    Setpoint, Tunable, TunedNumbers,
+    Setpoint, TorqueConditions, Tunable, TunedNumbers,
 };
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
+
+/// Steps of the law per radian of the fastest mode: between runs in batches, which take half as long, and single runs with
+/// damped modes, which take twice as long.
+const SEARCH_STEPS: f64 = 0.1;
+/// Steps per radian of the fastest mode with a one-sided law, whose long flights outside the dead zone are searched.
+const ONE_SIDED_STEPS: f64 = 0.7;
 
 /// The relay law.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -57,11 +66,18 @@ pub enum RelaySides {
 }
 
 impl Relay {
+    /// Checks the settings against each other; returns a key within the law and the reason.
+    pub fn inconsistency(&self) -> Option<ConfigError> {
+        let (width, gamma) = (2.0 * self.dead_zone.get(), self.hysteresis.get());
+        let why = || format!("must be less than the dead zone's width of {width}, got {gamma}");
+        (gamma >= width).then(|| ConfigError::new("hysteresis", why()))
+    }
+
     /// Returns an estimate of the mean time between switchings in the limit cycle of a rigid body (s).
     ///
     /// The push over the hysteresis gives back the speed that the brake takes. Then the body crosses the dead zone, or
     /// the weak torque returns it to the boundary that it left.
-    pub fn mean_switching(&self, inertia: f64) -> f64 {
+    fn mean_switching(&self, inertia: f64) -> f64 {
         let (push, weak) = (self.strong.get() / inertia, self.weak.get() / inertia);
         let (zone, back, k_t) = (self.dead_zone.get(), self.hysteresis.get(), self.k_t.get());
         // The overshoot of `expected_band`. Without a brake it grows: switchings are most frequent at half the dead zone.
@@ -89,11 +105,59 @@ impl LawSpec for Relay {
         true
     }
 
+    fn search_steps(&self, is_coupled: bool) -> f64 {
+        if self.sides == RelaySides::One && !is_coupled { ONE_SIDED_STEPS } else { SEARCH_STEPS }
+    }
+
+    fn switching_interval(&self, inertia: f64) -> Option<f64> {
+        Some(self.mean_switching(inertia))
+    }
+
+    fn offers(&self) -> LawOffers {
+        LawOffers { finds_crossings: true, has_states: true, ..LawOffers::new(self.period(), self.needs()) }
+    }
+
+    fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        let (body, is_continuous) = (&offers.body, offers.sample_period.is_none());
+        needs.require(
+            Rule::Law,
+            body.axes == 1 || !offers.sensors.is_continuous,
+            "",
+            "finds its crossings in closed form, which three axes do not have: give it a `[sensor.sampled]`",
+        );
+        needs.require(
+            Rule::Crossings,
+            !body.has_manoeuvre,
+            "",
+            "holds the angle at 0: with a `[manoeuvre]` use the law `pd`, or none",
+        );
+        needs.require_elsewhere(
+            Rule::Crossings,
+            !(body.is_chain && is_continuous),
+            "body.panels.kinematics",
+            "must be \"linear\" for a law `relay`, whose crossings are found in closed form; or use a `[sensor.sampled]`",
+        );
+        needs.require(
+            Rule::Crossings,
+            !(body.drifts && is_continuous),
+            "",
+            "finds its crossings in closed form: with a drift it needs a `[sensor.sampled]`",
+        );
+    }
+
     /// Returns the dead zone plus the hysteresis, as a margin for the overshoot. In the cycle of a rigid body under a
     /// small weak torque the overshoot is (1 - k_t)²/(4 k_t) times the hysteresis: less than once for k_t from 0.172
     /// on.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Absolute(self.dead_zone.get() + self.hysteresis.get())
+    }
+
+    fn dead_zone(&self) -> f64 {
+        self.dead_zone.get()
+    }
+
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        conditions.torque_per_command * self.strong.get()
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -14,7 +14,7 @@ use super::{
     AttitudeLaw, AttitudeProfile, Authority, DecisionCause, Law, LawSpec, Setpoint, TorqueDistribution,
 };
 use crate::actuator::{
-    Actuator, ActuatorInput, AxisActuatorContext, MomentumStorage, PulseWidth, Wheels, WheelsState,
+    Actuator, ActuatorEvent, AxisActuatorContext, MomentumStorage, PulseWidth, Wheels, WheelsState,
 };
 use crate::state_estimate::StateEstimate;
 
@@ -111,7 +111,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
     let mut count = 0;
     for k in 0..=920 {
         let (t, now) = (PERIOD * f64::from(k), Instant::START + Span::from_seconds(PERIOD * f64::from(k)));
-        let (attitude, rate) = (motion.seen().attitude, motion.seen().rate);
+        let (attitude, rate) = (motion.view().attitude, motion.view().rate);
         let pose = slew.at(t);
         let angles = rotation_vector(&pose.attitude, &attitude);
         if let Some(row) = table.iter().find(|row| row[0] == t) {
@@ -149,32 +149,30 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
         let mut wrench = Wrench::default();
         wheels.apply(now, &mut wrench);
         let acting = SegmentLoads { rotors: wrench.rotors, ..SegmentLoads::default() };
-        motion.depart(&acting);
+        motion.begin_segment(&acting);
         motion.resolve_stick_slip(None);
         let mut began = 0.0;
-        while let Some(contact) = advance_to_contact(&mut motion, PERIOD - began) {
+        while let Some(at) = go(&mut motion, PERIOD - began) {
             let before: Vec<SlipDirection> =
                 motion.rotor_observations(None).iter().map(|wheel| wheel.slip).collect();
-            motion.reach(contact, None);
-            began += contact;
-            motion.depart(&acting);
+            motion.stop_at_event(at, None);
+            began += at;
+            motion.begin_segment(&acting);
             motion.resolve_stick_slip(None);
-            for (wheel, (observation, before)) in
-                motion.rotor_observations(None).iter().zip(before).enumerate()
-            {
-                if observation.slip != before {
-                    events.push((t + began, wheel, observation.slip));
+            for (wheel, (turned, before)) in motion.rotor_observations(None).iter().zip(before).enumerate() {
+                if turned.slip != before {
+                    events.push((t + began, wheel, turned.slip));
                 }
             }
         }
         let rotors = motion.rotor_observations(None);
-        wheels.update(now + Span::from_seconds(PERIOD), ActuatorInput::Rotors(&rotors));
+        wheels.update(now + Span::from_seconds(PERIOD), ActuatorEvent::Rotors(&rotors));
     }
     assert_eq!(count, table.len());
     events
 }
 
-fn advance_to_contact(motion: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
+fn go(motion: &mut ThreeAxisMotion, t: f64) -> Option<f64> {
     motion.advance(t, None, || Ok::<(), std::convert::Infallible>(())).unwrap()
 }
 

@@ -7,12 +7,15 @@ use flexsc_record::Report;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::b_dot::require_field;
 use super::{
     Authority, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, LawState,
-    ReferenceNeeds, Setpoint, Tunable,
+    ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
 use crate::custom::PartError;
+use crate::offers::{LawPlace, Offers};
 use crate::part::{Part, ReportContext};
+use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
 
 /// Laws that act one after another.
@@ -86,6 +89,11 @@ impl Stages {
 }
 
 impl LawSpec for Stages {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        let laws = self.laws().filter(|_| conditions.detailed);
+        laws.map(|law| law.expected_torque(conditions)).fold(0.0, f64::max)
+    }
+
     fn start(&self, authority: &Authority) -> Box<dyn Law> {
         let stages = self.0.iter().map(|stage| (stage.begins(), stage.law.start(authority)));
         let places = (0..self.0.len()).map(|index| self.place(index)).collect();
@@ -93,6 +101,12 @@ impl LawSpec for Stages {
     }
 
     /// Returns the shortest period of the laws.
+    fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        if let Some(index) = self.laws().position(|law| law.offers().commands_moments) {
+            require_field(&format!("[{index}].law.{}", self.0[index].law.kind()), offers, needs);
+        }
+    }
+
     fn period(&self) -> Option<Span> {
         self.laws().filter_map(|law| law.period()).min()
     }

@@ -15,7 +15,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec,
-    LawState, Phase, ReferenceNeeds, Setpoint, Tunable,
+    LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
 use crate::part::Part;
 use crate::state_estimate::StateEstimate;
@@ -179,7 +179,7 @@ impl StateSpace {
     }
 
     /// Returns the size of the first command at an angle error (rad), with the compensator's states at 0.
-    pub fn first_command(&self, angle: f64) -> f64 {
+    fn first_command(&self, angle: f64) -> f64 {
         let direct = self.d.first().and_then(|row| row.first()).map_or(0.0, |entry| entry.get());
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
         (self.gain.get() * direct * angle).abs().min(limit)
@@ -212,6 +212,14 @@ impl DiscreteMatrices {
 }
 
 impl LawSpec for StateSpace {
+    fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
+        let unit = match self.command {
+            OutputQuantity::Torque => conditions.torque_per_command,
+            OutputQuantity::Acceleration => conditions.inertia,
+        };
+        unit * self.first_command(conditions.angle)
+    }
+
     fn start(&self, _: &Authority) -> Box<dyn Law> {
         // Invalid matrices were rejected before.
         let none = || DiscreteMatrices {

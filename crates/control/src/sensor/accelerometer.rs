@@ -13,6 +13,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{SensorFailure, stream};
+use crate::offers::Offers;
+use crate::requirement::{Requirements, Rule};
 
 /// An accelerometer on a `[spacecraft]` in free fall. It measures the acceleration of its mounting point due to forces,
 /// rotation and vibration.
@@ -57,6 +59,28 @@ pub struct Accelerometer {
 }
 
 impl Accelerometer {
+    /// Adds the requirements of the accelerometer on the other parts of a scenario.
+    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+        needs.require(
+            Rule::Accelerometer,
+            offers.body.is_spacecraft,
+            "",
+            "measures at a point of a `[spacecraft]`, whose mass and centre of mass are known, and whose modes act back on it",
+        );
+        needs.require(
+            Rule::Accelerometer,
+            offers.sensors.motion_sensors > 0,
+            "",
+            "is not used by the law: list a sensor of the body beside it, such as \"continuous\", which gives the exact motion",
+        );
+        needs.require(
+            Rule::FixedSensors,
+            !offers.body.turns_appendages,
+            "",
+            "cannot be used with appendages that turn, on drives or hinges: the acceleration by their modes is not computed",
+        );
+    }
+
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<document::ConfigError> {
         if !self.watch_only {

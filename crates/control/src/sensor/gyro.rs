@@ -14,7 +14,9 @@ use super::gauss_markov_bias::GaussMarkovBias;
 use super::latency_queue::with_failures;
 use super::rate_integrator::{self, RateIntegrator};
 use super::{Reading, Sensor, Truth, stream};
+use crate::offers::Offers;
 use crate::part::Part;
+use crate::requirement::{ONE_NUMBER, Requirements, Rule};
 use crate::sensor;
 
 /// A gyro. A gyro that samples the rate is read once per cycle of the law: y = w + sum phi_i(r) q_i' + bias + noise, then
@@ -114,8 +116,15 @@ impl Gyro {
         }
     }
 
+    /// Adds the requirements of the gyro on the other parts of a scenario.
+    pub(super) fn requires(&self, offers: &Offers, needs: &mut Requirements) {
+        if let Some(key) = self.three_axis_key() {
+            needs.require(Rule::OneNumber, offers.body.axes == 3, key, ONE_NUMBER);
+        }
+    }
+
     /// Returns the first key that is given for each of three axes, if there is one.
-    pub fn three_axis_key(&self) -> Option<&'static str> {
+    fn three_axis_key(&self) -> Option<&'static str> {
         let keys = [
             ("noise", self.noise.is_three()),
             ("bias", self.bias.is_three()),

@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
 use super::{Sensor, SensorFailure};
+use crate::offers::Offers;
+use crate::requirement::{Requirements, Rule};
 
 /// A magnetometer on a body with three axes. The body's own magnetorquers do not disturb it.
 ///
@@ -62,6 +64,17 @@ impl Magnetometer {
     /// Returns the covariance of the noise, including quantisation.
     pub fn covariance(&self) -> Matrix3<f64> {
         self.errors().covariance()
+    }
+
+    /// Adds the requirements of the sensor on the other parts of a scenario.
+    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+        super::requirements::require_attitude(offers, needs);
+        needs.require(
+            Rule::Sensor,
+            offers.environment.magnetic_field,
+            "",
+            "measures the field of `[environment.magnetic_field]`, and there is none",
+        );
     }
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.

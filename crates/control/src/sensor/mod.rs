@@ -9,6 +9,7 @@ mod ideal;
 mod latency_queue;
 mod magnetometer;
 mod rate_integrator;
+mod requirements;
 mod sampled;
 mod star_tracker;
 mod sun_sensor;
@@ -16,12 +17,11 @@ mod tachometer;
 mod vector;
 
 use flexsc_formats::document;
-use flexsc_numerics::attitude::{AXES, Vector, rotation, rotation_vector};
+use flexsc_numerics::attitude::{AXES, Vector};
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::random::{Seed, Stream};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::environment::EnvironmentObservation;
-use nalgebra::Quaternion;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +29,7 @@ use crate::custom::Custom;
 use crate::one_or_many::OneOrMany;
 use crate::part::Part;
 
+pub use crate::orientation::Orientation;
 pub use accelerometer::{Accelerometer, AccelerometerState, MeasuredAcceleration};
 pub use custom_sensor::SensorSpec;
 pub use exposure::ExposureMean;
@@ -90,39 +91,6 @@ pub trait Sensor: Part {
 impl Clone for Box<dyn Sensor> {
     fn clone(&self) -> Self {
         self.copy()
-    }
-}
-
-/// Orientation of a body.
-#[derive(Copy, Clone, Debug, PartialEq)]
-pub enum Orientation {
-    /// Angle of a one-axis body (rad).
-    Angle(f64),
-    /// Attitude of a three-axis body: the rotation from body axes to inertial axes.
-    Attitude(Quaternion<f64>),
-}
-
-impl Orientation {
-    /// Returns the rotation vector from another orientation to this one (rad); for one angle, the difference about the first axis.
-    #[inline]
-    pub fn error_from(&self, other: &Self) -> [f64; 3] {
-        match (self, other) {
-            (Self::Attitude(q), Self::Attitude(goal)) => rotation_vector(goal, q).into(),
-            (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
-            // All orientations of a run are of the same kind.
-            _ => [f64::NAN; 3],
-        }
-    }
-
-    /// Returns the orientation measured with these angles (rad): the first angle itself, or the attitude with these
-    /// small rotations.
-    #[must_use]
-    #[inline]
-    pub fn rotated_by(&self, angles: [f64; 3]) -> Self {
-        match self {
-            Self::Angle(_) => Self::Angle(angles[0]),
-            Self::Attitude(q) => Self::Attitude(q * rotation(&Vector::from(angles))),
-        }
     }
 }
 

@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::vector::{VectorErrors, VectorSensor, VectorSensorState};
 use super::{Sensor, SensorFailure};
+use crate::offers::Offers;
+use crate::requirement::{Requirements, Rule};
 
 /// A Sun sensor on a body with three axes. It measures the direction to the Sun as a unit vector.
 ///
@@ -76,6 +78,17 @@ impl SunSensor {
     /// Returns the covariance of the noise, including quantisation.
     pub fn covariance(&self) -> Matrix3<f64> {
         self.errors().covariance()
+    }
+
+    /// Adds the requirements of the sensor on the other parts of a scenario.
+    pub(super) fn requires(offers: &Offers, needs: &mut Requirements) {
+        super::requirements::require_attitude(offers, needs);
+        needs.require(
+            Rule::Sensor,
+            offers.environment.sun,
+            "",
+            "measures the direction to `environment.sun`, and there is none",
+        );
     }
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.

@@ -10,7 +10,9 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Reading, Sensor, SensorFailure, Truth};
+use crate::offers::Offers;
 use crate::part::Part;
+use crate::requirement::{ROTATION, Requirements, Rule};
 
 /// Tachometers, one on each wheel of `[actuator.wheels]`.
 ///
@@ -46,6 +48,25 @@ pub struct TachometerState {
 }
 
 impl Tachometer {
+    /// Adds the requirements of the tachometer on the other parts of a scenario; `ordinal` counts earlier tachometers.
+    pub(super) fn requires(ordinal: usize, offers: &Offers, needs: &mut Requirements) {
+        let has_wheels = offers.lists_actuator(|actuator| actuator.has_reaction_wheels);
+        needs.require(
+            Rule::Tachometer,
+            has_wheels,
+            "",
+            "is on the wheels of `[actuator.wheels]`, and there are none",
+        );
+        needs.require(
+            Rule::Tachometer,
+            offers.sensors.motion_sensors > 0,
+            "",
+            "measures only wheels: list a sensor of the body beside it, such as \"continuous\", which gives the exact motion",
+        );
+        needs.require(Rule::Tachometer, ordinal == 0, "", "is on each wheel already: list only one");
+        needs.require(Rule::TachometerBearings, offers.body.is_two_way, "", ROTATION);
+    }
+
     /// Creates the tachometers of wheels with these initial speeds (rad/s), which are the readings at the start.
     pub fn start(&self, speeds: Vec<f64>, seed: Seed) -> TachometerState {
         TachometerState {

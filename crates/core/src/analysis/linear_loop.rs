@@ -1,9 +1,8 @@
 //! Linear parts of a loop that cannot be read from a scenario's keys: sampled filters of the laws, and settled
 //! estimators.
 
+use flexsc_control::estimator::EstimateOutputs;
 use flexsc_control::estimator::kalman::{FilterContext, Kalman, SteadyStateFilter};
-use flexsc_control::estimator::{EstimateOutputs, EstimatorKind};
-use flexsc_control::law::LawKind;
 use flexsc_control::state_estimate::EstimateNeeds;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::random::Seed;
@@ -47,20 +46,23 @@ impl LinearLoop {
             return Err(fault);
         }
         let axes = scenario.study.axes.len();
-        let filters = (0..axes).map(|axis| filters(scenario.law.about(axis))).collect();
+        let filters = (0..axes).map(|axis| scenario.law.about(axis).filter_coefficients()).collect();
         let reads = |axis: usize| scenario.law.about(axis).needs() == EstimateNeeds::DominantMode;
         let estimators = match &scenario.estimator {
-            None | Some(EstimatorKind::Envelope(_)) => None,
-            Some(estimator) if estimator.is_assessed_only() => None,
-            Some(EstimatorKind::Kalman(_) | EstimatorKind::Truth(_))
-                if (0..axes).all(|axis| feeds(scenario, reads(axis)) == EstimateOutputs::Modes) =>
+            None => None,
+            Some(estimator) if estimator.envelope().is_some() || estimator.is_assessed_only() => None,
+            Some(estimator)
+                if estimator.has_constant_gains()
+                    && (0..axes).all(|axis| feeds(scenario, reads(axis)) == EstimateOutputs::Modes) =>
             {
                 None
             }
-            Some(EstimatorKind::Kalman(kalman)) => {
-                Some((0..axes).map(|axis| observer(scenario, kalman, axis)).collect::<Result<_, _>>()?)
-            }
             Some(estimator) => {
+                if let Some(kalman) = estimator.kalman() {
+                    let observers = (0..axes).map(|axis| observer(scenario, kalman, axis));
+                    let estimators = Some(observers.collect::<Result<_, _>>()?);
+                    return Ok(Self { filters, estimators, attitude: None });
+                }
                 if let Some(filter) = estimator.attitude() {
                     let parts = LinearAttitudeFilter::from_scenario(scenario, filter);
                     let attitude = Some(parts.map_err(|fault| fault.within("estimator.attitude"))?);
@@ -78,13 +80,6 @@ impl LinearLoop {
 /// Returns the part of the state estimate that a scenario's estimator writes.
 fn feeds(scenario: &Scenario, dominant: bool) -> EstimateOutputs {
     scenario.estimator.as_ref().map_or(EstimateOutputs::Modes, |estimator| estimator.feeds(dominant))
-}
-
-/// Returns the coefficients of the filters of a law.
-fn filters(law: &LawKind) -> Vec<([f64; 3], [f64; 2])> {
-    let LawKind::Attitude(law) = law else { return Vec::new() };
-    let period = law.period.seconds();
-    law.filters.iter().filter_map(|filter| Some(filter.sampled(period).ok()?.coefficients())).collect()
 }
 
 /// Returns the settled filter about an axis.

@@ -6,7 +6,6 @@
 mod filters;
 mod motions;
 
-use flexsc_control::law::LawKind;
 use flexsc_numerics::lanes::{LaneFloat, Mask, Processor, SimdTask};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{PieceDemand, Record};
@@ -29,7 +28,7 @@ impl BatchKernel for SampledBatch {
     fn accepts(&self, scenario: &Scenario) -> bool {
         (scenario.drift.is_some() || scenario.actuator.flywheel().is_some())
             && scenario.actuator.only_actuator().is_some()
-            && matches!(scenario.law, LawKind::Pd(_))
+            && scenario.law.pd().is_some()
             && scenario.plan.is_none()
             && scenario.model.outputs().is_empty()
     }

@@ -4,7 +4,7 @@ use std::fmt::Write;
 
 use flexsc_control::law::Command;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Attachment, COMMANDS, Detail, Provenance, Record};
+use flexsc_record::{Attachment, COMMANDS, Provenance, Record};
 
 use super::{Campaign, CampaignRun};
 use crate::metrics::{Metrics, MetricsCollector};
@@ -68,9 +68,6 @@ impl CommandLog {
         let judged = remaining.as_ref().unwrap_or(&run.scenario);
         let mut both = (MetricsCollector::new(judged), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);
-        if both.wants_scene() {
-            simulation.enable_scene(&run.scenario);
-        }
         self.run_until(&mut simulation, until, &mut both)?;
         simulation.record_interruption(&mut both)?;
         Ok(both.0.finish(judged))
@@ -103,8 +100,8 @@ impl CommandLog {
     }
 
     /// Returns the provenance in the log of the run, including its commands.
-    pub fn provenance(&self, run: &CampaignRun, detail: Detail) -> Provenance {
-        let mut provenance = Campaign::provenance(run, detail);
+    pub fn provenance(&self, run: &CampaignRun) -> Provenance {
+        let mut provenance = Campaign::provenance(run);
         if !self.is_empty() {
             let data = self.to_csv().into_bytes();
             provenance.attachments.push(Attachment { name: COMMANDS, media_type: "text/csv", data });

@@ -23,7 +23,7 @@ impl Campaign {
             let independent: Vec<f64> = places.iter().map(|place| self.deviation(*place, point)).collect();
             for (place, z) in places.into_iter().zip(group.correlate(&independent)) {
                 if let Some((key, distribution)) = self.scenario.uncertain.iter().nth(place) {
-                    drawn[first + place] = distribution.of_normal(&self.nominal(key), z);
+                    drawn[first + place] = distribution.value_at_deviation(&self.nominal(key), z);
                 }
             }
         }

@@ -42,9 +42,7 @@ impl AttitudeMetrics {
     /// estimate an attitude; `None` for others.
     pub fn new(scenario: &Scenario) -> Option<Self> {
         let estimator = scenario.estimator.as_ref();
-        let own = |estimator: &EstimatorKind| {
-            matches!(estimator, EstimatorKind::Own(_)) && scenario.axis_count() == 3
-        };
+        let own = |of: &EstimatorKind| of.custom().is_some() && scenario.axis_count() == 3;
         let filter = estimator.filter(|estimator| estimator.attitude().is_some() || own(estimator))?;
         let assess = filter.assess();
         Some(Self {

@@ -340,7 +340,9 @@ impl Record for MetricsCollector {
         if let Some(filter) = &mut self.filter {
             let one = sample.get().map(|estimate: &Estimate| std::slice::from_ref(estimate));
             let axes = one.or_else(|| sample.get().map(|estimates: &Estimates| &estimates.axes[..]));
-            axes.into_iter().for_each(|axes| filter.observe(now, axes));
+            if let Some(axes) = axes {
+                filter.observe(now, axes);
+            }
         }
         if let Some(known) = &mut self.known {
             sample.get().into_iter().for_each(|estimate| known.observe(now, estimate));

@@ -4,7 +4,7 @@
 
 mod lanes;
 
-use flexsc_control::law::{ErrorBand, LawKind, Setpoint};
+use flexsc_control::law::{ErrorBand, Setpoint};
 use flexsc_dynamics::MotionPiece;
 use flexsc_numerics::polynomial::Polynomial;
 use flexsc_numerics::time::Instant;
@@ -140,7 +140,7 @@ impl ManoeuvreMetrics {
             error: (f64::NAN, f64::NAN),
             verdict: None,
             itae: (0.0, 0.0),
-            radius: matches!(scenario.law, LawKind::Pd(_)).then(|| {
+            radius: scenario.law.pd().is_some().then(|| {
                 if selection.wants_any(&[SPECTRAL_RADIUS]) { spectral_radius(scenario) } else { f64::NAN }
             }),
             outputs: body.outputs.iter().map(|output| range_of(&output.unit)).collect(),

@@ -1,6 +1,5 @@
 //! Metrics of adaptive observers, from their state at the end of a run, and of active damping.
 
-use flexsc_control::estimator::EstimatorKind;
 use flexsc_record::{TrackedMode, Tracking, Watch};
 
 use super::{
@@ -23,7 +22,7 @@ pub struct ObserverMetrics {
 impl ObserverMetrics {
     /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario) -> Self {
-        let adaptive = matches!(scenario.estimator, Some(EstimatorKind::Adaptive(_)));
+        let adaptive = scenario.estimator.as_ref().is_some_and(|estimator| estimator.adaptive().is_some());
         Self { last: adaptive.then(Vec::new), ..Self::default() }
     }
 

@@ -4,7 +4,8 @@
 use std::sync::Arc;
 
 use flexsc_control::law::Frame;
-use flexsc_control::sensor::SensorKind;
+use flexsc_control::offers::Offers;
+use flexsc_control::requirement::{OFF_HUB, Requirements, Rule};
 use flexsc_dynamics::three_axis::{ArticulatedBody, DriveAngles};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::Vector;
@@ -272,54 +273,25 @@ impl ScenarioSpec {
 
 impl Scenario {
     /// Returns the error of a part that is incompatible with drives and hinges.
-    pub(super) fn validate_drives(&self) -> Option<ConfigError> {
+    pub(super) fn validate_drives(&self, offers: &Offers, unmet: &Requirements) -> Option<ConfigError> {
         let driven = &self.study.drives.as_ref()?.driven;
-        let spacecraft = self.spacecraft.as_ref()?;
-        let on_hub = |point: Option<&str>| {
-            let Some(point) = point else { return true };
-            !spacecraft.points.is_empty() && spacecraft.points.iter().any(|own| own.name == point)
-                || spacecraft.points.is_empty() && point == "hub"
-        };
-        let place = |key: String| {
-            let why = "must be a point of the hub: with drives or hinges, the motion of points on appendages is not computed";
-            Some(ConfigError::new(key, why))
-        };
-        for (index, sensor) in self.sensor.iter().enumerate() {
-            if !on_hub(sensor.point()) {
-                return place(format!("{}.point", self.sensor_key(index)));
-            }
-            if matches!(sensor, SensorKind::Accelerometer(_)) {
-                let why = "cannot be used with appendages that turn, on drives or hinges: the acceleration by their modes is not computed";
-                return Some(ConfigError::new(self.sensor_key(index), why));
-            }
+        if let Some(fault) = unmet.first(Rule::FixedSensors) {
+            return Some(fault);
         }
-        for (index, disturbance) in self.disturbance.iter().enumerate() {
-            if !on_hub(disturbance.point.as_deref()) {
-                return place(format!("disturbance[{index}].point"));
-            }
+        let points = self.disturbance.iter().map(|disturbance| disturbance.point.as_deref());
+        let mut moving = points.map(|point| point.is_some_and(|point| !offers.body.has_motion_at(point)));
+        if let Some(index) = moving.position(|is_moving| is_moving) {
+            return Some(ConfigError::new(format!("disturbance[{index}].point"), OFF_HUB));
         }
-        if let Some((jets, key)) = self.actuator.jets()
-            && let Some(index) = jets.thrusters.iter().position(|thruster| !on_hub(Some(&thruster.point)))
-        {
-            return place(format!("{key}.thrusters[{index}].point"));
+        if let Some(fault) = unmet.first_of(Rule::FixedJets..=Rule::FixedBearings) {
+            return Some(fault);
         }
-        if let Some((wheels, of)) = self.actuator.wheels()
-            && let Some(key) = wheels.friction_or_imbalance_key()
-        {
-            let why = "needs appendages that do not turn, on drives or hinges: the instants at which wheels stick, and the excitation of modes by \
-                       imbalance, are searched for with constant modes";
-            return Some(ConfigError::new(format!("{of}.{key}"), why));
-        }
-        let pressed = self.environment.as_ref().and_then(|around| {
-            let pressure = around.solar_pressure.is_some().then_some("solar_pressure");
-            pressure.or(around.drag.is_some().then_some("drag"))
-        });
-        if let Some(key) = pressed.filter(|_| driven.moves_centre()) {
-            let why = "acts at an arm that is known where drives and hinges do not move the centre of mass: put the axis of the drive \
-                       through that of the appendage, or write the hinge as a mode";
-            return Some(ConfigError::new(format!("environment.{key}"), why));
-        }
-        None
+        let around = self.environment.as_ref().filter(|_| driven.moves_centre())?;
+        let pressure = around.solar_pressure.is_some().then_some("solar_pressure");
+        let key = pressure.or(around.drag.is_some().then_some("drag"))?;
+        let why = "acts at an arm that is known where drives and hinges do not move the centre of mass: put the axis of the drive \
+                   through that of the appendage, or write the hinge as a mode";
+        Some(ConfigError::new(format!("environment.{key}"), why))
     }
 }
 

@@ -1,11 +1,12 @@
 //! Authority of the actuators about each axis, and the error bands that laws keep with it.
 
-use flexsc_control::actuator::{ActuatorKind, PulseWidth};
+use flexsc_control::actuator::{ActuatorAuthority, ActuatorKind, ActuatorPlacement, GroupEffect, PulseWidth};
 use flexsc_control::estimator::adaptive;
-use flexsc_control::law::{ActiveDamping, Authority, ErrorBand, LawKind, PhasePlane, error_band};
+use flexsc_control::law::{ActiveDamping, Authority, ErrorBand};
+use flexsc_control::sensor::Tachometer;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::rotation_vector;
-use flexsc_numerics::quantity::Positive;
+use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::Spatial;
 
@@ -18,76 +19,52 @@ const NO_MOTION: f64 = 1.0;
 impl ResolvedScenario {
     /// Returns the authority of all actuators about an axis, until the first of them is at its limit with its share.
     pub(super) fn authority(&self, written: &ScenarioSpec, axis: usize) -> Authority {
+        let (placement, inertia) =
+            (self.placement(self.groups.as_ref(), None), self.axes[axis].commanded_inertia());
+        let alone = |kind: &ActuatorKind| kind.authority(axis, inertia, &placement);
         let members = written.actuator.members();
         let acting: Vec<_> = members.iter().filter(|member| member.share(axis) > 0.0).collect();
-        let (accelerations, width, delay) = match &acting[..] {
-            [] => ([0.0; 2], PulseWidth::default(), 0.0),
-            [only] => self.actuator_authority(&only.kind, axis),
+        let ActuatorAuthority { accelerations, width, delay } = match &acting[..] {
+            [] => ActuatorAuthority { accelerations: [0.0; 2], width: PulseWidth::default(), delay: 0.0 },
+            [only] => alone(&only.kind),
             several => {
                 let each = several.iter().map(|member| {
-                    let (most, _, delay) = self.actuator_authority(&member.kind, axis);
-                    (most.map(|most| most / member.share(axis)), delay)
+                    let ActuatorAuthority { accelerations, delay, .. } = alone(&member.kind);
+                    (accelerations.map(|most| most / member.share(axis)), delay)
                 });
                 let (most, late) =
                     each.fold(([f64::INFINITY; 2], 0.0_f64), |(least, late), (most, delay)| {
                         ([least[0].min(most[0]), least[1].min(most[1])], late.max(delay))
                     });
-                (most, PulseWidth::default(), late)
+                ActuatorAuthority { accelerations: most, width: PulseWidth::default(), delay: late }
             }
         };
         Authority { axis, accelerations, width, delay, threshold: 0.0 }
     }
 
-    /// Returns the authority of one actuator acting alone: largest accelerations (rad/s²), pulse widths, and delay (s).
-    fn actuator_authority(&self, kind: &ActuatorKind, axis: usize) -> ([f64; 2], PulseWidth, f64) {
-        let inertia = self.axes[axis].commanded_inertia();
-        match kind {
-            ActuatorKind::Ideal(_) | ActuatorKind::Hold(_) => {
-                ([f64::INFINITY; 2], PulseWidth::default(), 0.0)
-            }
-            ActuatorKind::Own(own) => {
-                let most = own.limit(axis).map_or(f64::INFINITY, |limit| limit / inertia);
-                ([most; 2], PulseWidth::default(), 0.0)
-            }
-            ActuatorKind::Thrusters(thrusters) => {
-                ([thrusters.torque.about(axis).get() / inertia; 2], thrusters.width(), 0.0)
-            }
-            ActuatorKind::Wheel(wheel) => {
-                let most = wheel.limit.map_or(f64::INFINITY, Positive::get) * wheel.gain.get() / inertia;
-                ([most; 2], PulseWidth::default(), wheel.delay.get())
-            }
-            ActuatorKind::Wheels(wheels) => {
-                let limit = wheels.torque.map_or(f64::INFINITY, Positive::get);
-                let most =
-                    self.wheels.as_ref().map_or(f64::INFINITY, |wheels| wheels.largest_torque(axis, limit));
-                ([most / inertia; 2], PulseWidth::default(), 0.0)
-            }
-            ActuatorKind::ControlMomentGyros(gyros) => {
-                ([gyros.largest_torque(&self.gimbals, axis) / inertia; 2], PulseWidth::default(), 0.0)
-            }
-            ActuatorKind::Magnetorquers(torquers) => {
-                let field = self.surroundings.as_ref().map_or(0.0, |around| around.sky().field_bound());
-                ([torquers.largest_moment() * field / inertia; 2], PulseWidth::default(), 0.0)
-            }
-            ActuatorKind::Jets(jets) => {
-                let groups = self.groups.as_ref().map(|groups| &groups[axis]);
-                let of = |sign: usize| groups.map_or(f64::INFINITY, |groups| groups[sign].acceleration);
-                let period = jets.period.or(self.law_period).unwrap_or(self.assessment_period);
-                ([of(0), of(1)], jets.pulse_width(), f64::from(jets.delay) * period.seconds())
-            }
+    /// Returns the data of the body that its actuators depend on, with groups of jets.
+    pub(super) fn placement<'a>(
+        &'a self,
+        groups: Option<&'a [[GroupEffect; 2]; 3]>,
+        tachometer: Option<(&'a Tachometer, Seed)>,
+    ) -> ActuatorPlacement<'a> {
+        ActuatorPlacement {
+            wheels: self.wheels.as_ref(),
+            gimbals: &self.gimbals,
+            field: self.surroundings.as_ref().map_or(0.0, |around| around.sky().field_bound()),
+            groups,
+            nozzles: &self.nozzles,
+            period: self.assessment_period,
+            tachometer,
         }
     }
 
     /// Returns the elastic rate above which the active damping of an axis acts (rad/s); 0 for a law without it.
     pub(super) fn damping_threshold(&self, written: &ScenarioSpec, axis: usize) -> Result<f64, ConfigError> {
-        let LawKind::PhasePlane(PhasePlane { damping: Some(damping), .. }) = written.law.about(axis) else {
-            return Ok(0.0);
-        };
-        let key = format!("{}.damping", written.law_key(axis));
-        let Some(plan) = &self.adaptive else {
-            let why = "needs the elastic rates of an `[estimator.adaptive]`, and there is none";
-            return Err(ConfigError::new(key, why));
-        };
+        let Some(damping) = written.law.about(axis).active_damping() else { return Ok(0.0) };
+        let key = format!("{}.damping", written.law.key_about(axis));
+        // Without elastic rates the requirement of the law was reported.
+        let Some(plan) = &self.adaptive else { return Ok(0.0) };
         let threshold = damping_threshold(damping, plan, &self.authorities[axis], axis);
         if damping.threshold.is_none() && threshold >= NO_MOTION {
             let name = if self.axes.len() == 1 { "the law" } else { flexsc_numerics::attitude::AXES[axis] };
@@ -108,23 +85,24 @@ impl ResolvedScenario {
         body: Option<&Spatial>,
         axis: usize,
     ) -> Option<f64> {
-        match (written.law.about(axis), body) {
-            (LawKind::PhasePlane(law), _) => Some(error_band(law, &self.authorities[axis])),
-            (law, Some(body)) => match law.expected_band() {
-                ErrorBand::None => None,
-                ErrorBand::Absolute(band) => Some(band),
-                ErrorBand::Fraction(part) => {
-                    // Relative to the whole rotation to the last target.
-                    let end = Instant::START + written.duration;
-                    let goal = self.profile.target(written.last_target_start(end));
-                    let before = written.targets().iter().rev().nth(1);
-                    let from = before
-                        .map_or_else(|| body.attitude.get(), |target| self.profile.target(target.starts()));
-                    let distance = rotation_vector(&goal, &from).norm();
-                    (distance > 0.0).then_some(part * distance)
-                }
-            },
-            _ => None,
+        let law = written.law.about(axis);
+        if let Some(band) = law.band_with(&self.authorities[axis]) {
+            return Some(band);
+        }
+        let body = body?;
+        match law.expected_band() {
+            ErrorBand::None => None,
+            ErrorBand::Absolute(band) => Some(band),
+            ErrorBand::Fraction(part) => {
+                // Relative to the whole rotation to the last target.
+                let end = Instant::START + written.duration;
+                let goal = self.profile.target(written.last_target_start(end));
+                let before = written.targets().iter().rev().nth(1);
+                let from =
+                    before.map_or_else(|| body.attitude.get(), |target| self.profile.target(target.starts()));
+                let distance = rotation_vector(&goal, &from).norm();
+                (distance > 0.0).then_some(part * distance)
+            }
         }
     }
 
@@ -132,10 +110,7 @@ impl ResolvedScenario {
     pub fn arrival_bands(&self, written: &ScenarioSpec) -> [f64; 3] {
         let mut zones = [f64::NAN; 3];
         for (axis, (zone, band)) in zones.iter_mut().zip(&self.expected_bands).enumerate() {
-            *zone = match written.law.about(axis) {
-                LawKind::PhasePlane(law) => law.dead_zone.get(),
-                _ => band.unwrap_or(f64::NAN),
-            };
+            *zone = written.law.about(axis).coasting_zone().or(*band).unwrap_or(f64::NAN);
         }
         zones
     }

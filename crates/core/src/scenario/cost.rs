@@ -1,11 +1,10 @@
 //! Estimate of time, memory and disk space before a computation: infeasible scenarios are rejected, expensive ones need
 //! a confirmation.
 
-use flexsc_control::actuator::{ActuatorKind, ActuatorTask, Failure, UnloadingTask};
+use flexsc_control::actuator::{ActuatorTask, Failure, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::{AttitudeTarget, LawKind, RelaySides};
-use flexsc_control::sensor::SensorKind;
-use flexsc_dynamics::three_axis::{Bearing, SHAKE, Surroundings};
+use flexsc_control::law::AttitudeTarget;
+use flexsc_dynamics::three_axis::{Bearing, IMBALANCE_PHASE, Surroundings};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::vector;
 use flexsc_numerics::quantity::NonNegative;
@@ -39,11 +38,6 @@ const MUCH_MEMORY: f64 = 4e9;
 /// Disk space for logs (bytes) above which a confirmation is needed.
 const MUCH_DISK: f64 = 2e10;
 
-/// Steps of a relay law per radian of the fastest mode: between runs in batches, which take half as long, and single
-/// runs with damped modes, which take twice as long.
-const RELAY_STRIDES: f64 = 0.1;
-/// Steps per radian of the fastest mode with a one-sided law, whose long flights outside the dead zone are searched.
-const ONE_SIDED_STRIDES: f64 = 0.7;
 /// Rate (rad/s) below which swings of a body that holds its attitude in surroundings do not shorten steps.
 const QUIET_RATE: f64 = 1e-3;
 /// Length of steps of such a body, relative to steps that resolve its modes.
@@ -81,18 +75,15 @@ impl Cost {
 
     /// Returns the reason why the computation needs a confirmation; `None` if it is within the limits.
     pub fn limit_exceeded(&self) -> Option<String> {
-        let Self { most: (what, steps), runs, seconds, memory, disk } = self;
+        let Self { seconds, memory, disk, .. } = self;
         let within = *seconds <= LONG_S && *memory <= MUCH_MEMORY && *disk <= MUCH_DISK;
         if within {
             return None;
         }
-        let each =
-            if *runs > 1.0 { format!(" in each of {} runs", count_text(*runs)) } else { String::new() };
         let room = if *disk > 0.0 { format!(", {} for logs", bytes(*disk)) } else { String::new() };
         Some(format!(
-            "{what} makes {} steps{each}: about {} on one core, {} of memory{room}, and more than {}, {} or {} must be confirmed",
-            count_text(*steps),
-            time(*seconds),
+            "{}, {} of memory{room}, and more than {}, {} or {} must be confirmed",
+            self.summary(),
             bytes(*memory),
             time(LONG_S),
             bytes(MUCH_MEMORY),
@@ -102,13 +93,15 @@ impl Cost {
 
     /// Returns a description of the work if it takes noticeably long; `None` otherwise.
     pub fn notice(&self) -> Option<String> {
+        (self.seconds > NOTICEABLE_S).then(|| self.summary())
+    }
+
+    /// Returns the largest contribution, its steps in each run, and the time of the work.
+    fn summary(&self) -> String {
         let Self { most: (what, steps), runs, seconds, .. } = self;
         let each =
             if *runs > 1.0 { format!(" in each of {} runs", count_text(*runs)) } else { String::new() };
-        let is_long = *seconds > NOTICEABLE_S;
-        is_long.then(|| {
-            format!("{what} makes {} steps{each}: about {} on one core", count_text(*steps), time(*seconds))
-        })
+        format!("{what} makes {} steps{each}: about {} on one core", count_text(*steps), time(*seconds))
     }
 
     /// Returns the cost of `runs` such computations, whose results are kept in memory.
@@ -229,12 +222,7 @@ impl Scenario {
             steps.push((key, span.max(0.0) / period.seconds()));
         };
         for (index, sensor) in self.sensor.iter().enumerate() {
-            let own = match sensor {
-                SensorKind::Tachometer(tachometer) => Some(tachometer.period),
-                SensorKind::Accelerometer(accelerometer) => Some(accelerometer.period),
-                _ => sensor.period(None),
-            };
-            if let Some(period) = own {
+            if let Some(period) = sensor.own_period() {
                 each(format!("{}.period", self.sensor_key(index)), duration, period);
                 let exposure = sensor.exposure().seconds();
                 if exposure > 0.0 {
@@ -245,7 +233,7 @@ impl Scenario {
         }
         for axis in 0..self.axis_count() {
             if let Some(period) = self.law.about(axis).period() {
-                each(format!("{}.period", self.law_key(axis)), duration, period);
+                each(format!("{}.period", self.law.key_about(axis)), duration, period);
             }
         }
         for member in self.actuator.members() {
@@ -277,25 +265,25 @@ impl Scenario {
         }
         // Crossings are predicted or searched, and exact panels integrated, by steps that are a part of a vibration.
         let is_coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
-        let strides = match &self.law {
-            _ if self.model.chain().is_some() => 20.0,
-            LawKind::Relay(law) if self.study.sample_period.is_none() => {
-                let is_searched = law.sides == RelaySides::One && !is_coupled;
-                if is_searched { ONE_SIDED_STRIDES } else { RELAY_STRIDES }
-            }
+        let is_sampled = self.study.sample_period.is_some();
+        let search = if is_sampled { 0.0 } else { self.law.search_steps(is_coupled) };
+        let strides = if self.model.chain().is_some() {
+            20.0
+        } else if search > 0.0 {
+            search
+        } else if self.actuator.flywheel().is_some() && !is_sampled {
             // The motion with a wheel is a series in the phase of the fastest mode.
-            _ if self.actuator.flywheel().is_some() && self.study.sample_period.is_none() => 1.0,
-            _ => 0.0,
+            1.0
+        } else {
+            0.0
         };
         let modes = self.model.planar().into_iter().flat_map(|body| &body.modes);
         let fastest = modes.map(|mode| mode.frequency.get()).fold(0.0, f64::max);
         if strides * fastest > 0.0 {
             steps.push(("duration".to_owned(), strides * duration * fastest));
         }
-        if let (LawKind::Relay(law), Some(body), None) =
-            (&self.law, self.model.planar(), self.study.sample_period)
-        {
-            let mean = law.mean_switching(body.commanded_inertia());
+        let body = self.model.planar().filter(|_| !is_sampled);
+        if let Some(mean) = body.and_then(|body| self.law.switching_interval(body.commanded_inertia())) {
             // The first window of chatter ends the run.
             let chatters = mean * SWITCHINGS as f64 <= shortest_window(fastest);
             let switchings = if chatters { SWITCHINGS as f64 } else { duration / mean };
@@ -367,8 +355,8 @@ impl Scenario {
     /// without wheels.
     fn imbalance_step(&self) -> f64 {
         let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
-        let highest = self.study.bearings.iter().map(Bearing::highest).fold(0.0, f64::max);
-        SHAKE / (highest * wheels.largest_initial_speed())
+        let highest = self.study.bearings.iter().map(Bearing::highest_order).fold(0.0, f64::max);
+        IMBALANCE_PHASE / (highest * wheels.largest_initial_speed())
     }
 
     /// Returns the periodic messages of a log of the given detail: the key and the number of messages of each.
@@ -380,8 +368,9 @@ impl Scenario {
             messages.push(("log.period".to_owned(), topics * duration / period.seconds()));
             // A row for each edge of a pulse.
             for member in self.actuator.members() {
-                if let ActuatorKind::Thrusters(thrusters) = &*member.kind {
-                    let edges = 2.0 * duration / thrusters.period.seconds();
+                let offers = member.kind.offers();
+                if let Some(period) = offers.period.filter(|_| offers.pulses && !offers.has_jets) {
+                    let edges = 2.0 * duration / period.seconds();
                     messages.push((format!("{}.period", member.key), topics * edges));
                 }
             }

@@ -2,11 +2,11 @@
 
 use std::sync::Arc;
 
-use flexsc_control::actuator::{ActuatorKind, ActuatorSpec, AssignedActuator};
-use flexsc_control::adaptation::{AdaptationKind, AdaptationSpec};
+use flexsc_control::actuator::{ActuatorSpec, AssignedActuator};
+use flexsc_control::adaptation::AdaptationSpec;
 use flexsc_control::custom::Custom;
-use flexsc_control::estimator::{EstimatorKind, EstimatorSpec};
-use flexsc_control::law::{LawKind, LawSpec};
+use flexsc_control::estimator::EstimatorSpec;
+use flexsc_control::law::LawSpec;
 use flexsc_control::sensor::{SensorKind, SensorSpec};
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
 use flexsc_record::CustomTopic;
@@ -135,25 +135,14 @@ impl ScenarioSpec {
 
     /// Returns the custom parts of the scenario.
     pub fn custom_parts(&self) -> CustomParts {
-        let sensor = |(place, sensor): (usize, &SensorKind)| match sensor {
-            SensorKind::Own(own) => Some((place, own.clone())),
-            _ => None,
-        };
-        let actuator = |(place, assigned): (usize, &AssignedActuator)| match &assigned.kind {
-            ActuatorKind::Own(own) => Some((place, own.clone())),
-            _ => None,
-        };
+        let sensor = |(place, sensor): (usize, &SensorKind)| Some((place, sensor.custom()?.clone()));
+        let actuator =
+            |(place, assigned): (usize, &AssignedActuator)| Some((place, assigned.kind.custom()?.clone()));
         CustomParts {
-            law: if let LawKind::Own(own) = &self.law { Some(own.clone()) } else { None },
+            law: self.law.custom().cloned(),
             sensors: self.sensor.iter().enumerate().filter_map(sensor).collect(),
-            estimator: match &self.estimator {
-                Some(EstimatorKind::Own(own)) => Some(own.clone()),
-                _ => None,
-            },
-            adaptation: match &self.adaptation {
-                Some(AdaptationKind::Own(own)) => Some(own.clone()),
-                _ => None,
-            },
+            estimator: self.estimator.as_ref().and_then(|estimator| estimator.custom().cloned()),
+            adaptation: self.adaptation.as_ref().and_then(|adaptation| adaptation.custom().cloned()),
             actuators: self.actuator.iter().enumerate().filter_map(actuator).collect(),
         }
     }
@@ -177,24 +166,22 @@ impl ScenarioSpec {
     pub(super) fn inherit_custom_parts(&mut self, own: &CustomParts, document: &Document) {
         let CustomParts { law, sensors, estimator, adaptation, actuators } = own;
         if let Some(law) = law.as_ref().filter(|_| !document.has("law")) {
-            self.law = LawKind::Own(law.clone());
+            self.law = law.clone().into();
         }
         for (place, sensor) in sensors {
             if let Some(there) = self.sensor.get_mut(*place).filter(|there| there.is_continuous()) {
-                *there = SensorKind::Own(sensor.clone());
+                *there = sensor.clone().into();
             }
         }
         if let Some(estimator) = estimator.as_ref().filter(|_| !document.has("estimator")) {
-            self.estimator = Some(EstimatorKind::Own(estimator.clone()));
+            self.estimator = Some(estimator.clone().into());
         }
         if let Some(adaptation) = adaptation.as_ref().filter(|_| !document.has("adaptation")) {
-            self.adaptation = Some(AdaptationKind::Own(adaptation.clone()));
+            self.adaptation = Some(adaptation.clone().into());
         }
         for (place, actuator) in actuators {
-            let ideal =
-                |kind: &ActuatorKind| matches!(kind, ActuatorKind::Ideal(ideal) if ideal.faults.is_empty());
-            if let Some(there) = self.actuator.get_mut(*place).filter(|there| ideal(&there.kind)) {
-                there.kind = ActuatorKind::Own(actuator.clone());
+            if let Some(there) = self.actuator.get_mut(*place).filter(|there| there.kind.is_ideal()) {
+                there.kind = actuator.clone().into();
             }
         }
     }
@@ -215,10 +202,10 @@ impl CustomParts {
 
     /// Returns the topics that the parts declare, each with the role of the part.
     fn declared_topics(&self) -> impl Iterator<Item = (&'static str, &Arc<CustomTopic>)> {
-        let law = self.law.iter().flat_map(|law| law.topics()).map(|topic| ("law", topic));
+        let law = self.law.iter().flat_map(Custom::topics).map(|topic| ("law", topic));
         let sensors = self.sensors.iter().flat_map(|(_, sensor)| sensor.topics());
-        let estimator = self.estimator.iter().flat_map(|estimator| estimator.topics());
-        let adaptation = self.adaptation.iter().flat_map(|adaptation| adaptation.topics());
+        let estimator = self.estimator.iter().flat_map(Custom::topics);
+        let adaptation = self.adaptation.iter().flat_map(Custom::topics);
         let actuators = self.actuators.iter().flat_map(|(_, actuator)| actuator.topics());
         law.chain(sensors.map(|topic| ("sensor", topic)))
             .chain(estimator.map(|topic| ("estimator", topic)))

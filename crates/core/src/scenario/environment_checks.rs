@@ -1,70 +1,21 @@
-//! Checks of parts that need the environment: orbit, magnetic field and Sun.
+//! Environment of a scenario: its checks, and its state in inertial axes.
 
-use std::f64::consts::TAU;
-
-use flexsc_control::sensor::SensorKind;
 use flexsc_formats::document::ConfigError;
-use flexsc_spacecraft::environment::{OrbitEnvironment, Sun};
+use flexsc_spacecraft::environment::OrbitEnvironment;
 
 use super::ScenarioSpec;
-
-/// Largest number of orbits in a run for which the planet's shadow is computed.
-const MOST_ORBITS: f64 = 1e6;
 
 impl ScenarioSpec {
     /// Checks that the environment is consistent in itself and with the run.
     pub(super) fn validate_environment(&self) -> Option<ConfigError> {
         let around = self.environment.as_ref()?;
-        if let Some(fault) = around.fault() {
-            return Some(fault.within("environment"));
-        }
-        if around.sun == Some(Sun::Epoch) && self.epoch.is_none() {
-            return Some(ConfigError::new(
-                "environment.sun",
-                "follows from the scenario's `epoch`, and there is none",
-            ));
-        }
-        let turns =
-            around.orbit.filter(|_| around.sun.is_some())?.mean_motion() * self.duration.seconds() / TAU;
-        let why = || {
-            format!("goes around {turns:.1e} times in this run, and shadows are known for {MOST_ORBITS:.0e}")
-        };
-        (turns > MOST_ORBITS).then(|| ConfigError::new("environment.orbit", why()))
+        let fault = around.fault().or_else(|| around.run_error(self.duration, self.epoch.is_some()))?;
+        Some(fault.within("environment"))
     }
 
     /// Returns the orbit environment in inertial axes, independent of the body's attitude.
     pub fn orbit_environment(&self) -> OrbitEnvironment {
         let of = |environment| OrbitEnvironment::new(environment, self.duration, self.date_ns());
         self.environment.as_ref().map(of).unwrap_or_default()
-    }
-
-    /// Returns the error of a B-dot law without a magnetometer or magnetorquers.
-    pub(super) fn validate_b_dot(&self) -> Option<ConfigError> {
-        let why = if !self.sensor.iter().any(SensorKind::measures_field) {
-            "reads the field of a `[sensor.magnetometer]`, and there is none"
-        } else if self.actuator.magnetorquers().is_none() {
-            "commands magnetic moments: it needs `[actuator.magnetorquers]`, or wheels that are unloaded by them"
-        } else {
-            return None;
-        };
-        Some(ConfigError::new("", why))
-    }
-
-    /// Returns the error of a vector sensor whose field or Sun is missing.
-    pub(super) fn validate_vector_sensors(&self, sensor: &SensorKind) -> Option<ConfigError> {
-        let around = self.environment.as_ref();
-        match sensor {
-            SensorKind::Magnetometer(_) => {
-                let why = "measures the field of `[environment.magnetic_field]`, and there is none";
-                let dark = around.is_none_or(|around| around.magnetic_field.is_none());
-                dark.then(|| ConfigError::new("", why))
-            }
-            SensorKind::SunSensor(_) => {
-                let why = "measures the direction to `environment.sun`, and there is none";
-                let dark = around.is_none_or(|around| around.sun.is_none());
-                dark.then(|| ConfigError::new("", why))
-            }
-            _ => None,
-        }
     }
 }

@@ -2,7 +2,6 @@
 
 use flexsc_control::actuator::{Failure, FailureScope};
 use flexsc_control::interval::Interval;
-use flexsc_control::law::LawKind;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
 use flexsc_spacecraft::body::Planar;
@@ -100,7 +99,8 @@ impl Scenario {
                 "have no closed form for modes that a damping matrix couples"
             }
             law if self.sensor.period(law.period()).is_none()
-                && !matches!(law, LawKind::Open(_) | LawKind::Pd(_)) =>
+                && !law.offers().is_open
+                && law.pd().is_none() =>
             {
                 "leave no closed form for the crossings of the law: use a `[sensor.sampled]`"
             }

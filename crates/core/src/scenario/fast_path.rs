@@ -16,6 +16,6 @@ impl Scenario {
             && self.environment.is_none()
             && self.study.sample_period.is_none()
             && self.actuator.is_ideal()
-            && self.sensor.iter().all(|sensor| matches!(sensor, SensorKind::Continuous))
+            && self.sensor.iter().all(SensorKind::is_continuous)
     }
 }

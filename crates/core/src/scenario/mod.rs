@@ -13,7 +13,6 @@ mod custom_parts;
 mod drift_checks;
 mod environment_checks;
 mod epoch;
-mod estimator_checks;
 mod estimator_context;
 mod failures;
 mod fast_path;
@@ -31,7 +30,7 @@ use std::ops::Deref;
 use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
-use flexsc_control::law::{ErrorBand, LawKind, Setpoint};
+use flexsc_control::law::{ErrorBand, Setpoint};
 use flexsc_dynamics::linear::LinearFlow;
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
 use flexsc_numerics::time::{Instant, Span};
@@ -116,7 +115,7 @@ impl Scenario {
         }
         let directory = Path::new(document.origin()).parent().unwrap_or(Path::new(""));
         let model = written.assemble(document, parent, directory)?;
-        if matches!(written.law, LawKind::Open(_)) && !document.has("law") && written.manoeuvre.is_none() {
+        if written.law.offers().is_open && !document.has("law") && written.manoeuvre.is_none() {
             return Err(document.missing("law"));
         }
         Self::fitted(written, model).map_err(|fault| document.at_key(&fault))
@@ -125,13 +124,15 @@ impl Scenario {
     /// Completes a scenario from its keys and its model: checks that they are consistent, resolves the data, and plans
     /// the manoeuvre.
     fn fitted(written: ScenarioSpec, model: BodyModel) -> Result<Self, ConfigError> {
-        written.validate_compatibility(&model)?;
+        let offers = written.offers(&model);
+        let unmet = written.unmet_requirements(&offers);
+        written.validate_compatibility(&model, &offers, &unmet)?;
         if let Some(conflict) = written.custom_parts().topic_conflict() {
             return Err(conflict);
         }
-        let study = ResolvedScenario::resolve(&written, &model)?;
+        let study = ResolvedScenario::resolve(&written, &model, &unmet)?;
         let mut scenario = Self { written, model, plan: None, linear: None, study };
-        scenario.validate()?;
+        scenario.validate(&offers, &unmet)?;
         scenario.plan = scenario.planned()?;
         scenario.linear = scenario.linear_flow()?;
         Ok(scenario)

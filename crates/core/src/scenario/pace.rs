@@ -2,8 +2,6 @@
 //! constants are those of an ordinary core, to a factor of two for the shipped scenarios.
 
 use flexsc_control::actuator::FiringMethod;
-use flexsc_control::estimator::EstimatorKind;
-use flexsc_control::law::LawKind;
 use flexsc_dynamics::three_axis::Surroundings;
 
 use super::Scenario;
@@ -44,14 +42,6 @@ const SINES: Pace = (1.5e-6, 5e-7);
 /// A look at the motion within an exposure (s), and a cycle of individually commanded jets.
 const LOOK_S: f64 = 2e-6;
 const ALLOCATION_S: f64 = 5e-6;
-/// A sample of an attitude filter, of a Kalman filter about an axis, and of an adaptive observer.
-const ATTITUDE_FILTER: Pace = (1.2e-6, 0.0);
-const KALMAN: Pace = (1.5e-6, 0.0);
-const ADAPTIVE: Pace = (0.0, 1.5e-7);
-/// Time of an operation with numbers of a matrix (s).
-const PRODUCT_S: f64 = 1e-9;
-/// Number of such operations per cube of the order of an attitude filter with modes, at each sample.
-const ELASTIC_PRODUCTS: f64 = 25.0;
 
 impl Scenario {
     /// The time of a run without a log (s), in which these keys act so often.
@@ -69,7 +59,9 @@ impl Scenario {
                 _ => events = events.max(*count),
             }
         }
-        let filtered = events * self.filter_seconds(modes) + windows * takes(STEP);
+        let estimator = self.estimator.as_ref();
+        let sample = estimator.map_or(0.0, |of| of.sample_seconds(self.axis_count(), modes));
+        let filtered = events * sample + windows * takes(STEP);
         if self.axis_count() == 3 {
             let jets = self.actuator.jets().map(|(jets, _)| jets);
             let programmed = jets.filter(|jets| jets.allocation == FiringMethod::LeastPropellant);
@@ -86,17 +78,18 @@ impl Scenario {
             return moves + looks * LOOK_S + allocated + filtered;
         }
         let coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
-        let moves = match &self.law {
-            _ if self.model.chain().is_some() => turns * takes(CHAIN),
-            LawKind::Relay(_) if self.study.sample_period.is_some() => events * takes(STEP),
-            LawKind::Relay(_) => {
-                let strides = turns * takes(if coupled { COUPLED_RELAY } else { STEP });
-                strides.max(switchings * SEARCH * takes(STEP))
-            }
-            _ if self.actuator.flywheel().is_some() && self.study.sample_period.is_none() => {
-                events * takes(UNSAMPLED_WHEEL) + (turns - events).max(0.0) * takes(COUPLED_RADIAN)
-            }
-            _ => events * takes(ONE_AXIS),
+        let is_sampled = self.study.sample_period.is_some();
+        let moves = if self.model.chain().is_some() {
+            turns * takes(CHAIN)
+        } else if self.law.offers().finds_crossings && is_sampled {
+            events * takes(STEP)
+        } else if self.law.offers().finds_crossings {
+            let strides = turns * takes(if coupled { COUPLED_RELAY } else { STEP });
+            strides.max(switchings * SEARCH * takes(STEP))
+        } else if self.actuator.flywheel().is_some() && !is_sampled {
+            events * takes(UNSAMPLED_WHEEL) + (turns - events).max(0.0) * takes(COUPLED_RADIAN)
+        } else {
+            events * takes(ONE_AXIS)
         };
         moves + filtered
     }
@@ -114,27 +107,5 @@ impl Scenario {
             return Some(BEARINGS);
         }
         (self.largest_sine_frequency() > 0.0).then_some(SINES)
-    }
-
-    /// The time of a sample of its filter (s).
-    fn filter_seconds(&self, modes: f64) -> f64 {
-        let takes = |(base, each): Pace| base + modes * each;
-        if let Some(filter) = self.estimator.as_ref().and_then(EstimatorKind::attitude) {
-            return filter.elastic.as_ref().map_or(takes(ATTITUDE_FILTER), |elastic| {
-                let order = 6.0 + 3.0 * elastic.modes.len() as f64;
-                ELASTIC_PRODUCTS * order * order * order * PRODUCT_S
-            });
-        }
-        match &self.estimator {
-            Some(EstimatorKind::Adaptive(_)) => takes(ADAPTIVE),
-            Some(filter) if filter.filters_measurements() => {
-                // Matrices of the order of its state.
-                let order = 4.0 + 2.0 * modes;
-                let passes = if matches!(filter, EstimatorKind::UnscentedKalman(_)) { 4.0 } else { 2.0 };
-                let axes = self.axis_count() as f64;
-                axes * (takes(KALMAN) + passes * order * order * order * PRODUCT_S)
-            }
-            _ => 0.0,
-        }
     }
 }

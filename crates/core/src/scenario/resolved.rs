@@ -2,11 +2,12 @@
 //! authority.
 
 use flexsc_control::actuator::{
-    Actuator, ActuatorKind, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext,
-    AxisActuators, BackEmfRate, FiringMethod, GroupEffect, GyroAxes, ThrusterEffect,
+    Actuator, ActuatorSet, ActuatorTask, Allocation, AssignedMember, AxisActuatorContext, BackEmfRate,
+    GroupEffect, GyroAxes, ThrusterEffect,
 };
 use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
 use flexsc_control::law::{AttitudeProfile, Authority, TorqueDistribution};
+use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::three_axis::{Bearing, SharedSteps};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, rotation_vector, tensor};
@@ -83,13 +84,15 @@ impl ResolvedScenario {
     ///
     /// # Errors
     /// Fails with a key that is inconsistent with the others, and the reason.
-    pub fn resolve(written: &ScenarioSpec, model: &BodyModel) -> Result<Self, ConfigError> {
+    pub(super) fn resolve(
+        written: &ScenarioSpec,
+        model: &BodyModel,
+        unmet: &Requirements,
+    ) -> Result<Self, ConfigError> {
         let cycle = written.law.period();
-        let samples = written.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_none());
         let mut study = Self {
             law_period: cycle,
-            // With an estimator that works on samples, a continuous sensor is sampled at the law's period.
-            sample_period: written.sensor.period(cycle).or(cycle.filter(|_| samples)),
+            sample_period: written.sample_period(),
             profile: AttitudeProfile::new(
                 written.targets(),
                 &written.orbit_environment(),
@@ -98,32 +101,20 @@ impl ResolvedScenario {
             back_emf: written.actuator.flywheel().map_or((0.0, true), |(wheel, _)| {
                 (wheel.back_emf.get(), wheel.opposes == BackEmfRate::BodyRate)
             }),
-            jets_alone: matches!(written.actuator.only_actuator(), Some(ActuatorKind::Jets(_))),
+            jets_alone: written.actuator.only_actuator().is_some_and(|kind| kind.offers().has_jets),
             ..Self::default()
         };
         study.assessment_period =
             study.law_period.or(study.sample_period).unwrap_or(Span::from_seconds(TICK));
         match model.axes() {
             BodyAxes::One(body) => study.axes.push(body.clone()),
-            BodyAxes::Three(body) => study.locate_sensors_and_actuators(written, model, body)?,
+            BodyAxes::Three(body) => study.locate_sensors_and_actuators(written, model, body, unmet)?,
         }
         study.authorities = (0..study.axes.len()).map(|axis| study.authority(written, axis)).collect();
-        if let Some(EstimatorKind::Adaptive(_)) = &written.estimator {
-            let at = |why: &str| Err(ConfigError::new("estimator.adaptive", why));
-            let jets = written.actuator.jets();
-            if jets.is_some_and(|(jets, _)| jets.allocation == FiringMethod::LeastPropellant) {
-                return at("predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`");
-            }
-            let members = written.actuator.members();
-            let part = |share: f64| share > 0.0 && share < 1.0 - ROUNDING;
-            let fires = |member: &&AssignedMember<'_>| matches!(&*member.kind, ActuatorKind::Jets(_));
-            if members.iter().filter(fires).any(|member| (0..3).any(|axis| part(member.share(axis)))) {
-                return at(
-                    "predicts what one actuator about each axis does: it needs jets with all of the demand about theirs",
-                );
-            }
+        if let Some(fault) = unmet.first(Rule::ObserverInputs) {
+            return Err(fault);
         }
-        if let Some(EstimatorKind::Adaptive(spec)) = &written.estimator {
+        if let Some(spec) = written.estimator.as_ref().and_then(EstimatorKind::adaptive) {
             let Some(period) = study.sample_period else {
                 return Err(ConfigError::new("estimator.adaptive", EstimatorKind::AT_SAMPLES));
             };
@@ -140,6 +131,9 @@ impl ResolvedScenario {
             let setting = spec.setup(&written.sensor, cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
+        if let Some(fault) = unmet.first(Rule::ElasticRates) {
+            return Err(fault);
+        }
         for axis in 0..study.axes.len() {
             study.authorities[axis].threshold = study.damping_threshold(written, axis)?;
         }
@@ -154,6 +148,7 @@ impl ResolvedScenario {
         written: &ScenarioSpec,
         model: &BodyModel,
         body: &Spatial,
+        unmet: &Requirements,
     ) -> Result<(), ConfigError> {
         let first = body.points.first().map_or(String::new(), |point| point.name.clone());
         let named = |key: &str, point: Option<&str>| {
@@ -170,7 +165,7 @@ impl ResolvedScenario {
         }
         self.torque_point.clone_from(&first);
         for member in written.actuator.members() {
-            let ActuatorKind::Jets(jets) = &*member.kind else { continue };
+            let Some(jets) = member.kind.jets() else { continue };
             let (acts, groups) = match &member.task {
                 ActuatorTask::Executes(shares) => (shares.map(|share| share > 0.0), &mut self.groups),
                 ActuatorTask::Unloads(_) => ([true; 3], &mut self.unloading_groups),
@@ -182,24 +177,19 @@ impl ResolvedScenario {
         if let Some((wheels, of)) = written.actuator.wheels() {
             let allocation = wheels.allocation().map_err(|fault| fault.within(&of))?;
             self.wheels = Some(allocation);
-            let tachometer = written.sensor.tachometer().map(|(index, _)| written.sensor_key(index));
-            let own = wheels.bearing_key().map(|key| format!("{of}.{key}"));
-            if let Some(key) = own.or(tachometer) {
-                let Some(flexible) = model.flexible() else {
-                    let why = "is for wheels on a `[spacecraft]`: the modes of a `[body.spatial]` do not act back on its rotation, \
-                               against which wheels turn";
-                    return Err(ConfigError::new(key, why));
-                };
+            if let Some(fault) = unmet.first_of(Rule::Bearings..=Rule::TachometerBearings) {
+                return Err(fault);
+            }
+            let is_observed = wheels.bearing_key().is_some() || written.sensor.tachometer().is_some();
+            if let Some(flexible) = model.flexible().filter(|_| is_observed) {
                 let bearings = wheels.bearings((body, flexible));
                 self.bearings = bearings.map_err(|fault| fault.within(&of))?;
             }
         }
         if let Some((gyros, of)) = written.actuator.control_moment_gyros() {
             self.gimbals = gyros.axes().map_err(|fault| fault.within(&of))?;
-            if model.flexible().is_none() {
-                let why = "are for a `[spacecraft]`, which needs no appendages: the modes of a `[body.spatial]` are pushed by \
-                           torques that are constant for a while, and gimbals turn theirs";
-                return Err(ConfigError::new(of, why));
+            if let Some(fault) = unmet.first(Rule::GimbalBody) {
+                return Err(fault);
             }
         }
         self.surroundings = surroundings(written, model, body)?;
@@ -288,8 +278,9 @@ impl ResolvedScenario {
             share: 1.0,
         };
         let settings: Vec<AxisActuatorContext> = self.axes.iter().enumerate().map(setting).collect();
+        let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
         if let Some(kind) = scenario.actuator.only_actuator() {
-            return self.actuator_state(scenario, kind, settings, self.groups.as_ref(), seed);
+            return kind.start(settings, &self.placement(self.groups.as_ref(), tachometer));
         }
         let members = scenario.actuator.members();
         let start = |member: &AssignedMember<'_>| {
@@ -301,34 +292,10 @@ impl ResolvedScenario {
                 .iter()
                 .map(|of| AxisActuatorContext { share: share[of.axis], ..of.clone() })
                 .collect();
-            self.actuator_state(scenario, &member.kind, own, groups, seed)
+            member.kind.start(own, &self.placement(groups, tachometer))
         };
         let started = members.iter().map(|member| (&*member.kind, &member.task, start(member))).collect();
         Box::new(ActuatorSet::new(settings.len(), started))
-    }
-
-    /// Creates one actuator before it first acts.
-    fn actuator_state(
-        &self,
-        scenario: &Scenario,
-        kind: &ActuatorKind,
-        settings: Vec<AxisActuatorContext>,
-        groups: Option<&[[GroupEffect; 2]; 3]>,
-        seed: Seed,
-    ) -> Box<dyn Actuator> {
-        match (kind, groups, &self.wheels) {
-            (ActuatorKind::Jets(jets), Some(groups), _) => {
-                jets.start((groups, &self.nozzles), self.assessment_period)
-            }
-            (ActuatorKind::Wheels(wheels), _, Some(allocation)) => {
-                let tachometer = scenario.sensor.tachometer().map(|(_, tachometer)| (tachometer, seed));
-                Box::new(wheels.start(allocation, &settings).with_tachometer(tachometer))
-            }
-            (ActuatorKind::ControlMomentGyros(gyros), ..) => Box::new(gyros.start(&self.gimbals, &settings)),
-            (ActuatorKind::Magnetorquers(torquers), ..) => Box::new(torquers.start(&settings)),
-            (ActuatorKind::Own(own), ..) => own.start(&settings),
-            (kind, ..) => Box::new(AxisActuators::new(kind, settings)),
-        }
     }
 }
 

@@ -112,28 +112,21 @@ impl ScenarioSpec {
         self.body.as_ref().map_or_else(|| "spacecraft".to_owned(), |body| format!("body.{}", body.kind()))
     }
 
+    /// Returns the key of the damping matrix.
+    pub(super) fn damping_key(&self) -> String {
+        format!("body.{}.damping_matrix", self.body_kind())
+    }
+
     /// Returns the target attitudes of a three-axis body.
     pub fn targets(&self) -> &[AttitudeTarget] {
-        match &self.law {
-            LawKind::PhasePlane(law) if !law.targets.is_empty() => &law.targets,
-            _ => &self.target,
-        }
+        let own = self.law.own_targets();
+        if own.is_empty() { &self.target } else { own }
     }
 
     /// Returns the start of the last target that begins before `before`; the start of the run if there is none.
     pub fn last_target_start(&self, before: Instant) -> Instant {
         let begins = self.targets().iter().rev().map(AttitudeTarget::starts);
         begins.into_iter().find(|from| *from < before).unwrap_or(Instant::START)
-    }
-
-    /// Returns the key of the law about an axis.
-    pub fn law_key(&self, axis: usize) -> String {
-        match &self.law {
-            LawKind::PerAxis(laws) => {
-                format!("law.per_axis.{}.{}", flexsc_numerics::attitude::AXES[axis], laws.about(axis).kind())
-            }
-            law => format!("law.{}", law.kind()),
-        }
     }
 
     /// Returns the scenario with all its defaults, as a table.

@@ -6,15 +6,14 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::Record;
 use flexsc_spacecraft::flow::ExternalMotion;
 
-use super::plant::{AppliedTorque, Plant};
+use super::plant::AppliedTorque;
 use super::{Simulation, SimulationError};
 
 impl Simulation {
     /// Hands the motion of the body to a batch before the run begins; `None` unless its modes are coupled or drift.
     /// Only for laws without guards and runs without rows between events.
     pub(crate) fn take_motion(&mut self) -> Option<ExternalMotion> {
-        let Plant::OneAxis(plant) = &mut self.plant else { return None };
-        if self.estimation.monitor.is_some() { None } else { plant.take_motion() }
+        if self.estimation.monitor.is_some() { None } else { self.plant.take_motion() }
     }
 
     /// Begins the run.
@@ -35,14 +34,14 @@ impl Simulation {
     /// Returns the start of the last motion segment, its reduced moment (rad/s²) and its torques, once per segment;
     /// `None` if no segment has begun since the last call.
     pub(crate) fn take_segment_start(&mut self) -> Option<(Instant, f64, AppliedTorque)> {
-        let Plant::OneAxis(plant) = &mut self.plant else { return None };
-        plant.take_segment_start().map(|(at, moment)| (at, moment, self.loads.applied))
+        let start = self.plant.external()?.take_segment_start();
+        start.map(|(at, moment)| (at, moment, self.loads.applied))
     }
 
     /// Sets the motion at `now`: angle and rate of each coordinate.
     pub(crate) fn set_motion(&mut self, now: Instant, motion: impl Iterator<Item = [f64; 2]>) {
-        if let Plant::OneAxis(plant) = &mut self.plant {
-            plant.set_motion(now, motion);
+        if let Some(flow) = self.plant.external() {
+            flow.set_motion(now, motion);
         }
         self.clock.advance_to(now);
     }

@@ -147,3 +147,56 @@ impl Clock {
         std::mem::take(&mut self.bearing_event)
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn clock() -> Clock {
+        let text = "duration = 10.0\n[law.open]\n[body.planar]\ninertia = 2.0";
+        Clock::new(&Scenario::parse("clock.toml", text).expect("a scenario"))
+    }
+
+    fn at(seconds: f64) -> Instant {
+        Instant::START + Span::from_seconds(seconds)
+    }
+
+    #[test]
+    fn decisions_are_limited_at_one_instant_alone() {
+        let mut clock = clock();
+        for instant in 0..3 {
+            clock.advance_to(at(f64::from(instant)));
+            for _ in 0..MOST_DECISIONS {
+                clock.count_decision().expect("few decisions");
+            }
+        }
+        assert!(matches!(clock.count_decision(), Err(SimulationError::Chatter { count: 33, .. })));
+    }
+
+    #[test]
+    fn bearing_events_are_limited_within_a_nanosecond() {
+        let mut clock = clock();
+        for event in 1..100 {
+            clock.count_bearing_event(at(f64::from(event) * 1e-6)).expect("far apart");
+        }
+        for _ in 0..MOST_DECISIONS {
+            clock.count_bearing_event(at(1.0)).expect("few events");
+        }
+        let chatter = clock.count_bearing_event(at(1.0));
+        assert!(matches!(chatter, Err(SimulationError::WheelChatter { count: 33, .. })));
+        assert!(clock.take_bearing_event() && !clock.has_bearing_event());
+    }
+
+    #[test]
+    fn switchings_are_limited_within_the_shortest_window() {
+        let mut clock = clock();
+        clock.advance_to(at(5.0));
+        for _ in 0..SWITCHINGS {
+            clock.count_switching().expect("five seconds have passed");
+        }
+        for _ in 1..SWITCHINGS {
+            clock.count_switching().expect("the window has not ended");
+        }
+        assert!(matches!(clock.count_switching(), Err(SimulationError::LawChatter { .. })));
+    }
+}

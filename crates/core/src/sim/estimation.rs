@@ -149,14 +149,15 @@ impl Estimation {
             self.estimator.input_changed(now, [0, 1, 2].map(moment));
         }
         if let Some(monitor) = &mut self.monitor {
-            plant.update_monitor(monitor, now, loads.applied.constant, || loads.actuator_wrench(now));
+            let commanded = || loads.actuator_wrench(now);
+            plant.update_monitor(monitor, now, loads.applied.constant, &commanded);
         }
     }
 
     /// Adds the three-axis motion at the start of a cycle to the envelope.
     pub fn add_cycle(&mut self, now: Instant, plant: &Plant) {
-        if let (Some(monitor), Plant::ThreeAxis(plant)) = (&mut self.monitor, plant) {
-            monitor.observe(now, || plant.swings());
+        if let Some(monitor) = &mut self.monitor {
+            monitor.observe(now, || plant.modal_state().into_owned());
         }
     }
 

@@ -1,6 +1,6 @@
 //! Loads on the body: the actuator, which executes the laws and the manoeuvre, disturbances, and the environment.
 
-use flexsc_control::actuator::{Actuator, ActuatorInput, AxisEffort};
+use flexsc_control::actuator::{Actuator, ActuatorEvent, AxisEffort};
 use flexsc_control::law::{Command, TorqueDistribution};
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_numerics::attitude::Vector;
@@ -94,14 +94,14 @@ impl Loads {
             self.scheduled_changes.pop();
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
-        self.actuator.update(now, ActuatorInput::Due(rigid));
+        self.actuator.update(now, ActuatorEvent::Due(rigid));
         self.update_due();
     }
 
     /// Sets the magnetic field in body axes (T) in the actuator, if there is one.
     pub fn set_magnetic_field(&mut self, now: Instant, field: Option<Vector>) {
         if let Some(field) = field {
-            self.actuator.update(now, ActuatorInput::MagneticField(field));
+            self.actuator.update(now, ActuatorEvent::MagneticField(field));
         }
     }
 
@@ -109,7 +109,7 @@ impl Loads {
     pub fn update_rotor_states(&mut self, now: Instant, plant: &Plant) {
         let rotors = plant.wheel_bearings();
         if !rotors.is_empty() {
-            self.actuator.update(now, ActuatorInput::Rotors(&rotors));
+            self.actuator.update(now, ActuatorEvent::Rotors(&rotors));
         }
     }
 

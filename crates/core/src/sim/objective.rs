@@ -38,9 +38,9 @@ impl AdaptationObjective {
         self.0.as_ref().map(ObjectiveMeter::search)
     }
 
-    /// Adds the one-axis motion up to `now`.
+    /// Adds the motion up to `now`, if it consists of pieces, as that of one axis does.
     pub fn add_motion(&mut self, now: Instant, plant: &Plant, loads: &Loads) {
-        let (Some(meter), Plant::OneAxis(plant)) = (&mut self.0, plant) else { return };
+        let Some(meter) = &mut self.0 else { return };
         if !meter.integrates() || now <= meter.measured {
             return;
         }
@@ -48,9 +48,11 @@ impl AdaptationObjective {
             let rotor = loads.actuator.response(now, 0, [rate; 2]).rotor;
             rotor.map(|wheel| wheel.speed_rad_s)
         };
-        let wheel = speed(0.0).zip(speed(1.0)).map(|(rest, one)| [rest, one - rest]);
-        plant.measure([meter.measured, now], &loads.applied, |stretch, rigid| {
-            meter.add_piece(stretch, &MotionSample { rigid: *rigid, wheel });
+        let slope = || speed(0.0).zip(speed(1.0)).map(|(rest, one)| [rest, one - rest]);
+        let mut wheel = None;
+        plant.expand([meter.measured, now], &loads.applied, &mut |piece, rigid| {
+            let wheel = *wheel.get_or_insert_with(slope);
+            meter.add_piece(piece, &MotionSample { rigid: *rigid, wheel });
         });
         meter.measured = now;
     }

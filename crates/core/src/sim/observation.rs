@@ -3,7 +3,7 @@
 use flexsc_control::sensor::Truth;
 use flexsc_record::{ControlMomentGyros, Hinges};
 
-use super::plant::Plant;
+use super::plant::FlowQuantities;
 use super::run_view::RunView;
 use crate::scenario::Scenario;
 
@@ -43,9 +43,9 @@ impl RunView<'_> {
     pub fn observation_fields(&self, scenario: &Scenario) -> Vec<ObservationField> {
         let field = |group, name, unit, count| ObservationField { group, name, unit, count };
         let state = |name, unit, count| field(ObservationGroup::True, name, unit, count);
-        let mut fields = match self.plant {
-            Plant::OneAxis(plant) => {
-                let modes = Some(plant.state().modes.len());
+        let mut fields = match self.plant.quantities() {
+            FlowQuantities::OneAxis(motion) => {
+                let modes = Some(motion.body().state.modes.len());
                 vec![
                     state("angle", "rad", None),
                     state("rate", "rad/s", None),
@@ -56,8 +56,8 @@ impl RunView<'_> {
                     state("torque", scenario.model.torque_unit(), None),
                 ]
             }
-            Plant::ThreeAxis(plant) => {
-                let modes = Some(plant.state().modes.len());
+            FlowQuantities::ThreeAxis(motion) => {
+                let modes = Some(motion.body().state.modes.len());
                 vec![
                     state("attitude", "", Some(4)),
                     state("error", "rad", Some(3)),
@@ -70,9 +70,11 @@ impl RunView<'_> {
             }
         };
         let actuator = &self.loads.actuator;
-        let wheels = match self.plant {
-            Plant::OneAxis(_) => usize::from(actuator.response(self.now, 0, [0.0; 2]).rotor.is_some()),
-            Plant::ThreeAxis(_) => actuator.capabilities().wheels(self.now, [0.0; 3]).len(),
+        let wheels = match self.plant.quantities() {
+            FlowQuantities::OneAxis(_) => {
+                usize::from(actuator.response(self.now, 0, [0.0; 2]).rotor.is_some())
+            }
+            FlowQuantities::ThreeAxis(_) => actuator.capabilities().wheels(self.now, [0.0; 3]).len(),
         };
         if wheels > 0 {
             let count = (self.estimation.axis_count() > 1).then_some(wheels);
@@ -103,26 +105,26 @@ impl RunView<'_> {
         let truth = self.plant.truth();
         let mut row = RowWriter(row);
         let origin = self.guidance.origin(now);
-        match self.plant {
-            Plant::OneAxis(plant) => {
-                let state = plant.state();
+        match self.plant.quantities() {
+            FlowQuantities::OneAxis(motion) => {
+                let state = &motion.body().state;
                 row.write(&[truth.sensor_angles()[0], truth.rate[0], state.rigid_angle, state.rigid_rate]);
                 row.write_all(state.modes.iter().map(|mode| mode.displacement));
-                row.write_all(plant.mode_rates());
+                row.write_all(motion.body().mode_rates());
                 row.write(&[self.torque(0, truth)]);
                 let rates = [truth.rate[0], truth.rigid[0]];
                 let rotor = self.loads.actuator.response(now, 0, rates).rotor;
                 row.write_all(rotor.map(|wheel| wheel.speed_rad_s));
             }
-            Plant::ThreeAxis(plant) => {
-                let q = plant.attitude();
+            FlowQuantities::ThreeAxis(motion) => {
+                let q = motion.attitude();
                 row.write(&[q.w, q.i, q.j, q.k]);
                 row.write(&truth.orientation.error_from(&origin));
                 row.write(&truth.rate);
                 row.write(&truth.rigid);
-                row.write_all(plant.state().modes.iter().map(|mode| mode.displacement));
-                row.write_all(plant.mode_rates());
-                let magnetic = plant.magnetic_torque();
+                row.write_all(motion.body().state.modes.iter().map(|mode| mode.displacement));
+                row.write_all(motion.body().mode_rates());
+                let magnetic = motion.magnetic_torque();
                 row.write(&[0, 1, 2].map(|axis| magnetic[axis] + self.torque(axis, truth)));
                 let wheels = self.loads.actuator.capabilities().wheels(now, truth.rate);
                 row.write_all(wheels.iter().map(|wheel| wheel.speed_rad_s));
@@ -130,7 +132,7 @@ impl RunView<'_> {
                     row.write_all(gimbals.gyros.iter().map(|gyro| gyro.angle_rad));
                     row.write_all(gimbals.gyros.iter().map(|gyro| gyro.rate_rad_s));
                 }
-                if let Some(Hinges { hinges }) = plant.hinges() {
+                if let Some(Hinges { hinges }) = motion.hinges() {
                     row.write_all(hinges.iter().map(|hinge| hinge.angle_rad));
                     row.write_all(hinges.iter().map(|hinge| hinge.rate_rad_s));
                 }
@@ -157,7 +159,8 @@ impl RunView<'_> {
 
     /// Returns the motion of the appendages' hinges; `None` without hinges.
     fn hinges(&self) -> Option<Hinges> {
-        if let Plant::ThreeAxis(plant) = self.plant { plant.hinges() } else { None }
+        let motion = self.plant.quantities().three_axis()?;
+        motion.hinges()
     }
 
     /// Returns the row of the control moment gyros; `None` without any.

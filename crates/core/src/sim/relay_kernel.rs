@@ -7,7 +7,7 @@ use flexsc_control::law::Command;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, PieceDemand, Record, RecordError, Sample, Trigger};
 
-use super::plant::{AppliedTorque, Plant};
+use super::plant::{AppliedTorque, Flow};
 use super::{Simulation, SimulationError};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneState, RunSetup, SWITCHINGS, apply_crossing,
@@ -86,8 +86,8 @@ impl Simulation {
         self.laws.begin(law_state(place, rest.from.side), now, instant(rest.push_start));
         let Command::Torque(torque) = self.laws.outputs()[0] else { return Ok(()) };
         self.begin_relay_segment(&rest.from, torque);
-        let Plant::OneAxis(plant) = &mut self.plant else { return Ok(()) };
-        let (sensed, rigid) = (plant.view(now), plant.state().rigid_rate);
+        let Some(flow) = self.plant.one_axis() else { return Ok(()) };
+        let (sensed, rigid) = (flow.view(now), flow.state().rigid_rate);
         for state_estimate in &mut self.estimation.estimates {
             (state_estimate.angle, state_estimate.rate) = (sensed.angle, sensed.rate);
         }
@@ -101,9 +101,9 @@ impl Simulation {
     /// Begins a motion segment from the kernel's state `from`, under a constant torque (N m).
     fn begin_relay_segment(&mut self, from: &LaneState, torque: f64) {
         self.loads.applied = AppliedTorque { constant: torque, feedback: torque, back_emf: (0.0, false) };
-        if let Plant::OneAxis(plant) = &mut self.plant {
-            plant.set_state(instant(from.time), |state| apply_state(state, from));
-            plant.begin_under_torque(0.0 + torque);
+        if let Some(flow) = self.plant.one_axis() {
+            flow.set_state(instant(from.at), |state| apply_state(state, from));
+            flow.begin_under_torque(0.0 + torque);
         }
     }
 }
@@ -118,10 +118,10 @@ impl SingleRunHost<'_> {
 
     fn record_state(&mut self, to: CyclePhase, now: &LaneState) -> Result<(), RecordError> {
         self.record.poll()?;
-        let at = instant(now.time);
-        let Plant::OneAxis(plant) = &mut self.run.plant else { return Ok(()) };
-        plant.set_state(at, |state| apply_state(state, now));
-        let sensed = plant.view(at);
+        let at = instant(now.at);
+        let Some(flow) = self.run.plant.one_axis() else { return Ok(()) };
+        flow.set_state(at, |state| apply_state(state, now));
+        let sensed = flow.view(at);
         let (time_s, time_whole_s, time_fs) = flexsc_record::Command::times(at);
         let command = flexsc_record::Command {
             time_s,
@@ -134,7 +134,7 @@ impl SingleRunHost<'_> {
             rate_rad_s: sensed.rate,
             gain: now.gain,
         };
-        self.record.record(at, Sample::Switching(&command, plant.state()))
+        self.record.record(at, Sample::Switching(&command, flow.state()))
     }
 }
 
@@ -161,11 +161,11 @@ impl LaneHost for SingleRunHost<'_> {
         self.run.begin_relay_segment(from, self.setup.torque(place, from.side));
         let horizon = instant(self.setup.end).since(instant(from.time));
         let guards = guards(&self.setup, place, from.side);
-        let Plant::OneAxis(plant) = &mut self.run.plant else { return false };
-        match plant.trip(&guards, horizon, &mut self.record) {
+        let Some(flow) = self.run.plant.one_axis() else { return false };
+        match flow.crossing(&guards, horizon, &mut self.record) {
             Ok(Some((at, guard))) => {
-                plant.view(at);
-                apply_crossing(found, at.since(instant(from.time)), guard == 0, plant.state());
+                flow.view(at);
+                apply_crossing(found, at.since(instant(from.at)), guard == 0, flow.state());
                 true
             }
             Ok(None) => false,
@@ -206,8 +206,8 @@ impl LaneHost for SingleRunHost<'_> {
 
     fn on_possible_band_exit(&mut self, _: usize, place: CyclePhase, from: &LaneState, until: (u64, u64)) {
         self.run.begin_relay_segment(from, self.setup.torque(place, from.side));
-        let Plant::OneAxis(plant) = &self.run.plant else { return };
-        let reported = plant.record_pieces(instant(until), &self.run.loads.applied, &mut self.record);
+        let Simulation { plant, loads, .. } = &*self.run;
+        let reported = plant.record_pieces(instant(until), &loads.applied, &mut self.record);
         self.keep_error(reported);
     }
 

@@ -6,7 +6,6 @@ use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
 use flexsc_spacecraft::flow::ThreeAxisState;
 
-use super::plant::Plant;
 use super::{ObservationField, Simulation, SimulationError};
 use crate::scenario::Scenario;
 
@@ -54,12 +53,12 @@ impl Simulation {
 
     /// Returns the state of a one-axis body at the current instant.
     pub fn state(&self) -> Option<&AxisState> {
-        if let Plant::OneAxis(plant) = &self.plant { Some(plant.state()) } else { None }
+        self.plant.quantities().one_axis().map(|motion| &motion.body().state)
     }
 
     /// Returns the state of a three-axis body at the current instant.
     pub fn spatial_state(&self) -> Option<&ThreeAxisState> {
-        if let Plant::ThreeAxis(plant) = &self.plant { Some(plant.state()) } else { None }
+        self.plant.quantities().three_axis().map(|motion| &motion.body().state)
     }
 
     /// Returns the mean of the total envelope over the last closed window (rad).
@@ -89,11 +88,6 @@ impl Simulation {
         self.plant.evaluate(self.clock.now())?;
         self.read_view().write_observation(row);
         Ok(())
-    }
-
-    /// Enables drawing of the scene for records that want it; to be called before the run begins.
-    pub fn enable_scene(&mut self, scenario: &Scenario) {
-        self.recorder.draw(scenario);
     }
 
     /// Returns the instant of the dense log's row that is nearest to `at`.

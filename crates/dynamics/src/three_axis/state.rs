@@ -1,12 +1,12 @@
 //! State of the integrator in mean axes, and the motion of the body derived from it in the hub's axes.
 
 use flexsc_numerics::attitude::{Vector, rotation};
+use flexsc_numerics::lanes::{LaneFloat, SimdTask};
 use nalgebra::{Matrix3, Quaternion};
 
-use super::bearing::RotorState;
-use super::model::{BodyConstants, tensor};
-use super::rotation::SmallRotation;
-use super::summed::{ModalSumsResult, SumModes};
+use super::constants::{BodyConstants, tensor};
+use super::rotors::RotorState;
+use super::small_rotation::SmallRotation;
 
 /// Integrated state at an instant.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,26 +16,27 @@ pub(super) struct IntegratorState {
     /// Total angular momentum in mean axes (N m s), rotors included.
     pub momentum: Vector,
     /// Integral of the rigid rate J^-1 Gt (rad).
-    pub turned: Vector,
+    pub rigid_angle: Vector,
     /// Displacement of the centre of mass since the start (m) and its velocity (m/s), in inertial axes.
-    pub moved: [Vector; 2],
-    /// Rounding errors of `attitude`, `momentum` and `turned` (compensated summation).
-    pub lost: (Quaternion<f64>, Vector, Vector),
+    pub com: [Vector; 2],
+    /// Rounding errors of `attitude`, `momentum` and `rigid_angle` (compensated summation).
+    pub rounding: (Quaternion<f64>, Vector, Vector),
     /// q and P/W of each mode (m sqrt(kg)), and the rounding errors of both.
     pub modes: Vec<[f64; 4]>,
     /// Momentum, angle and friction heat of each rotor in a bearing.
-    pub spins: Vec<RotorState>,
+    pub rotor_states: Vec<RotorState>,
 }
 
 impl IntegratorState {
     /// Copies another state without allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { attitude, momentum, turned, moved, lost, modes, spins } = self;
-        (*attitude, *momentum, *turned, *lost) = (other.attitude, other.momentum, other.turned, other.lost);
-        *moved = other.moved;
+        let Self { attitude, momentum, rigid_angle, com, rounding, modes, rotor_states } = self;
+        (*attitude, *momentum, *rigid_angle, *rounding) =
+            (other.attitude, other.momentum, other.rigid_angle, other.rounding);
+        *com = other.com;
         modes.copy_from_slice(&other.modes);
-        if !spins.is_empty() {
-            spins.copy_from_slice(&other.spins);
+        if !rotor_states.is_empty() {
+            rotor_states.copy_from_slice(&other.rotor_states);
         }
     }
 }
@@ -47,19 +48,19 @@ pub struct BodyView {
     pub attitude: Quaternion<f64>,
     /// Unit quaternion that rotates vectors from the mean axes into inertial axes: the attitude of the body without
     /// its elastic part.
-    pub mean: Quaternion<f64>,
+    pub mean_attitude: Quaternion<f64>,
     /// Angular rate of the hub in its axes (rad/s).
     pub rate: Vector,
     /// Rigid rate J^-1 Gt (rad/s): the hub's rate without its elastic part.
-    pub rigid: Vector,
+    pub rigid_rate: Vector,
     /// Total angular momentum in the hub's axes (N m s), rotors included.
     pub momentum: Vector,
     /// Rotational energy (J) of the body frozen in its present deformation, without rotors.
-    pub rotational: f64,
+    pub rotational_energy: f64,
     /// Integral of the rigid rate since the start (rad).
-    pub turned: Vector,
+    pub rigid_angle: Vector,
     /// Displacement of the centre of mass since the start (m) and its velocity (m/s), in inertial axes.
-    pub moved: [Vector; 2],
+    pub com: [Vector; 2],
     /// Displacements q of the modes (m sqrt(kg)).
     pub displacements: Vec<f64>,
     /// Rates q' of the modes (m sqrt(kg)/s).
@@ -78,18 +79,18 @@ pub struct BodyView {
 }
 
 impl BodyView {
-    /// Creates a zero view for `modes` modes, to be filled by `look`.
+    /// Creates a zero view for `modes` modes, to be filled by `compute`.
     pub(super) fn empty(modes: usize) -> Self {
         let (one, zero) = (Quaternion::identity(), Vector::zeros());
         Self {
             attitude: one,
-            mean: one,
+            mean_attitude: one,
             rate: zero,
-            rigid: zero,
+            rigid_rate: zero,
             momentum: zero,
-            rotational: 0.0,
-            turned: zero,
-            moved: [zero; 2],
+            rotational_energy: 0.0,
+            rigid_angle: zero,
+            com: [zero; 2],
             displacements: vec![0.0; modes],
             rates: vec![0.0; modes],
             frequencies: Vec::new(),
@@ -107,27 +108,31 @@ impl BodyView {
         model: &BodyConstants,
         state: &IntegratorState,
         rotors: &Vector,
-        locked: &Matrix3<f64>,
+        stuck_inertia: &Matrix3<f64>,
     ) {
-        let ModalSumsResult { bent, elastic, changed } =
+        let ModalSumsResult { elastic_rotation, elastic_rate, inertia_change } =
             model.lanes.run(SumModes { model, states: &state.modes });
-        let bend = SmallRotation::new(bent);
-        let changed = tensor(changed);
-        self.mean = state.attitude;
-        self.attitude = state.attitude * rotation(&bent);
-        self.momentum = bend.to_hub_axes(&state.momentum);
-        let (turning, rate) =
-            model.momentum_and_rate(&(self.momentum - rotors), &elastic, &(changed + locked));
+        let hub_to_mean = SmallRotation::new(elastic_rotation);
+        let inertia_change = tensor(inertia_change);
+        self.mean_attitude = state.attitude;
+        self.attitude = state.attitude * rotation(&elastic_rotation);
+        self.momentum = hub_to_mean.to_hub_axes(&state.momentum);
+        let (rigid_momentum, rate) = model.momentum_and_rate(
+            &(self.momentum - rotors),
+            &elastic_rate,
+            &(inertia_change + stuck_inertia),
+        );
         self.rate = rate;
-        self.rigid = model.inverse * turning;
-        self.rotational = 0.5 * (turning.dot(&self.rigid) + rate.dot(&(changed * rate)));
-        self.turned = state.turned;
-        self.moved = state.moved;
+        self.rigid_rate = model.inverse * rigid_momentum;
+        self.rotational_energy =
+            0.5 * (rigid_momentum.dot(&self.rigid_rate) + rate.dot(&(inertia_change * rate)));
+        self.rigid_angle = state.rigid_angle;
+        self.com = state.com;
         for ((of, [q, p, ..]), (displacement, rate)) in
             model.modes.iter().zip(&state.modes).zip(self.displacements.iter_mut().zip(&mut self.rates))
         {
             *displacement = *q;
-            *rate = of.frequency * p + of.rotation.dot(&turning);
+            *rate = of.frequency * p + of.rotation.dot(&rigid_momentum);
         }
     }
 }
@@ -141,5 +146,52 @@ pub(super) struct NextStep {
     pub to: IntegratorState,
     /// Time since the start of the segment (s) of the first stick-slip event (a rotor stops or breaks away), and the
     /// rotor's index.
-    pub meets: Option<(f64, usize)>,
+    pub event: Option<(f64, usize)>,
+}
+
+/// SIMD task that sums the modes' contributions from their states.
+pub(super) struct SumModes<'a> {
+    pub model: &'a BodyConstants,
+    /// q and P/W of each mode.
+    pub states: &'a [[f64; 4]],
+}
+
+/// Modal sums: sum phi q (rad), sum phi P (rad/s), and the change of the inertia as xx, yy, zz, yz, zx and xy (kg
+/// m²).
+pub(super) struct ModalSumsResult {
+    pub elastic_rotation: Vector,
+    pub elastic_rate: Vector,
+    pub inertia_change: [f64; 6],
+}
+
+impl SimdTask for SumModes<'_> {
+    type Output = ModalSumsResult;
+
+    #[inline(always)]
+    fn run<R: LaneFloat>(self, kind: R) -> ModalSumsResult {
+        let Self { model, states } = self;
+        let zero = kind.splat(0.0);
+        let (mut elastic_rotation, mut elastic_rate, mut inertia_change) = (zero, zero, [zero; 2]);
+        let count = model.padded.len().min(states.len());
+        let (padded, states) = (&model.padded[..count], &states[..count]);
+        for index in 0..count {
+            let (of, [q, p, ..]) = (&padded[index], states[index]);
+            let (rotation, [first, second]) = (kind.load(&of.rotation), &of.moments);
+            elastic_rotation = elastic_rotation + rotation * q;
+            elastic_rate = elastic_rate + rotation * (of.frequency * p);
+            inertia_change =
+                [inertia_change[0] + kind.load(first) * q, inertia_change[1] + kind.load(second) * q];
+        }
+        let mut kept = [[0.0; 4]; 4];
+        elastic_rotation.store(&mut kept[0]);
+        elastic_rate.store(&mut kept[1]);
+        inertia_change[0].store(&mut kept[2]);
+        inertia_change[1].store(&mut kept[3]);
+        let [elastic_rotation, elastic_rate, first, second] = kept;
+        ModalSumsResult {
+            elastic_rotation: Vector::new(elastic_rotation[0], elastic_rotation[1], elastic_rotation[2]),
+            elastic_rate: Vector::new(elastic_rate[0], elastic_rate[1], elastic_rate[2]),
+            inertia_change: [first[0], first[1], first[2], first[3], second[0], second[1]],
+        }
+    }
 }

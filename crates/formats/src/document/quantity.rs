@@ -50,7 +50,7 @@ fn distributions(uncertain: &mut Value, schema: &Json, faults: &mut Vec<ConfigEr
     let Value::Table(uncertain) = uncertain else { return };
     for (key, value) in uncertain.iter_mut() {
         let (ends, Value::Table(kinds)) = (ends_at(schema, key), value) else { continue };
-        // An unknown key is reported elsewhere.
+        // Of a key that there is not, that is the mistake.
         if !ends.iter().any(|node| has_type(node.schema, "number")) {
             continue;
         }

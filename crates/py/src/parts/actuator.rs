@@ -3,7 +3,7 @@
 use std::any::Any;
 
 use flexsc_core::control::actuator::{
-    Actuator, ActuatorInput, ActuatorSpec, AxisActuatorContext as EngineSetting, AxisEffort, Demand,
+    Actuator, ActuatorEvent, ActuatorSpec, AxisActuatorContext as EngineSetting, AxisEffort, Demand,
 };
 use flexsc_core::control::custom::PartError;
 use flexsc_core::control::part::Part;
@@ -253,10 +253,10 @@ impl Actuator for Acting {
         onto.hub.iter_mut().zip(&self.torques).for_each(|(hub, torque)| *hub += torque);
     }
 
-    fn update(&mut self, now: Exact, input: ActuatorInput<'_>) {
-        match input {
-            ActuatorInput::MagneticField(field) => self.field = Some(field),
-            ActuatorInput::Due(rigid) if self.due == Some(now) => self.act(now, rigid),
+    fn update(&mut self, now: Exact, event: ActuatorEvent<'_>) {
+        match event {
+            ActuatorEvent::MagneticField(field) => self.field = Some(field),
+            ActuatorEvent::Due(rigid) if self.due == Some(now) => self.act(now, rigid),
             _ => {}
         }
     }

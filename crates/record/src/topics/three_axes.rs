@@ -117,7 +117,7 @@ rows! {
         modes: Vec<ElasticEstimate>,
     }
     /// Wheels of a spatial body.
-    Wheels = "/wheels" at Period {
+    Wheels = "/wheels" at Period panels ["wheels": "Speeds of the wheels (rad/s)", "wheel" speed_rad_s] {
         /// Each wheel, in the order of the scenario.
         wheels: Vec<Wheel>,
     }
@@ -138,7 +138,10 @@ rows! {
         rate_rad_s: f64,
     }
     /// Control moment gyros of a spacecraft.
-    ControlMomentGyros = "/control_moment_gyros" at Period {
+    ControlMomentGyros = "/control_moment_gyros" at Period panels [
+        "gimbals": "Angles of the gimbals (rad)", "gimbal" angle_rad;
+        "singularity": "Singularity measure of the gimbals", "measure" singularity
+    ] {
         /// Each, in the order of the scenario.
         gyros: Vec<ControlMomentGyro>,
         /// Angular momentum of their rotors along the body's x (N m s).
@@ -223,7 +226,7 @@ rows! {
         rate_rad_s: f64,
     }
     /// Hinges of a spacecraft's appendages.
-    Hinges = "/hinges" at Period {
+    Hinges = "/hinges" at Period panels ["hinges": "Angles of the hinges (rad)", "hinge" angle_rad] {
         /// Each hinge, in the order of the appendages.
         hinges: Vec<HingeMotion>,
     }

@@ -14,8 +14,11 @@ mod surroundings;
 #[cfg(test)]
 mod tests;
 
+use std::f64::consts::TAU;
+
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Finite;
+use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -29,6 +32,9 @@ pub use orbit_environment::{EnvironmentObservation, OrbitEnvironment};
 pub use solar_pressure::{SolarPlate, SolarPressure};
 pub use sun::Sun;
 pub use surroundings::SurroundingsState;
+
+/// Largest number of orbits in a run for which the planet's shadow is computed.
+const MOST_ORBITS: f64 = 1e6;
 
 /// The environment of a body with three axes. Its torques add up.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -77,6 +83,19 @@ impl Environment {
         }
         let pressed = self.solar_pressure.as_ref().and_then(|pressure| pressure.fault(self.sun.is_some()));
         pressed.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
+    }
+
+    /// Checks the environment against a run of this duration, with a date of its start or without; returns a key within the
+    /// environment and the reason.
+    pub fn run_error(&self, duration: Span, has_date: bool) -> Option<ConfigError> {
+        if self.sun == Some(Sun::Epoch) && !has_date {
+            return Some(ConfigError::new("sun", "follows from the scenario's `epoch`, and there is none"));
+        }
+        let turns = self.orbit.filter(|_| self.sun.is_some())?.mean_motion() * duration.seconds() / TAU;
+        let why = || {
+            format!("goes around {turns:.1e} times in this run, and shadows are known for {MOST_ORBITS:.0e}")
+        };
+        (turns > MOST_ORBITS).then(|| ConfigError::new("orbit", why()))
     }
 
     /// Returns the key and the reason, if an orbit is given twice or is missing.

@@ -1,4 +1,5 @@
-//! Every predicted and certified trip must equal the trip of the certified search.
+//! Every predicted and certified trip of relay runs must equal the trip of the certified search;
+//! `tests/crossings.rs` has motions of all kinds.
 
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::crossing::first_crossing;
@@ -152,53 +153,4 @@ fn so_they_are_of_damped_modes() {
     study(&mut seen, &[(0.44, 0.0213, 0.01)], 0.33, 300);
     study(&mut seen, &[(0.44, 0.0213, 0.0), (0.755, 0.0216, 0.99)], 0.33, 300);
     assert!(seen.worst < 1e-17 && seen.certain > 1000, "{:e}, {}", seen.worst, seen.certain);
-}
-
-#[test]
-fn motions_of_all_kinds_have_no_other_first_trip() {
-    random_motions(15, |_| 0.0);
-}
-
-#[test]
-fn damped_modes_have_no_earlier_crossing() {
-    random_motions(16, |draw| 0.97 * draw * draw * draw.abs());
-}
-
-/// Compares many motions with modes of random damping ratios.
-fn random_motions(seed: u64, ratio: impl Fn(f64) -> f64) {
-    // Linear congruential generator of uniform numbers in [-1, 1).
-    let mut bits = seed;
-    let mut draw = || {
-        bits = bits.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        (bits >> 11) as f64 / (1_u64 << 52) as f64 - 1.0
-    };
-    let mut seen = Seen::default();
-    for _ in 0..40_000 {
-        let frequencies = [0.3 + 0.2 * draw(), 1.0 + 0.5 * draw()];
-        let modes = match ratio(1.0) {
-            0.0 => frequencies.map(|frequency| (frequency, 0.02, 0.0)),
-            _ => frequencies.map(|frequency| (frequency, 0.02, ratio(draw()))),
-        };
-        let body = body(&modes);
-        let mut state = body.initial_state();
-        (state.rigid_angle, state.rigid_rate) = (1e-3 * draw(), 4e-5 * draw());
-        let size = libm::exp(-8.0 + 4.0 * draw()) * 1e-2;
-        for phase in &mut state.modes {
-            (phase.displacement, phase.quadrature) = (size * draw(), size * draw());
-        }
-        let mut arc = UncoupledSegment::new(&body);
-        arc.depart(&state, &SegmentInput { constant: 4e-6 * draw() * draw(), waveform: None });
-        let guards = [Guard::at_least(1.2e-3 * draw()), Guard::at_most(1.2e-3 * draw())];
-        let guards = if draw() < 0.0 { &guards[..1] } else { &guards };
-        let horizon = Span::from_seconds(100.0 + 99.0 * draw());
-        seen.compare(&mut arc, guards, horizon, &mut state);
-    }
-    assert!(seen.worst < 1e-17, "{:e}", seen.worst);
-    assert!(
-        seen.certain > seen.arcs / 10 && seen.trips > 3000,
-        "{} {} {}",
-        seen.certain,
-        seen.trips,
-        seen.arcs
-    );
 }

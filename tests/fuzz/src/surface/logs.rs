@@ -5,6 +5,8 @@ use std::io::{self, Cursor};
 use flexsc_core::Scenario;
 use flexsc_core::campaign::{Campaign, CampaignRun};
 use flexsc_core::record::{Detail, LogBytes, RunEnd};
+use flexsc_view::scene::Scene;
+use flexsc_view::with_layout;
 use prost::Message as _;
 use prost_types::field_descriptor_proto::{Label, Type};
 use prost_types::{
@@ -52,8 +54,9 @@ fn logged(text: &str, detail: Detail) -> Result<Vec<u8>, Box<dyn std::error::Err
     let scenario = Scenario::parse("s.toml", text)?;
     let study = Campaign::new(scenario, "s.toml", None)?;
     let run = CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() };
-    let mut log = LogBytes::new(&Campaign::provenance(&run, detail), detail)?;
-    let metrics = Campaign::simulate(&run, &mut log)?;
+    let from = with_layout(Campaign::provenance(&run), &run.scenario, detail);
+    let mut log = LogBytes::new(&from, detail)?;
+    let metrics = Campaign::simulate(&run, (&mut log, Scene::for_detail(&run.scenario, detail)))?;
     Ok(log.finish(&metrics, RunEnd::Complete)?)
 }
 

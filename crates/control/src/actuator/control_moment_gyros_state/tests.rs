@@ -118,10 +118,10 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
     assert!((steered.largest_error_nm - (torque - Vector::from(TORQUE)).norm()).abs() < 1e-14);
     // The torque they counteract is part of their torque.
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
-    gimbals.update(Instant::START, ActuatorInput::CounterTorque(Vector::new(0.1, 0.2, -0.3)));
-    demand(&mut gimbals, at(0.0), TORQUE);
-    let torque = applied(&gimbals, at(0.0));
-    assert!((torque - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
+    gimbals.update(Instant::START, ActuatorEvent::CounterTorque(Vector::new(0.1, 0.2, -0.3)));
+    ask(&mut gimbals, at(0.0), TORQUE);
+    let given = applied(&gimbals, at(0.0));
+    assert!((given - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
 }
 
 /// Drives gimbals by a constant torque along -x, so that their momentum along x grows, for `updates` of 0.05 s. Returns
@@ -132,7 +132,7 @@ fn driven(keys: &str, updates: u32) -> (f64, f64) {
     let mut most = 0.0_f64;
     for _ in 1..updates {
         let now = gimbals.due().expect("an update");
-        gimbals.update(now, ActuatorInput::Due([0.0; 3]));
+        gimbals.update(now, ActuatorEvent::Due([0.0; 3]));
         most = most.max(gimbals.stored_momentum(now)[0] / 15.0);
     }
     (most, gimbals.steered.largest_rate_rad_s)
@@ -224,7 +224,7 @@ fn a_gimbal_that_fails_stands_still_and_nobody_knows() {
     let mut gimbals = start(&format!("{faults}\nsteering = \"pseudo_inverse\"\n{ANGLES}"));
     demand(&mut gimbals, at(0.0), TORQUE);
     assert_eq!(gimbals.due(), Some(at(1.0)));
-    gimbals.update(at(1.0), ActuatorInput::Due([0.0; 3]));
+    gimbals.update(at(1.0), ActuatorEvent::Due([0.0; 3]));
     assert_eq!(gimbals.rates[1], 0.0);
     assert!(gimbals.rates[0] != 0.0);
     let believed = [0, 1, 2].map(|axis| gimbals.effort(axis).reduced_moment * 100.0);
@@ -232,7 +232,7 @@ fn a_gimbal_that_fails_stands_still_and_nobody_knows() {
     assert!((torque - Vector::from(believed)).norm() > 0.1);
     let held = gimbals.angles_at(at(1.9))[1];
     assert_eq!(held, gimbals.angles_at(at(1.0))[1]);
-    gimbals.update(at(2.0), ActuatorInput::Due([0.0; 3]));
+    gimbals.update(at(2.0), ActuatorEvent::Due([0.0; 3]));
     assert_eq!(gimbals.rates[1], gimbals.commanded[1]);
 }
 

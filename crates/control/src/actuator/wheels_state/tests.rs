@@ -72,7 +72,7 @@ fn a_wheel_stops_at_its_limit_exactly() {
     let mut wheels = start("torque = 0.4\nmomentum = 9.0");
     demand(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
     assert_eq!(wheels.due(), Some(at(2.5)));
-    wheels.update(at(2.5), ActuatorInput::Due([0.0; 3]));
+    wheels.update(at(2.5), ActuatorEvent::Due([0.0; 3]));
     let motion = wheels.wheels(at(9.0), [0.0; 3]);
     assert!((motion[0].momentum_nm_s - 9.0).abs() < 1e-14 && (motion[1].momentum_nm_s + 4.4).abs() < 1e-13);
     // The two wheels away from the limit continue; all do away from the limit.

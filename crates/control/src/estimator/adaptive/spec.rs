@@ -6,6 +6,11 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{Gradient, Recurrence, Tracker};
+use crate::offers::Offers;
+use crate::requirement::{Requirements, Rule};
+
+/// Tolerance of rounded shares of the demand.
+const ROUNDING: f64 = 1e-9;
 
 /// Relative frequency difference below which modes cannot be distinguished.
 const MERGE: f64 = 0.08;
@@ -92,6 +97,24 @@ impl Default for Adaptive {
 }
 
 impl Adaptive {
+    /// Adds the requirements of the observers on the other parts of a scenario.
+    pub(in crate::estimator) fn requires(offers: &Offers, needs: &mut Requirements) {
+        needs.require(
+            Rule::ObserverInputs,
+            !offers.has_actuator(|actuator| actuator.programs_pulses),
+            "",
+            "predicts by the pulses of groups: it needs jets with `allocation = \"groups\"`",
+        );
+        let is_part = |share: &f64| *share > 0.0 && *share < 1.0 - ROUNDING;
+        let mut jets = offers.actuators.iter().filter(|member| member.offers.has_jets);
+        needs.require(
+            Rule::ObserverInputs,
+            !jets.any(|member| member.shares.iter().any(is_part)),
+            "",
+            "predicts what one actuator about each axis does: it needs jets with all of the demand about theirs",
+        );
+    }
+
     /// Returns true for the form `recurrence`.
     fn recurs(&self) -> bool {
         matches!(self.form, ObserverForm::Recurrence(_))

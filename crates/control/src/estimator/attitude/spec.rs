@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 
 use super::{ElasticStates, FilterModes, GainMethod, GyroNoise};
 use crate::estimator::kalman::Prior;
+use crate::offers::Offers;
+use crate::requirement::{Requirements, Rule};
 use crate::sensor::{Gyro, SensorKind};
 
 /// Estimates the attitude and the gyro bias of a body with three axes.
@@ -113,6 +115,16 @@ pub struct FilterSetup {
 pub type SensorMounts<'a> = (&'a Spatial, &'a [String], bool);
 
 impl AttitudeFilter {
+    /// Adds the requirements of the filter on the other parts of a scenario, except its sensors.
+    pub(in crate::estimator) fn requires(offers: &Offers, needs: &mut Requirements) {
+        needs.require(
+            Rule::AttitudeAxes,
+            offers.body.axes == 3,
+            "",
+            "is for three axes: use `[estimator.kalman]` for a body with one angle",
+        );
+    }
+
     /// Returns the setup for these sensors, with the law's period `cycle` and the sensors' mounts, if there are any.
     ///
     /// # Errors

@@ -4,6 +4,7 @@
 //! unscented filter estimate ratios of the natural frequencies, which drift as integrated random walks.
 
 mod filter;
+mod frequency_bounds;
 mod lock;
 mod model;
 mod sigma;

@@ -1,7 +1,7 @@
 //! Construction of the sampled loop that a scenario describes.
 
-use flexsc_control::actuator::{ActuatorKind, BackEmfRate, Wheel};
-use flexsc_control::law::{LawKind, Pd};
+use flexsc_control::actuator::{ActuatorKind, LinearDrive, Wheel};
+use flexsc_control::law::Pd;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Positive;
 use flexsc_spacecraft::body::CommandedQuantity;
@@ -28,7 +28,7 @@ impl SampledLoop {
                 "turns about three axes: only loops with one angle are analysed",
             );
         };
-        let LawKind::Pd(law) = &scenario.law else {
+        let Some(law) = scenario.law.pd() else {
             return refused("law", "must be `pd`: only sampled loops are analysed");
         };
         if let Some(fault) = scenario.validate_for_loop_analysis() {
@@ -47,25 +47,16 @@ impl SampledLoop {
             );
         }
         let inertia = body.inertia.get();
-        let (wheel, gain, back_emf, total, delay) = match scenario.actuator.only_actuator() {
-            Some(ActuatorKind::Ideal(_)) => (None, 1.0, 0.0, true, 0.0),
-            Some(ActuatorKind::Wheel(wheel)) => {
-                let total = wheel.opposes == BackEmfRate::BodyRate;
-                (Some(wheel), wheel.gain.get(), wheel.back_emf.get(), total, wheel.delay.get())
-            }
+        let drive = match scenario.actuator.only_actuator().map(ActuatorKind::linear_drive) {
+            Some(Some(drive)) => drive,
             None => {
                 return refused("actuator", "must be one, `wheel` or `ideal`, for the analysis of the loop");
             }
-            Some(
-                ActuatorKind::Hold(_)
-                | ActuatorKind::Thrusters(_)
-                | ActuatorKind::Wheels(_)
-                | ActuatorKind::ControlMomentGyros(_)
-                | ActuatorKind::Magnetorquers(_)
-                | ActuatorKind::Jets(_)
-                | ActuatorKind::Own(_),
-            ) => return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop"),
+            Some(None) => {
+                return refused("actuator", "must be `wheel` or `ideal` for the analysis of the loop");
+            }
         };
+        let LinearDrive { gain, back_emf, opposes_body_rate, delay, wheel } = drive;
         let late = delay / law.period.seconds();
         if late > MOST_LATE {
             let why = format!(
@@ -83,7 +74,7 @@ impl SampledLoop {
         });
         let sampled = Self {
             back_emf: back_emf / inertia,
-            total,
+            total: opposes_body_rate,
             authority: gain / inertia,
             k_p: law.k_p.get(),
             k_d: law.k_d.get(),

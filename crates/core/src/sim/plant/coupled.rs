@@ -22,7 +22,7 @@ use crate::scenario::{AppendageDrives, DriveProfiles};
 /// Coupled motion, with the data that convert loads and true state between the plant and the integrator.
 #[derive(Clone, Debug)]
 pub struct CoupledMotion {
-    turning: ThreeAxisMotion,
+    motion: ThreeAxisMotion,
     frequencies: Vec<f64>,
     /// Modal rotations of the hub, and (`sensed`, `acts`) their differences at the first sensor and where torques act.
     hub: Vec<Vector>,
@@ -132,16 +132,16 @@ impl CoupledMotion {
         let hub: Vec<Vector> = flexible.modes.iter().map(|mode| mode.rotation).collect();
         let beyond = |at: &[Vector]| at.iter().zip(&hub).map(|(at, hub)| at - hub).collect();
         let start = (body.attitude.get(), vector(&body.rate));
-        let mut turning = ThreeAxisMotion::with_shared(common, flexible, start, &modes);
+        let mut motion = ThreeAxisMotion::with_shared(common, flexible, start, &modes);
         let placed = |moving: Translation| {
-            let [began, _] = moving.position(turning.seen());
+            let [began, _] = moving.position(motion.view());
             (moving, began)
         };
         let moving = moving.map(placed);
-        turning.set_bearings(bearings.to_vec());
+        motion.set_bearings(bearings.to_vec());
         Self {
             translation: moving,
-            turning,
+            motion,
             sensed: beyond(sensed),
             acts: beyond(acts),
             outside: ExternalTorques { own: body.disturbance.clone(), around, sines: Vec::new() },
@@ -157,9 +157,9 @@ impl CoupledMotion {
     pub fn with_appendages(mut self, drives: Option<&AppendageDrives>) -> Self {
         let Some(AppendageDrives { driven, courses }) = drives else { return self };
         let Some(driving) = ArticulatedMotion::new(driven.clone(), courses.clone()) else { return self };
-        self.turning.start_drives(driving);
+        self.motion.start_drives(driving);
         self.translation = self.translation.map(|(moving, _)| {
-            let [began, _] = moving.position(self.turning.seen());
+            let [began, _] = moving.position(self.motion.view());
             (moving, began)
         });
         self.drive_angles = Some((courses.clone(), 0));
@@ -173,7 +173,7 @@ impl CoupledMotion {
 
     /// Returns angle (rad) and rate (rad/s) of each hinge at the current instant.
     pub fn hinges(&self) -> &[[f64; 2]] {
-        &self.turning.seen().hinges
+        &self.motion.view().hinges
     }
 
     /// Returns angle (rad) and rate (rad/s) of each drive at `t` seconds after the start.
@@ -185,26 +185,26 @@ impl CoupledMotion {
     /// Returns the modal frequencies (rad/s) and rotations of the hub at the current instant; `None` without drives and
     /// hinges.
     pub fn modes(&self) -> Option<(&[f64], &[Vector])> {
-        let seen = self.turning.seen();
+        let seen = self.motion.view();
         self.drive_angles.as_ref().map(|_| (&seen.frequencies[..], &seen.rotations[..]))
     }
 
     /// Returns the energy of motion and deformation of each mode (J).
     pub fn modal_energies(&self) -> impl Iterator<Item = f64> + '_ {
-        self.turning.energies()
+        self.motion.energies()
     }
 
     /// Replaces the modes by those of the drive angles that are due at `began` seconds after the start, before a
     /// segment begins.
     fn change_modal_basis(&mut self, began: f64) {
-        self.turning.set_segment_start(began);
+        self.motion.set_segment_start(began);
         let Some((courses, next)) = &mut self.drive_angles else { return };
         let mut to = None;
         while let Some((_, middle)) = courses.changes.get(*next).filter(|(at, _)| at.seconds() <= began) {
             (to, *next) = (Some(*middle), *next + 1);
         }
         if let Some(middle) = to {
-            self.turning.change_basis(middle);
+            self.motion.change_basis(middle);
         }
     }
 
@@ -217,39 +217,45 @@ impl CoupledMotion {
         began: f64,
         go_on: impl FnMut() -> Result<(), E>,
     ) -> Result<Option<f64>, E> {
-        self.turning.advance(h, self.outside.since(began), go_on)
+        self.motion.advance(h, self.outside.since(began), go_on)
     }
 
     /// Advances the body to `h` seconds after the segment's start, the instant at which a rotor sticks or lets go.
     pub fn stop_at_bearing_event(&mut self, h: f64, began: f64) {
-        self.turning.reach(h, self.outside.since(began));
+        self.motion.stop_at_event(h, self.outside.since(began));
     }
 
     /// Returns an upper bound on the frequencies in the motion at the current instant (rad/s).
     pub fn fastest(&self) -> f64 {
-        self.turning.fastest(self.outside.since(0.0).map(|(outside, _)| outside))
+        self.motion.fastest(self.outside.since(0.0).map(|(outside, _)| outside))
     }
 
     /// Returns the slip states of the rotors in bearings.
     pub fn slips(&self) -> &[SlipDirection] {
-        self.turning.slip_states()
+        self.motion.slip_states()
     }
 
     /// Returns the heat of all rotors' friction since the start (J); `None` without bearings.
     pub fn friction_heat(&self) -> Option<f64> {
-        self.turning.friction_heat()
+        self.motion.friction_heat()
     }
 
     /// Returns the states of the rotors in bearings at the current instant, in a segment that began `began` seconds
     /// after the start.
     pub fn rotor_states(&self, began: f64) -> Vec<RotorObservation> {
-        self.turning.rotor_observations(self.outside.since(began))
+        self.motion.rotor_observations(self.outside.since(began))
     }
 
     /// Returns the torque of the environment and the body's own disturbance at the current instant `t` (s), in hub axes
-    /// (N m).
-    pub fn environment_torque(&self, t: f64) -> Vector {
-        self.outside.surrounding(t, self.attitude(), &self.turning.inertia())
+    /// (N m); `None` if there is neither.
+    pub fn environment_torque(&self, t: f64) -> Option<Vector> {
+        let acts = self.outside.around.is_some() || self.outside.own.is_some();
+        acts.then(|| self.outside.surrounding(t, self.attitude(), &self.motion.inertia()))
+    }
+
+    /// Returns the environment of the body; `None` without one.
+    pub fn surroundings(&self) -> Option<&SurroundingsState> {
+        self.outside.around.as_ref()
     }
 
     /// Begins a motion segment at the current instant, `began` seconds after the start, under the loads from now on.
@@ -259,10 +265,11 @@ impl CoupledMotion {
             around.set_magnetic_moment(wrench.moment);
         }
         self.outside.sines.clone_from(&wrench.sines);
-        let SegmentLoads { torque, forces, levers, rotors, gimbals, push: accelerated } = &mut self.acting;
-        levers.clone_from(&wrench.levers);
+        let SegmentLoads { torque, forces, force_arms, rotors, gimbals, com_acceleration } = &mut self.acting;
+        force_arms.clone_from(&wrench.levers);
         let moving = self.translation.as_ref();
-        *accelerated = moving.map_or_else(Vector::zeros, |(moving, _)| moving.acceleration(&wrench.force));
+        *com_acceleration =
+            moving.map_or_else(Vector::zeros, |(moving, _)| moving.acceleration(&wrench.force));
         *torque = push + hub;
         rotors.clone_from(&wrench.rotors);
         gimbals.clone_from(&wrench.gimbals);
@@ -273,14 +280,14 @@ impl CoupledMotion {
         forces.clear();
         forces.extend(beyond.map(|((of_hub, acts), force)| force - of_hub.dot(&push) + acts.dot(&hub)));
         self.change_modal_basis(began);
-        self.turning.depart(&self.acting);
-        self.turning.resolve_stick_slip(self.outside.since(began));
+        self.motion.begin_segment(&self.acting);
+        self.motion.resolve_stick_slip(self.outside.since(began));
     }
 
     /// Writes the motion as seen from the mean axes into `state`.
     pub fn write_state(&self, rigid: &RigidBody, state: &mut ThreeAxisState) {
-        let seen = self.turning.seen();
-        state.turn = rigid.start(seen.mean, seen.rigid);
+        let seen = self.motion.view();
+        state.turn = rigid.start(seen.mean_attitude, seen.rigid_rate);
         let modes = seen.displacements.iter().zip(&seen.rates).zip(&self.frequencies);
         for (phase, ((displacement, rate), w)) in state.modes.iter_mut().zip(modes) {
             *phase = ModeState { displacement: *displacement, quadrature: rate / w };
@@ -290,23 +297,23 @@ impl CoupledMotion {
     /// Writes the true state, except for the sky, into `truth`, with the modal rotations `sensed` at the sensor; the
     /// attitude is that of the hub. Returns the elastic part of the rates (rad/s).
     pub fn write_truth(&self, sensed: &[Vector], truth: &mut Truth) -> Vector {
-        let seen = self.turning.seen();
+        let seen = self.motion.view();
         let sum = |shapes: &[Vector], of: &[f64]| -> Vector {
             shapes.iter().zip(of).fold(Vector::zeros(), |sum, (shape, q)| sum + shape * *q)
         };
         let elastic = sum(sensed, &seen.rates);
         truth.orientation = Orientation::Attitude(seen.attitude);
         truth.elastic = sum(&self.sensed, &seen.displacements).into();
-        truth.rate = (seen.rigid + elastic).into();
-        truth.rigid = seen.rigid.into();
-        truth.turned = (seen.turned + sum(sensed, &seen.displacements)).into();
+        truth.rate = (seen.rigid_rate + elastic).into();
+        truth.rigid = seen.rigid_rate.into();
+        truth.turned = (seen.rigid_angle + sum(sensed, &seen.displacements)).into();
         elastic
     }
 
     /// Returns the displacement of the first point since the start (m), and its velocity (m/s), if any force can act.
     pub fn position(&self) -> Option<[Vector; 2]> {
         self.translation.as_ref().map(|(moving, began)| {
-            let [position, velocity] = moving.position(self.turning.seen());
+            let [position, velocity] = moving.position(self.motion.view());
             [position - began, velocity]
         })
     }
@@ -314,8 +321,8 @@ impl CoupledMotion {
     /// Returns the specific force at a mount (m/s²), in axes that rotate with it, at the current instant of a segment
     /// that began `began` seconds after the start: the acceleration without that of free fall.
     pub fn specific_force(&self, place: &AccelerometerMount, began: f64) -> Vector {
-        let seen = self.turning.seen();
-        let found = self.turning.accelerations(self.outside.since(began));
+        let seen = self.motion.view();
+        let found = self.motion.accelerations(self.outside.since(began));
         let sum = |shapes: &[Vector], of: &[f64]| -> Vector {
             shapes.iter().zip(of).fold(Vector::zeros(), |sum, (shape, q)| sum + shape * *q)
         };
@@ -334,13 +341,13 @@ impl CoupledMotion {
 
     /// Returns the attitude of the hub.
     pub fn attitude(&self) -> &Quaternion<f64> {
-        &self.turning.seen().attitude
+        &self.motion.view().attitude
     }
 
     /// Returns the energy of the rotation (J), and the angular momentum including rotors (N m s).
     pub fn energy(&self) -> (f64, f64) {
-        let seen = self.turning.seen();
-        (seen.rotational, seen.momentum.norm())
+        let seen = self.motion.view();
+        (seen.rotational_energy, seen.momentum.norm())
     }
 }
 

@@ -1,30 +1,44 @@
-//! Plant: model, motion and true state of the body, with one axis in closed form where there is one, or with three
-//! axes.
+//! Plant: the flow of the body and its true state at the last evaluation.
 
 mod coupled;
-mod external_motion;
+mod external;
+mod flow;
 mod one_axis;
-mod three_axis;
+mod one_axis_body;
+mod one_way;
+mod three_axis_body;
+mod three_axis_rows;
+mod two_way;
 
+use std::any::Any;
 use std::borrow::Cow;
 
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
-use flexsc_dynamics::AxisState;
 use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::three_axis::RotorObservation;
+use flexsc_dynamics::three_axis::{FlexibleBody, RotorObservation, SlipDirection};
+use flexsc_dynamics::{AxisState, MotionPiece};
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::polynomial::Polynomial;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::body::BodyAxes;
+use flexsc_spacecraft::body::{BodyAxes, Drift, Spatial};
 use flexsc_spacecraft::environment::EnvironmentObservation;
+use flexsc_spacecraft::flow::ExternalMotion;
 use flexsc_spacecraft::wrench::Wrench;
 
 use super::SimulationError;
-use crate::scenario::Scenario;
+use crate::scenario::{ResolvedScenario, Scenario};
+
+use external::ExternalFlow;
+use one_way::OneWayFlow;
+use two_way::TwoWayFlow;
 
 pub use coupled::AccelerometerMount;
-pub use one_axis::{AppliedTorque, OneAxisPlant};
-pub use three_axis::ThreeAxisPlant;
+pub use flow::{Flow, FlowQuantities};
+pub use one_axis::{AppliedTorque, OneAxisFlow};
+pub use one_axis_body::OneAxisQuantities;
+pub use three_axis_body::ThreeAxisQuantities;
 
 /// True state before the first evaluation.
 const INITIAL_TRUTH: Truth = Truth {
@@ -38,77 +52,81 @@ const INITIAL_TRUTH: Truth = Truth {
 
 /// Moving body.
 #[derive(Clone, Debug)]
-pub enum Plant {
-    /// One-axis body.
-    OneAxis(Box<OneAxisPlant>),
-    /// Three-axis body.
-    ThreeAxis(Box<ThreeAxisPlant>),
+pub struct Plant {
+    flow: Box<dyn Flow>,
+    /// True state at the last evaluation.
+    truth: Truth,
 }
 
 impl Plant {
     /// Creates the plant of a scenario at the start, without loads.
     pub fn new(scenario: &Scenario) -> Self {
         match scenario.model.axes() {
-            BodyAxes::One(body) => Self::OneAxis(Box::new(OneAxisPlant::new(scenario, body))),
+            BodyAxes::One(body) => Self::with_flow(OneAxisFlow::new(scenario, body)),
             BodyAxes::Three(body) => {
-                let plant = ThreeAxisPlant::new(body, scenario.model.flexible(), &scenario.study);
-                Self::ThreeAxis(Box::new(plant.drifting(body, scenario.drift.as_ref())))
+                let drift = scenario.drift.as_ref();
+                Self::with_three_axes(body, scenario.model.flexible(), drift, &scenario.study)
             }
         }
     }
 
-    /// Integrates motions without a closed form up to `now`, unless the record fails; returns the earlier instant at
-    /// which it stopped because a wheel stuck or let go.
-    pub fn advance(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError> {
-        match self {
-            Self::OneAxis(plant) => plant.approach(now, record).map(|()| None),
-            Self::ThreeAxis(plant) => plant.approach(now, record),
+    /// Creates the plant of a three-axis body; with `flexible`, the modes act back on the rotation.
+    fn with_three_axes(
+        body: &Spatial,
+        flexible: Option<&FlexibleBody>,
+        drift: Option<&Drift>,
+        study: &ResolvedScenario,
+    ) -> Self {
+        match flexible {
+            Some(flexible) => Self::with_flow(TwoWayFlow::new(body, flexible, study)),
+            None => Self::with_flow(OneWayFlow::new(body, study).with_drift(body, drift)),
         }
     }
 
-    /// Returns the states of the wheels in bearings at the current instant.
-    pub fn wheel_bearings(&self) -> Vec<RotorObservation> {
-        if let Self::ThreeAxis(plant) = self { plant.wheel_bearings() } else { Vec::new() }
+    fn with_flow(flow: impl Flow) -> Self {
+        Self { flow: Box::new(flow), truth: INITIAL_TRUTH }
+    }
+
+    /// Integrates a motion without a closed form up to `now`, unless the record fails; returns the earlier instant at
+    /// which it stopped because a wheel stuck or let go.
+    #[inline]
+    pub fn advance(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError> {
+        self.flow.advance(now, record)
     }
 
     /// Advances the body to `now`, evaluates the true state, and returns it.
     #[inline]
     pub fn evaluate(&mut self, now: Instant) -> Result<&Truth, SimulationError> {
-        let truth = match self {
-            Self::OneAxis(plant) => plant.evaluate(now),
-            Self::ThreeAxis(plant) => plant.measurable(),
-        };
-        truth.ok_or(SimulationError::NonFinite { at: now })
+        if self.flow.evaluate(now, &mut self.truth) {
+            Ok(&self.truth)
+        } else {
+            Err(SimulationError::NonFinite { at: now })
+        }
     }
 
     /// Returns the true state of the last evaluation.
     #[inline]
     pub fn truth(&self) -> &Truth {
-        match self {
-            Self::OneAxis(plant) => plant.viewed(),
-            Self::ThreeAxis(plant) => plant.viewed(),
-        }
+        &self.truth
     }
 
     /// Returns the true state of the last evaluation at the mounting point of a sensor.
     pub fn truth_at_sensor(&self, sensor: usize) -> Cow<'_, Truth> {
-        match self {
-            Self::ThreeAxis(plant) if sensor > 0 => Cow::Owned(plant.at_sensor(sensor)),
-            _ => Cow::Borrowed(self.truth()),
+        match self.quantities().three_axis() {
+            Some(motion) if sensor > 0 => Cow::Owned(motion.body().truth_at_sensor(&self.truth, sensor)),
+            _ => Cow::Borrowed(&self.truth),
         }
     }
 
     /// Returns an upper bound on the frequencies in a three-axis motion at the current instant (rad/s); 0 for one axis.
     pub fn fastest_frequency(&self) -> f64 {
-        if let Self::ThreeAxis(plant) = self { plant.fastest() } else { 0.0 }
+        self.quantities().three_axis().map_or(0.0, ThreeAxisQuantities::fastest_frequency)
     }
 
     /// Begins a motion segment at the current instant, under the loads from now on.
+    #[inline]
     pub fn begin_segment(&mut self, wrench: &Wrench) {
-        match self {
-            Self::OneAxis(plant) => plant.depart(wrench),
-            Self::ThreeAxis(plant) => plant.depart(wrench),
-        }
+        self.flow.begin_segment(wrench);
     }
 
     /// Returns the instant and index of the first guard crossing within `horizon`; `None` also for motions without a
@@ -120,30 +138,18 @@ impl Plant {
         horizon: Span,
         record: &mut dyn Record,
     ) -> Result<Option<(Instant, usize)>, RecordError> {
-        match self {
-            Self::OneAxis(plant) => plant.trip(guards, horizon, record),
-            Self::ThreeAxis(_) => Ok(None),
-        }
+        self.flow.crossing(guards, horizon, record)
     }
 
-    /// Records the one-axis motion of the segment that ends at `now`, piece by piece, if the record wants it.
-    pub fn record_pieces(
-        &self,
-        now: Instant,
-        exerted: &AppliedTorque,
-        record: &mut dyn Record,
-    ) -> Result<(), RecordError> {
-        let Self::OneAxis(plant) = self else { return Ok(()) };
-        plant.record_pieces(now, exerted, record)
+    /// Returns the motion about an axis as if that axis were alone; for three axes, with angles counted from `target`.
+    pub fn about_axis(&self, axis: usize, target: &Orientation) -> Cow<'_, AxisState> {
+        self.flow.about_axis(axis, target)
     }
 
     /// Returns the modal state for the monitor of the envelope: that of one axis, or the rotations of the first sensor
     /// by the modes of three axes.
     pub fn modal_state(&self) -> Cow<'_, AxisState> {
-        match self {
-            Self::OneAxis(plant) => Cow::Borrowed(plant.state()),
-            Self::ThreeAxis(plant) => Cow::Owned(plant.swings()),
-        }
+        self.flow.modal_state()
     }
 
     /// Updates the monitor of the envelope with what excites the modes from now on: a torque (N m) on those of one
@@ -153,19 +159,80 @@ impl Plant {
         monitor: &mut WindowedEnvelope,
         now: Instant,
         torque: f64,
-        commanded: impl FnOnce() -> Wrench,
+        commanded: &dyn Fn() -> Wrench,
     ) {
-        match self {
-            Self::OneAxis(plant) => monitor.command(now, plant.state(), torque),
-            Self::ThreeAxis(plant) => monitor.push(now, &plant.swings(), &plant.modal_forces(&commanded())),
+        self.flow.update_monitor(monitor, now, torque, commanded);
+    }
+
+    /// Returns the quantities of the motion beyond the true state, from which its rows are made.
+    #[inline]
+    pub fn quantities(&self) -> FlowQuantities<'_> {
+        self.flow.quantities()
+    }
+
+    /// Records the one-axis motion of the segment that ends at `now`, piece by piece, if the record wants it.
+    #[inline]
+    pub fn record_pieces(
+        &self,
+        now: Instant,
+        applied: &AppliedTorque,
+        record: &mut dyn Record,
+    ) -> Result<(), RecordError> {
+        self.quantities().one_axis().map_or(Ok(()), |motion| motion.record_pieces(now, applied, record))
+    }
+
+    /// Passes the pieces of the one-axis motion between two instants of this segment, and the rigid angle over each, to
+    /// `take`.
+    pub fn expand(
+        &self,
+        span: [Instant; 2],
+        applied: &AppliedTorque,
+        take: &mut dyn FnMut(&MotionPiece, &Polynomial),
+    ) {
+        if let Some(motion) = self.quantities().one_axis() {
+            motion.expand(span, applied, take);
         }
     }
 
-    /// Returns the motion about an axis as if that axis were alone; for three axes, with angles counted from `target`.
-    pub fn about_axis(&self, axis: usize, target: &Orientation) -> Cow<'_, AxisState> {
-        match self {
-            Self::OneAxis(plant) => Cow::Borrowed(plant.state()),
-            Self::ThreeAxis(plant) => Cow::Owned(plant.about(axis, target)),
-        }
+    /// Returns the states of the wheels in bearings at the current instant; empty without friction, imbalance and
+    /// tachometer.
+    #[inline]
+    pub fn wheel_bearings(&self) -> Vec<RotorObservation> {
+        self.coupled().map_or_else(Vec::new, TwoWayFlow::wheel_bearings)
+    }
+
+    /// Returns the slip states of the wheels in bearings.
+    pub fn bearing_states(&self) -> &[SlipDirection] {
+        self.coupled().map_or(&[], TwoWayFlow::bearing_states)
+    }
+
+    /// Returns the specific force at an accelerometer of a spacecraft at the current instant (m/s²), under the loads
+    /// from then on.
+    pub fn specific_force(&self, place: &AccelerometerMount) -> Vector {
+        self.coupled().map_or_else(Vector::zeros, |motion| motion.specific_force(place))
+    }
+
+    /// Returns the motion whose modes act back on the rotation, if the body has it.
+    fn coupled(&self) -> Option<&TwoWayFlow> {
+        self.quantities().three_axis().and_then(ThreeAxisQuantities::coupled)
+    }
+
+    /// Returns the closed-form motion of a one-axis body, for the relay kernel.
+    pub fn one_axis(&mut self) -> Option<&mut OneAxisFlow> {
+        let flow: &mut dyn Any = &mut *self.flow;
+        flow.downcast_mut()
+    }
+
+    /// Returns the motion that a batch computes.
+    pub fn external(&mut self) -> Option<&mut ExternalFlow> {
+        let flow: &mut dyn Any = &mut *self.flow;
+        flow.downcast_mut()
+    }
+
+    /// Hands the motion to a batch from now on; `None` unless the modes are coupled or drift, between segment starts.
+    pub fn take_motion(&mut self) -> Option<ExternalMotion> {
+        let (motion, flow) = self.one_axis()?.take_motion()?;
+        self.flow = Box::new(flow);
+        Some(motion)
     }
 }

@@ -1,49 +1,45 @@
-//! Plant of a one-axis body: its motion segment since the last event, and the current state.
+//! Flow of a one-axis body that the run computes itself: in closed form with certified crossings where there is one.
 
 mod pieces;
 
+use std::borrow::Cow;
+
+use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::{AngleObservation, AxisState, is_bounded};
+use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
-use flexsc_spacecraft::body::{Output, Planar};
+use flexsc_record::{Record, RecordError};
+use flexsc_spacecraft::body::Planar;
 use flexsc_spacecraft::flow::{ChainMotion, CoupledFlow, ExternalMotion, SegmentInput, UncoupledSegment};
 use flexsc_spacecraft::wrench::Wrench;
 
-use super::INITIAL_TRUTH;
-use super::external_motion::ExternalSegment;
+use super::external::ExternalFlow;
+use super::flow::{Flow, FlowQuantities};
+use super::one_axis_body::OneAxisBody;
 use crate::scenario::Scenario;
 
 /// One-axis body with its motion segment and the next guard crossing.
 #[derive(Clone, Debug)]
-pub struct OneAxisPlant {
-    motion: OneAxisFlow,
+pub struct OneAxisFlow {
+    body: OneAxisBody,
+    motion: OneAxisMotion,
+    /// Start of the motion segment.
     departed: Instant,
-    /// State and sensed angle and rate at `seen`.
-    state: AxisState,
-    sight: AngleObservation,
-    evaluated_at: Instant,
-    /// True state at the last evaluation.
-    truth: Truth,
     /// State, sensed motion and instant of the next guard crossing, computed in advance.
     next_crossing: (AxisState, AngleObservation, Instant),
-    frequencies: Vec<f64>,
-    outputs: Vec<Output>,
 }
 
 /// Motion under one input.
 #[derive(Clone, Debug)]
-enum OneAxisFlow {
+enum OneAxisMotion {
     /// Uncoupled modes, in closed form.
     Uncoupled(UncoupledSegment),
     /// Chain of panels, integrated numerically.
     Chain(Box<ChainMotion>),
     /// Coupled or drifting modes.
     Coupled(Box<CoupledFlow>),
-    /// Drifting modes whose motion a batch computes.
-    External(ExternalSegment),
 }
 
 /// Torques of one motion segment, for the metrics.
@@ -57,143 +53,61 @@ pub struct AppliedTorque {
     pub back_emf: (f64, bool),
 }
 
-impl OneAxisPlant {
-    /// Creates the plant of a scenario at the start, without input.
+impl OneAxisFlow {
+    /// Creates the flow of a scenario at the start, without input.
     pub fn new(scenario: &Scenario, body: &Planar) -> Self {
         let state = body.initial_state();
         let mut arc = UncoupledSegment::new(body);
         arc.depart(&state, &SegmentInput::default());
-        let vector_measurement = arc.initial_output();
+        let sensed = arc.initial_output();
         let motion = match (scenario.model.chain(), scenario.coupling(body)) {
-            (Some(chain), _) => OneAxisFlow::Chain(Box::new(ChainMotion::new(
-                chain,
-                vector_measurement.angle,
-                vector_measurement.rate,
-            ))),
-            (None, Some(coupling)) => OneAxisFlow::Coupled(Box::new(coupling)),
-            (None, None) => OneAxisFlow::Uncoupled(arc),
+            (Some(chain), _) => {
+                OneAxisMotion::Chain(Box::new(ChainMotion::new(chain, sensed.angle, sensed.rate)))
+            }
+            (None, Some(coupling)) => OneAxisMotion::Coupled(Box::new(coupling)),
+            (None, None) => OneAxisMotion::Uncoupled(arc),
         };
         Self {
             motion,
             departed: Instant::START,
-            sight: vector_measurement,
-            evaluated_at: Instant::START,
-            truth: INITIAL_TRUTH,
             next_crossing: (state.clone(), AngleObservation::default(), Instant::START),
-            frequencies: body.modes.iter().map(|mode| mode.frequency.get()).collect(),
-            outputs: body.outputs.clone(),
-            state,
+            body: OneAxisBody::new(body, state, sensed),
         }
     }
 
     /// Returns the state at the current instant.
     pub fn state(&self) -> &AxisState {
-        &self.state
-    }
-
-    /// Returns the rates of the modes at the current instant (rad/s).
-    pub fn mode_rates(&self) -> impl Iterator<Item = f64> {
-        self.frequencies.iter().zip(&self.state.modes).map(|(w, phase)| w * phase.quadrature)
-    }
-
-    /// Returns the rate, elastic part included, and the rigid rate (rad/s) at the current instant.
-    pub fn rates(&self) -> [f64; 2] {
-        [self.sight.rate, self.state.rigid_rate]
-    }
-
-    /// Integrates motions without a closed form up to `now`, unless the record fails, so that evaluating the body there
-    /// is cheap.
-    pub fn approach(&mut self, now: Instant, record: &mut dyn Record) -> Result<(), RecordError> {
-        record.poll()?;
-        if matches!(self.motion, OneAxisFlow::Uncoupled(_) | OneAxisFlow::External(_)) {
-            return Ok(());
-        }
-        let h = now.since(self.departed).seconds();
-        loop {
-            let is_there = match &mut self.motion {
-                OneAxisFlow::Uncoupled(_) | OneAxisFlow::External(_) => true,
-                OneAxisFlow::Chain(flight) => flight.approach(h),
-                OneAxisFlow::Coupled(coupling) => coupling.approach(h),
-            };
-            if is_there {
-                return Ok(());
-            }
-            record.poll()?;
-        }
+        &self.body.state
     }
 
     /// Advances the body to `now` and returns the sensed angle and rate.
+    #[inline]
     pub fn view(&mut self, now: Instant) -> AngleObservation {
-        if self.evaluated_at != now {
-            self.evaluated_at = now;
-            let (ahead, sight, at) = &mut self.next_crossing;
+        let body = &mut self.body;
+        if body.evaluated_at != now {
+            body.evaluated_at = now;
+            let (ahead, sensed, at) = &mut self.next_crossing;
             if *at == now {
-                std::mem::swap(&mut self.state, ahead);
-                self.sight = *sight;
+                std::mem::swap(&mut body.state, ahead);
+                body.sensed = *sensed;
             } else {
                 let h = now.since(self.departed).seconds();
-                self.sight = match &mut self.motion {
-                    OneAxisFlow::Uncoupled(arc) => arc.at(h, &mut self.state),
-                    OneAxisFlow::Chain(flight) => flight.at(h, &mut self.state),
-                    OneAxisFlow::Coupled(coupling) => coupling.at(h, &mut self.state),
-                    // The batch that computes the motion has already set the state at `now`.
-                    OneAxisFlow::External(_) => self.sight,
+                body.sensed = match &mut self.motion {
+                    OneAxisMotion::Uncoupled(arc) => arc.at(h, &mut body.state),
+                    OneAxisMotion::Chain(flight) => flight.at(h, &mut body.state),
+                    OneAxisMotion::Coupled(coupling) => coupling.at(h, &mut body.state),
                 };
             }
         }
-        self.sight
+        body.sensed
     }
 
-    /// Advances the body to `now` and returns its true state; `None` if the motion is no longer finite.
-    pub fn evaluate(&mut self, now: Instant) -> Option<&Truth> {
-        let AngleObservation { angle, rate, .. } = self.view(now);
-        if !(is_bounded(angle) && is_bounded(rate)) {
-            return None;
-        }
-        let truth = &mut self.truth;
-        truth.orientation = Orientation::Angle(angle);
-        (truth.rate[0], truth.rigid[0], truth.turned[0]) = (rate, self.state.rigid_rate, angle);
-        Some(truth)
-    }
-
-    /// Returns the true state of the last evaluation.
-    pub fn viewed(&self) -> &Truth {
-        &self.truth
-    }
-
-    /// Hands the motion to a batch from now on; `None` unless the modes are coupled or drift, between segment starts.
-    pub fn take_motion(&mut self) -> Option<ExternalMotion> {
-        let OneAxisFlow::Coupled(coupling) = &self.motion else { return None };
+    /// Returns the motion for a batch, and the flow that stands for it from now on; `None` unless the modes are coupled
+    /// or drift, between segment starts.
+    pub fn take_motion(&self) -> Option<(ExternalMotion, ExternalFlow)> {
+        let OneAxisMotion::Coupled(coupling) = &self.motion else { return None };
         let (motion, mobility) = coupling.take_motion()?;
-        self.motion = OneAxisFlow::External(ExternalSegment::new(mobility));
-        Some(motion)
-    }
-
-    /// Sets the motion that a batch has computed at `now`: angle and rate of each coordinate.
-    pub fn set_motion(&mut self, now: Instant, motion: impl Iterator<Item = [f64; 2]>) {
-        (self.evaluated_at, self.sight) = (now, AngleObservation::default());
-        for (index, [angle, rate]) in motion.enumerate() {
-            if index == 0 {
-                (self.state.rigid_angle, self.state.rigid_rate) = (angle, rate);
-            } else {
-                let mode = &mut self.state.modes[index - 1];
-                (mode.displacement, mode.quadrature) = (angle, rate / self.frequencies[index - 1]);
-            }
-            self.sight.angle += angle;
-            self.sight.rate += rate;
-        }
-    }
-
-    /// Returns the start of the last segment of a motion that a batch computes, and its reduced moment (rad/s²), once
-    /// per segment.
-    pub fn take_segment_start(&mut self) -> Option<(Instant, f64)> {
-        if let OneAxisFlow::External(lent) = &mut self.motion { lent.departed() } else { None }
-    }
-
-    /// Begins a motion segment at the current instant, under the wrench from now on.
-    pub fn depart(&mut self, wrench: &Wrench) {
-        let input = SegmentInput { constant: wrench.hub[0], waveform: wrench.waveform.clone() };
-        self.begin(&input);
+        Some((motion, ExternalFlow::new(self.body.clone(), mobility)))
     }
 
     /// Begins a motion segment at the current instant, under a constant torque alone (N m).
@@ -203,27 +117,54 @@ impl OneAxisPlant {
 
     /// Sets the state at `now` by `change`.
     pub fn set_state(&mut self, now: Instant, change: impl FnOnce(&mut AxisState)) {
-        change(&mut self.state);
-        let rate = self.mode_rates().fold(self.state.rigid_rate, |sum, rate| sum + rate);
-        (self.evaluated_at, self.sight) =
-            (now, AngleObservation { angle: self.state.angle(), rate, acceleration: 0.0 });
+        let body = &mut self.body;
+        change(&mut body.state);
+        let rate = body.mode_rates().fold(body.state.rigid_rate, |sum, rate| sum + rate);
+        (body.evaluated_at, body.sensed) =
+            (now, AngleObservation { angle: body.state.angle(), rate, acceleration: 0.0 });
         // A crossing that was found in advance belongs to the previous motion.
         self.next_crossing.2 = Instant::START;
     }
 
     fn begin(&mut self, input: &SegmentInput) {
+        let now = self.body.evaluated_at;
         match &mut self.motion {
-            OneAxisFlow::Uncoupled(arc) => arc.depart(&self.state, input),
-            OneAxisFlow::Chain(flight) => flight.depart(input),
-            OneAxisFlow::Coupled(coupling) => coupling.depart(self.evaluated_at.seconds(), input.constant),
-            OneAxisFlow::External(lent) => lent.depart(self.evaluated_at, input.constant),
+            OneAxisMotion::Uncoupled(arc) => arc.depart(&self.body.state, input),
+            OneAxisMotion::Chain(flight) => flight.depart(input),
+            OneAxisMotion::Coupled(coupling) => coupling.depart(now.seconds(), input.constant),
         }
-        self.departed = self.evaluated_at;
+        self.departed = now;
+    }
+}
+
+impl Flow for OneAxisFlow {
+    fn begin_segment(&mut self, wrench: &Wrench) {
+        self.begin(&SegmentInput { constant: wrench.hub[0], waveform: wrench.waveform.clone() });
     }
 
-    /// Returns the instant and index of the first guard crossing of this segment within `horizon`.
+    fn advance(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError> {
+        record.poll()?;
+        let h = now.since(self.departed).seconds();
+        loop {
+            let is_there = match &mut self.motion {
+                OneAxisMotion::Uncoupled(_) => true,
+                OneAxisMotion::Chain(flight) => flight.approach(h),
+                OneAxisMotion::Coupled(coupling) => coupling.approach(h),
+            };
+            if is_there {
+                return Ok(None);
+            }
+            record.poll()?;
+        }
+    }
+
     #[inline]
-    pub fn trip(
+    fn evaluate(&mut self, now: Instant, truth: &mut Truth) -> bool {
+        self.view(now);
+        self.body.write_truth(truth)
+    }
+
+    fn crossing(
         &mut self,
         guards: &[Guard],
         horizon: Span,
@@ -231,13 +172,13 @@ impl OneAxisPlant {
     ) -> Result<Option<(Instant, usize)>, RecordError> {
         let departed = self.departed;
         let arc = match &mut self.motion {
-            OneAxisFlow::Uncoupled(arc) => arc,
-            OneAxisFlow::Coupled(coupling) => {
+            OneAxisMotion::Uncoupled(arc) => arc,
+            OneAxisMotion::Coupled(coupling) => {
                 let trip = coupling.trip(guards, horizon, || record.poll())?;
                 return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
             }
-            // No law with guards acts on these bodies.
-            OneAxisFlow::Chain(_) | OneAxisFlow::External(_) => return Ok(None),
+            // No law with guards acts on this body.
+            OneAxisMotion::Chain(_) => return Ok(None),
         };
         let trip = match arc.predict_crossing(guards, horizon, &mut self.next_crossing.0) {
             Some(trip) => trip,
@@ -250,42 +191,29 @@ impl OneAxisPlant {
         }))
     }
 
-    /// Returns the rows of the motion at the current instant; `measured` is the held measurement of a sampled sensor
-    /// (rad).
-    pub fn motion(&self, measured: Option<f64>) -> (Attitude, Rate, Modes) {
-        let Self { state, sight, frequencies, .. } = self;
-        let modes: Vec<_> = state
-            .modes
-            .iter()
-            .zip(frequencies)
-            .map(|(phase, w)| ModeMotion {
-                displacement_rad: phase.displacement,
-                rate_rad_s: w * phase.quadrature,
-            })
-            .collect();
-        (
-            Attitude {
-                angle_rad: sight.angle,
-                rigid_rad: state.rigid_angle,
-                measured_rad: measured.unwrap_or(sight.angle),
-            },
-            Rate { rate_rad_s: sight.rate, rigid_rad_s: state.rigid_rate },
-            Modes { elastic_rad: modes.iter().map(|mode| mode.displacement_rad).sum(), modes },
-        )
+    fn about_axis(&self, _axis: usize, _target: &Orientation) -> Cow<'_, AxisState> {
+        Cow::Borrowed(&self.body.state)
     }
 
-    /// Returns the row of the observed coordinates at the current instant; `None` if the body has none.
-    pub fn outputs(&self) -> Option<Outputs> {
-        let motion = |(value, rate)| OutputMotion { value, rate };
-        let outputs: Vec<_> = match &self.motion {
-            OneAxisFlow::Uncoupled(_) | OneAxisFlow::Coupled(_) | OneAxisFlow::External(_) => {
-                let of = |output: &Output| {
-                    (output.evaluate(&self.state), output.rate_of(&self.state, &self.frequencies))
-                };
-                self.outputs.iter().map(of).map(motion).collect()
-            }
-            OneAxisFlow::Chain(flight) => flight.outputs().map(motion).collect(),
-        };
-        (!outputs.is_empty()).then_some(Outputs { outputs })
+    fn modal_state(&self) -> Cow<'_, AxisState> {
+        Cow::Borrowed(&self.body.state)
+    }
+
+    fn update_monitor(
+        &self,
+        monitor: &mut WindowedEnvelope,
+        now: Instant,
+        torque: f64,
+        _commanded: &dyn Fn() -> Wrench,
+    ) {
+        monitor.command(now, &self.body.state, torque);
+    }
+
+    fn quantities(&self) -> FlowQuantities<'_> {
+        FlowQuantities::OneAxis(self)
+    }
+
+    fn copy(&self) -> Box<dyn Flow> {
+        Box::new(self.clone())
     }
 }

@@ -6,7 +6,7 @@ use flexsc_numerics::time::Instant;
 use flexsc_record::{Accelerations, Record, RecordError, Sample};
 
 use crate::scenario::Scenario;
-use crate::sim::plant::{AccelerometerMount, Plant};
+use crate::sim::plant::AccelerometerMount;
 use crate::sim::run_view::RunView;
 
 /// Run-time state of the accelerometers, each with its index among the sensors and its mount.
@@ -38,10 +38,9 @@ impl Accelerometers {
         if self.due().is_none_or(|due| due > now) {
             return Ok(());
         }
-        let Plant::ThreeAxis(plant) = run.plant else { return Ok(()) };
         for (index, mount, sensor) in &mut self.0 {
             if sensor.samples_now(now) {
-                sensor.sample(now, &plant.specific_force(mount));
+                sensor.sample(now, &run.plant.specific_force(mount));
             }
             while let Some(felt) = sensor.take_due(now) {
                 let axes = felt.iter().map(MeasuredAcceleration::row).collect();

@@ -5,7 +5,6 @@ use flexsc_record::{LoggedRevisions, Record, RecordError, Tracking};
 
 use super::journal_events::JournalEvents;
 use crate::scenario::Scenario;
-use crate::sim::plant::Plant;
 use crate::sim::run_view::RunView;
 
 /// Memory of the rows of the cycles.
@@ -36,9 +35,9 @@ impl CycleRows {
         journal: &mut JournalEvents,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        let Plant::ThreeAxis(plant) = run.plant else { return Ok(()) };
+        let Some(motion) = run.plant.quantities().three_axis() else { return Ok(()) };
         let (now, truth) = (run.now, run.plant.truth());
-        let mut report = run.actuator_cycle_report(plant);
+        let mut report = run.actuator_cycle_report(motion);
         report.skip_repeated(&mut self.revisions);
         self.saturation.observe(now.seconds(), &report);
         run.record_report(&report, record)?;

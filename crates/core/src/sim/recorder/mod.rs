@@ -57,11 +57,6 @@ impl Recorder {
         }
     }
 
-    /// Enables drawing of the scenario's scene.
-    pub fn draw(&mut self, scenario: &Scenario) {
-        self.frames.draw(scenario);
-    }
-
     /// Returns the instant at which the next row or journal line is due.
     pub fn due(&self) -> Option<Instant> {
         let due = [

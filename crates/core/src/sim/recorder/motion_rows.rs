@@ -7,7 +7,6 @@ use flexsc_record::{Command, Law, Record, RecordError, Sample, Trigger};
 use super::reports::TorqueRows;
 use crate::scenario::Scenario;
 use crate::sim::controllers::LawDecision;
-use crate::sim::plant::Plant;
 use crate::sim::run_view::RunView;
 
 /// Schedule and memory of the rows of the motion.
@@ -47,7 +46,7 @@ impl MotionRows {
     /// Records the law's row at the start, and schedules the rows of the motion if the record wants them.
     pub fn record_start(&mut self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
         let now = run.now;
-        if let Plant::OneAxis(_) = run.plant {
+        if run.plant.quantities().one_axis().is_some() {
             record.record(now, Sample::Begin(&law_row(run)))?;
         }
         if record.wants_motion() {
@@ -73,7 +72,7 @@ impl MotionRows {
         if due == now || pulses {
             self.record_motion(run, record)?;
             if due == now && now >= self.next_law {
-                if let Plant::OneAxis(_) = run.plant {
+                if run.plant.quantities().one_axis().is_some() {
                     record.record(now, Sample::Row(&law_row(run)))?;
                 }
                 self.next_law += Span::from_seconds(1.0);
@@ -85,7 +84,7 @@ impl MotionRows {
     /// Records the motion at the current instant, and the law's row of a one-axis body.
     pub fn record_now(&self, run: &RunView<'_>, record: &mut dyn Record) -> Result<(), RecordError> {
         self.record_motion(run, record)?;
-        if let Plant::OneAxis(_) = run.plant {
+        if run.plant.quantities().one_axis().is_some() {
             record.record(run.now, Sample::Row(&law_row(run)))?;
         }
         Ok(())
@@ -99,7 +98,7 @@ impl MotionRows {
         decision: LawDecision,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        let Plant::OneAxis(plant) = run.plant else { return Ok(()) };
+        let Some(motion) = run.plant.quantities().one_axis() else { return Ok(()) };
         let LawDecision { before, after, cause } = decision;
         if before == after {
             return Ok(());
@@ -117,7 +116,7 @@ impl MotionRows {
             rate_rad_s: truth.rate[0],
             gain: run.laws.tuned_value(),
         };
-        record.record(run.now, Sample::Switching(&command, plant.state()))?;
+        record.record(run.now, Sample::Switching(&command, &motion.body().state))?;
         if record.wants_motion() {
             self.record_motion(run, record)?;
         }

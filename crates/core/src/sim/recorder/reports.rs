@@ -13,7 +13,7 @@ use flexsc_record::{
 };
 
 use crate::scenario::Scenario;
-use crate::sim::plant::{OneAxisPlant, Plant, ThreeAxisPlant};
+use crate::sim::plant::{FlowQuantities, OneAxisQuantities, ThreeAxisQuantities};
 use crate::sim::run_view::RunView;
 
 /// Rows of the torques that a scenario's logs have.
@@ -38,13 +38,8 @@ impl TrueState for RunView<'_> {
     }
 
     fn rates(&self) -> [[f64; 3]; 2] {
-        match self.plant {
-            Plant::OneAxis(plant) => plant.rates().map(|rate| [rate, 0.0, 0.0]),
-            Plant::ThreeAxis(plant) => {
-                let (rigid, elastic) = plant.rates();
-                [(rigid + elastic).into(), rigid.into()]
-            }
-        }
+        let truth = self.plant.truth();
+        [truth.rate, truth.rigid]
     }
 
     fn about_axis(&self, axis: usize) -> Cow<'_, AxisState> {
@@ -52,9 +47,9 @@ impl TrueState for RunView<'_> {
     }
 
     fn mode_rates(&self) -> Vec<f64> {
-        match self.plant {
-            Plant::OneAxis(plant) => plant.mode_rates().collect(),
-            Plant::ThreeAxis(plant) => plant.mode_rates().collect(),
+        match self.plant.quantities() {
+            FlowQuantities::OneAxis(motion) => motion.body().mode_rates().collect(),
+            FlowQuantities::ThreeAxis(motion) => motion.body().mode_rates().collect(),
         }
     }
 
@@ -71,9 +66,9 @@ impl RunView<'_> {
     /// Returns the rows of a dense record: of the plant, and of every part.
     pub fn period_report(&self, torques: TorqueRows) -> Report {
         let mut report = Report::new();
-        match self.plant {
-            Plant::OneAxis(plant) => self.add_one_axis_rows(plant, torques, &mut report),
-            Plant::ThreeAxis(plant) => self.add_three_axis_rows(plant, torques, &mut report),
+        match self.plant.quantities() {
+            FlowQuantities::OneAxis(motion) => self.add_one_axis_rows(motion, torques, &mut report),
+            FlowQuantities::ThreeAxis(motion) => self.add_three_axis_rows(motion, torques, &mut report),
         }
         if let Some(monitor) = &self.estimation.monitor {
             report.add(monitor.envelope(self.now));
@@ -103,9 +98,9 @@ impl RunView<'_> {
     }
 
     /// Returns the values of a three-axis body and the rows of its actuator at the start of a cycle.
-    pub fn actuator_cycle_report(&self, plant: &ThreeAxisPlant) -> Report {
-        let (rigid, elastic) = plant.rates();
-        let (elastic_energy_j, visible_energy_j) = plant.elastic_energies();
+    pub fn actuator_cycle_report(&self, motion: &dyn ThreeAxisQuantities) -> Report {
+        let (rigid, elastic) = motion.body().rates;
+        let (elastic_energy_j, visible_energy_j) = motion.elastic_energies();
         let mut report = Report::new();
         report.add_value(ThreeAxisCycle {
             elastic_energy_j,
@@ -114,7 +109,7 @@ impl RunView<'_> {
             elastic_rate_rad_s: elastic.into(),
             error_rad: self.plant.truth().orientation.error_from(self.estimation.origin()),
             slewing: self.guidance.slews(self.now),
-            friction_heat_j: plant.friction_heat(),
+            friction_heat_j: motion.friction_heat(),
         });
         let actuator = &*self.loads.actuator;
         report.add_value(StoredMomentum(actuator.capabilities().stored_momentum(self.now)));
@@ -136,10 +131,11 @@ impl RunView<'_> {
     }
 
     /// Adds the rows of a one-axis plant, of the manoeuvre, and of the torques.
-    fn add_one_axis_rows(&self, plant: &OneAxisPlant, torques: TorqueRows, report: &mut Report) {
+    fn add_one_axis_rows(&self, motion: &dyn OneAxisQuantities, torques: TorqueRows, report: &mut Report) {
         let now = self.now;
         let measured = self.sensors.reading.map_or(0.0, |_| self.sensors.measured[0][0]);
-        let (attitude, rate, modes) = plant.motion((!self.sensors.is_continuous()).then_some(measured));
+        let (attitude, rate, modes) =
+            motion.body().motion_rows((!self.sensors.is_continuous()).then_some(measured));
         if torques.is_detailed {
             let rates = [rate.rate_rad_s, rate.rigid_rad_s];
             let (angle_rad, rate_rad_s) = self.guidance.manoeuvre_state(now);
@@ -154,13 +150,18 @@ impl RunView<'_> {
         report.add(attitude);
         report.add(rate);
         report.add(modes);
-        plant.outputs().into_iter().for_each(|row| report.add(row));
+        motion.output_row().into_iter().for_each(|row| report.add(row));
     }
 
     /// Adds the rows of a three-axis plant and of the torques.
-    fn add_three_axis_rows(&self, plant: &ThreeAxisPlant, torques: TorqueRows, report: &mut Report) {
+    fn add_three_axis_rows(
+        &self,
+        motion: &dyn ThreeAxisQuantities,
+        torques: TorqueRows,
+        report: &mut Report,
+    ) {
         let now = self.now;
-        let (rigid, elastic) = plant.rates();
+        let (rigid, elastic) = motion.body().rates;
         let axis = |axis: usize| AxisRate {
             rate_rad_s: rigid[axis] + elastic[axis],
             rigid_rad_s: rigid[axis],
@@ -169,7 +170,7 @@ impl RunView<'_> {
             believed_rad_s: self.estimation.estimates[axis].rate,
         };
         let actuator = &self.loads.actuator;
-        let (around, magnetic) = (plant.environment_torque(), plant.magnetic_torque());
+        let (around, magnetic) = (motion.environment_torque(), motion.magnetic_torque());
         let torque = |axis: usize| {
             let rates = [rigid[axis] + elastic[axis], rigid[axis]];
             Torque {
@@ -183,13 +184,13 @@ impl RunView<'_> {
             }
         };
         // If only jets act, the torques follow from the recorded pulses.
-        if !torques.jets_only || plant.has_environment() {
+        if !torques.jets_only || motion.surroundings().is_some() {
             report.add(Torques { axes: [0, 1, 2].map(torque).into() });
         }
         let error = self.plant.truth().orientation.error_from(&self.guidance.origin(now));
-        report.add(plant.pointing(error));
+        report.add(motion.pointing(error));
         report.add(Rates { axes: [0, 1, 2].map(axis).into() });
-        plant.add_rows(report);
+        motion.add_rows(report);
     }
 
     /// Records a report of the current instant, unless it is empty.

@@ -2,29 +2,24 @@
 
 use flexsc_control::actuator::PulsedActuator;
 use flexsc_numerics::time::Instant;
-use flexsc_record::{Hinges, Record, RecordError, Sample};
+use flexsc_record::{
+    Hinges, OneAxisPose, Record, RecordError, Sample, ScenePose, SceneSource, SceneThrust, ThreeAxisPose,
+};
 use flexsc_spacecraft::flow::ThreeAxisState;
 
 use super::journal_events::JournalEvents;
-use crate::scenario::Scenario;
-use crate::scene::{OneAxisPose, Scene};
-use crate::sim::plant::Plant;
+use crate::sim::plant::FlowQuantities;
 use crate::sim::run_view::RunView;
 
 /// Scene of a run with the schedule of its frames.
 #[derive(Clone, Debug, Default)]
 pub struct SceneFrames {
-    /// Scene of the run; `None` if it is not drawn.
-    scene: Option<Box<Scene>>,
+    /// Scene of the run; `None` if the record supplies none.
+    scene: Option<Box<dyn SceneSource>>,
     next: Option<Instant>,
 }
 
 impl SceneFrames {
-    /// Enables drawing of the scenario's scene.
-    pub fn draw(&mut self, scenario: &Scenario) {
-        self.scene = Some(Box::new(Scene::new(scenario)));
-    }
-
     /// Returns true if the scene is drawn.
     pub fn is_drawn(&self) -> bool {
         self.scene.is_some()
@@ -35,19 +30,17 @@ impl SceneFrames {
         self.next
     }
 
-    /// Records the parts of the scene; discards a scene that no record wants.
+    /// Records the parts of the scene that the record supplies, if any.
     pub fn record_scene(
         &mut self,
         now: Instant,
         journal: &JournalEvents,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        match &self.scene {
-            Some(scene) if record.wants_scene() => {
-                record.record(now, Sample::Row(&scene.parts(journal.stamp(now))))?;
-                self.next = Some(now);
-            }
-            _ => self.scene = None,
+        self.scene = record.scene();
+        if let Some(scene) = &self.scene {
+            record.record(now, Sample::Row(&scene.parts(journal.stamp(now))))?;
+            self.next = Some(now);
         }
         Ok(())
     }
@@ -67,48 +60,46 @@ impl SceneFrames {
             self.next = Some(now + scene.period());
         }
         let truth = run.plant.truth();
-        let plumes = match (&mut **scene, run.plant) {
-            (Scene::Planar(scene), Plant::OneAxis(plant)) => {
-                let state = plant.state();
+        let thrust = match run.plant.quantities() {
+            FlowQuantities::OneAxis(motion) => {
+                let state = &motion.body().state;
                 if frames {
-                    let sections = plant.outputs().map_or_else(Vec::new, |outputs| outputs.outputs);
+                    let sections = motion.output_row().map_or_else(Vec::new, |outputs| outputs.outputs);
                     let sections: Vec<f64> = sections.into_iter().map(|output| output.value).collect();
-                    let view = OneAxisPose {
+                    let pose = OneAxisPose {
                         time: now.seconds(),
                         angle: truth.sensor_angles()[0],
                         rigid_angle: state.rigid_angle,
                         modes: &state.modes,
                         sections: &sections,
                     };
-                    record.record(now, Sample::Row(scene.frames(stamp, view)))?;
+                    record.record(now, Sample::Row(scene.frames(stamp, ScenePose::OneAxis(pose))))?;
                 }
                 let rates = [truth.rate[0], truth.rigid[0]];
-                let torque = run.loads.actuator.response(now, 0, rates).applied;
-                scene.plumes(stamp, torque)
+                SceneThrust::Torque(run.loads.actuator.response(now, 0, rates).applied)
             }
-            (Scene::Spatial(scene), Plant::ThreeAxis(plant)) => {
+            FlowQuantities::ThreeAxis(motion) => {
                 if frames {
-                    let ThreeAxisState { turn, modes } = plant.state();
-                    let mut angles: Vec<f64> = plant
-                        .drives()
-                        .map_or_else(Vec::new, |of| of.drives.iter().map(|drive| drive.angle_rad).collect());
-                    let frames = match plant.hinges() {
-                        // Hinges move by any angle; with hinges, modes are not drawn.
+                    let ThreeAxisState { turn, modes } = &motion.body().state;
+                    let drives = motion.drives().map_or_else(Vec::new, |of| of.drives);
+                    let mut angles: Vec<f64> = drives.iter().map(|drive| drive.angle_rad).collect();
+                    // Hinges move by any angle; with hinges, modes are not drawn.
+                    let (attitude, modes) = match motion.hinges() {
                         Some(Hinges { hinges }) => {
                             angles.extend(hinges.iter().map(|hinge| hinge.angle_rad));
-                            scene.frames(stamp, plant.attitude(), &[], &angles)
+                            (motion.attitude(), &[][..])
                         }
-                        None => scene.frames(stamp, &turn.attitude, modes, &angles),
+                        None => (&turn.attitude, &modes[..]),
                     };
-                    record.record(now, Sample::Row(frames))?;
+                    let pose = ScenePose::ThreeAxis(ThreeAxisPose { attitude, modes, angles: &angles });
+                    record.record(now, Sample::Row(scene.frames(stamp, pose)))?;
                 }
                 let cycle = run.loads.actuator.capabilities().pulses.map(PulsedActuator::cycle);
-                let (burning, open) =
-                    cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
-                scene.plumes(stamp, burning, open)
+                let (signs, open) = cycle.map_or(([0.0; 3], Vec::new()), |cycle| (cycle.burning, cycle.open));
+                SceneThrust::Jets { signs, open }
             }
-            _ => None,
         };
+        let plumes = scene.plumes(stamp, thrust);
         plumes.map_or(Ok(()), |plumes| record.record(now, Sample::Row(&plumes)))
     }
 }

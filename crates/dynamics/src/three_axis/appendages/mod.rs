@@ -11,12 +11,12 @@
 //! are H = dT/dw + sum a h and pi = dT/d eta'; H' = T - w x H, pi' = -O² eta - D eta' + dT/d eta + f. Q, H, eta and
 //! pi are continuous even where alpha jumps. Steps carry them in the free modes of one configuration, q = Y0⁻¹ eta
 //! and P = Y0' pi, whose oscillation is exact; the difference of q' from P + phi' G as the panels turn on enters at
-//! the stages. A panel on a hinge turns by its own coordinate, and all coefficients depend on that too (`hinged.rs`).
+//! the stages. A panel on a hinge turns by its own coordinate, and all coefficients depend on that too (`hinge.rs`).
 
-mod basis;
-mod hinged;
-mod posed;
-mod seen;
+mod configuration;
+mod hinge;
+mod modal_basis;
+mod projection;
 mod stage;
 
 use std::fmt::Debug;
@@ -25,12 +25,12 @@ use std::sync::Arc;
 use flexsc_numerics::attitude::Vector;
 use nalgebra::Matrix3;
 
-use super::model::FlexibleBody;
+use super::body::FlexibleBody;
 
-pub(super) use basis::ModalBasis;
-pub use hinged::HingeGeometry;
-pub(super) use posed::Configuration;
-pub(super) use stage::{StageForces, StageScratch};
+pub use configuration::Configuration;
+pub use hinge::HingeGeometry;
+pub use modal_basis::ModalBasis;
+pub use stage::{StageForces, StageScratch};
 
 /// Drive angles as functions of time.
 pub trait DriveAngles: Debug + Send + Sync {
@@ -113,17 +113,17 @@ impl ArticulatedBody {
 
     /// Returns the frequencies of the free modes at the given drive angles in rad (rad/s), increasing.
     pub fn frequencies(&self, angles: &[f64]) -> Vec<f64> {
-        let mut posed = Configuration::default();
-        self.update(|drive| [angles[drive], 0.0], &[], &mut posed);
-        posed.free(self).map(|free| free.frequencies).unwrap_or_default()
+        let mut configuration = Configuration::default();
+        self.update(|drive| [angles[drive], 0.0], &[], &mut configuration);
+        configuration.free(self).map(|free| free.frequencies).unwrap_or_default()
     }
 
     /// Returns true if a drive or a hinge moves the centre of mass.
     pub fn moves_centre(&self) -> bool {
         self.panels.iter().any(|panel| {
             let axis = panel.drive.map(|(axis, _)| axis).or(panel.hinge.map(|hinge| hinge.about));
-            let moved = axis.map_or_else(Vector::zeros, |axis| axis.cross(&panel.centre));
-            moved.norm() > 1e-9 * (1.0 + panel.centre.norm())
+            let shift = axis.map_or_else(Vector::zeros, |axis| axis.cross(&panel.centre));
+            shift.norm() > 1e-9 * (1.0 + panel.centre.norm())
         })
     }
 }
@@ -131,32 +131,32 @@ impl ArticulatedBody {
 /// Run-time state of the articulated appendages: their angles over time, and the modes in which the state is carried.
 #[derive(Clone, Debug)]
 pub struct ArticulatedMotion {
-    pub(super) of: Arc<ArticulatedBody>,
+    pub(super) body: Arc<ArticulatedBody>,
     pub(super) angles: Arc<dyn DriveAngles>,
     pub(super) basis: ModalBasis,
     /// True if any panel swings on a hinge.
-    swings: bool,
+    hinged: bool,
     /// Start of the segment, as time since the start of the run (s).
-    pub(super) began: f64,
+    pub(super) segment_start: f64,
 }
 
 impl ArticulatedMotion {
     /// Creates the appendages in the free modes at the start; `None` if the body has no valid free modes.
-    pub fn new(of: Arc<ArticulatedBody>, angles: Arc<dyn DriveAngles>) -> Option<Self> {
-        let basis = ModalBasis::initial(&of, &*angles)?;
-        let swings = of.hinges() > 0;
-        Some(Self { of, angles, basis, swings, began: 0.0 })
+    pub fn new(body: Arc<ArticulatedBody>, angles: Arc<dyn DriveAngles>) -> Option<Self> {
+        let basis = ModalBasis::initial(&body, &*angles)?;
+        let hinged = body.hinges() > 0;
+        Some(Self { body, angles, basis, hinged, segment_start: 0.0 })
     }
 
     /// Computes the configuration at a time `t` since the start (s), with hinges at the displacements `eta` of their
     /// modes.
-    pub(super) fn configuration(&self, t: f64, eta: &[f64], posed: &mut Configuration) {
-        self.of.update(|drive| self.angles.at(drive, t), eta, posed);
+    pub(super) fn configuration(&self, t: f64, eta: &[f64], configuration: &mut Configuration) {
+        self.body.update(|drive| self.angles.at(drive, t), eta, configuration);
     }
 
     /// Returns true if any panel swings on a hinge.
     pub(super) fn has_hinges(&self) -> bool {
-        self.swings
+        self.hinged
     }
 
     /// Returns the body in the modes in which the state is carried.

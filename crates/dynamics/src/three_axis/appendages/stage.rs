@@ -4,14 +4,15 @@ use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::gauss_legendre::NODES;
 use nalgebra::Matrix3;
 
-use super::{ArticulatedMotion, Configuration};
-use crate::three_axis::Surroundings;
+use super::ArticulatedMotion;
+use super::configuration::Configuration;
+use crate::three_axis::surroundings::TimedSurroundings;
 
 /// Working memory of the steps of an articulated body.
 #[derive(Clone, Debug, Default)]
 pub struct StageScratch {
     /// Configurations at the start of the step and at its nodes, and their times since the start of the run (s).
-    posed: [Configuration; 4],
+    configuration: [Configuration; 4],
     times: [f64; 4],
     /// Displacements q and canonical rates P of the free modes.
     pub q: Vec<f64>,
@@ -20,7 +21,7 @@ pub struct StageScratch {
     eta: Vec<f64>,
     rates: Vec<f64>,
     /// Rates q', and forces on the free modes (N/sqrt(kg)).
-    pub speeds: Vec<f64>,
+    pub modal_rates: Vec<f64>,
     pub forces: Vec<f64>,
 }
 
@@ -28,19 +29,19 @@ pub struct StageScratch {
 pub struct StageRates {
     /// Rate of the hub (rad/s), and its elastic part (rad/s).
     pub rate: Vector,
-    pub elastic: Vector,
+    pub elastic_rate: Vector,
     /// Inertia of the deformed body (kg m²).
     pub inertia: Matrix3<f64>,
     /// Torque on the hub by forces, as their points of application and the centre of mass move (N m).
-    pub levered: Vector,
+    pub arm_torque: Vector,
 }
 
 /// Sources of modal forces on an articulated body.
 pub struct StageForces<'a> {
-    pub around: Option<(&'a dyn Surroundings, f64)>,
+    pub surroundings: TimedSurroundings<'a>,
     pub tide: Option<Matrix3<f64>>,
     /// Acceleration of the centre of mass (m/s²).
-    pub push: Option<Vector>,
+    pub com_acceleration: Option<Vector>,
 }
 
 impl ArticulatedMotion {
@@ -49,49 +50,52 @@ impl ArticulatedMotion {
         let modes = self.basis.frequencies.len();
         scratch.q.resize(modes, 0.0);
         scratch.p.resize(modes, 0.0);
-        let StageScratch { posed, times, .. } = scratch;
-        for ((posed, at), part) in posed.iter_mut().zip(times).zip([0.0].into_iter().chain(NODES)) {
+        let StageScratch { configuration, times, .. } = scratch;
+        for ((configuration, at), part) in
+            configuration.iter_mut().zip(times).zip([0.0].into_iter().chain(NODES))
+        {
             // Angles are continuous within the segment, even if they jump at its start.
-            *at = self.began + (t + part * h);
-            if !self.swings {
-                self.configuration(*at, &[], posed);
+            *at = self.segment_start + (t + part * h);
+            if !self.hinged {
+                self.configuration(*at, &[], configuration);
             }
         }
     }
 
     /// Evaluates the motion at a stage for the momentum `free` without rotors (N m s); `scratch` holds q and P.
-    pub fn turns(
+    pub fn stage_rates(
         &self,
         stage: usize,
         free: &Vector,
-        push: Option<Vector>,
+        com_acceleration: Option<Vector>,
         scratch: &mut StageScratch,
     ) -> StageRates {
         scratch.eta = self.basis.to_clamped(&scratch.q);
-        if self.swings {
-            self.configuration(scratch.times[stage], &scratch.eta, &mut scratch.posed[stage]);
+        if self.hinged {
+            self.configuration(scratch.times[stage], &scratch.eta, &mut scratch.configuration[stage]);
         }
-        let posed = &scratch.posed[stage];
-        posed.without_hinges(&mut scratch.eta);
+        let configuration = &scratch.configuration[stage];
+        configuration.without_hinges(&mut scratch.eta);
         scratch.rates = self.basis.held_rates(&scratch.p);
-        let rate = posed.rates(free, &scratch.eta, &mut scratch.rates);
-        scratch.speeds = self.basis.to_free(&scratch.rates);
-        let levered = push.map_or_else(Vector::zeros, |push| {
-            let moved = self.centre_shift(posed, &scratch.eta);
-            moved.cross(&(push * posed.mass))
+        let rate = configuration.rates(free, &scratch.eta, &mut scratch.rates);
+        scratch.modal_rates = self.basis.to_free(&scratch.rates);
+        let arm_torque = com_acceleration.map_or_else(Vector::zeros, |com_acceleration| {
+            let shift = self.centre_shift(configuration, &scratch.eta);
+            shift.cross(&(com_acceleration * configuration.mass))
         });
         StageRates {
             rate,
-            elastic: self.basis.hub_rotation(&scratch.speeds),
-            inertia: posed.inertia + posed.changed(&scratch.eta),
-            levered,
+            elastic_rate: self.basis.hub_rotation(&scratch.modal_rates),
+            inertia: configuration.inertia + configuration.inertia_change(&scratch.eta),
+            arm_torque,
         }
     }
 
     /// Returns the shift of the hub's points relative to the centre of mass since the start (m).
-    pub fn centre_shift(&self, posed: &Configuration, eta: &[f64]) -> Vector {
-        let bent = posed.translations.iter().zip(eta).fold(Vector::zeros(), |sum, (t, eta)| sum + t * *eta);
-        self.basis.first_centre - posed.centre - bent / posed.mass
+    pub fn centre_shift(&self, configuration: &Configuration, eta: &[f64]) -> Vector {
+        let elastic_rotation =
+            configuration.translations.iter().zip(eta).fold(Vector::zeros(), |sum, (t, eta)| sum + t * *eta);
+        self.basis.first_centre - configuration.centre - elastic_rotation / configuration.mass
     }
 
     /// Computes the forces on the modes at a stage, `t` (s) after the start of the step, for the hub's rate (rad/s).
@@ -99,32 +103,32 @@ impl ArticulatedMotion {
         &self,
         (stage, t): (usize, f64),
         rate: &Vector,
-        pulls: &StageForces<'_>,
+        sources: &StageForces<'_>,
         scratch: &mut StageScratch,
     ) {
-        let posed = &scratch.posed[stage];
-        let moved = |index: usize| {
-            0.5 * rate.dot(&(posed.moments[index] * rate))
-                + posed.momenta[index].dot(rate)
-                + posed.pulls[index]
+        let configuration = &scratch.configuration[stage];
+        let kinetic = |index: usize| {
+            0.5 * rate.dot(&(configuration.moments[index] * rate))
+                + configuration.momenta[index].dot(rate)
+                + configuration.modal_forces[index]
         };
-        let mut forces: Vec<f64> = (0..posed.moments.len()).map(moved).collect();
-        posed.add_hinge_terms(rate, &scratch.eta, &scratch.rates, &mut forces);
+        let mut forces: Vec<f64> = (0..configuration.moments.len()).map(kinetic).collect();
+        configuration.add_hinge_terms(rate, &scratch.eta, &scratch.rates, &mut forces);
         for (index, force) in forces.iter_mut().enumerate() {
-            if let Some(tide) = &pulls.tide {
-                *force += posed.moments[index].component_mul(tide).sum();
+            if let Some(tide) = &sources.tide {
+                *force += configuration.moments[index].component_mul(tide).sum();
             }
-            if let Some(push) = &pulls.push {
-                *force -= posed.translations[index].dot(push);
+            if let Some(com_acceleration) = &sources.com_acceleration {
+                *force -= configuration.translations[index].dot(com_acceleration);
             }
         }
         scratch.forces = self.basis.force_to_free(&forces);
-        let Some((around, since)) = pulls.around else { return };
-        for heated in around.thermal_forces() {
-            let level = heated.level(since + t);
+        let Some((surroundings, since)) = sources.surroundings else { return };
+        for thermal in surroundings.thermal_forces() {
+            let level = thermal.level(since + t);
             for (index, force) in scratch.forces.iter_mut().enumerate() {
                 let row = self.basis.from_start.row(index);
-                *force += level * row.iter().zip(&heated.forces).map(|(part, own)| part * own).sum::<f64>();
+                *force += level * row.iter().zip(&thermal.forces).map(|(part, own)| part * own).sum::<f64>();
             }
         }
     }

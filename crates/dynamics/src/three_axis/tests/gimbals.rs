@@ -29,14 +29,14 @@ fn rates(stretch: u32) -> [f64; 4] {
 }
 
 /// Returns the angular momentum in inertial axes (N m s).
-fn in_space(turning: &ThreeAxisMotion) -> Vector {
-    let seen = turning.seen();
-    (seen.attitude * Quaternion::from_imag(seen.momentum) * seen.attitude.conjugate()).vector().into_owned()
+fn in_space(motion: &ThreeAxisMotion) -> Vector {
+    let view = motion.view();
+    (view.attitude * Quaternion::from_imag(view.momentum) * view.attitude.conjugate()).vector().into_owned()
 }
 
 /// Runs segments of 7 s; `look` is called before each.
 fn run(
-    mut turning: ThreeAxisMotion,
+    mut motion: ThreeAxisMotion,
     stretches: u32,
     mut look: impl FnMut(&mut ThreeAxisMotion, &[Gimbal], f64),
 ) -> ThreeAxisMotion {
@@ -44,21 +44,21 @@ fn run(
     for stretch in 0..stretches {
         let rates = rates(stretch);
         let now = gimbals(angles, rates);
-        turning.depart(&SegmentLoads { gimbals: now.clone(), ..SegmentLoads::default() });
-        look(&mut turning, &now, 7.0);
-        go(&mut turning, 7.0);
+        motion.begin_segment(&SegmentLoads { gimbals: now.clone(), ..SegmentLoads::default() });
+        look(&mut motion, &now, 7.0);
+        go(&mut motion, 7.0);
         angles.iter_mut().zip(rates).for_each(|(angle, rate)| *angle += rate * 7.0);
     }
-    turning
+    motion
 }
 
 #[test]
 fn momentum_is_kept_over_a_long_run() {
     let mut before = None;
-    let turning = run(craft().undamped().turning(TUMBLE), 300, |turning, _, _| {
-        before.get_or_insert_with(|| in_space(turning));
+    let motion = run(craft().undamped().motion(TUMBLE), 300, |motion, _, _| {
+        before.get_or_insert_with(|| in_space(motion));
     });
-    let (before, after) = (before.expect("a start"), in_space(&turning));
+    let (before, after) = (before.expect("a start"), in_space(&motion));
     assert!((after - before).norm() < 1e-12 * before.norm(), "{:e}", (after - before).norm() / before.norm());
 }
 
@@ -67,65 +67,65 @@ fn momentum_is_kept_over_a_long_run() {
 #[test]
 fn the_motors_of_gimbals_give_the_energy() {
     let (mut work, mut first) = (0.0, None);
-    let turning = run(craft().undamped().turning(TUMBLE), 12, |turning, gimbals, length| {
-        first.get_or_insert_with(|| energy(turning));
+    let motion = run(craft().undamped().motion(TUMBLE), 12, |motion, gimbals, length| {
+        first.get_or_insert_with(|| energy(motion));
         let cells = 700;
         let h = length / f64::from(cells);
         for cell in 0..cells {
             for (node, weight) in super::NODES.iter().zip(super::WEIGHTS) {
                 let t = (f64::from(cell) + node) * h;
-                go(turning, t);
-                let rate = turning.seen().rate;
+                go(motion, t);
+                let rate = motion.view().rate;
                 let power: f64 = gimbals.iter().map(|gimbal| -gimbal.at(t).1.dot(&rate)).sum();
                 work += weight * h * power;
             }
         }
     });
-    let gained = energy(&turning) - first.expect("a start");
+    let gained = energy(&motion) - first.expect("a start");
     assert!(gained.abs() > 1e-2, "{gained}");
     assert!((gained - work).abs() < 1e-9 * gained.abs().max(1.0), "{gained} {work}");
 }
 
 #[test]
 fn a_gimbal_at_rest_is_a_rotor() {
-    let mut both = [craft().turning(TUMBLE), craft().turning(TUMBLE)];
+    let mut both = [craft().motion(TUMBLE), craft().motion(TUMBLE)];
     let still = gimbals([0.3, 0.1, -0.4, 2.0], [0.0; 4]);
     let rotor = |gimbal: &Gimbal| {
         let (momentum, _) = gimbal.at(0.0);
         Rotor { axis: momentum / gimbal.momentum, momentum: gimbal.momentum, torque: 0.0 }
     };
     let rotors = still.iter().map(rotor).collect();
-    both[0].depart(&SegmentLoads { gimbals: still, ..SegmentLoads::default() });
-    both[1].depart(&SegmentLoads { rotors, ..SegmentLoads::default() });
-    for turning in &mut both {
-        go(turning, 50.0);
+    both[0].begin_segment(&SegmentLoads { gimbals: still, ..SegmentLoads::default() });
+    both[1].begin_segment(&SegmentLoads { rotors, ..SegmentLoads::default() });
+    for motion in &mut both {
+        go(motion, 50.0);
     }
-    let [a, b] = [both[0].seen(), both[1].seen()];
+    let [a, b] = [both[0].view(), both[1].view()];
     assert!(apart(&a.attitude, &b.attitude) < 1e-12 && (a.rate - b.rate).norm() < 1e-13);
 }
 
 /// Compares SIMD steps with steps node by node, which a rotor in a bearing enforces.
 #[test]
 fn both_ways_of_taking_a_step_agree() {
-    let mut both = [craft().turning(TUMBLE), craft().turning(TUMBLE)];
+    let mut both = [craft().motion(TUMBLE), craft().motion(TUMBLE)];
     both[1].set_bearings(vec![Bearing { inertia: 0.04, ..Bearing::default() }]);
     let rotors = vec![Rotor { axis: Vector::z(), momentum: 2.0, torque: 0.01 }];
     let gimbals = gimbals([0.3, 0.1, -0.4, 2.0], [0.4, -0.3, 0.9, 0.0]);
-    for turning in &mut both {
-        turning.depart(&SegmentLoads {
+    for motion in &mut both {
+        motion.begin_segment(&SegmentLoads {
             gimbals: gimbals.clone(),
             rotors: rotors.clone(),
             ..SegmentLoads::default()
         });
-        go(turning, 30.0);
+        go(motion, 30.0);
     }
-    let [a, b] = [both[0].seen(), both[1].seen()];
+    let [a, b] = [both[0].view(), both[1].view()];
     assert!(apart(&a.attitude, &b.attitude) < 1e-11, "{:e}", apart(&a.attitude, &b.attitude));
     // Compares the rate of change with the accelerations by the equations of motion.
     let reported = both[0].accelerations(None).hub;
-    let rate = |t: f64, turning: &mut ThreeAxisMotion| {
-        go(turning, t);
-        turning.seen().rate
+    let rate = |t: f64, motion: &mut ThreeAxisMotion| {
+        go(motion, t);
+        motion.view().rate
     };
     let step = 1e-3;
     let near = (rate(30.0 + step, &mut both[0]) - rate(30.0 - step, &mut both[0])) * (8.0 / (12.0 * step));

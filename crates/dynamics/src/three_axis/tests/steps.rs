@@ -11,13 +11,13 @@ use crate::three_axis::SharedSteps;
 #[test]
 fn the_rule_of_steps_meets_its_bound() {
     let craft = craft().stiff().undamped();
-    let (mut turning, mut finer) = (vibrating(&craft), vibrating(&craft));
-    finer.set_pace(StepLevels::fixed(1.0 / 256.0));
+    let (mut motion, mut finer) = (vibrating(&craft), vibrating(&craft));
+    finer.set_levels(StepLevels::fixed(1.0 / 256.0));
     let mut worst = 0.0_f64;
     for t in 1..=10 {
-        go(&mut turning, 20.0 * f64::from(t));
+        go(&mut motion, 20.0 * f64::from(t));
         go(&mut finer, 20.0 * f64::from(t));
-        worst = worst.max(apart(&turning.seen().attitude, &finer.seen().attitude));
+        worst = worst.max(apart(&motion.view().attitude, &finer.view().attitude));
     }
     assert!(worst < 2e-12, "{worst:e}");
 }
@@ -40,14 +40,14 @@ fn unresolved_modes_make_a_free_body_drift_no_faster_than_promised() {
             let modes: Vec<_> = craft.body.modes.iter().map(|mode| [speed / mode.frequency, 0.0]).collect();
             ThreeAxisMotion::new(&craft.body, Quaternion::identity(), TUMBLE * (rate / TUMBLE.norm()), &modes)
         };
-        let (mut turning, mut finer) = (start(), start());
-        finer.set_pace(StepLevels::fixed(1.0 / 128.0));
+        let (mut motion, mut finer) = (start(), start());
+        finer.set_levels(StepLevels::fixed(1.0 / 128.0));
         let end = 2000.0;
-        go(&mut turning, end);
+        go(&mut motion, end);
         go(&mut finer, end);
-        let drift = apart(&turning.seen().attitude, &finer.seen().attitude) / end;
+        let drift = apart(&motion.view().attitude, &finer.view().attitude) / end;
         assert!(drift < 1e-14, "damping {damping}, {rate} rad/s, {speed}: {drift:e} rad/s");
-        assert!(turning.effort().steps < finer.effort().steps / 4);
+        assert!(motion.counts().steps < finer.counts().steps / 4);
     }
 }
 
@@ -59,16 +59,16 @@ fn what_the_rotation_bends_counts_from_the_first_step_on() {
     for (rate, bound) in [(0.014, 1e-15), (0.07, 1e-12), (0.21, 2e-11)] {
         let start = || {
             let rate = TUMBLE * (rate / TUMBLE.norm());
-            let mut turning = ThreeAxisMotion::new(&craft.body, Quaternion::identity(), rate, &[]);
-            turning.depart(&SegmentLoads { rotors: rotors(SPUN, [0.0; 4]), ..SegmentLoads::default() });
-            turning
+            let mut motion = ThreeAxisMotion::new(&craft.body, Quaternion::identity(), rate, &[]);
+            motion.begin_segment(&SegmentLoads { rotors: rotors(SPUN, [0.0; 4]), ..SegmentLoads::default() });
+            motion
         };
-        let (mut turning, mut finer) = (start(), start());
-        finer.set_pace(StepLevels::fixed(1.0 / 512.0));
+        let (mut motion, mut finer) = (start(), start());
+        finer.set_levels(StepLevels::fixed(1.0 / 512.0));
         for t in [0.5, 2.0, 20.0] {
-            go(&mut turning, t);
+            go(&mut motion, t);
             go(&mut finer, t);
-            let off = apart(&turning.seen().attitude, &finer.seen().attitude);
+            let off = apart(&motion.view().attitude, &finer.view().attitude);
             assert!(off < bound, "{rate} rad/s, {t} s: {off:e}");
         }
     }
@@ -81,8 +81,8 @@ fn steps_are_longer_where_modes_hardly_move() {
     let mut craft = craft();
     craft.body.damping = None;
     craft.body.modes.iter_mut().for_each(|mode| mode.damping = 0.005);
-    let (mut turning, mut finer) = (craft.turning(Vector::zeros()), craft.turning(Vector::zeros()));
-    finer.set_pace(StepLevels::fixed(1.0 / 128.0));
+    let (mut motion, mut finer) = (craft.motion(Vector::zeros()), craft.motion(Vector::zeros()));
+    finer.set_levels(StepLevels::fixed(1.0 / 128.0));
     let mut wheels = rotors(SPUN, [0.0; 4]);
     let mut worst = 0.0_f64;
     for command in 0..480 {
@@ -97,16 +97,16 @@ fn steps_are_longer_where_modes_hardly_move() {
             wheel.momentum += wheel.torque * 0.25;
             wheel.torque = if index % 2 == 0 { push + jitter } else { 0.3 * push - jitter };
         }
-        let acting = SegmentLoads { rotors: wheels.clone(), ..SegmentLoads::default() };
-        for turning in [&mut turning, &mut finer] {
-            turning.depart(&acting);
-            go(turning, 0.1);
-            go(turning, 0.25);
+        let loads = SegmentLoads { rotors: wheels.clone(), ..SegmentLoads::default() };
+        for motion in [&mut motion, &mut finer] {
+            motion.begin_segment(&loads);
+            go(motion, 0.1);
+            go(motion, 0.25);
         }
-        worst = worst.max(apart(&turning.seen().attitude, &finer.seen().attitude));
+        worst = worst.max(apart(&motion.view().attitude, &finer.view().attitude));
     }
-    assert!(finer.seen().rate.norm() < 4e-3 && worst < 1e-12, "{worst:e} {}", finer.seen().rate);
-    let (steps, fine) = (turning.effort().steps, finer.effort().steps);
+    assert!(finer.view().rate.norm() < 4e-3 && worst < 1e-12, "{worst:e} {}", finer.view().rate);
+    let (steps, fine) = (motion.counts().steps, finer.counts().steps);
     assert!(5 * steps < 3 * fine, "{steps} {fine}");
 }
 
@@ -119,29 +119,29 @@ fn halving_the_step_divides_the_error_by_64() {
     craft.body.damping = Some(damping.view((0, 0), (6, 6)).into_owned());
     let run = |h: f64| {
         let modes = [[1e-3, 0.0]; 6];
-        let mut turning = ThreeAxisMotion::new(&craft.body, Quaternion::identity(), TUMBLE * 3.0, &modes);
-        turning.set_pace(StepLevels::fixed(h));
+        let mut motion = ThreeAxisMotion::new(&craft.body, Quaternion::identity(), TUMBLE * 3.0, &modes);
+        motion.set_levels(StepLevels::fixed(h));
         let forces = vec![1e-3; 6];
-        let acting = SegmentLoads {
+        let loads = SegmentLoads {
             torque: Vector::new(0.3, -0.2, 0.5),
             forces,
-            push: Vector::new(2e-3, -1e-3, 3e-3),
+            com_acceleration: Vector::new(2e-3, -1e-3, 3e-3),
             rotors: rotors(SPUN, [0.1, 0.0, -0.2, 0.0]),
             ..SegmentLoads::default()
         };
-        turning.depart(&acting);
-        go(&mut turning, 20.0);
-        turning.seen().clone()
+        motion.begin_segment(&loads);
+        go(&mut motion, 20.0);
+        motion.view().clone()
     };
     let exact = run(1.0 / 64.0);
     let error = |h: f64| {
-        let seen = run(h);
+        let view = run(h);
         [
-            apart(&seen.attitude, &exact.attitude),
-            (seen.rate - exact.rate).norm(),
-            (seen.turned - exact.turned).norm(),
-            (seen.moved[0] - exact.moved[0]).norm(),
-            (seen.moved[1] - exact.moved[1]).norm(),
+            apart(&view.attitude, &exact.attitude),
+            (view.rate - exact.rate).norm(),
+            (view.rigid_angle - exact.rigid_angle).norm(),
+            (view.com[0] - exact.com[0]).norm(),
+            (view.com[1] - exact.com[1]).norm(),
         ]
     };
     let (coarse, fine) = (error(1.0 / 4.0), error(1.0 / 8.0));
@@ -157,25 +157,25 @@ fn halving_the_step_divides_the_error_by_64() {
 #[test]
 fn one_pass_is_enough_where_nothing_acts_back() {
     let craft = craft().stiff().undamped();
-    let (mut turning, mut finer) = (craft.turning(Vector::zeros()), craft.turning(Vector::zeros()));
-    finer.set_pace(StepLevels::fixed(1.0 / 256.0));
+    let (mut motion, mut finer) = (craft.motion(Vector::zeros()), craft.motion(Vector::zeros()));
+    finer.set_levels(StepLevels::fixed(1.0 / 256.0));
     let mut wheels = rotors([0.0; 4], [0.0; 4]);
     for command in 0..80 {
         for (index, wheel) in wheels.iter_mut().enumerate() {
             wheel.momentum += wheel.torque * 0.25;
             wheel.torque = 0.02 * (1.0 + libm::sin(f64::from(command * (index as i32 + 1))));
         }
-        for turning in [&mut turning, &mut finer] {
-            turning.depart(&SegmentLoads { rotors: wheels.clone(), ..SegmentLoads::default() });
-            go(turning, 0.25);
+        for motion in [&mut motion, &mut finer] {
+            motion.begin_segment(&SegmentLoads { rotors: wheels.clone(), ..SegmentLoads::default() });
+            go(motion, 0.25);
         }
     }
-    let (seen, finer) = (turning.seen(), finer.seen());
-    let off = apart(&seen.attitude, &finer.attitude);
-    assert!(seen.rate.norm() > 1e-4 && off < 1e-12, "{off:e} {}", seen.rate);
-    assert!((seen.rate - finer.rate).norm() < 1e-14);
-    let effort = turning.effort();
-    assert_eq!(effort.passes, effort.steps);
+    let (view, finer) = (motion.view(), finer.view());
+    let off = apart(&view.attitude, &finer.attitude);
+    assert!(view.rate.norm() > 1e-4 && off < 1e-12, "{off:e} {}", view.rate);
+    assert!((view.rate - finer.rate).norm() < 1e-14);
+    let counts = motion.counts();
+    assert_eq!(counts.iterations, counts.steps);
 }
 
 /// Checks bit-equal results for all SIMD instruction sets, with small and large elastic rotations.
@@ -188,11 +188,12 @@ fn no_bit_depends_on_the_processor() {
         let start = || ThreeAxisMotion::new(&craft.body, Quaternion::identity(), TUMBLE, &modes);
         let (mut best, mut any) = (start(), start());
         Arc::make_mut(&mut any.model).lanes = SimdWidth4::portable();
-        for turning in [&mut best, &mut any] {
-            turning.depart(&SegmentLoads { rotors: rotors(SPUN, [0.01; 4]), ..SegmentLoads::default() });
-            go(turning, 20.0);
+        for motion in [&mut best, &mut any] {
+            motion
+                .begin_segment(&SegmentLoads { rotors: rotors(SPUN, [0.01; 4]), ..SegmentLoads::default() });
+            go(motion, 20.0);
         }
-        assert_eq!(best.seen(), any.seen());
+        assert_eq!(best.view(), any.view());
     }
 }
 
@@ -203,12 +204,12 @@ fn what_runs_have_in_common_changes_nothing() {
     let common = SharedSteps::default();
     let run = |craft: &Craft, common: &SharedSteps, ends: &[f64]| {
         let start = (Quaternion::identity(), TUMBLE);
-        let mut turning = ThreeAxisMotion::with_shared(common, &craft.body, start, &[[0.0; 2]; 8]);
-        turning.depart(&SegmentLoads { rotors: rotors(SPUN, [0.1; 4]), ..SegmentLoads::default() });
+        let mut motion = ThreeAxisMotion::with_shared(common, &craft.body, start, &[[0.0; 2]; 8]);
+        motion.begin_segment(&SegmentLoads { rotors: rotors(SPUN, [0.1; 4]), ..SegmentLoads::default() });
         for end in ends {
-            go(&mut turning, *end);
+            go(&mut motion, *end);
         }
-        turning.seen().clone()
+        motion.view().clone()
     };
     // Uses more step lengths than the cache keeps.
     let many: Vec<f64> = (1..100).map(|step| f64::from(step) * 0.011).collect();

@@ -5,7 +5,7 @@
 
 use std::io::BufRead;
 
-use super::tables::{ParticipationTable, from_factors};
+use super::tables::{ParticipationTable, modes_from_factors};
 use super::text::{Lines, TextLine};
 use super::{FileResults, NaturalFrequency, lowest};
 
@@ -73,7 +73,7 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
                 .to_owned(),
         );
     }
-    Ok(FileResults { modes: from_factors(&natural, &factors, &masses, 1.0)?, mass })
+    Ok(FileResults { modes: modes_from_factors(&natural, &factors, &masses, 1.0)?, mass })
 }
 
 fn eigenvalue(line: &TextLine, last: Option<&NaturalFrequency>) -> Result<NaturalFrequency, String> {

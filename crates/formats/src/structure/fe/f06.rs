@@ -6,7 +6,7 @@
 use std::io::BufRead;
 
 use super::mystran::Reactions;
-use super::tables::{ParticipationTable, from_factors, from_masses};
+use super::tables::{ParticipationTable, modes_from_factors, modes_from_masses};
 use super::text::{Lines, TextLine, real};
 use super::{FileResults, NaturalFrequency, lowest};
 
@@ -195,14 +195,14 @@ impl Reader {
             if self.masses.is_empty() {
                 return Err(format!("must have modal participation factors: {ASK}"));
             }
-            from_masses(&natural, &self.masses, ASK)?
+            modes_from_masses(&natural, &self.masses, ASK)?
         } else if self.mystran {
             // MYSTRAN's factors are those of the forces on the clamp.
-            let modes = from_factors(&natural, &self.factors, &self.masses, -1.0)?;
+            let modes = modes_from_factors(&natural, &self.factors, &self.masses, -1.0)?;
             self.reactions.confirm(&natural, &modes)?;
             modes
         } else {
-            from_factors(&natural, &self.factors, &self.masses, 1.0)?
+            modes_from_factors(&natural, &self.factors, &self.masses, 1.0)?
         };
         Ok(FileResults { modes, mass: self.mass })
     }

@@ -132,7 +132,7 @@ impl ParticipationTable {
 ///
 /// # Errors
 /// Modes without factors, and tables that contradict each other.
-pub fn from_factors(
+pub fn modes_from_factors(
     natural: &[NaturalFrequency],
     factors: &ParticipationTable,
     masses: &ParticipationTable,
@@ -156,8 +156,8 @@ pub fn from_factors(
 /// direction.
 ///
 /// # Errors
-/// A mode with two directions; the message names the output to request from the solver.
-pub fn from_masses(
+/// A mode with two directions, with what to ask the solver for.
+pub fn modes_from_masses(
     natural: &[NaturalFrequency],
     masses: &ParticipationTable,
     request: &str,

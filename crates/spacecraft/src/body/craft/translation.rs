@@ -33,16 +33,16 @@ impl Translation {
 
     /// Returns the point's position, in inertial axes from the centre of mass at the start (m), and its velocity (m/s).
     pub fn position(&self, view: &BodyView) -> [Vector; 2] {
-        let sum = |weighted_sum_of: &[f64]| -> Vector {
-            self.shifts.iter().zip(weighted_sum_of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
+        let sum = |of: &[f64]| -> Vector {
+            self.shifts.iter().zip(of).fold(Vector::zeros(), |sum, (shift, q)| sum + shift * *q)
         };
         let bent = || [sum(&view.displacements), sum(&view.rates)];
         let [moved, speed] = view.shift.unwrap_or_else(bent);
-        let arm = self.position + moved;
+        let arm = self.at + moved;
         let rate = view.rate.cross(&arm) + speed;
         let q = view.attitude;
         let inertial = |v: Vector| (q * Quaternion::from_imag(v) * q.conjugate()).vector().into_owned();
-        let [position, velocity] = view.moved;
+        let [position, velocity] = view.com;
         [position + inertial(arm), velocity + inertial(rate)]
     }
 }

@@ -11,7 +11,7 @@ use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::scenario::ResolvedScenario;
-use crate::sim::plant::ThreeAxisPlant;
+use crate::sim::plant::{Plant, ThreeAxisQuantities};
 
 /// Returns a body with two modes, which rotate the hub only if `coupled`, and a bench by a little more.
 fn body(disturbed: bool, coupled: bool) -> Spatial {
@@ -67,9 +67,13 @@ fn at(seconds: f64) -> Instant {
     Instant::START + Span::from_seconds(seconds)
 }
 
-fn seen(plant: &mut ThreeAxisPlant, seconds: f64) -> Truth {
-    plant.approach(at(seconds), &mut ()).expect("nothing stops it");
-    *plant.measurable().expect("finite")
+fn seen(plant: &mut Plant, seconds: f64) -> Truth {
+    plant.advance(at(seconds), &mut ()).expect("nothing stops it");
+    *plant.evaluate(at(seconds)).expect("finite")
+}
+
+fn three_axes(plant: &Plant) -> &dyn ThreeAxisQuantities {
+    plant.quantities().three_axis().expect("three axes")
 }
 
 fn apart(a: &Truth, b: &Truth) -> f64 {
@@ -84,8 +88,8 @@ fn wheel(momentum: f64, torque: f64) -> Vec<Rotor> {
 #[test]
 fn without_coupling_both_are_one() {
     let body = body(true, false);
-    let mut one_way = ThreeAxisPlant::new(&body, None, &study("bench"));
-    let mut two_way = ThreeAxisPlant::new(&body, Some(&flexible(&body)), &study("bench"));
+    let mut one_way = Plant::with_three_axes(&body, None, None, &study("bench"));
+    let mut two_way = Plant::with_three_axes(&body, Some(&flexible(&body)), None, &study("bench"));
     let mut momentum = 20.0;
     for leg in 0..4 {
         let began = 25.0 * f64::from(leg);
@@ -96,8 +100,8 @@ fn without_coupling_both_are_one() {
             ..Wrench::default()
         };
         momentum += 25.0 * torque;
-        one_way.depart(&wrench);
-        two_way.depart(&wrench);
+        one_way.begin_segment(&wrench);
+        two_way.begin_segment(&wrench);
         for t in [3.0, 25.0] {
             let (a, b) = (seen(&mut one_way, began + t), seen(&mut two_way, began + t));
             let off = |x: [f64; 3], y: [f64; 3]| (Vector::from(x) - Vector::from(y)).norm();
@@ -107,7 +111,7 @@ fn without_coupling_both_are_one() {
             );
             let found = [attitudes, off(a.rigid, b.rigid), off(a.rate, b.rate), off(a.turned, b.turned)];
             assert!(found.into_iter().all(|off| off < 1e-12), "{found:?}");
-            let (a, b) = (one_way.energy(), two_way.energy());
+            let (a, b) = (three_axes(&one_way).energy(), three_axes(&two_way).energy());
             assert!((a.rotational_j - b.rotational_j).abs() < 1e-11, "{a:?} {b:?}");
             assert!((a.momentum_nm_s - b.momentum_nm_s).abs() < 1e-10, "{a:?} {b:?}");
         }
@@ -124,10 +128,10 @@ fn torques_on_modes_and_on_the_hub_are_separate() {
     let wrenches =
         [Wrench { hub: torque.into(), ..Wrench::default() }, Wrench { torque, forces, ..Wrench::default() }];
     let [first, second] = wrenches.map(|wrench| {
-        let mut plant = ThreeAxisPlant::new(&body, Some(&flexible), &study("bench"));
-        plant.depart(&wrench);
+        let mut plant = Plant::with_three_axes(&body, Some(&flexible), None, &study("bench"));
+        plant.begin_segment(&wrench);
         let truth = seen(&mut plant, 10.0);
-        (plant.state().clone(), truth)
+        (three_axes(&plant).body().state.clone(), truth)
     });
     assert!(apart(&first.1, &second.1) < 1e-14);
     for (ModeState { displacement: a, .. }, ModeState { displacement: b, .. }) in
@@ -142,8 +146,8 @@ fn torques_on_modes_and_on_the_hub_are_separate() {
 fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
     let body = body(true, true);
     for flexible in [None, Some(flexible(&body))] {
-        let mut plant = ThreeAxisPlant::new(&body, flexible.as_ref(), &study("bench"));
-        plant.depart(&Wrench { hub: [0.5, 0.0, -1.0], rotors: wheel(3.0, 0.1), ..Wrench::default() });
+        let mut plant = Plant::with_three_axes(&body, flexible.as_ref(), None, &study("bench"));
+        plant.begin_segment(&Wrench { hub: [0.5, 0.0, -1.0], rotors: wheel(3.0, 0.1), ..Wrench::default() });
         let h = 1.0 / 16.0;
         let mut integral = Vector::zeros();
         let before = seen(&mut plant, 0.0).turned;
@@ -165,8 +169,8 @@ fn a_bench_is_seen_beside_the_hub() {
     let body = body(true, true);
     let flexible = flexible(&body);
     let run = |looks: &[f64], point: &str| {
-        let mut plant = ThreeAxisPlant::new(&body, Some(&flexible), &study(point));
-        plant.depart(&Wrench { hub: [0.5, 0.0, -1.0], ..Wrench::default() });
+        let mut plant = Plant::with_three_axes(&body, Some(&flexible), None, &study(point));
+        plant.begin_segment(&Wrench { hub: [0.5, 0.0, -1.0], ..Wrench::default() });
         for t in looks {
             seen(&mut plant, *t);
         }
@@ -175,9 +179,10 @@ fn a_bench_is_seen_beside_the_hub() {
     };
     let ((plant, hub), (bench_plant, bench)) = (run(&[], "hub"), run(&[0.1, 20.0, 29.999_999], "bench"));
     assert_eq!(hub.orientation, bench.orientation);
-    assert_eq!(plant.state(), bench_plant.state());
+    let state = &three_axes(&plant).body().state;
+    assert_eq!(*state, three_axes(&bench_plant).body().state);
     assert!(Vector::from(hub.elastic).norm() < 1e-18);
-    let displacements: Vec<f64> = plant.state().modes.iter().map(|phase| phase.displacement).collect();
+    let displacements: Vec<f64> = state.modes.iter().map(|phase| phase.displacement).collect();
     let beyond =
         Vector::new(0.0, 5e-4, 0.0) * displacements[0] - Vector::new(0.0, 0.0, 1e-3) * displacements[1];
     assert!((Vector::from(bench.elastic) - beyond).norm() < 1e-17);
@@ -185,6 +190,6 @@ fn a_bench_is_seen_beside_the_hub() {
     let Orientation::Attitude(attitude) = hub.orientation else { panic!("three axes") };
     let angles =
         body.shapes("hub").iter().zip(&displacements).fold(Vector::zeros(), |sum, ((_, r), q)| sum + r * *q);
-    let made: Quaternion<f64> = plant.state().turn.attitude * rotation(&angles);
+    let made: Quaternion<f64> = state.turn.attitude * rotation(&angles);
     assert!((made - attitude).norm() < 1e-15);
 }

@@ -5,11 +5,12 @@ use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{AxisState, MotionPiece, SeriesExpansion};
 use flexsc_numerics::polynomial::{Polynomial, Series, TERMS};
 use flexsc_numerics::time::Instant;
-use flexsc_record::{PieceDemand, Record, RecordError};
+use flexsc_record::{Outputs, PieceDemand, Record, RecordError};
 use flexsc_spacecraft::body::Output;
 use flexsc_spacecraft::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
 
-use super::{AppliedTorque, OneAxisFlow, OneAxisPlant};
+use super::super::one_axis_body::{OneAxisBody, OneAxisQuantities, output_row};
+use super::{AppliedTorque, OneAxisFlow, OneAxisMotion};
 
 /// Motion segment that is expanded in series from its start on.
 enum SegmentExpansion<'a> {
@@ -18,48 +19,78 @@ enum SegmentExpansion<'a> {
     Coupled(CoupledExpansion<'a>),
 }
 
-impl OneAxisPlant {
-    /// Records the motion of the segment that ends at `now`, piece by piece, if the record wants it.
-    pub fn record_pieces(
+impl OneAxisQuantities for OneAxisFlow {
+    fn body(&self) -> &OneAxisBody {
+        &self.body
+    }
+
+    fn output_row(&self) -> Option<Outputs> {
+        match &self.motion {
+            OneAxisMotion::Chain(flight) => output_row(flight.outputs()),
+            OneAxisMotion::Uncoupled(_) | OneAxisMotion::Coupled(_) => self.body.output_row(),
+        }
+    }
+
+    fn record_pieces(
         &self,
         now: Instant,
-        exerted: &AppliedTorque,
+        applied: &AppliedTorque,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
         match record.piece_demand() {
             PieceDemand::None => Ok(()),
             PieceDemand::Beyond(band) if self.stays_within(band, now, record)? => Ok(()),
-            _ => self.expand(now, exerted, |stretch| record.piece(now, stretch)),
+            _ => self.pieces(now, |series, h, length| {
+                record.piece(now, &self.observed_piece(series, (h, length), applied))
+            }),
         }
     }
 
+    fn expand(
+        &self,
+        [since, until]: [Instant; 2],
+        applied: &AppliedTorque,
+        take: &mut dyn FnMut(&MotionPiece, &Polynomial),
+    ) {
+        let first = since.max(self.departed).since(self.departed).seconds();
+        let _ = self.pieces(until, |series, h, length| {
+            let late = (first - h).max(0.0);
+            if late < length {
+                let whole = self.observed_piece(series, (h, length), applied);
+                let rigid = Polynomial::from_series(&series.coordinates[0], length);
+                let from = late / length;
+                if late > 0.0 {
+                    let part = MotionPiece {
+                        from: whole.from + late,
+                        length: length - late,
+                        angle: whole.angle.restrict(from, 1.0),
+                        applied: whole.applied.restrict(from, 1.0),
+                        ..whole
+                    };
+                    take(&part, &rigid.restrict(from, 1.0));
+                } else {
+                    take(&whole, &rigid);
+                }
+            }
+            Ok(())
+        });
+    }
+}
+
+impl OneAxisFlow {
     /// Returns true if the angle is certain to stay within `band` (rad) of 0 on this segment until `until`: by bounds,
     /// which are cheap, or else by a search for a crossing.
     ///
     /// # Errors
     /// Fails if the record ends the search.
-    pub fn stays_within(
-        &self,
-        band: f64,
-        until: Instant,
-        record: &mut dyn Record,
-    ) -> Result<bool, RecordError> {
-        let OneAxisFlow::Uncoupled(arc) = &self.motion else { return Ok(false) };
+    fn stays_within(&self, band: f64, until: Instant, record: &mut dyn Record) -> Result<bool, RecordError> {
+        let OneAxisMotion::Uncoupled(arc) = &self.motion else { return Ok(false) };
         let span = until.since(self.departed);
         let guards = [Guard::at_least(band), Guard::at_most(-band)];
         Ok(arc.stays_within(band, span.seconds())
             || arc.has_bounds()
-                && first_crossing(arc, &guards, span, &mut self.state.clone(), || record.poll())?.is_none())
-    }
-
-    /// Expands the segment from its start to `until` and passes each piece to `take`.
-    pub fn expand(
-        &self,
-        until: Instant,
-        exerted: &AppliedTorque,
-        mut take: impl FnMut(&MotionPiece) -> Result<(), RecordError>,
-    ) -> Result<(), RecordError> {
-        self.pieces(until, |series, h, length| take(&self.observed_piece(series, (h, length), exerted)))
+                && first_crossing(arc, &guards, span, &mut self.body.state.clone(), || record.poll())?
+                    .is_none())
     }
 
     /// Passes the series of each piece from the segment's start to `until` to `take`, with its begin after that start
@@ -71,16 +102,13 @@ impl OneAxisPlant {
     ) -> Result<(), RecordError> {
         let span = until.since(self.departed).seconds();
         let mut unfolded = match &self.motion {
-            OneAxisFlow::Uncoupled(arc) => SegmentExpansion::Planar(arc, self.state.clone()),
-            OneAxisFlow::Chain(flight) => SegmentExpansion::Chain(flight.expansion()),
-            OneAxisFlow::Coupled(coupling) => SegmentExpansion::Coupled(coupling.expansion()),
-            OneAxisFlow::External(_) => return Ok(()),
+            OneAxisMotion::Uncoupled(arc) => SegmentExpansion::Planar(arc, self.body.state.clone()),
+            OneAxisMotion::Chain(flight) => SegmentExpansion::Chain(flight.expansion()),
+            OneAxisMotion::Coupled(coupling) => SegmentExpansion::Coupled(coupling.expansion()),
         };
         let coordinates = match &self.motion {
-            OneAxisFlow::Chain(flight) => flight.coordinates(),
-            OneAxisFlow::Uncoupled(_) | OneAxisFlow::Coupled(_) | OneAxisFlow::External(_) => {
-                self.state.modes.len() + 1
-            }
+            OneAxisMotion::Chain(flight) => flight.coordinates(),
+            OneAxisMotion::Uncoupled(_) | OneAxisMotion::Coupled(_) => self.body.state.modes.len() + 1,
         };
         let mut series = SeriesExpansion::new(coordinates);
         let mut h = 0.0;
@@ -103,7 +131,7 @@ impl OneAxisPlant {
         &self,
         series: &SeriesExpansion,
         (after, length): (f64, f64),
-        exerted: &AppliedTorque,
+        acting: &AppliedTorque,
     ) -> MotionPiece {
         let SeriesExpansion { coordinates, command } = series;
         let add = |sum: &mut Series, weight: f64, of: &Series| {
@@ -111,16 +139,16 @@ impl OneAxisPlant {
         };
         let mut angle = coordinates[0];
         let shows = match &self.motion {
-            OneAxisFlow::Uncoupled(arc) => arc.sensor_sees_modes(),
-            OneAxisFlow::Coupled(_) | OneAxisFlow::External(_) => true,
-            OneAxisFlow::Chain(_) => false,
+            OneAxisMotion::Uncoupled(arc) => arc.sensor_sees_modes(),
+            OneAxisMotion::Coupled(_) => true,
+            OneAxisMotion::Chain(_) => false,
         };
         if shows {
             coordinates[1..].iter().for_each(|mode| add(&mut angle, 1.0, mode));
         }
         let mut applied = *command;
-        applied[0] += exerted.constant;
-        let (back_emf, total) = exerted.back_emf;
+        applied[0] += acting.constant;
+        let (back_emf, total) = acting.back_emf;
         if back_emf != 0.0 {
             let sensed = if total { &angle } else { &coordinates[0] };
             for n in 0..TERMS - 1 {
@@ -129,7 +157,7 @@ impl OneAxisPlant {
         }
         let output = |index: usize, output: &Output| {
             let mut sum = [0.0; TERMS];
-            if let OneAxisFlow::Chain(_) = &self.motion {
+            if let OneAxisMotion::Chain(_) = &self.motion {
                 // The outputs of a chain are the angles of its sections relative to the hub.
                 add(&mut sum, 1.0, &coordinates[index + 1]);
                 add(&mut sum, -1.0, &coordinates[0]);
@@ -144,41 +172,9 @@ impl OneAxisPlant {
             from: self.departed.seconds() + after,
             length,
             angle: Polynomial::from_series(&angle, length),
-            outputs: self.outputs.iter().enumerate().map(|(index, of)| output(index, of)).collect(),
+            outputs: self.body.outputs.iter().enumerate().map(|(index, of)| output(index, of)).collect(),
             applied: Polynomial::from_series(&applied, length),
-            feedback: exerted.feedback,
+            feedback: acting.feedback,
         }
-    }
-
-    /// Expands the motion between two instants of this segment: passes the observed coordinates and the rigid angle of
-    /// each piece to `take`.
-    pub fn measure(
-        &self,
-        [since, until]: [Instant; 2],
-        exerted: &AppliedTorque,
-        mut take: impl FnMut(&MotionPiece, &Polynomial),
-    ) {
-        let first = since.max(self.departed).since(self.departed).seconds();
-        let _ = self.pieces(until, |series, h, length| {
-            let late = (first - h).max(0.0);
-            if late < length {
-                let whole = self.observed_piece(series, (h, length), exerted);
-                let rigid = Polynomial::from_series(&series.coordinates[0], length);
-                let from = late / length;
-                if late > 0.0 {
-                    let part = MotionPiece {
-                        from: whole.from + late,
-                        length: length - late,
-                        angle: whole.angle.restrict(from, 1.0),
-                        applied: whole.applied.restrict(from, 1.0),
-                        ..whole
-                    };
-                    take(&part, &rigid.restrict(from, 1.0));
-                } else {
-                    take(&whole, &rigid);
-                }
-            }
-            Ok(())
-        });
     }
 }

@@ -1,0 +1,124 @@
+//! Requirements and offers of the actuators of a scenario.
+
+use flexsc_numerics::quantity::Time;
+
+use super::{
+    ActuatorKind, ActuatorSpec, AssignedActuator, ControlMomentGyros, Ideal, Magnetorquers, Thrusters,
+};
+use crate::custom::Custom;
+use crate::offers::{ActuatorMember, ActuatorOffers, ActuatorPlace, Offers, TorqueLimit};
+use crate::one_or_many::OneOrMany;
+use crate::requirement::{Requirements, Rule};
+
+impl ActuatorKind {
+    /// Returns the offers of the actuator to the other parts of a scenario.
+    pub fn offers(&self) -> ActuatorOffers {
+        let offers = match self {
+            Self::Ideal(_) => Ideal::offers(),
+            Self::Thrusters(_) => Thrusters::offers(),
+            Self::Wheel(wheel) => wheel.offers(),
+            Self::Wheels(wheels) => wheels.offers(),
+            Self::ControlMomentGyros(_) => ControlMomentGyros::offers(),
+            Self::Jets(jets) => jets.offers(),
+            Self::Magnetorquers(_) => Magnetorquers::offers(),
+            Self::Hold(_) => ActuatorOffers::default(),
+            Self::Own(own) => {
+                let limit = |axis| own.limit(axis).map_or(TorqueLimit::Unlimited, |_| TorqueLimit::Constant);
+                ActuatorOffers { limits: [0, 1, 2].map(limit), ..ActuatorOffers::default() }
+            }
+        };
+        ActuatorOffers { period: self.period(), ..offers }
+    }
+
+    /// Adds the requirements of the actuator on the other parts of a scenario.
+    fn add_requirements(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        self.require_phase(place, offers, needs);
+        match self {
+            Self::Ideal(_) => Ideal::requires(offers, needs),
+            Self::Thrusters(thrusters) => thrusters.requires(offers, needs),
+            Self::Wheel(wheel) => wheel.requires(place, offers, needs),
+            Self::Wheels(wheels) => wheels.requires(place, offers, needs),
+            Self::ControlMomentGyros(gyros) => gyros.requires(place, offers, needs),
+            Self::Jets(jets) => jets.requires(place, offers, needs),
+            Self::Magnetorquers(_) => Magnetorquers::requires(place, offers, needs),
+            Self::Hold(_) | Self::Own(_) => {}
+        }
+    }
+
+    /// Adds the requirements on the phase of the periods, so that no first period is missed.
+    fn require_phase(&self, place: &ActuatorPlace<'_>, offers: &Offers, needs: &mut Requirements) {
+        let Some(phase) = self.phase() else { return };
+        needs.require(
+            Rule::Phase,
+            self.period().is_some(),
+            "phase",
+            "applies only to jets with a `period` of their own: without one they act with the law",
+        );
+        let is_late = phase != Time::ZERO;
+        needs.require(
+            Rule::Phase,
+            !is_late || !offers.body.has_manoeuvre,
+            "phase",
+            "must be 0 with a `[manoeuvre]`, whose begin it would miss",
+        );
+        let is_planned = offers.laws.iter().any(|law| law.offers.plans_pulses);
+        needs.require(
+            Rule::Phase,
+            !is_late || !is_planned || !place.shares.iter().any(|share| *share > 0.0),
+            "phase",
+            "must be 0 with a law `phase_plane`, whose pulses begin with the law's periods",
+        );
+    }
+
+    /// Returns true if commands are executed exactly, without failures.
+    pub fn is_ideal(&self) -> bool {
+        matches!(self, Self::Ideal(ideal) if ideal.faults.is_empty())
+    }
+
+    /// Returns the actuator of another crate, if it is one.
+    pub fn custom(&self) -> Option<&Custom<dyn ActuatorSpec>> {
+        if let Self::Own(own) = self { Some(own) } else { None }
+    }
+}
+
+impl From<Custom<dyn ActuatorSpec>> for ActuatorKind {
+    fn from(actuator: Custom<dyn ActuatorSpec>) -> Self {
+        Self::Own(actuator)
+    }
+}
+
+impl OneOrMany<AssignedActuator> {
+    /// Returns the offers of each actuator.
+    pub fn offers(&self) -> Vec<ActuatorMember> {
+        let members = self.members().into_iter();
+        let offers = members.map(|member| ActuatorMember {
+            offers: member.kind.offers(),
+            shares: [0, 1, 2].map(|axis| member.share(axis)),
+            is_listed: !member.is_nested(),
+            executes: member.executes(),
+            kind: member.kind.kind(),
+            key: member.key,
+        });
+        offers.collect()
+    }
+
+    /// Adds the requirements of all actuators.
+    pub fn add_requirements(&self, offers: &Offers, needs: &mut Requirements) {
+        for (index, member) in self.members().iter().enumerate() {
+            let own = &offers.actuators[index];
+            let twins = || offers.actuators[..index].iter().filter(|other| other.kind == own.kind);
+            let meets = |other: &ActuatorMember| {
+                (0..offers.body.axes).any(|axis| other.shares[axis] * own.shares[axis] > 0.0)
+            };
+            let place = ActuatorPlace {
+                members: offers.actuators.len(),
+                twin: twins().next().map(|other| other.key.as_str()),
+                meets_twin: twins().any(meets),
+                shares: own.shares,
+                executes: own.executes,
+            };
+            needs.set_part(own.key.clone());
+            member.kind.add_requirements(&place, offers, needs);
+        }
+    }
+}

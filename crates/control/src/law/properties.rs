@@ -1,0 +1,66 @@
+//! Properties of the law of a scenario that only some kinds have.
+
+use flexsc_numerics::quantity::Finite;
+
+use super::{ActiveDamping, AttitudeTarget, LawKind, LawSpec, Pd, Relay};
+use crate::custom::Custom;
+
+impl LawKind {
+    /// Returns the parameter that an adaptation tunes by default; NaN if the law has none.
+    pub fn tuned(&self) -> f64 {
+        self.tunable().first().map_or(f64::NAN, |number| number.value)
+    }
+
+    /// Returns the inertia tensor in the law's model of a three-axis body, row by row (kg m²), if the law has its own.
+    pub fn inertia(&self) -> Option<&[[Finite; 3]; 3]> {
+        if let Self::Attitude(law) = self { law.inertia.as_ref() } else { None }
+    }
+
+    /// Returns the relay law, if the law is one.
+    pub fn relay(&self) -> Option<&Relay> {
+        if let Self::Relay(law) = self { Some(law) } else { None }
+    }
+
+    /// Returns the sampled PD law, if the law is one.
+    pub fn pd(&self) -> Option<&Pd> {
+        if let Self::Pd(law) = self { Some(law) } else { None }
+    }
+
+    /// Returns the coefficients of the sampled filters of the law's output; empty without filters.
+    pub fn filter_coefficients(&self) -> Vec<([f64; 3], [f64; 2])> {
+        let Self::Attitude(law) = self else { return Vec::new() };
+        let period = law.period.seconds();
+        law.filters.iter().filter_map(|filter| Some(filter.sampled(period).ok()?.coefficients())).collect()
+    }
+
+    /// Returns the active damping of elastic motion, if the law has it.
+    pub fn active_damping(&self) -> Option<&ActiveDamping> {
+        if let Self::PhasePlane(law) = self { law.damping.as_ref() } else { None }
+    }
+
+    /// Returns the key of the law about an axis.
+    pub fn key_about(&self, axis: usize) -> String {
+        match self {
+            Self::PerAxis(laws) => {
+                format!("law.per_axis.{}.{}", flexsc_numerics::attitude::AXES[axis], laws.about(axis).kind())
+            }
+            law => format!("law.{}", law.kind()),
+        }
+    }
+
+    /// Returns the target attitudes within the law; empty if those of the scenario apply.
+    pub fn own_targets(&self) -> &[AttitudeTarget] {
+        if let Self::PhasePlane(law) = self { &law.targets } else { &[] }
+    }
+
+    /// Returns the law of another crate, if it is one.
+    pub fn custom(&self) -> Option<&Custom<dyn LawSpec + Send + Sync>> {
+        if let Self::Own(own) = self { Some(own) } else { None }
+    }
+}
+
+impl From<Custom<dyn LawSpec + Send + Sync>> for LawKind {
+    fn from(law: Custom<dyn LawSpec + Send + Sync>) -> Self {
+        Self::Own(law)
+    }
+}

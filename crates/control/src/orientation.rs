@@ -1,0 +1,37 @@
+//! Orientation of a body with one axis or three.
+
+use flexsc_numerics::attitude::{Vector, rotation, rotation_vector};
+use nalgebra::Quaternion;
+
+/// Orientation of a body.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub enum Orientation {
+    /// Angle of a one-axis body (rad).
+    Angle(f64),
+    /// Attitude of a three-axis body: the rotation from body axes to inertial axes.
+    Attitude(Quaternion<f64>),
+}
+
+impl Orientation {
+    /// Returns the rotation vector from another orientation to this one (rad); for one angle, the difference about the first axis.
+    #[inline]
+    pub fn error_from(&self, other: &Self) -> [f64; 3] {
+        match (self, other) {
+            (Self::Attitude(q), Self::Attitude(goal)) => rotation_vector(goal, q).into(),
+            (Self::Angle(angle), Self::Angle(goal)) => [angle - goal, 0.0, 0.0],
+            // All orientations of a run are of the same kind.
+            _ => [f64::NAN; 3],
+        }
+    }
+
+    /// Returns the orientation measured with these angles (rad): the first angle itself, or the attitude with these
+    /// small rotations.
+    #[must_use]
+    #[inline]
+    pub fn rotated_by(&self, angles: [f64; 3]) -> Self {
+        match self {
+            Self::Angle(_) => Self::Angle(angles[0]),
+            Self::Attitude(q) => Self::Attitude(q * rotation(&Vector::from(angles))),
+        }
+    }
+}

@@ -1,0 +1,97 @@
+//! Requirements and offers of the sensors of a scenario.
+
+use flexsc_numerics::time::Span;
+
+use super::{Accelerometer, Magnetometer, SensorKind, SensorSpec, SunSensor, Tachometer};
+use crate::custom::Custom;
+use crate::offers::{Offers, SensorOffers};
+use crate::one_or_many::OneOrMany;
+use crate::requirement::{OFF_HUB, Requirements, Rule};
+
+impl SensorKind {
+    /// Adds the requirements of the sensor on the other parts of a scenario; `ordinal` counts earlier sensors of its kind.
+    fn add_requirements(&self, ordinal: usize, offers: &Offers, needs: &mut Requirements) {
+        if let Some(point) = self.point() {
+            offers.require_three_axes(needs, Rule::SensorPoint, "point", "");
+            needs.require(Rule::FixedSensors, offers.body.has_motion_at(point), "point", OFF_HUB);
+        }
+        needs.require(
+            Rule::Sensor,
+            self.is_continuous() || !self.measures_motion() || self.period(offers.law_period).is_some(),
+            "",
+            "must have a `period` with a law that has none of its own",
+        );
+        needs.report(Rule::Sensor, self.inconsistency());
+        match self {
+            Self::Gyro(gyro) => gyro.requires(offers, needs),
+            Self::StarTracker(_) => require_attitude(offers, needs),
+            Self::Magnetometer(_) => Magnetometer::requires(offers, needs),
+            Self::SunSensor(_) => SunSensor::requires(offers, needs),
+            Self::Tachometer(_) => Tachometer::requires(ordinal, offers, needs),
+            Self::Accelerometer(_) => Accelerometer::requires(offers, needs),
+            Self::Continuous => needs.require(
+                Rule::Sensor,
+                offers.sensors.motion_sensors <= 1,
+                "",
+                "gives the motion at every instant, so other sensors add nothing",
+            ),
+            Self::Sampled(_) | Self::Own(_) => {}
+        }
+    }
+
+    /// Returns the period of the samples that does not follow from a law, of the body's motion or for the log.
+    pub fn own_period(&self) -> Option<Span> {
+        match self {
+            Self::Tachometer(tachometer) => Some(tachometer.period),
+            Self::Accelerometer(accelerometer) => Some(accelerometer.period),
+            _ => self.period(None),
+        }
+    }
+
+    /// Returns the sensor of another crate, if it is one.
+    pub fn custom(&self) -> Option<&Custom<dyn SensorSpec>> {
+        if let Self::Own(own) = self { Some(own) } else { None }
+    }
+}
+
+impl From<Custom<dyn SensorSpec>> for SensorKind {
+    fn from(sensor: Custom<dyn SensorSpec>) -> Self {
+        Self::Own(sensor)
+    }
+}
+
+impl OneOrMany<SensorKind> {
+    /// Returns the key of a sensor, including its kind.
+    pub fn sensor_key(&self, index: usize) -> String {
+        format!("{}.{}", self.key("sensor", index), self[index].kind())
+    }
+
+    /// Returns the offers of all sensors together, under a law with period `law`.
+    pub fn offers(&self, law: Option<Span>) -> SensorOffers {
+        SensorOffers {
+            motion_sensors: self.motion_sensors(),
+            is_continuous: self.iter().any(SensorKind::is_continuous),
+            magnetic_field: self.iter().any(SensorKind::measures_field),
+            period: self.period(law),
+            angle_noise: self.angle_noise(),
+        }
+    }
+
+    /// Adds the requirements of all sensors.
+    pub fn add_requirements(&self, offers: &Offers, needs: &mut Requirements) {
+        for (index, sensor) in self.iter().enumerate() {
+            needs.set_part(self.sensor_key(index));
+            sensor.add_requirements(self.index_in_kind(index), offers, needs);
+        }
+    }
+}
+
+/// Adds the requirement of three axes for a sensor of the attitude or of a vector.
+pub(super) fn require_attitude(offers: &Offers, needs: &mut Requirements) {
+    needs.require(
+        Rule::SensorAxes,
+        offers.body.axes == 3,
+        "",
+        "measures three axes: use a `sampled` sensor for a body with one angle",
+    );
+}

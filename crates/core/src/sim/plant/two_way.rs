@@ -1,0 +1,179 @@
+//! Flow of a three-axis body whose modes act back on its rotation: the integrator's motion, seen as a flow.
+
+use std::borrow::Cow;
+
+use flexsc_control::estimator::WindowedEnvelope;
+use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::AxisState;
+use flexsc_dynamics::three_axis::{FlexibleBody, RotorObservation, SlipDirection};
+use flexsc_numerics::attitude::Vector;
+use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::{Record, RecordError};
+use flexsc_spacecraft::body::Spatial;
+use flexsc_spacecraft::environment::SurroundingsState;
+use flexsc_spacecraft::wrench::Wrench;
+use nalgebra::Quaternion;
+
+use super::coupled::{AccelerometerMount, CoupledMotion};
+use super::flow::{Flow, FlowQuantities};
+use super::three_axis_body::{ThreeAxisBody, ThreeAxisQuantities};
+use crate::scenario::ResolvedScenario;
+
+/// Coupled motion of a three-axis body.
+#[derive(Clone, Debug)]
+pub struct TwoWayFlow {
+    body: ThreeAxisBody,
+    motion: CoupledMotion,
+    /// Start of the motion segment.
+    segment_start: Instant,
+}
+
+impl TwoWayFlow {
+    /// Creates the flow at the start, without loads.
+    pub fn new(spec: &Spatial, flexible: &FlexibleBody, study: &ResolvedScenario) -> Self {
+        let body = ThreeAxisBody::new(spec, study);
+        let motion = CoupledMotion::new(
+            spec,
+            flexible,
+            study.surroundings.clone(),
+            study.translation.clone(),
+            [&body.sensor_rotations[..], &body.torque_rotations],
+            (&study.bearings, &study.shared_steps),
+        );
+        let motion = motion.with_appendages(study.drives.as_ref());
+        Self { body, motion, segment_start: Instant::START }
+    }
+
+    /// Returns the integrator's motion.
+    pub fn motion(&self) -> &CoupledMotion {
+        &self.motion
+    }
+
+    /// Returns the states of the wheels in bearings at the current instant; empty without friction, imbalance and
+    /// tachometer.
+    pub fn wheel_bearings(&self) -> Vec<RotorObservation> {
+        self.motion.rotor_states(self.segment_start.seconds())
+    }
+
+    /// Returns the slip states of the wheels in bearings.
+    pub fn bearing_states(&self) -> &[SlipDirection] {
+        self.motion.slips()
+    }
+
+    /// Returns the specific force at an accelerometer at the current instant (m/s²), under the loads from then on.
+    pub fn specific_force(&self, place: &AccelerometerMount) -> Vector {
+        self.motion.specific_force(place, self.segment_start.seconds())
+    }
+}
+
+impl Flow for TwoWayFlow {
+    fn begin_segment(&mut self, wrench: &Wrench) {
+        self.segment_start = self.body.evaluated_at;
+        self.motion.depart(wrench, self.segment_start.seconds());
+        self.motion.write_state(&self.body.rigid, &mut self.body.state);
+    }
+
+    fn advance(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError> {
+        record.poll()?;
+        let body = &mut self.body;
+        if body.evaluated_at == now {
+            return Ok(None);
+        }
+        let h = now.since(self.segment_start).seconds();
+        let began = self.segment_start.seconds();
+        let mut met = None;
+        if let Some(h) = self.motion.advance(h, began, || record.poll())? {
+            let at = (self.segment_start + Span::from_seconds(h)).min(now);
+            self.motion.stop_at_bearing_event(at.since(self.segment_start).seconds(), began);
+            met = Some(at);
+        }
+        self.motion.write_state(&body.rigid, &mut body.state);
+        if let Some((_, rotations)) = self.motion.modes() {
+            body.sensor_rotations.copy_from_slice(rotations);
+        }
+        body.evaluated_at = met.unwrap_or(now);
+        body.has_truth = false;
+        Ok(met)
+    }
+
+    fn evaluate(&mut self, _now: Instant, truth: &mut Truth) -> bool {
+        let body = &mut self.body;
+        if body.has_truth {
+            return true;
+        }
+        if !body.state.is_finite() {
+            return false;
+        }
+        let elastic = self.motion.write_truth(&body.sensor_rotations, truth);
+        body.rates = (truth.rigid.into(), elastic);
+        if let Some(around) = self.motion.surroundings() {
+            truth.sky = around.observation(body.evaluated_at.seconds());
+        }
+        body.has_truth = true;
+        true
+    }
+
+    fn about_axis(&self, axis: usize, target: &Orientation) -> Cow<'_, AxisState> {
+        Cow::Owned(self.body.about_axis(axis, target))
+    }
+
+    fn modal_state(&self) -> Cow<'_, AxisState> {
+        Cow::Owned(self.body.modal_state())
+    }
+
+    fn update_monitor(
+        &self,
+        monitor: &mut WindowedEnvelope,
+        now: Instant,
+        _torque: f64,
+        commanded: &dyn Fn() -> Wrench,
+    ) {
+        monitor.push(now, &self.body.modal_state(), &self.body.modal_forces(&commanded()));
+    }
+
+    fn quantities(&self) -> FlowQuantities<'_> {
+        FlowQuantities::ThreeAxis(self)
+    }
+
+    fn copy(&self) -> Box<dyn Flow> {
+        Box::new(self.clone())
+    }
+}
+
+impl ThreeAxisQuantities for TwoWayFlow {
+    fn body(&self) -> &ThreeAxisBody {
+        &self.body
+    }
+
+    fn surroundings(&self) -> Option<&SurroundingsState> {
+        self.motion.surroundings()
+    }
+
+    fn attitude(&self) -> &Quaternion<f64> {
+        self.motion.attitude()
+    }
+
+    fn external_torque(&self) -> Option<Vector> {
+        self.motion.environment_torque(self.body.evaluated_at.seconds())
+    }
+
+    fn rotational_energy(&self) -> (f64, f64) {
+        self.motion.energy()
+    }
+
+    fn modal_energies(&self, take: &mut dyn FnMut(f64)) {
+        if self.motion.modes().is_some() {
+            self.motion.modal_energies().for_each(take);
+        } else {
+            self.body.elastic.energies(&self.body.state.modes).for_each(take);
+        }
+    }
+
+    fn fastest_frequency(&self) -> f64 {
+        self.motion.fastest()
+    }
+
+    fn coupled(&self) -> Option<&TwoWayFlow> {
+        Some(self)
+    }
+}

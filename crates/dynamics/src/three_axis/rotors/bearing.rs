@@ -1,0 +1,212 @@
+//! Rotors with friction in their bearings and imbalance: their motion and the forces they exert at the stages of a
+//! step.
+//!
+//! A rotor turns against the body at Omega = h/I - a.w, and th' = Omega. While it slips, its bearing subtracts c
+//! Omega + t sgn Omega from the motor torque; a rotor that is stuck turns with the body, h = I a.w, and adds I a a'
+//! to the body's inertia.
+
+use flexsc_numerics::attitude::Vector;
+use nalgebra::Matrix3;
+
+use crate::three_axis::body::Rotor;
+
+/// Bearing friction and imbalance of a rotor.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Bearing {
+    /// Moment of inertia of the rotor about its axis (kg m²).
+    pub inertia: f64,
+    /// Viscous friction (N m s/rad).
+    pub viscous: f64,
+    /// Coulomb friction (N m); 0 for none: such a rotor never sticks.
+    pub coulomb: f64,
+    /// Torque that a rotor at rest withstands before it slips (N m), at least the Coulomb friction.
+    pub breakaway: f64,
+    /// Harmonics of the imbalance.
+    pub lines: Vec<HarmonicLine>,
+}
+
+/// Harmonic of the imbalance: the load on the body is Omega² (c cos k th + s sin k th), where k is the order.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct HarmonicLine {
+    /// Order k: periods per revolution.
+    pub order: f64,
+    /// Coefficients c and s of the torque on the hub (kg m²).
+    pub torque: [Vector; 2],
+    /// Coefficients c and s of the force (kg m).
+    pub force: [Vector; 2],
+    /// Coefficients c and s of the modal forces other than phi' times the torque (sqrt(kg) m).
+    pub forces: [Vec<f64>; 2],
+}
+
+/// Stick or slip state of a rotor in its bearing, with the direction of slip.
+#[derive(Copy, Clone, Debug, Default, PartialEq, Eq)]
+pub enum SlipDirection {
+    /// Slips towards positive speeds, or has no Coulomb friction.
+    #[default]
+    Forward,
+    /// Slips towards negative speeds.
+    Backward,
+    /// At rest relative to the body.
+    Stuck,
+}
+
+impl SlipDirection {
+    /// Returns the slip state for the sign of a speed or a driving torque; `Stuck` at 0.
+    pub fn from_speed(speed: f64) -> Self {
+        if speed > 0.0 {
+            Self::Forward
+        } else if speed < 0.0 {
+            Self::Backward
+        } else {
+            Self::Stuck
+        }
+    }
+
+    /// Returns 1, -1, or 0 for a rotor that is stuck.
+    pub fn sign(self) -> f64 {
+        match self {
+            Self::Forward => 1.0,
+            Self::Backward => -1.0,
+            Self::Stuck => 0.0,
+        }
+    }
+}
+
+impl Bearing {
+    /// Returns the friction torque of a slipping rotor at a speed in rad/s (N m).
+    pub fn friction(&self, speed: f64, slip: SlipDirection) -> f64 {
+        self.viscous * speed + self.coulomb * slip.sign()
+    }
+
+    /// Returns true if the bearing can hold its rotor at rest.
+    pub fn can_stick(&self) -> bool {
+        self.breakaway > 0.0
+    }
+
+    /// Returns the highest order of the imbalance; 0 without imbalance.
+    pub fn highest_order(&self) -> f64 {
+        self.lines.iter().map(|line| line.order).fold(0.0, f64::max)
+    }
+}
+
+/// State of a rotor: momentum (N m s), angle against the body since the start (rad) and friction heat (J) in `sums`,
+/// and their rounding errors in `lost`.
+#[derive(Copy, Clone, Debug, Default, PartialEq)]
+pub struct RotorState {
+    pub values: Vector,
+    pub rounding: Vector,
+}
+
+/// Rotors in bearings during a segment.
+#[derive(Copy, Clone)]
+pub struct BearingLoads<'a> {
+    pub bearings: &'a [Bearing],
+    pub rotors: &'a [Rotor],
+    pub slips: &'a [SlipDirection],
+}
+
+/// Values of the rotors in bearings at the stages of a step.
+#[derive(Clone, Debug, Default)]
+pub struct RotorStage {
+    /// Momentum, angle and heat of each rotor at the current stage.
+    pub at: Vec<Vector>,
+    /// Rates of `at` at the current stage.
+    pub rates: Vec<Vector>,
+    /// Rates of `at` at the nodes of the step.
+    pub node_rates: Vec<[Vector; 3]>,
+    /// Imbalance terms Omega² cos k th and Omega² sin k th of each harmonic of each rotor.
+    pub imbalance_terms: Vec<[f64; 2]>,
+}
+
+impl RotorStage {
+    /// Stores the current rates as those at a node of a step of `h` (s); returns the relative change of the momenta.
+    pub fn set_rates(&mut self, node: usize, h: f64) -> f64 {
+        let mut change = 0.0_f64;
+        for ((nodes, rate), at) in self.node_rates.iter_mut().zip(&self.rates).zip(&self.at) {
+            let size = at.x.abs() + h * rate.x.abs();
+            if size > 0.0 {
+                change = change.max((rate.x - nodes[node].x).abs() * h / size);
+            }
+            nodes[node] = *rate;
+        }
+        change
+    }
+}
+
+impl BearingLoads<'_> {
+    /// Returns the momentum of the rotors that slip (N m s).
+    pub fn stored(&self, momenta: impl Iterator<Item = f64>) -> Vector {
+        let rotors = self.rotors.iter().zip(self.slips).zip(momenta);
+        rotors
+            .filter(|((_, slip), _)| **slip != SlipDirection::Stuck)
+            .fold(Vector::zeros(), |sum, ((rotor, _), momentum)| sum + rotor.axis * momentum)
+    }
+
+    /// Returns true if any rotor is stuck.
+    pub fn sticks(&self) -> bool {
+        self.slips.contains(&SlipDirection::Stuck)
+    }
+
+    /// Returns the inertia that stuck rotors add to the body (kg m²).
+    pub fn stuck_inertia(&self) -> Matrix3<f64> {
+        let stuck = self.rotors.iter().zip(self.bearings).zip(self.slips);
+        stuck
+            .filter(|(_, slip)| **slip == SlipDirection::Stuck)
+            .fold(Matrix3::zeros(), |sum, ((rotor, of), _)| {
+                sum + rotor.axis * rotor.axis.transpose() * of.inertia
+            })
+    }
+
+    /// Returns the speed of a rotor of the given momentum (N m s) relative to a body with the angular rate `rate`
+    /// (rad/s).
+    pub fn speed(&self, index: usize, momentum: f64, rate: &Vector) -> f64 {
+        momentum / self.bearings[index].inertia - self.rotors[index].axis.dot(rate)
+    }
+
+    /// Updates the rates of all rotors from `spun.at`, and the imbalance terms, for a body with the angular rate
+    /// `rate` (rad/s); returns the torque of the imbalance on the hub (N m).
+    pub fn update_rates(&self, rate: &Vector, stage: &mut RotorStage) -> Vector {
+        let mut torque = Vector::zeros();
+        stage.imbalance_terms.clear();
+        for (index, (bearing, rotor)) in self.bearings.iter().zip(self.rotors).enumerate() {
+            let (at, slip) = (stage.at[index], self.slips[index]);
+            let stuck = slip == SlipDirection::Stuck;
+            let speed = if stuck { 0.0 } else { self.speed(index, at.x, rate) };
+            let friction = bearing.friction(speed, slip);
+            stage.rates[index] = if stuck {
+                Vector::zeros()
+            } else {
+                Vector::new(rotor.torque - friction, speed, friction * speed)
+            };
+            for line in &bearing.lines {
+                let (sin, cos) = libm::sincos(line.order * at.y);
+                let wave = [speed * speed * cos, speed * speed * sin];
+                torque += line.torque[0] * wave[0] + line.torque[1] * wave[1];
+                stage.imbalance_terms.push(wave);
+            }
+        }
+        torque
+    }
+
+    /// Returns the force of the imbalance on a mode (N/sqrt(kg)).
+    pub fn force(&self, mode: usize, imbalance_terms: &[[f64; 2]]) -> f64 {
+        let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
+        lines
+            .zip(imbalance_terms)
+            .map(|(line, [c, s])| line.forces[0][mode] * c + line.forces[1][mode] * s)
+            .sum()
+    }
+
+    /// Returns the force of the imbalance on the body (N).
+    pub fn imbalance_force(&self, imbalance_terms: &[[f64; 2]]) -> Vector {
+        let lines = self.bearings.iter().flat_map(|bearing| &bearing.lines);
+        lines
+            .zip(imbalance_terms)
+            .fold(Vector::zeros(), |sum, (line, [c, s])| sum + line.force[0] * *c + line.force[1] * *s)
+    }
+
+    /// Returns true if any rotor has imbalance.
+    pub fn has_imbalance(&self) -> bool {
+        self.bearings.iter().any(|bearing| !bearing.lines.is_empty())
+    }
+}
