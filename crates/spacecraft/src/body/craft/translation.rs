@@ -38,7 +38,7 @@ impl Translation {
         };
         let bent = || [sum(&view.displacements), sum(&view.rates)];
         let [moved, speed] = view.shift.unwrap_or_else(bent);
-        let arm = self.at + moved;
+        let arm = self.position + moved;
         let rate = view.rate.cross(&arm) + speed;
         let q = view.attitude;
         let inertial = |v: Vector| (q * Quaternion::from_imag(v) * q.conjugate()).vector().into_owned();
