@@ -19,10 +19,10 @@ pub fn expected(run: &CampaignRun, from: &Provenance, scene: &Scene) -> BTreeSet
         let mut simulation = Simulation::new(&run.scenario, run.number);
         let _ = simulation.run_until(Instant::START, &mut (&mut messages, scene.clone()));
     }
-    let later = later(&run.scenario);
+    let late_topics = later(&run.scenario);
     // Custom topics are advertised with their first messages.
     topics.0.retain(|&index| index < TOPICS.len());
-    topics.0.extend((0..TOPICS.len()).filter(|&index| later.contains(&TOPICS[index].name)));
+    topics.0.extend((0..TOPICS.len()).filter(|&index| late_topics.contains(&TOPICS[index].name)));
     topics.0
 }
 
@@ -48,7 +48,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/summary", true),
         ("/metrics", true),
     ];
-    topics.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect()
+    topics.into_iter().filter(|(_, is_expected)| *is_expected).map(|(name, _)| name).collect()
 }
 
 /// Record that collects the topics of messages.
@@ -93,9 +93,9 @@ mod tests {
             let mut simulation = Simulation::new(&run.scenario, 0);
             simulation.run_until(until, &mut (messages, scene)).expect("a run");
             let name = |index: &usize| TOPICS[*index].name;
-            let unknown: Vec<_> = seen.0.difference(&expected).map(name).collect();
+            let unknown: Vec<_> = topics.0.difference(&expected).map(name).collect();
             assert!(unknown.is_empty(), "{}: {unknown:?}", file.path().display());
-            names.extend(seen.0.iter().map(name));
+            names.extend(topics.0.iter().map(name));
         }
         let all: BTreeSet<_> = TOPICS.iter().map(|topic| topic.name).collect();
         assert_eq!(all.difference(&names).collect::<Vec<_>>(), [&"/metrics", &"/summary"], "the last of all");

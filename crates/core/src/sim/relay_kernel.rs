@@ -11,7 +11,7 @@ use super::plant::{AppliedTorque, Flow};
 use super::{Simulation, SimulationError};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneState, RunSetup, SWITCHINGS, apply_crossing,
-    apply_state, fly_alone, guards, instant, law_state, shortest_window,
+    apply_state, guards, instant, law_state, run_single, shortest_window,
 };
 
 /// Adapter that runs a single simulation through the relay kernel.
@@ -57,7 +57,7 @@ impl Simulation {
             failed,
             rest,
         };
-        fly_alone(host.setup.structure, &mut host);
+        run_single(host.setup.structure, &mut host);
         let SingleRunHost { failed, rest, .. } = host;
         self.take_over(&rest, record)?;
         failed.map_or(Ok(()), Err)
@@ -78,12 +78,12 @@ impl Simulation {
 
     /// Continues the run in the loop from the segment start at which the kernel stopped.
     fn take_over(&mut self, rest: &LaneHandover, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (Some(place), now) = (rest.place, instant(rest.from.at)) else { return Ok(()) };
+        let (Some(place), now) = (rest.phase, instant(rest.from.time)) else { return Ok(()) };
         if now == Instant::START {
             return Ok(());
         }
         self.clock.take_over(now, rest.switched.0, instant(rest.switched.1));
-        self.laws.begin(law_state(place, rest.from.side), now, instant(rest.pushed));
+        self.laws.begin(law_state(place, rest.from.side), now, instant(rest.push_start));
         let Command::Torque(torque) = self.laws.outputs()[0] else { return Ok(()) };
         self.begin_relay_segment(&rest.from, torque);
         let Some(flow) = self.plant.one_axis() else { return Ok(()) };
@@ -93,7 +93,7 @@ impl Simulation {
         }
         self.loads.command(now, self.laws.outputs(), &self.estimation.estimates, [rigid, 0.0, 0.0]);
         if let Some(monitor) = &mut self.estimation.monitor {
-            monitor.take_over(instant(rest.seen), rest.integral, &rest.tracks);
+            monitor.take_over(instant(rest.integrated_to), rest.integral, &rest.tracks);
         }
         self.find_crossing(record)
     }
@@ -159,7 +159,7 @@ impl LaneHost for SingleRunHost<'_> {
         found: &mut FoundCrossing,
     ) -> bool {
         self.run.begin_relay_segment(from, self.setup.torque(place, from.side));
-        let horizon = instant(self.setup.end).since(instant(from.at));
+        let horizon = instant(self.setup.end).since(instant(from.time));
         let guards = guards(&self.setup, place, from.side);
         let Some(flow) = self.run.plant.one_axis() else { return false };
         match flow.crossing(&guards, horizon, &mut self.record) {
