@@ -92,8 +92,8 @@ impl MagnetorquersState {
     /// Returns the actual moments (A m²), subject to failures.
     fn held(&self) -> Vector {
         let coil = |axis: usize| {
-            let wanted = self.moment[axis];
-            self.failing[axis].as_ref().map_or(wanted, |failing| failing.output(wanted))
+            let commanded = self.moment[axis];
+            self.failing[axis].as_ref().map_or(commanded, |failing| failing.output(commanded))
         };
         Vector::from_fn(|axis, _| coil(axis))
     }
@@ -119,8 +119,8 @@ impl MagnetorquersState {
     /// Commands the demanded moments (A m²), each limited separately.
     fn hold(&mut self, demands: &[Demand]) {
         for (axis, demand) in demands.iter().enumerate().take(3) {
-            let wanted = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
-            self.moment[axis] = wanted.clamp(-self.limits[axis], self.limits[axis]);
+            let demanded = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
+            self.moment[axis] = demanded.clamp(-self.limits[axis], self.limits[axis]);
         }
         self.demanded = self.torque_in_field();
     }
@@ -149,12 +149,12 @@ impl Actuator for MagnetorquersState {
             return self.hold(demands);
         }
         let torque = |(demand, setting): (&Demand, &AxisActuatorContext)| setting.demanded_torque(demand);
-        let mut wanted = Vector::zeros();
-        wanted
+        let mut demanded = Vector::zeros();
+        demanded
             .iter_mut()
             .zip(demands.iter().zip(&self.settings).map(torque))
             .for_each(|(total, torque)| *total = torque);
-        self.give(wanted);
+        self.give(demanded);
     }
 
     fn apply(&self, _: Instant, onto: &mut Wrench) {
@@ -219,7 +219,7 @@ mod tests {
         let mut torquers = start("moment = 100.0");
         let (field, torque) = (Vector::new(2e-5, -1e-5, 3e-5), Vector::new(1e-4, 2e-4, -1e-4));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
-        assert_eq!(torquers.given(), Vector::zeros(), "no field is known");
+        assert_eq!(torquers.torque_in_field(), Vector::zeros(), "no field is known");
         torquers.update(Instant::START, ActuatorEvent::MagneticField(field));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         let along = field.normalize();

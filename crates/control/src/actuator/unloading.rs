@@ -221,7 +221,7 @@ impl UnloaderState {
             }
         }
         self.actuator.update(now, ActuatorEvent::Due(rigid));
-        if !begins || taken {
+        if !begins || is_commanded {
             return None;
         }
         let mean = if self.gain.is_some() {

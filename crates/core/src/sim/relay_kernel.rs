@@ -102,7 +102,7 @@ impl Simulation {
     fn begin_relay_segment(&mut self, from: &LaneState, torque: f64) {
         self.loads.applied = AppliedTorque { constant: torque, feedback: torque, back_emf: (0.0, false) };
         if let Some(flow) = self.plant.one_axis() {
-            flow.set_state(instant(from.at), |state| apply_state(state, from));
+            flow.set_state(instant(from.time), |state| apply_state(state, from));
             flow.begin_under_torque(0.0 + torque);
         }
     }
@@ -118,7 +118,7 @@ impl SingleRunHost<'_> {
 
     fn record_state(&mut self, to: CyclePhase, now: &LaneState) -> Result<(), RecordError> {
         self.record.poll()?;
-        let at = instant(now.at);
+        let at = instant(now.time);
         let Some(flow) = self.run.plant.one_axis() else { return Ok(()) };
         flow.set_state(at, |state| apply_state(state, now));
         let sensed = flow.view(at);
@@ -165,7 +165,7 @@ impl LaneHost for SingleRunHost<'_> {
         match flow.crossing(&guards, horizon, &mut self.record) {
             Ok(Some((at, guard))) => {
                 flow.view(at);
-                apply_crossing(found, at.since(instant(from.at)), guard == 0, flow.state());
+                apply_crossing(found, at.since(instant(from.time)), guard == 0, flow.state());
                 true
             }
             Ok(None) => false,

@@ -242,17 +242,17 @@ fn a_bent_body_keeps_its_energy_in_the_axes_of_the_orbit() {
         rotors: vec![Rotor { axis: Vector::new(0.6, 0.0, 0.8), momentum, torque: 0.0 }],
         ..SegmentLoads::default()
     });
-    let of = |motion: &ThreeAxisMotion, t: f64| {
+    let energy_of = |motion: &ThreeAxisMotion, t: f64| {
         let view = motion.view();
         let energy = view.rotational_energy + motion.energies().sum::<f64>();
         let energy = integral(energy, &view.attitude, &view.momentum, &motion.inertia(), t);
         (energy, 0.5 * view.rate.dot(&view.momentum))
     };
-    let (before, _) = of(&motion, 0.0);
+    let (before, _) = energy_of(&motion, 0.0);
     for k in 1..=10 {
         let t = 200.0 * f64::from(k);
-        motion.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
-        let (now, scale) = of(&motion, t);
+        motion.advance(t, Some((&surroundings, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        let (now, scale) = energy_of(&motion, t);
         assert!((now - before).abs() < 1e-11 * scale.abs(), "{k} {:e} of {scale:e}", now - before);
     }
 }
@@ -274,12 +274,12 @@ fn a_torque_that_is_constant_in_inertial_axes_adds_to_the_momentum_as_time_does(
         assert!(off < 1e-14, "{t} {off:e}");
     }
     let (body, start) = (flexible(), Quaternion::identity());
-    let around = around(text, &body.inertia);
+    let surroundings = surroundings_from(text, &body.inertia);
     let mut motion = ThreeAxisMotion::new(&body, start, rate, &[[0.5, 0.0], [0.0, 0.02]]);
     let view = motion.view();
     let before = in_space(view.attitude, view.momentum);
     for t in [100.0, 1000.0, 3000.0] {
-        motion.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        motion.advance(t, Some((&surroundings, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
         let view = motion.view();
         let now = in_space(view.attitude, view.momentum);
         let off = (now - before - torque * t).norm() / now.norm();

@@ -119,9 +119,9 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
     // The torque they counteract is part of their torque.
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
     gimbals.update(Instant::START, ActuatorEvent::CounterTorque(Vector::new(0.1, 0.2, -0.3)));
-    ask(&mut gimbals, at(0.0), TORQUE);
-    let given = applied(&gimbals, at(0.0));
-    assert!((given - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
+    demand(&mut gimbals, at(0.0), TORQUE);
+    let torque = applied(&gimbals, at(0.0));
+    assert!((torque - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
 }
 
 /// Drives gimbals by a constant torque along -x, so that their momentum along x grows, for `updates` of 0.05 s. Returns
