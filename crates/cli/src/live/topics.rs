@@ -81,7 +81,7 @@ mod tests {
             let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
             let (from, scene) = (Campaign::provenance(&run), Scene::new(&run.scenario));
             let (expected, mut seen) = (expected(&run, &from, &scene), TopicCollector::default());
-            let messages = MessageEncoder::new(&mut seen, &from, Detail::Scene).expect("messages");
+            let messages = MessageEncoder::new(&mut topics, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, the windows of an adaptation, and a zero crossing of a wheel.
             let grips = run.scenario.study.bearings.iter().any(Bearing::can_stick);
             let seconds = match (run.scenario.adaptation.is_some(), grips) {
