@@ -80,7 +80,7 @@ mod tests {
             let scenario = Scenario::load(&file.path()).expect("a scenario");
             let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
             let (from, scene) = (Campaign::provenance(&run), Scene::new(&run.scenario));
-            let (expected, mut seen) = (expected(&run, &from, &scene), TopicCollector::default());
+            let (expected, mut topics) = (expected(&run, &from, &scene), TopicCollector::default());
             let messages = MessageEncoder::new(&mut topics, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, the windows of an adaptation, and a zero crossing of a wheel.
             let grips = run.scenario.study.bearings.iter().any(Bearing::can_stick);
