@@ -5,12 +5,12 @@ use std::convert::Infallible;
 use flexsc_core::control::law::{Command, DecisionCause, Setpoint};
 use flexsc_core::control::state_estimate::StateEstimate;
 use flexsc_core::dynamics::AxisState;
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::dynamics::crossing::first_crossing;
 use flexsc_core::dynamics::guard::Guard;
 use flexsc_core::numerics::random::{Seed, Stream};
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
-use flexsc_core::spacecraft::body::Planar;
 use flexsc_core::spacecraft::flow::{SegmentInput, UncoupledSegment};
 use flexsc_core::{Scenario, Simulation, SimulationError};
 
@@ -24,7 +24,7 @@ fn scenario(text: &str) -> Scenario {
 }
 
 /// A body with random modes, some damped, some beyond critical, in a random state.
-fn random_body(stream: &mut Stream) -> (Planar, AxisState) {
+fn random_body(stream: &mut Stream) -> (AxisModel, AxisState) {
     let (angle, rate) = (1e-4 * stream.normal(), 2e-5 * stream.normal());
     let mut text = format!("duration = 1.0\n[body.planar]\nangle = {angle:e}\nrate = {rate:e}\n");
     for _ in 0..stream.index(6) {

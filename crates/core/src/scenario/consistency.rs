@@ -3,12 +3,13 @@
 use flexsc_control::actuator::{ActuatorKind, AssignedMember, Wheel};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget, Extra, LawKind};
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
 use flexsc_numerics::quantity::Time;
+use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::body::craft::RateLimit;
-use flexsc_spacecraft::body::{BodyAxes, CommandedQuantity, Planar};
 use flexsc_spacecraft::disturbance::{Disturbance, Pulses};
 
 use super::epoch::nanoseconds_since_1970;
@@ -131,7 +132,7 @@ impl Scenario {
         self.targets().iter().enumerate().find_map(fast)
     }
 
-    fn planar_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
+    fn planar_inconsistency(&self, body: &AxisModel) -> Option<ConfigError> {
         self.law_inconsistency()
             .or_else(|| self.damping_inconsistency(body))
             .or_else(|| self.schedule_inconsistency())
@@ -172,7 +173,7 @@ impl Scenario {
         format!("body.{}.damping_matrix", self.body_kind())
     }
 
-    fn damping_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
+    fn damping_inconsistency(&self, body: &AxisModel) -> Option<ConfigError> {
         if self.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.planned_for(body).is_coupled()) {
             let why = "couples modes, and a `[manoeuvre]` treats each mode on its own: give it a `model` without this matrix";
             return Some(ConfigError::new(self.damping_key(), why));
@@ -199,7 +200,7 @@ impl Scenario {
         Some(ConfigError::new(self.damping_key(), why))
     }
 
-    fn coupling_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
+    fn coupling_inconsistency(&self, body: &AxisModel) -> Option<ConfigError> {
         let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         let wheel = self.actuator.flywheel().map(|(_, key)| key);
         if wheel.is_none() && self.drift.is_none() {
@@ -285,7 +286,7 @@ impl Scenario {
         None
     }
 
-    fn drive_inconsistency(&self, body: &Planar) -> Option<ConfigError> {
+    fn drive_inconsistency(&self, body: &AxisModel) -> Option<ConfigError> {
         let at = |key: &str, why: String| Some(ConfigError::new(key, why));
         let estimates = self.estimator.as_ref().is_some_and(|estimator| estimator.envelope().is_some());
         if estimates

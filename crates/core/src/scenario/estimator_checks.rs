@@ -1,9 +1,10 @@
 //! Checks of an estimator: its own keys, and its modes.
 
 use flexsc_control::estimator::{EnvelopeMethod, EstimatorKind};
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Positive;
-use flexsc_spacecraft::body::{Body, CommandedQuantity, Planar};
+use flexsc_spacecraft::body::Body;
 
 use super::Scenario;
 
@@ -14,7 +15,7 @@ const MOST_FILTERED: usize = 24;
 const ONE_NUMBER: &str = "must be one number for a body with one angle, got one for each of three axes";
 
 impl Scenario {
-    pub(super) fn validate_estimator(&self, body: &Planar) -> Option<ConfigError> {
+    pub(super) fn validate_estimator(&self, body: &AxisModel) -> Option<ConfigError> {
         let envelope = match self.estimator.as_ref()? {
             EstimatorKind::Envelope(envelope) => envelope,
             estimator => return self.validate_filter(estimator),
@@ -23,10 +24,14 @@ impl Scenario {
             let why = "must be left out for the form `truth`, which reads the body's".to_owned();
             return Some(ConfigError::new("estimator.envelope.modes", why));
         }
-        let own = envelope.modes.as_ref().map(|modes| ("estimator.envelope", modes.as_slice()));
-        let (place, modes) = own.unwrap_or(("body.planar", &body.modes));
-        modes.iter().enumerate().find(|(_, mode)| mode.damping.get() >= 1.0).map(|(index, mode)| {
-            let why = format!("must be below 1 for a mode to have an envelope, got {}", mode.damping.get());
+        let own = envelope.modes.as_ref();
+        let place = if own.is_some() { "estimator.envelope" } else { "body.planar" };
+        let dampings: Vec<f64> = match own {
+            Some(modes) => modes.iter().map(|mode| mode.damping.get()).collect(),
+            None => body.modes.iter().map(|mode| mode.damping.get()).collect(),
+        };
+        dampings.into_iter().enumerate().find(|(_, damping)| *damping >= 1.0).map(|(index, damping)| {
+            let why = format!("must be below 1 for a mode to have an envelope, got {damping}");
             match (&self.body, own) {
                 (Some(Body::Matrices(_) | Body::Panels(_)), None) => {
                     ConfigError::new(format!("{}.damping", self.body_key()), why)

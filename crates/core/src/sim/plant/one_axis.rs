@@ -3,12 +3,12 @@
 mod pieces;
 
 use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::axis_model::{AxisModel, AxisOutput};
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
-use flexsc_spacecraft::body::{Output, Planar};
 use flexsc_spacecraft::flow::{ChainMotion, CoupledFlow, ExternalMotion, SegmentInput, UncoupledSegment};
 use flexsc_spacecraft::wrench::Wrench;
 
@@ -30,7 +30,7 @@ pub struct OneAxisPlant {
     /// State, sensed motion and instant of the next guard crossing, computed in advance.
     next_crossing: (AxisState, AngleObservation, Instant),
     frequencies: Vec<f64>,
-    outputs: Vec<Output>,
+    outputs: Vec<AxisOutput>,
 }
 
 /// Motion under one input.
@@ -59,7 +59,7 @@ pub struct AppliedTorque {
 
 impl OneAxisPlant {
     /// Creates the plant of a scenario at the start, without input.
-    pub fn new(scenario: &Scenario, body: &Planar) -> Self {
+    pub fn new(scenario: &Scenario, body: &AxisModel) -> Self {
         let state = body.initial_state();
         let mut arc = UncoupledSegment::new(body);
         arc.depart(&state, &SegmentInput::default());
@@ -274,7 +274,7 @@ impl OneAxisPlant {
         let motion = |(value, rate)| OutputMotion { value, rate };
         let outputs: Vec<_> = match &self.motion {
             OneAxisFlow::Uncoupled(_) | OneAxisFlow::Coupled(_) | OneAxisFlow::External(_) => {
-                let of = |output: &Output| {
+                let of = |output: &AxisOutput| {
                     (output.evaluate(&self.state), output.rate_of(&self.state, &self.frequencies))
                 };
                 self.outputs.iter().map(of).map(motion).collect()
