@@ -33,9 +33,9 @@ const RUNS: usize = 128;
 fn seconds(since: Instant) -> f64 {
     // The kernel counts them when another thread has its turn.
     std::thread::sleep(Duration::from_micros(50));
-    let spent = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
-    let spent = spent.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
-    spent.map_or_else(|| since.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
+    let schedule = std::fs::read_to_string("/proc/thread-self/schedstat").ok();
+    let cpu_time = schedule.and_then(|text| text.split(' ').next()?.parse::<f64>().ok());
+    cpu_time.map_or_else(|| since.elapsed().as_secs_f64(), |nanoseconds| 1e-9 * nanoseconds)
 }
 
 fn scenario(text: &str, k_t: f64) -> Scenario {
@@ -125,13 +125,13 @@ fn main() {
         }),
     );
     for ((name, _), runs) in texts.iter().zip(&many) {
-        for (what, selection) in [("", &none), (", all metrics", &all)] {
-            let of = |run| BatchJob { number: 0, scenario: run, selection };
-            let jobs: Vec<BatchJob<'_>> = runs.iter().map(|run| of(&run.scenario)).collect();
+        for (suffix, selection) in [("", &none), (", all metrics", &all)] {
+            let job_for = |run| BatchJob { number: 0, scenario: run, selection };
+            let jobs: Vec<BatchJob<'_>> = runs.iter().map(|run| job_for(&run.scenario)).collect();
             for processor in Processor::all() {
                 let jobs = jobs.clone();
                 kinds.add(
-                    format!("{}, {name}{what}", processor.name()),
+                    format!("{}, {name}{suffix}", processor.name()),
                     RUNS,
                     Box::new(move || {
                         black_box(simulate_on(processor, black_box(&jobs)));

@@ -83,8 +83,8 @@ fn lanes(c: &mut Criterion) {
     let mut group = c.benchmark_group("64 runs of 20000 s");
     group.sample_size(10).measurement_time(Duration::from_secs(3));
     let gains = even(0.28, 0.4, 64);
-    let of = |k_t: &f64| scenario(&format!("{EVENTS}{WINDOWS}").replace("0.3389", &k_t.to_string()));
-    let scenarios: Vec<Scenario> = gains.iter().map(of).collect();
+    let variant = |k_t: &f64| scenario(&format!("{EVENTS}{WINDOWS}").replace("0.3389", &k_t.to_string()));
+    let scenarios: Vec<Scenario> = gains.iter().map(variant).collect();
     group.bench_function("yardstick", |b| {
         b.iter(|| gains.iter().map(|k_t| reference::exact(black_box(*k_t), 20_000.0).0).sum::<u32>());
     });

@@ -130,14 +130,16 @@ pub fn exact(k_t: f64, end: f64) -> (u32, f64) {
     const COAST: [(f64, f64); 2] = [(1.0, EPS), (-1.0, -EPS)];
     let (mut state, mut t, mut events, mut m) = (START, 0.0, 0, WEAK);
     loop {
-        let Some((h, side, there)) = Arc::new(state, m).locate(&COAST, end - t) else { return (events, t) };
-        (state, t, events) = (there, t + h, events + 1);
-        let s = if side == 0 { 1.0 } else { -1.0 };
-        let back = [(-s, s * (EPS - GAM))];
-        let Some((h, _, there)) = Arc::new(state, -s * STRONG).locate(&back, end - t) else {
+        let Some((h, side, state_there)) = Arc::new(state, m).locate(&COAST, end - t) else {
             return (events, t);
         };
-        (state, t, events) = (there, t + h, events + 1);
+        (state, t, events) = (state_there, t + h, events + 1);
+        let s = if side == 0 { 1.0 } else { -1.0 };
+        let back = [(-s, s * (EPS - GAM))];
+        let Some((h, _, state_there)) = Arc::new(state, -s * STRONG).locate(&back, end - t) else {
+            return (events, t);
+        };
+        (state, t, events) = (state_there, t + h, events + 1);
         let brake = k_t * h;
         if t + brake > end {
             return (events, t);

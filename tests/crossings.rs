@@ -134,8 +134,8 @@ fn predictions_are_those_of_the_search(damping: impl Strategy<Value = f64> + Clo
         trips.set(trips.get() + 1);
         // The instants differ by what the body turns in a rounding of the angle.
         let apart = trip.after.remaining_after(found.after).seconds().abs();
-        prop_assert!(apart * found.sight.rate.abs() < 1e-17, "{apart} s apart");
-        let (a, b) = (trip.sight, found.sight);
+        prop_assert!(apart * found.observation.rate.abs() < 1e-17, "{apart} s apart");
+        let (a, b) = (trip.observation, found.observation);
         prop_assert!((a.rate - b.rate).abs() <= 1e-14 * a.rate.abs() + 1e-17);
         prop_assert!((predicted.angle() - a.angle).abs() <= 4e-16 * b.angle.abs());
         Ok(())

@@ -68,7 +68,7 @@ fn follows_the_oracle(known: FilterModes, given: &str, tolerance: f64) {
     let off = Vector::new(1e-3, -5e-4, 8e-4);
     let prior = Quaternion::new(0.8, 0.36, -0.48, 0.0) * rotation(&off);
     let mut filter = AttitudeFilterState::new(prior, Vector::zeros(), [1e-3, 1e-5]);
-    filter.swinging = Some(Box::new(ElasticFilterStates::new(Arc::new(known), &filter.covariance)));
+    filter.elastic = Some(Box::new(ElasticFilterStates::new(Arc::new(known), &filter.covariance)));
     let mut history = FilterHistory::new(Instant::START, filter, noise, Span::from_seconds(0.5));
     let at = |k: usize, more: f64| Instant::START + Span::from_seconds(0.25 * k as f64 + more);
     let three = |of: &[f64]| Vector::new(of[0], of[1], of[2]);
@@ -90,7 +90,7 @@ fn follows_the_oracle(known: FilterModes, given: &str, tolerance: f64) {
         }
         let Some(row) = given.next_if(|row| row[0] as usize == k) else { continue };
         let filter = history.latest();
-        let swinging = filter.swinging.as_ref().expect("modes");
+        let swinging = filter.elastic.as_ref().expect("modes");
         let q = Quaternion::new(row[1], row[2], row[3], row[4]);
         assert!((filter.attitude - q).norm() < tolerance, "{k} {:e}", (filter.attitude - q).norm());
         assert!((filter.bias - three(&row[5..8])).norm() < 0.1 * tolerance, "{k} {}", filter.bias);

@@ -46,7 +46,7 @@ fn robust_gains() {
         gains: Gains { step: 0.1, ..GAINS },
         scaling: Scaling::All,
         window: SettlingWindow { horizon: 600.0, ..WINDOW },
-        doubt: ModelUncertainty { frequency: part, modal_gain: part, authority: part, delay: 0.3 },
+        uncertainty: ModelUncertainty { frequency: part, modal_gain: part, authority: part, delay: 0.3 },
         goal: RobustGoal::Settling,
         quantile: 1.0,
         margin: 1e-4,

@@ -38,7 +38,7 @@ pub use options::{CampaignOptions, TableFormat};
 use points::Points;
 use progress_table::LiveStatistics;
 pub use progress_table::{RunningMean, table as table_so_far};
-use report::{CampaignReport, are_alike, met, verdict, write_statistics};
+use report::{CampaignReport, are_alike, success_rate, verdict, write_statistics};
 
 /// Metrics that are printed and drawn if none is named: the first ones of this list that vary.
 pub const MAIN: [&str; 23] = [
@@ -102,7 +102,7 @@ pub struct CampaignJob<'a> {
 
 /// Runs a campaign; `work` simulates a single run.
 pub fn run(
-    study: &Arc<Campaign>,
+    campaign: &Arc<Campaign>,
     job: &CampaignJob<'_>,
     work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<(), CliError> {
@@ -111,20 +111,20 @@ pub fn run(
     let reported = match job.table {
         Some(path) if job.kind == TableFormat::Parquet && !job.is_file => {
             let path = job.prefix.map_or_else(|| path.to_owned(), |name| path.join(name));
-            part_files::run(study, job, &path, work)?
+            part_files::run(campaign, job, &path, work)?
         }
-        _ => table(study, job, work)?,
+        _ => table(campaign, job, work)?,
     };
     let runs = reported.runs as u64;
-    if study.design().keys().is_empty() && are_alike(&reported.statistics) {
+    if campaign.design().keys().is_empty() && are_alike(&reported.statistics) {
         say!(
             "warning: no metric differs between the {runs} runs: does the scenario have noise or [uncertain] keys?"
         );
     }
     if !job.json {
-        let (name, took) = (&study.scenario().name, began.elapsed().as_secs_f64());
+        let (name, took) = (&campaign.scenario().name, began.elapsed().as_secs_f64());
         if let Some(only) = &reported.only {
-            summary::print_summary(study.scenario(), only, took, job.units);
+            summary::print_summary(campaign.scenario(), only, took, job.units);
         } else {
             say!("{name}   {}, {took:.2} s", counted(runs, "run"));
             reported.say();
@@ -141,7 +141,7 @@ pub fn run(
 
 /// Runs a campaign with its rows in one table, or without a table.
 fn table(
-    study: &Arc<Campaign>,
+    campaign: &Arc<Campaign>,
     job: &CampaignJob<'_>,
     work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<CampaignReport, CliError> {
@@ -151,11 +151,12 @@ fn table(
     if let Some(path) = job.table.filter(|_| job.is_file) {
         files::refuse_existing(path, job.force)?;
         files::make_parent(path)?;
-        rows = Some(RunRows::new(study.fields(&job.selection)));
+        rows = Some(RunRows::new(campaign.fields(&job.selection)));
     }
     if let Some(dir) = job.table.filter(|_| !job.is_file) {
-        let design = study.design();
-        if !study.scenario().uncertain.is_empty() && (design.replicas > 1 || design.draws != Sampling::Random)
+        let design = campaign.design();
+        if !campaign.scenario().uncertain.is_empty()
+            && (design.replicas > 1 || design.draws != Sampling::Random)
         {
             // The `scenario.toml` could not repeat a run.
             let why = "--sample and --replicas of a scenario with [uncertain] keys need --table parquet";
@@ -166,19 +167,19 @@ fn table(
             let hint = "hint: give another directory with -o, or leave out `--table csv` to continue it";
             return Err(CliError::Arguments(format!("{}: {why}\n\n{hint}", dir.display())));
         }
-        let kept = CampaignRecord::new(dir, job, study);
+        let kept = CampaignRecord::new(dir, job, campaign);
         // Checked before the files of a killed campaign change, and again as their only writer.
         kept.check()?;
         table = Some(RunsTable::create(&dir.join(job.file("runs")))?);
         kept.keep()?;
     }
-    let mut telling = CampaignPrinter {
-        study,
+    let mut printer = CampaignPrinter {
+        campaign,
         job,
         table: table.as_mut(),
         rows: rows.as_mut(),
-        shown: points::runs(study, &job.range),
-        points: RunRows::new(study.fields(&job.selection)),
+        shown: points::runs(campaign, &job.range),
+        points: RunRows::new(campaign.fields(&job.selection)),
         all: MetricColumns::default(),
         only: None,
         live: LiveStatistics::new(runs, 0),
@@ -186,31 +187,31 @@ fn table(
         failed: None,
     };
     let (range, threads) = (job.range.clone(), job.threads());
-    let report = |outcome| telling.report(outcome);
+    let report = |outcome| printer.report(outcome);
     let done = if job.plain {
-        study.for_each_run_in_batches(range, threads, &job.selection, work, report)
+        campaign.for_each_run_in_batches(range, threads, &job.selection, work, report)
     } else {
-        study.for_each_run(range, threads, work, report)
+        campaign.for_each_run(range, threads, work, report)
     };
-    let CampaignPrinter { all, only, failed, points, .. } = telling;
+    let CampaignPrinter { all, only, failed, points, .. } = printer;
     if let Err(failure) = done {
         return Err(match (&failure, table) {
             (CliError::Interrupted(_) | CliError::Write { .. } | CliError::First { .. }, Some(table)) => {
-                table.interrupt(study, failure)
+                table.interrupt(campaign, failure)
             }
             _ => failure,
         });
     }
-    let mut table = table.map(|table| table.finish(study)).transpose()?;
+    let mut table = table.map(|table| table.finish(campaign)).transpose()?;
     let only = only.filter(|_| all.runs() == 1);
     let (runs, statistics) = (runs as usize, all.finish());
     if let Some(dir) = job.table.filter(|_| !job.is_file) {
         write_statistics(&dir.join(job.file("statistics")), &statistics)?;
     }
     if let (Some(path), Some(rows)) = (job.table, &rows) {
-        let manifest = Manifest::new(study, job.range.clone(), &job.selection);
+        let manifest = Manifest::new(campaign, job.range.clone(), &job.selection);
         let manifest =
-            manifest.map_err(|why| CliError::Arguments(format!("{}: {why}", study.scenario().name)))?;
+            manifest.map_err(|why| CliError::Arguments(format!("{}: {why}", campaign.scenario().name)))?;
         file::write(
             path,
             job.kind,
@@ -220,12 +221,12 @@ fn table(
         table = Some(path.to_owned());
     }
     let column = |name: &str| -> Result<_, CliError> { Ok(points.column(name).cloned()) };
-    let points = Points::new((study, &job.range), (&statistics, &job.selection), column)?;
+    let points = Points::new((campaign, &job.range), (&statistics, &job.selection), column)?;
     Ok(CampaignReport { runs, statistics, points, failed, only, table })
 }
 
-fn interruption(at: u64) -> CliError {
-    CliError::Interrupted(format!(" at run {at}"))
+fn interruption(run: u64) -> CliError {
+    CliError::Interrupted(format!(" at run {run}"))
 }
 
 /// Returns the outcome of a run, or an error if its log stopped the run.
@@ -256,7 +257,7 @@ impl CampaignJob<'_> {
 
 /// Receiver of the runs' rows, in order.
 struct CampaignPrinter<'a> {
-    study: &'a Campaign,
+    campaign: &'a Campaign,
     job: &'a CampaignJob<'a>,
     table: Option<&'a mut RunsTable>,
     /// Rows for a single file.
@@ -286,17 +287,17 @@ impl CampaignPrinter<'_> {
         let outcome = accepted(outcome)?;
         self.live.add(&outcome);
         if let Some(table) = &mut self.table {
-            table.row(self.study, &outcome)?;
+            table.row(self.campaign, &outcome)?;
         }
         if let Some(rows) = &mut self.rows {
-            rows.push(self.study, &outcome);
+            rows.push(self.campaign, &outcome);
         }
         if self.shown.iter().any(|runs| runs.contains(&outcome.number)) {
-            self.points.push(self.study, &outcome);
+            self.points.push(self.campaign, &outcome);
         }
         if self.job.json {
             let RunOutcome { number, drawn, metrics, .. } = &outcome;
-            print_lines(&[object(self.study, *number, drawn, metrics.as_ref())])?;
+            print_lines(&[object(self.campaign, *number, drawn, metrics.as_ref())])?;
         }
         match outcome.metrics {
             Ok(metrics) => {
@@ -318,23 +319,23 @@ impl CampaignPrinter<'_> {
 
 /// Returns a run as a JSON object, with the value of each key that varies.
 pub fn object(
-    study: &Campaign,
+    campaign: &Campaign,
     number: u64,
     drawn: &[impl Serialize],
     metrics: Result<&Metrics, &RunError>,
 ) -> Json {
     let drawn: Map<_, _> =
-        study.keys().zip(drawn).map(|(key, value)| (key.to_owned(), json!(value))).collect();
+        campaign.keys().zip(drawn).map(|(key, value)| (key.to_owned(), json!(value))).collect();
     let mut object = json!({
-        "scenario": study.scenario().name,
+        "scenario": campaign.scenario().name,
         "run": number,
-        "seed": study.scenario().seed,
+        "seed": campaign.scenario().seed,
         "drawn": drawn,
     });
     match metrics {
         Ok(metrics) => {
             object["metrics"] = metrics.to_json();
-            let warnings = summary::warnings(study.scenario(), metrics);
+            let warnings = summary::warnings(campaign.scenario(), metrics);
             if !warnings.is_empty() {
                 object["warnings"] = json!(warnings);
             }

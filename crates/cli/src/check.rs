@@ -52,9 +52,9 @@ fn accepted(path: &Path, scenario: &Scenario, json: bool) -> Result<(), CliError
         });
         return print(format!("{object}\n").as_bytes());
     }
-    let takes = seconds(cost.seconds);
+    let running_time = seconds(cost.seconds);
     say!(
-        "{}: accepted: {duration} s, {}; a run takes about {takes} on one core",
+        "{}: accepted: {duration} s, {}; a run takes about {running_time} on one core",
         path.display(),
         counted(modes, "mode")
     );

@@ -107,12 +107,12 @@ impl Results for RelayCycles {
 /// Returns the resonances of each mode that are nearest to the gain `k_t`, in the order of the gains.
 fn nearest(resonances: &[Resonance], k_t: f64) -> Vec<Resonance> {
     let modes = resonances.iter().map(|r| r.mode + 1).max().unwrap_or(0);
-    let of_mode = |mode| {
+    let values_of_mode = |mode| {
         let mut own: Vec<Resonance> = resonances.iter().filter(|r| r.mode == mode).copied().collect();
         own.sort_by(|a, b| (a.k_t - k_t).abs().total_cmp(&(b.k_t - k_t).abs()));
         own.truncate(NEAREST);
         own.sort_by(|a, b| a.k_t.total_cmp(&b.k_t));
         own
     };
-    (0..modes).flat_map(of_mode).collect()
+    (0..modes).flat_map(values_of_mode).collect()
 }

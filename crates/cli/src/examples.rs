@@ -173,9 +173,9 @@ fn list(as_json: bool) -> Result<(), CliError> {
     let mut objects = Vec::new();
     for (name, text) in EXAMPLES {
         let document = Document::parse(name, (*text).to_owned())?;
-        let about = document.text_of("about").unwrap_or_default();
-        objects.push(json!({ "name": name, "about": about }));
-        let _ = writeln!(lines, "{name:widest$}  {about}");
+        let description = document.text_of("about").unwrap_or_default();
+        objects.push(json!({ "name": name, "about": description }));
+        let _ = writeln!(lines, "{name:widest$}  {description}");
     }
     if as_json {
         return print(format!("{}\n", json!(objects)).as_bytes());

@@ -49,15 +49,15 @@ impl ExportArgs {
     fn form(&self) -> Result<Format, CliError> {
         let Some(path) = &self.out else { return Ok(self.format.unwrap_or(Format::Csv)) };
         let ending = out::file(path, &["csv", "jsonl"], &[&self.log])?;
-        let said = if ending == "jsonl" { Format::Jsonl } else { Format::Csv };
+        let from_ending = if ending == "jsonl" { Format::Jsonl } else { Format::Csv };
         match self.format {
-            Some(format) if format != said && out::ending(path).is_some() => {
+            Some(format) if format != from_ending && out::ending(path).is_some() => {
                 Err(CliError::Arguments(format!(
                     "--format: {} has the ending of another format\n\nhint: leave out --format",
                     path.display()
                 )))
             }
-            format => Ok(format.unwrap_or(said)),
+            format => Ok(format.unwrap_or(from_ending)),
         }
     }
 }
@@ -131,7 +131,7 @@ fn flat(columns: &Columns) -> Result<Vec<FlatColumn<'_>>, String> {
     let parts = (columns.get("time_whole_s"), columns.get("time_fs"));
     let own = |column| FlatColumn { name: String::new(), column, cells: CellSource::Own };
     for (name, column) in &columns.columns {
-        let of = match (name.as_str(), column, &parts) {
+        let cells = match (name.as_str(), column, &parts) {
             ("time_whole_s" | "time_fs", Column::Counts(_), (Some(_), Some(_))) => continue,
             ("time_s", _, (Some(Column::Counts(whole)), Some(Column::Counts(part)))) => {
                 FlatColumn { cells: CellSource::Exact(whole, part), ..own(column) }
@@ -142,7 +142,7 @@ fn flat(columns: &Columns) -> Result<Vec<FlatColumn<'_>>, String> {
             }
             _ => own(column),
         };
-        flat.push(FlatColumn { name: name.clone(), ..of });
+        flat.push(FlatColumn { name: name.clone(), ..cells });
     }
     Ok(flat)
 }

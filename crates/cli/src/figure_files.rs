@@ -121,13 +121,14 @@ impl FigureTarget {
             Out::Directory(out) => return Ok(Self::Directory(out, format.unwrap_or(EVERY))),
         };
         let every = [FigureFormat::Svg, FigureFormat::Png, FigureFormat::Pdf];
-        let said = every.into_iter().find(|format| format.extension() == ending).unwrap_or(FigureFormat::Svg);
+        let from_ending =
+            every.into_iter().find(|format| format.extension() == ending).unwrap_or(FigureFormat::Svg);
         match format {
-            Some(format) if format != said => Err(CliError::Arguments(format!(
+            Some(format) if format != from_ending => Err(CliError::Arguments(format!(
                 "--format: {} has the extension of another format\n\nhint: give a directory, or leave out --format",
                 out.display()
             ))),
-            _ => Ok(Self::File(out, said, force)),
+            _ => Ok(Self::File(out, from_ending, force)),
         }
     }
 

@@ -25,8 +25,8 @@ pub fn log_of(run: &CampaignRun, commanded: &CommandLog, until: Instant) -> Resu
 /// # Errors
 /// An invalid log.
 pub fn names(log: &Log, path: &Path) -> Result<Vec<String>, String> {
-    let there = plot::there(log, path).map_err(|failure| failure.to_string())?;
-    Ok(there.into_iter().map(FigureKind::name).collect())
+    let drawable = plot::drawable_kinds(log, path).map_err(|failure| failure.to_string())?;
+    Ok(drawable.into_iter().map(FigureKind::name).collect())
 }
 
 /// Returns a figure of a log by its name.

@@ -18,11 +18,11 @@ pub fn write(path: &Path, bytes: &[u8], force: bool) -> Result<(), CliError> {
 
 /// Returns an error if the file exists with other content, unless `force`: the same command may write it again.
 pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), CliError> {
-    let there = fs::metadata(path).ok().filter(fs::Metadata::is_file);
-    let is_other = |there: fs::Metadata| {
-        there.len() != bytes.len() as u64 || fs::read(path).is_ok_and(|there| there != bytes)
+    let existing = fs::metadata(path).ok().filter(fs::Metadata::is_file);
+    let is_other = |metadata: fs::Metadata| {
+        metadata.len() != bytes.len() as u64 || fs::read(path).is_ok_and(|content| content != bytes)
     };
-    if !force && there.is_some_and(is_other) {
+    if !force && existing.is_some_and(is_other) {
         return Err(exists(path, "already exists, with other content"));
     }
     Ok(())
@@ -30,7 +30,8 @@ pub fn refuse_other(path: &Path, bytes: &[u8], force: bool) -> Result<(), CliErr
 
 /// Returns an error if the file exists, unless `force`: checked before long work whose result differs each time.
 pub fn refuse_existing(path: &Path, force: bool) -> Result<(), CliError> {
-    if force || !fs::symlink_metadata(path).is_ok_and(|there| there.is_file() || there.is_symlink()) {
+    if force || !fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_file() || metadata.is_symlink())
+    {
         return Ok(());
     }
     Err(exists(path, "already exists"))

@@ -243,9 +243,9 @@ pub fn completed(command: Command) -> Command {
     for (group, members) in GROUPS {
         let _ = write!(verbs, "\n{group}:\n");
         for (name, _) in members {
-            let about = command.find_subcommand(name).and_then(Command::get_about);
-            let about = about.map(ToString::to_string).unwrap_or_default();
-            let _ = writeln!(verbs, "  {name:<12} {about}");
+            let summary = command.find_subcommand(name).and_then(Command::get_about);
+            let summary = summary.map(ToString::to_string).unwrap_or_default();
+            let _ = writeln!(verbs, "  {name:<12} {summary}");
         }
     }
     let hint = "Run `flexsc VERB --help` for the options of a verb and two examples.";
@@ -253,7 +253,7 @@ pub fn completed(command: Command) -> Command {
         format!("{{about}}\n\n{{usage-heading}} {{usage}}\n{verbs}\nOptions:\n{{options}}\n\n{hint}\n");
     let all = GROUPS.into_iter().flat_map(|(_, members)| members);
     all.fold(command.help_template(template), |command, (name, examples)| {
-        let reported = examples.map(|(line, what)| format!("  {line}\n      {what}")).join("\n");
+        let reported = examples.map(|(line, purpose)| format!("  {line}\n      {purpose}")).join("\n");
         command.mut_subcommand(name, |verb| verb.after_help(format!("Examples:\n{reported}")))
     })
 }
@@ -280,8 +280,8 @@ mod tests {
     #[test]
     fn a_line_of_the_overview_fits_a_terminal() {
         for verb in Cli::command().get_subcommands() {
-            let about = verb.get_about().map(ToString::to_string).unwrap_or_default();
-            assert!(about.chars().count() <= 65, "{}: {about}", verb.get_name());
+            let summary = verb.get_about().map(ToString::to_string).unwrap_or_default();
+            assert!(summary.chars().count() <= 65, "{}: {summary}", verb.get_name());
         }
     }
 

@@ -135,7 +135,7 @@ fn trimmed(text: &str) -> &str {
 }
 
 /// Formats rows of text as columns of equal width, two spaces apart, right-aligned but for the last `left` columns.
-pub fn columns(rows: &[Vec<String>], left: usize) -> Vec<String> {
+pub fn columns(rows: &[Vec<String>], left_aligned: usize) -> Vec<String> {
     let count = rows.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
         rows.iter().filter_map(|row| row.get(column)).map(|cell| cell.chars().count()).max().unwrap_or(0)
@@ -143,7 +143,7 @@ pub fn columns(rows: &[Vec<String>], left: usize) -> Vec<String> {
     let widths: Vec<usize> = (0..count).map(width).collect();
     let line = |row: &Vec<String>| {
         let cells = row.iter().zip(&widths).enumerate().map(|(column, (cell, width))| {
-            if column + left >= count { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
+            if column + left_aligned >= count { format!("{cell:<width$}") } else { format!("{cell:>width$}") }
         });
         cells.collect::<Vec<_>>().join("  ").trim_end().to_owned()
     };

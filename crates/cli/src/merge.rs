@@ -39,18 +39,18 @@ pub fn run(args: &MergeArgs) -> Result<(), CliError> {
     if let Out::Directory(path) = &out
         && Directory::is_campaign_directory(path)
     {
-        let there = open(path)?;
-        let differs = there.work().manifest.first_difference(&all[0].work().manifest).is_some();
+        let existing = open(path)?;
+        let differs = existing.work().manifest.first_difference(&all[0].work().manifest).is_some();
         if !(args.force && differs) {
-            all.insert(0, there);
+            all.insert(0, existing);
             is_first = true;
         }
     }
     let merge = Merge::new(&all).map_err(part_files::failure)?;
     let missing = merge.missing();
     let report_taken = || {
-        for (directory, taken) in all.iter().zip(merge.taken()).skip(usize::from(is_first)) {
-            say!("{}: {}", directory.path().display(), counted(taken, "run"));
+        for (directory, count) in all.iter().zip(merge.used_counts()).skip(usize::from(is_first)) {
+            say!("{}: {}", directory.path().display(), counted(count, "run"));
         }
     };
     let _writing = stop::writing();
@@ -76,9 +76,9 @@ pub fn run(args: &MergeArgs) -> Result<(), CliError> {
                 Directory::create(path, merge.manifest().clone(), args.force).map_err(part_files::failure)?;
             merge.write(&into, is_first).map_err(part_files::failure)?;
             report_taken();
-            let left: u64 = missing.iter().map(|runs| runs.end - runs.start).sum();
+            let remaining: u64 = missing.iter().map(|runs| runs.end - runs.start).sum();
             let reported = part_files::summary(&into, &merge.manifest().runs())?;
-            say!("{}: {}, {left} missing", path.display(), counted(reported.runs, "run"));
+            say!("{}: {}, {remaining} missing", path.display(), counted(reported.runs, "run"));
             reported.say();
             if !missing.is_empty() {
                 return Err(incomplete(

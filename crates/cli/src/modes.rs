@@ -84,8 +84,8 @@ pub fn run(args: &ModesArgs) -> Result<(), CliError> {
 }
 
 /// Prints rows of text in columns.
-fn print_table(rows: &[Vec<String>], left: usize) {
-    for line in columns(rows, left) {
+fn print_table(rows: &[Vec<String>], left_aligned: usize) {
+    for line in columns(rows, left_aligned) {
         say!("  {line}");
     }
 }
@@ -101,7 +101,7 @@ fn frequency(units: Units, frequency: f64, damping: f64) -> [String; 3] {
 
 /// Prints the influence of a three-axis body's actuator on its modes.
 fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
-    let giver = match jets {
+    let actuator = match jets {
         [true, true, true] => "the jets give",
         [false, false, false] => "a torque gives",
         _ => "the jets or a torque give",
@@ -115,7 +115,7 @@ fn print_influences(modes: &ModeInfluences, jets: [bool; 3], style: Style) {
     if modes.dampings.is_empty() {
         return;
     }
-    say!("  influence: elastic rate at the gyro for each rigid rate that {giver} about the same axis");
+    say!("  influence: elastic rate at the gyro for each rigid rate that {actuator} about the same axis");
     let mut rows = vec![texts(&["mode", style.units.frequency().1, "period, s", "damping"])];
     rows[0].extend(AXES.map(str::to_owned));
     for index in 0..modes.dampings.len() {

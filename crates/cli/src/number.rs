@@ -1,8 +1,8 @@
 //! Formatting of numbers in tables for people.
 
-/// Formats a number by `tell`, or as missing.
-pub fn number_or_none(value: Option<f64>, tell: impl Fn(f64) -> String) -> String {
-    value.map_or_else(|| "none".to_owned(), tell)
+/// Formats a number by `format`, or as missing.
+pub fn number_or_none(value: Option<f64>, format: impl Fn(f64) -> String) -> String {
+    value.map_or_else(|| "none".to_owned(), format)
 }
 
 /// Formats a number with `decimals` decimals, or as missing.

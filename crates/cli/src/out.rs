@@ -27,7 +27,7 @@ impl Out {
     /// # Errors
     /// A file with another extension, or one that is an input.
     pub fn new(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Self, CliError> {
-        match at(path, accepted, inputs)? {
+        match for_path(path, accepted, inputs)? {
             Some(ending) => Ok(Self::File(path.to_owned(), ending)),
             None => Ok(Self::Directory(path.to_owned())),
         }
@@ -39,14 +39,18 @@ impl Out {
 /// # Errors
 /// A file with another extension or none, or one that is an input.
 pub fn file(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<&'static str, CliError> {
-    match at(path, accepted, inputs)? {
+    match for_path(path, accepted, inputs)? {
         Some(ending) => Ok(ending),
         None => Err(CliError::Arguments(format!("-o {}: must end in {}", path.display(), listed(accepted)))),
     }
 }
 
 /// Returns the accepted extension of a file; `None` for a directory.
-fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option<&'static str>, CliError> {
+fn for_path(
+    path: &Path,
+    accepted: &[&'static str],
+    inputs: &[&Path],
+) -> Result<Option<&'static str>, CliError> {
     if let Some(input) = inputs.iter().find(|input| is_same(path, input)) {
         let (path, input) = (path.display(), input.display());
         return Err(CliError::Arguments(format!("-o {path}: is the input {input}, which would be lost")));
@@ -54,7 +58,7 @@ fn at(path: &Path, accepted: &[&'static str], inputs: &[&Path]) -> Result<Option
     if path.is_dir() {
         return Ok(None);
     }
-    if fs::metadata(path).is_ok_and(|there| !there.is_file()) {
+    if fs::metadata(path).is_ok_and(|metadata| !metadata.is_file()) {
         // Devices and pipes may have any name.
         return Ok(accepted.first().copied());
     }
@@ -103,12 +107,13 @@ mod tests {
 
     #[test]
     fn endings_decide() {
-        let of = |path: &str| Out::new(path.as_ref(), &["svg", "csv"], &[]).map_err(|why| why.to_string());
-        assert_eq!(of("a/b.CSV"), Ok(Out::File("a/b.CSV".into(), "csv")));
+        let out_for =
+            |path: &str| Out::new(path.as_ref(), &["svg", "csv"], &[]).map_err(|why| why.to_string());
+        assert_eq!(out_for("a/b.CSV"), Ok(Out::File("a/b.CSV".into(), "csv")));
         for directory in ["figures", "v1.2", "a.d/b", "x.svg.d", ".svg"] {
-            assert_eq!(of(directory), Ok(Out::Directory(directory.into())), "{directory}");
+            assert_eq!(out_for(directory), Ok(Out::Directory(directory.into())), "{directory}");
         }
-        let refused = of("x.mcap").expect_err("another ending");
+        let refused = out_for("x.mcap").expect_err("another ending");
         assert!(refused.contains(".mcap") && refused.contains("ends in .svg or .csv"), "{refused}");
         let refused = file("x".as_ref(), &["json"], &[]).expect_err("none").to_string();
         assert_eq!(refused, "-o x: must end in .json");

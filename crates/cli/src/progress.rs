@@ -64,11 +64,11 @@ impl Lines {
         self.due = elapsed + Self::AGAIN;
         let Self { steps, unit, before, .. } = self;
         let speed = done.saturating_sub(*before) as f64 / elapsed;
-        let left = match steps.saturating_sub(done) as f64 / speed {
-            left if left.is_finite() => format!(", about {} left", seconds(left)),
+        let remaining = match steps.saturating_sub(done) as f64 / speed {
+            remaining if remaining.is_finite() => format!(", about {} left", seconds(remaining)),
             _ => String::new(),
         };
-        Some(format!("progress: {done} of {steps} {unit} after {}{left}", seconds(elapsed)))
+        Some(format!("progress: {done} of {steps} {unit} after {}{remaining}", seconds(elapsed)))
     }
 }
 
@@ -107,19 +107,19 @@ impl Progress {
 
 impl Record for Progress {
     fn record(&mut self, now: Instant, _: Sample<'_>) -> Result<(), RecordError> {
-        self.see(now.seconds());
+        self.update(now.seconds());
         Ok(())
     }
 
-    fn piece(&mut self, _: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
-        self.see(stretch.from);
+    fn piece(&mut self, _: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
+        self.update(piece.from);
         Ok(())
     }
 }
 
 impl Progress {
     /// Shows the progress at a simulated time (s).
-    fn see(&mut self, now: f64) {
+    fn update(&mut self, now: f64) {
         self.samples = self.samples.wrapping_add(1);
         // The clock is read rarely: it costs as much as a sample.
         if self.samples.is_multiple_of(4096) {

@@ -54,16 +54,16 @@ impl RunsTable {
 
     fn flush(&mut self) -> Result<(), CliError> {
         // Overwrites a partial line of a failed write.
-        let at = self.partial.seek(SeekFrom::Start(self.written));
-        at.and_then(|_| self.partial.write_all(&self.lines)).map_err(CliError::write(&self.path))?;
+        let position = self.partial.seek(SeekFrom::Start(self.written));
+        position.and_then(|_| self.partial.write_all(&self.lines)).map_err(CliError::write(&self.path))?;
         self.written += self.lines.len() as u64;
         self.any |= self.metrics.is_some() && !self.lines.is_empty();
         self.lines.clear();
         Ok(())
     }
 
-    pub fn row(&mut self, study: &Campaign, outcome: &RunOutcome) -> Result<(), CliError> {
-        let mut cells = vec![outcome.number.to_string(), study.scenario().seed.to_string()];
+    pub fn row(&mut self, campaign: &Campaign, outcome: &RunOutcome) -> Result<(), CliError> {
+        let mut cells = vec![outcome.number.to_string(), campaign.scenario().seed.to_string()];
         cells.extend(outcome.drawn.iter().map(ToString::to_string));
         match &outcome.metrics {
             Err(error) => {
@@ -79,7 +79,7 @@ impl RunsTable {
             }
             Ok(metrics) => {
                 if self.metrics.is_none() {
-                    self.header(study, metrics)?;
+                    self.header(campaign, metrics)?;
                 }
                 cells.extend(metrics.0.iter().map(|(_, value)| cell(value)));
                 cells.push(String::new());
@@ -88,10 +88,10 @@ impl RunsTable {
         }
     }
 
-    fn header(&mut self, study: &Campaign, metrics: &Metrics) -> Result<(), CliError> {
+    fn header(&mut self, campaign: &Campaign, metrics: &Metrics) -> Result<(), CliError> {
         let names: Vec<&'static str> = metrics.0.iter().map(|(meaning, _)| meaning.name).collect();
         let mut header = vec!["run".to_owned(), "seed".to_owned()];
-        header.extend(study.keys().map(str::to_owned));
+        header.extend(campaign.keys().map(str::to_owned));
         header.extend(names.iter().map(|&name| name.to_owned()));
         header.push("error".to_owned());
         self.write(header)?;
@@ -114,8 +114,8 @@ impl RunsTable {
     }
 
     /// Renames the table to its final name, which is returned.
-    pub fn finish(mut self, study: &Campaign) -> Result<PathBuf, CliError> {
-        if let Err(failure) = self.complete(study) {
+    pub fn finish(mut self, campaign: &Campaign) -> Result<PathBuf, CliError> {
+        if let Err(failure) = self.complete(campaign) {
             return Err(self.keep(failure));
         }
         self.partial.finish().map_err(CliError::write(&self.path))?;
@@ -126,19 +126,19 @@ impl RunsTable {
 
     /// Keeps the rows of a campaign that was stopped by a failure, if any, under a name that marks them as interrupted.
     /// The returned failure has their path.
-    pub fn interrupt(mut self, study: &Campaign, failure: CliError) -> CliError {
+    pub fn interrupt(mut self, campaign: &Campaign, failure: CliError) -> CliError {
         if self.metrics.is_some() || !self.waiting.is_empty() {
             // On a full disk, the rows written before are kept.
-            let _ = self.complete(study);
+            let _ = self.complete(campaign);
         }
         self.keep(failure)
     }
 
     /// Writes the buffered rows.
-    fn complete(&mut self, study: &Campaign) -> Result<(), CliError> {
+    fn complete(&mut self, campaign: &Campaign) -> Result<(), CliError> {
         // All runs failed: the rows have no metrics.
         if self.metrics.is_none() {
-            self.header(study, &Metrics::default())?;
+            self.header(campaign, &Metrics::default())?;
         }
         self.flush()
     }

@@ -34,21 +34,21 @@ impl SettlingArgs {
     /// is impossible, or too costly without the user's consent.
     pub fn check_cost(
         &self,
-        of: &SampledLoop,
+        sampled_loop: &SampledLoop,
         times: usize,
         shortest: f64,
         delay: f64,
     ) -> Result<(), CliError> {
-        let cost = of.simulation_cost(times as f64, self.horizon, shortest, delay);
+        let cost = sampled_loop.simulation_cost(times as f64, self.horizon, shortest, delay);
         self.consent.check(&cost.map_err(|why| CliError::Arguments(format!("--{why}")))?)
     }
 
-    pub fn window(&self, of: &SampledLoop, name: &str) -> Result<SettlingWindow, CliError> {
+    pub fn window(&self, sampled_loop: &SampledLoop, name: &str) -> Result<SettlingWindow, CliError> {
         positive("--horizon", self.horizon)?;
         if let Some(band) = self.band {
             positive("--band", band)?;
         }
-        Ok(of.settling_window(self.band, self.horizon).map_err(refused(name))?)
+        Ok(sampled_loop.settling_window(self.band, self.horizon).map_err(refused(name))?)
     }
 }
 

@@ -142,25 +142,25 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
             )));
         }
     }
-    let studies = scenarios
+    let campaigns = scenarios
         .into_iter()
         .map(|(scenario, origin)| {
             let design = args.design(!scenario.uncertain.is_empty())?;
-            let study = Campaign::from_design(scenario, &origin, design)?;
-            args.consent.check(&args.cost(&study)?)?;
-            Ok(Arc::new(study))
+            let campaign = Campaign::from_design(scenario, &origin, design)?;
+            args.consent.check(&args.cost(&campaign)?)?;
+            Ok(Arc::new(campaign))
         })
         .collect::<Result<Vec<_>, CliError>>()?;
     args.make_room(&place)?;
-    let prefixed = studies.len() > 1;
+    let prefixed = campaigns.len() > 1;
     let mut failures = Vec::new();
-    for study in studies {
+    for campaign in campaigns {
         let done = match &args.runs {
             None => {
-                let log = (place.log(&study.scenario().name), args.detail(LogDetail::Events));
-                single(&study, &scenario_run(&study), args, log)
+                let log = (place.log(&campaign.scenario().name), args.detail(LogDetail::Events));
+                single(&campaign, &scenario_run(&campaign), args, log)
             }
-            Some(runs) => several(&study, (args, &place), runs, (prefixed, &selection)),
+            Some(runs) => several(&campaign, (args, &place), runs, (prefixed, &selection)),
         };
         match done {
             // The other scenarios are still run.
@@ -245,12 +245,12 @@ impl SimulateArgs {
     }
 
     /// Returns the cost of a scenario's runs.
-    fn cost(&self, study: &Campaign) -> Result<Cost, CliError> {
+    fn cost(&self, campaign: &Campaign) -> Result<Cost, CliError> {
         let Some(RunRange { range, .. }) = &self.runs else {
-            return Ok(study.scenario().cost(self.detail(LogDetail::Events), false));
+            return Ok(campaign.scenario().cost(self.detail(LogDetail::Events), false));
         };
         let log = self.detail(LogDetail::None);
-        let cost = study.cost(range.end - range.start, log);
+        let cost = campaign.cost(range.end - range.start, log);
         let cost = cost.map_err(|why| CliError::Arguments(format!("--runs {why}")))?;
         Ok(self.options.cost(cost, self.out.is_some() && !self.place()?.is_file))
     }
@@ -258,7 +258,7 @@ impl SimulateArgs {
 
 /// Runs the campaign of a scenario; its tables have the scenario's name if several scenarios share a directory.
 fn several(
-    study: &Arc<Campaign>,
+    campaign: &Arc<Campaign>,
     (args, place): (&SimulateArgs, &Place),
     runs: &RunRange,
     (prefixed, selection): (bool, &Selection),
@@ -272,7 +272,7 @@ fn several(
         kind: place.kind,
         selection: selection.clone(),
         fail_fast: args.options.fail_fast,
-        prefix: prefixed.then_some(study.scenario().name.as_str()),
+        prefix: prefixed.then_some(campaign.scenario().name.as_str()),
         force: args.force,
         jobs: args.jobs,
         json: args.json,
@@ -280,17 +280,17 @@ fn several(
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
         plain: detail.is_none(),
     };
-    logs::run(study, &job, detail)
+    logs::run(campaign, &job, detail)
 }
 
 /// Returns the run of the scenario itself, without drawn keys.
-pub fn scenario_run(study: &Campaign) -> CampaignRun {
-    CampaignRun { number: 0, scenario: study.scenario().clone(), drawn: Vec::new() }
+pub fn scenario_run(campaign: &Campaign) -> CampaignRun {
+    CampaignRun { number: 0, scenario: campaign.scenario().clone(), drawn: Vec::new() }
 }
 
 /// Simulates a single run, with its log.
 fn single(
-    study: &Campaign,
+    campaign: &Campaign,
     run: &CampaignRun,
     args: &SimulateArgs,
     (path, detail): (PathBuf, Option<Detail>),
@@ -319,7 +319,7 @@ fn single(
         source => CliError::Run { name: name.clone(), source },
     })?;
     if args.json {
-        print_lines(&[campaign::object(study, run.number, &run.drawn, Ok(&metrics))])?;
+        print_lines(&[campaign::object(campaign, run.number, &run.drawn, Ok(&metrics))])?;
     } else {
         summary::print_summary(&run.scenario, &metrics, took, args.units.units);
         if let Some(bytes) = bytes {

@@ -19,11 +19,11 @@ use crate::say;
 static ASKED: LazyLock<Arc<AtomicBool>> = LazyLock::new(Arc::default);
 
 /// Polling period of the flag.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_PERIOD: Duration = Duration::from_millis(20);
 /// Time for work to end by itself after it is asked to stop.
-const PATIENCE: Duration = Duration::from_millis(50);
+const STOP_TIMEOUT: Duration = Duration::from_millis(50);
 /// Time for the writing of files to end after it is asked to stop.
-const PATIENCE_OF_FILES: Duration = Duration::from_secs(2);
+const FILE_TIMEOUT: Duration = Duration::from_secs(2);
 /// Time limit of the last message, whose reader may be blocked.
 const LAST_MESSAGE_TIMEOUT: Duration = Duration::from_secs(1);
 /// Stack size of a program's main thread on most systems (bytes).
@@ -76,7 +76,7 @@ pub fn run_watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
     let mut noticed = None;
     let mut is_noted = false;
     loop {
-        match wait.recv_timeout(LOOK) {
+        match wait.recv_timeout(POLL_PERIOD) {
             Ok(code) => return code,
             // The thread panicked and has printed its message.
             Err(RecvTimeoutError::Disconnected) => match working.join() {
@@ -86,12 +86,12 @@ pub fn run_watched(work: impl FnOnce() -> u8 + Send + 'static) -> u8 {
             Err(RecvTimeoutError::Timeout) if stop_requested() => {
                 let waited = noticed.get_or_insert_with(WallInstant::now).elapsed();
                 let mut files = files();
-                if waited >= PATIENCE && (files.0 == 0 || waited >= PATIENCE_OF_FILES) {
+                if waited >= STOP_TIMEOUT && (files.0 == 0 || waited >= FILE_TIMEOUT) {
                     files.1 = true;
                     drop(files);
                     return print_interrupted();
                 }
-                if waited >= PATIENCE && !is_noted {
+                if waited >= STOP_TIMEOUT && !is_noted {
                     is_noted = true;
                     note_second_signal();
                 }
@@ -111,9 +111,9 @@ fn note_second_signal() {
 /// Reports that the user asked to stop, and returns the exit code. A blocked reader of the output, such as a pager,
 /// does not delay it.
 fn print_interrupted() -> u8 {
-    let (told, wait) = channel();
+    let (finished, wait) = channel();
     // Without a thread, only the exit code reports it.
-    let _ = thread::Builder::new().spawn(move || told.send(CliError::Interrupted(String::new()).print()));
+    let _ = thread::Builder::new().spawn(move || finished.send(CliError::Interrupted(String::new()).print()));
     wait.recv_timeout(LAST_MESSAGE_TIMEOUT).unwrap_or(130)
 }
 

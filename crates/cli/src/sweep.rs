@@ -158,19 +158,20 @@ impl SweepArgs {
     }
 
     /// Returns the sweep over a scenario of this origin, and the range of its runs.
-    pub fn study(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), CliError> {
+    pub fn campaign(&self, scenario: Scenario, origin: &str) -> Result<(Campaign, Range<u64>), CliError> {
         let scenario = if self.uncertain { scenario } else { Campaign::undrawn(scenario) };
         let (design, all) = self.design(!scenario.uncertain.is_empty())?;
         let range = self.runs.as_ref().map_or(0..all, |runs| runs.range.clone());
         if range.end > all {
             return Err(CliError::Arguments(format!("--runs: the sweep has {}", counted(all, "run"))));
         }
-        let study = Campaign::from_design(scenario, origin, design)?;
+        let campaign = Campaign::from_design(scenario, origin, design)?;
         let runs = range.end - range.start;
-        let cost =
-            study.cost(runs, self.detail()).map_err(|why| CliError::Arguments(format!("--vary: {why}")))?;
+        let cost = campaign
+            .cost(runs, self.detail())
+            .map_err(|why| CliError::Arguments(format!("--vary: {why}")))?;
         self.consent.check(&self.options.cost(cost, self.out.is_some() && !self.place()?.1))?;
-        Ok((study, range))
+        Ok((campaign, range))
     }
 }
 
@@ -183,7 +184,7 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
     }
     let undrawn = !args.uncertain && !scenario.uncertain.is_empty();
     let selection = args.options.selection()?;
-    let (study, range) = args.study(scenario, &args.scenario.display().to_string())?;
+    let (campaign, range) = args.campaign(scenario, &args.scenario.display().to_string())?;
     if undrawn && !args.json {
         say!("note: the [uncertain] keys keep their values; --uncertain draws them");
     }
@@ -207,5 +208,5 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
         plain: detail.is_none(),
     };
-    logs::run(&Arc::new(study), &job, detail)
+    logs::run(&Arc::new(campaign), &job, detail)
 }

@@ -57,22 +57,22 @@ pub fn run(args: &TopArgs) -> Result<(), CliError> {
         return Err(CliError::Arguments(format!("--every must be from 0.05 to 86400 s, got {}", args.every)));
     }
     let directory = Directory::open(&args.directory).map_err(part_files::failure)?;
-    let mut seen =
+    let mut progress =
         ReadParts { parts: Vec::new(), metrics: metrics(args, &directory)?, failed: 0, seconds: 0.0 };
-    seen.refresh(&directory)?;
+    progress.refresh(&directory)?;
     if args.json {
-        return print(format!("{}\n", seen.to_json(&directory)).as_bytes());
+        return print(format!("{}\n", progress.to_json(&directory)).as_bytes());
     }
     if args.once || is_plain() || !std::io::stdout().is_terminal() || !std::io::stderr().is_terminal() {
-        return print(format!("{}\n", seen.text(&directory)).as_bytes());
+        return print(format!("{}\n", progress.text(&directory)).as_bytes());
     }
     let screen = MultiProgress::new();
     let style = ProgressStyle::with_template("{msg}").unwrap_or_else(|_| ProgressStyle::default_spinner());
     let shown = screen.add(ProgressBar::new_spinner().with_style(style));
     loop {
-        shown.set_message(seen.text(&directory));
+        shown.set_message(progress.text(&directory));
         shown.tick();
-        if seen.done() >= wanted(&directory) || stop::stop_requested() {
+        if progress.done() >= wanted(&directory) || stop::stop_requested() {
             shown.abandon();
             return Ok(());
         }
@@ -80,7 +80,7 @@ pub fn run(args: &TopArgs) -> Result<(), CliError> {
         while began.elapsed().as_secs_f64() < args.every && !stop::stop_requested() {
             thread::sleep(Duration::from_millis(20));
         }
-        seen.refresh(&directory)?;
+        progress.refresh(&directory)?;
     }
 }
 
@@ -115,7 +115,7 @@ impl ReadParts {
     fn refresh(&mut self, directory: &Directory) -> Result<(), CliError> {
         let all = directory.parts().map_err(part_files::failure)?;
         let new: Vec<_> =
-            all.into_iter().filter(|runs| self.parts.iter().all(|(seen, _)| seen != runs)).collect();
+            all.into_iter().filter(|runs| self.parts.iter().all(|(read, _)| read != runs)).collect();
         let mut names: Vec<&str> = vec![ERROR, SECONDS];
         names.extend(self.metrics.iter().map(|(name, _)| name.as_str()));
         let mut columns = Vec::new();
@@ -160,8 +160,8 @@ impl ReadParts {
             if done < all {
                 // The parts may be copies, or their command may have ended.
                 if directory.is_at_work() && rate > 0.0 {
-                    let left = Duration::from_secs_f64(((all - done) as f64 / rate).min(1e12));
-                    let _ = write!(text, ", {rate:.1} runs/s, {} left", HumanDuration(left));
+                    let remaining = Duration::from_secs_f64(((all - done) as f64 / rate).min(1e12));
+                    let _ = write!(text, ", {rate:.1} runs/s, {} left", HumanDuration(remaining));
                 }
                 let _ = write!(text, ", the last part {last:.0} s ago");
             }

@@ -14,7 +14,7 @@ use crate::scenario::Scenario;
 
 pub use flexsc_relay_kernel::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneShape, LaneState, MOST, RunSetup, SWITCHINGS,
-    fly_alone, fly_beside, shortest_window,
+    run_lanes, run_single, shortest_window,
 };
 
 /// Returns the body and the law of a scenario that the relay kernel can run; `None` otherwise.
@@ -81,14 +81,14 @@ pub fn lane_shape(scenario: &Scenario) -> LaneShape {
 /// Returns the initial setup of a run.
 pub fn lane_setup(scenario: &Scenario, model: &Planar, law: &Relay) -> RunSetup {
     let mobility = 1.0 / model.commanded_inertia();
-    let of = |mode: &Mode| {
+    let lane_mode = |mode: &Mode| {
         let phase = mode.start();
         let ratio = mode.damping.get();
         [mode.frequency.get(), mode.excitability(), phase.displacement, phase.quadrature, ratio]
     };
     // In the form of the envelope's phasor: the imaginary part in place of the quadrature.
     let track = |mode: &Mode| {
-        let [frequency, k, displacement, _, ratio] = of(mode);
+        let [frequency, k, displacement, _, ratio] = lane_mode(mode);
         let damped = Damped::new(frequency, ratio);
         let imaginary = (mode.rate.get() + damped.decay * displacement) / damped.frequency;
         [frequency, k, displacement, imaginary, ratio]
@@ -97,7 +97,7 @@ pub fn lane_setup(scenario: &Scenario, model: &Planar, law: &Relay) -> RunSetup 
     RunSetup {
         angle: model.angle.get(),
         rate: model.rate.get(),
-        modes: model.modes.iter().map(of).collect(),
+        modes: model.modes.iter().map(lane_mode).collect(),
         tracks: envelope_modes(scenario).iter().map(track).collect(),
         edge: law.dead_zone.get(),
         back: law.dead_zone.get() - law.hysteresis.get(),
@@ -112,9 +112,9 @@ pub fn lane_setup(scenario: &Scenario, model: &Planar, law: &Relay) -> RunSetup 
     }
 }
 
-/// Returns the guards of the law at a place of the limit cycle, on the given side.
-pub fn guards(setup: &RunSetup, place: CyclePhase, side: f64) -> Guards {
-    match place {
+/// Returns the guards of the law at a phase of the limit cycle, on the given side.
+pub fn guards(setup: &RunSetup, phase: CyclePhase, side: f64) -> Guards {
+    match phase {
         CyclePhase::Coast => Guards::two(Guard::at_least(setup.edge), Guard::at_most(-setup.edge)),
         CyclePhase::Push if side > 0.0 => Guards::one(Guard::at_most(setup.back)),
         CyclePhase::Push => Guards::one(Guard::at_least(-setup.back)),
@@ -122,9 +122,9 @@ pub fn guards(setup: &RunSetup, place: CyclePhase, side: f64) -> Guards {
     }
 }
 
-/// Returns the state of the relay law at a place of the limit cycle, on the given side.
-pub fn law_state(place: CyclePhase, side: f64) -> Phase {
-    match (place, side > 0.0) {
+/// Returns the state of the relay law at a phase of the limit cycle, on the given side.
+pub fn law_state(phase: CyclePhase, side: f64) -> Phase {
+    match (phase, side > 0.0) {
         (CyclePhase::Coast, true) => Phase::WeakRight,
         (CyclePhase::Coast, false) => Phase::WeakLeft,
         (CyclePhase::Push, true) => Phase::RightPush,
@@ -147,9 +147,9 @@ pub fn apply_crossing(found: &mut FoundCrossing, after: Span, is_first: bool, st
 }
 
 /// Copies the motion of a lane into a one-axis state.
-pub fn apply_state(state: &mut AxisState, sight: &LaneState) {
-    (state.rigid_angle, state.rigid_rate) = (sight.angle, sight.rate);
-    for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&sight.modes) {
+pub fn apply_state(state: &mut AxisState, lane_state: &LaneState) {
+    (state.rigid_angle, state.rigid_rate) = (lane_state.angle, lane_state.rate);
+    for (phase, [displacement, quadrature]) in state.modes.iter_mut().zip(&lane_state.modes) {
         *phase = flexsc_dynamics::ModeState { displacement: *displacement, quadrature: *quadrature };
     }
 }

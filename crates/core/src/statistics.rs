@@ -41,7 +41,7 @@ impl MetricColumns {
                 MetricValue::Numbers(_) | MetricValue::Quantities(_) => false,
             };
             self.columns =
-                run.0.iter().filter(|told| counts(told)).map(|told| (told.0, Vec::new())).collect();
+                run.0.iter().filter(|value| counts(value)).map(|value| (value.0, Vec::new())).collect();
         }
         self.runs += 1;
         for (meaning, values) in &mut self.columns {
@@ -91,12 +91,12 @@ const NORMAL_975: f64 = 1.959_963_984_540_054;
 
 /// Returns the 95 % interval of the probability of an outcome that `met` of `trials` trials had: Wilson's score
 /// interval. NaN without a trial.
-pub fn wilson(met: u64, trials: u64) -> (f64, f64) {
+pub fn wilson(successes: u64, trials: u64) -> (f64, f64) {
     if trials == 0 {
         return (f64::NAN, f64::NAN);
     }
     let (n, z2) = (trials as f64, NORMAL_975 * NORMAL_975);
-    let part = met as f64 / n;
+    let part = successes as f64 / n;
     let centre = part + z2 / (2.0 * n);
     let half = NORMAL_975 * f64::sqrt(part * (1.0 - part) / n + z2 / (4.0 * n * n));
     let scale = 1.0 + z2 / n;
@@ -113,16 +113,16 @@ fn mean_and_sd(values: &[f64]) -> (f64, f64) {
         return (*first, 0.0);
     }
     let n = values.len() as f64;
-    let of = |scale: f64| {
+    let statistics_of = |scale: f64| {
         let mean = values.iter().map(|v| v * scale).sum::<f64>() / n;
         let squares: f64 = values.iter().map(|v| (v * scale - mean) * (v * scale - mean)).sum();
         (mean, if values.len() > 1 { f64::sqrt(squares / (n - 1.0)) } else { 0.0 })
     };
-    let (mut mean, mut sd) = of(1.0);
+    let (mut mean, mut sd) = statistics_of(1.0);
     if mean.is_infinite() || !sd.is_finite() {
         // Scaling by a power of two loses no digits, except of values that are negligible here.
         let scale = libm::exp2(-600.0);
-        (mean, sd) = of(scale);
+        (mean, sd) = statistics_of(scale);
         (mean, sd) = (mean / scale, sd / scale);
     }
     (mean, if values.len() > 1 && sd.is_finite() { sd } else { f64::NAN })
@@ -164,14 +164,14 @@ mod tests {
     #[test]
     fn intervals_are_those_of_scipy() {
         // scipy.stats.binomtest(met, trials).proportion_ci(0.95, "wilson")
-        for (met, trials, low, high) in [
+        for (successes, trials, low, high) in [
             (103, 200, 0.446_108_491_927_457_2, 0.583_326_148_281_225),
             (0, 10, 0.0, 0.277_532_799_862_889_2),
             (10, 10, 0.722_467_200_137_110_7, 1.0),
             (7, 20, 0.181_191_824_101_082_06, 0.567_145_723_314_763_9),
             (999, 1000, 0.994_357_441_402_042_1, 0.999_823_453_629_373_9),
         ] {
-            let found = wilson(met, trials);
+            let found = wilson(successes, trials);
             assert!((found.0 - low).abs() < 1e-14 && (found.1 - high).abs() < 1e-14, "{found:?}");
         }
         assert!(wilson(0, 0).0.is_nan());

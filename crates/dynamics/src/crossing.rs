@@ -15,7 +15,7 @@ pub struct Crossing<S = AngleObservation> {
     /// Index of the guard.
     pub guard: usize,
     /// Observation at the instant of the trip.
-    pub sight: S,
+    pub observation: S,
 }
 
 /// Motion in closed form with bounded derivatives, on which guards can be searched.
@@ -52,7 +52,7 @@ pub trait BoundedMotion {
     ) -> bool;
 }
 
-/// Number of strides between two calls of `go_on` (cancellation check).
+/// Number of strides between two calls of `poll` (cancellation check).
 const STRIDES: u32 = 256;
 
 /// Returns the first tick within `horizon` of the start of the segment at which one of the guards holds; the state
@@ -65,12 +65,12 @@ pub fn first_crossing<M: BoundedMotion, E>(
     guards: &[M::Guard],
     horizon: Span,
     state: &mut M::State,
-    mut go_on: impl FnMut() -> Result<(), E>,
+    mut poll: impl FnMut() -> Result<(), E>,
 ) -> Result<Option<Crossing<M::Observation>>, E> {
     let mut sensed = motion.initial(state);
     if let Some(guard) = guards.iter().position(|guard| M::holds(*guard, state, sensed)) {
         motion.evaluate(0.0, state);
-        return Ok(Some(Crossing { after: Span::ZERO, guard, sight: sensed }));
+        return Ok(Some(Crossing { after: Span::ZERO, guard, observation: sensed }));
     }
     let first = |&guard| match motion.earliest_crossing(guard, horizon, state) {
         0.0 => motion.safe_stride(guard, state, sensed),
@@ -86,7 +86,7 @@ pub fn first_crossing<M: BoundedMotion, E>(
         while ticks < last && M::is_finite(state, sensed) {
             strides = strides.wrapping_add(1);
             if strides.is_multiple_of(STRIDES) {
-                go_on()?;
+                poll()?;
             }
             // The tick before the stride's end cannot trip: the next one is the first that can.
             ticks = ticks.saturating_add((stride * 1e15) as i64).saturating_add(1).min(last);
@@ -95,7 +95,7 @@ pub fn first_crossing<M: BoundedMotion, E>(
             for (index, &guard) in guards.iter().enumerate() {
                 if M::holds(guard, state, sensed) {
                     let after = base + Span::from_femtoseconds(ticks);
-                    return Ok(Some(Crossing { after, guard: index, sight: sensed }));
+                    return Ok(Some(Crossing { after, guard: index, observation: sensed }));
                 }
                 if !motion.has_no_crossing(guard, state, sensed, stride) {
                     stride = stride.min(motion.safe_stride(guard, state, sensed));

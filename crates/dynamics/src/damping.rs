@@ -63,7 +63,7 @@ pub struct Damped<R> {
     /// Ratio zeta/sqrt(1 - zeta²).
     pub tilt: R,
     /// Ratio 1/sqrt(1 - zeta²).
-    pub stretch: R,
+    pub inverse_root: R,
     /// Twice the decay rate (1/s).
     pub drag: R,
     /// Bound of |x''| per unit distance from equilibrium (1/s²).
@@ -78,7 +78,7 @@ impl Damped<f64> {
             decay: ratio * frequency,
             frequency: frequency * root,
             tilt: ratio / root,
-            stretch: 1.0 / root,
+            inverse_root: 1.0 / root,
             drag: 2.0 * ratio * frequency,
             // Here x'' = -w² (x + 2 zeta y) with (x, y) of length 1.
             stiffness: frequency * frequency * f64::sqrt(1.0 + 4.0 * ratio * ratio),
@@ -88,17 +88,17 @@ impl Damped<f64> {
 
 impl<R: LaneFloat> Damped<R> {
     /// Returns the 2 x 2 transition matrix of the deviation, row by row, from sine and cosine of the damped phase and
-    /// the decay factor `left`.
+    /// the factor of decay.
     #[inline(always)]
-    pub fn transition(&self, (sin, cos): (R, R), left: R) -> [R; 4] {
-        let (c, s) = (left * cos, left * sin);
-        let (along, across) = (self.tilt * s, self.stretch * s);
+    pub fn transition(&self, (sin, cos): (R, R), decay_factor: R) -> [R; 4] {
+        let (c, s) = (decay_factor * cos, decay_factor * sin);
+        let (along, across) = (self.tilt * s, self.inverse_root * s);
         [c + along, across, -across, c - along]
     }
 
     #[inline(always)]
-    fn pass(&self, [x, y]: [R; 2], turn: (R, R), left: R) -> [R; 2] {
-        let [xx, xy, yx, yy] = self.transition(turn, left);
+    fn pass(&self, [x, y]: [R; 2], turn: (R, R), decay_factor: R) -> [R; 2] {
+        let [xx, xy, yx, yy] = self.transition(turn, decay_factor);
         [xx * x + xy * y, yx * x + yy * y]
     }
 }
@@ -120,7 +120,7 @@ fn exp_tiny<R: LaneFloat>(x: R) -> R {
 }
 
 #[inline(always)]
-fn turned<R: LaneFloat>([x, y]: [R; 2], (sin, cos): (R, R)) -> [R; 2] {
+fn rotated<R: LaneFloat>([x, y]: [R; 2], (sin, cos): (R, R)) -> [R; 2] {
     [cos * x + sin * y, cos * y - sin * x]
 }
 
@@ -139,17 +139,17 @@ impl<R: LaneFloat> DampingRule<R> for Undamped {
 
     #[inline(always)]
     fn advance(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
-        turned(deviation, sincos(frequency * t))
+        rotated(deviation, sincos(frequency * t))
     }
 
     #[inline(always)]
     fn advance_short(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
-        turned(deviation, sincos_short(frequency * t))
+        rotated(deviation, sincos_short(frequency * t))
     }
 
     #[inline(always)]
     fn advance_tiny(self, frequency: R, deviation: [R; 2], t: R) -> [R; 2] {
-        turned(deviation, tiny(frequency * t))
+        rotated(deviation, tiny(frequency * t))
     }
 
     #[inline(always)]
@@ -181,19 +181,19 @@ impl<R: LaneFloat> DampingRule<R> for Damped<R> {
     #[inline(always)]
     fn undamped(kind: R) -> Self {
         let (zero, one) = (kind.splat(0.0), kind.splat(1.0));
-        Self { decay: zero, frequency: one, tilt: zero, stretch: one, drag: zero, stiffness: one }
+        Self { decay: zero, frequency: one, tilt: zero, inverse_root: one, drag: zero, stiffness: one }
     }
 
     #[inline(always)]
     fn with_lane(self, lane: usize, frequency: f64, ratio: f64) -> Self {
-        let of = Damped::new(frequency, ratio);
+        let damping = Damped::new(frequency, ratio);
         Self {
-            decay: self.decay.with_lane(lane, of.decay),
-            frequency: self.frequency.with_lane(lane, of.frequency),
-            tilt: self.tilt.with_lane(lane, of.tilt),
-            stretch: self.stretch.with_lane(lane, of.stretch),
-            drag: self.drag.with_lane(lane, of.drag),
-            stiffness: self.stiffness.with_lane(lane, of.stiffness),
+            decay: self.decay.with_lane(lane, damping.decay),
+            frequency: self.frequency.with_lane(lane, damping.frequency),
+            tilt: self.tilt.with_lane(lane, damping.tilt),
+            inverse_root: self.inverse_root.with_lane(lane, damping.inverse_root),
+            drag: self.drag.with_lane(lane, damping.drag),
+            stiffness: self.stiffness.with_lane(lane, damping.stiffness),
         }
     }
 

@@ -73,7 +73,7 @@ pub struct PredictedCrossing<R: LaneFloat> {
     /// Time since the start of the segment (s).
     pub after: R,
     /// Observation at the trip: angle (rad), rate (rad/s), acceleration (rad/s²).
-    pub seen: [R; 3],
+    pub observation: [R; 3],
 }
 
 impl<R: LaneFloat, D: DampingRule<R>> PredictedMode<R, D> {
@@ -86,14 +86,14 @@ impl<R: LaneFloat, D: DampingRule<R>> PredictedMode<R, D> {
 
     /// Advances the mode by `t` (s), for at most 3/4 rad of phase, forwards or backwards.
     #[inline(always)]
-    fn go_short(&mut self, t: R) {
+    fn advance_short(&mut self, t: R) {
         let deviation = [self.displacement, self.quadrature];
         [self.displacement, self.quadrature] = self.damping.advance_short(self.frequency, deviation, t);
     }
 
     /// Advances the mode by `t` (s), for a phase below [`TINY`].
     #[inline(always)]
-    fn go_tiny(&mut self, t: R) {
+    fn advance_tiny(&mut self, t: R) {
         let deviation = [self.displacement, self.quadrature];
         [self.displacement, self.quadrature] = self.damping.advance_tiny(self.frequency, deviation, t);
     }
@@ -189,15 +189,15 @@ pub fn predict<R: LaneFloat, D: DampingRule<R>, const LEVELS: usize>(
     // First prediction, for the threshold that the rigid parabola reaches first.
     let [mut level, mut guess] = [levels[0].angle, zero];
     let mut first = zero.le(one);
-    for (index, of) in levels.iter().enumerate() {
-        let gap = of.towards * (of.angle - (from.angle + centre));
-        let at = parabola(gap, of.towards * from.rate, of.towards * from.moment);
+    for (index, threshold) in levels.iter().enumerate() {
+        let gap = threshold.towards * (threshold.angle - (from.angle + centre));
+        let gap_at = parabola(gap, threshold.towards * from.rate, threshold.towards * from.moment);
         if index == 0 {
-            guess = at;
+            guess = gap_at;
         } else {
-            first = guess.le(at);
-            level = R::select(first, level, of.angle);
-            guess = R::select(first, guess, at);
+            first = guess.le(gap_at);
+            level = R::select(first, level, threshold.angle);
+            guess = R::select(first, guess, gap_at);
         }
     }
     let mut t = guess;
@@ -205,7 +205,7 @@ pub fn predict<R: LaneFloat, D: DampingRule<R>, const LEVELS: usize>(
         mode.advance(t);
     }
     let mut change = step(level, derivatives(from, t, modes));
-    let mut goes_on = zero.le(one);
+    let mut continuing = zero.le(one);
     for _ in 0..ROUNDS {
         // Steps longer than the polynomials allow are limited, which is rare.
         let most = from.longest;
@@ -213,43 +213,43 @@ pub fn predict<R: LaneFloat, D: DampingRule<R>, const LEVELS: usize>(
             change = R::select(change.lt(-most), -most, R::select(most.lt(change), most, change));
         }
         // Lanes whose prediction is already polished do not move, whatever the other lanes do.
-        let next = t + R::select(goes_on, change, zero);
-        let turned = next - t;
+        let next = t + R::select(continuing, change, zero);
+        let phase = next - t;
         t = next;
         for mode in modes.iter_mut() {
-            mode.go_short(turned);
+            mode.advance_short(phase);
         }
         change = step(level, derivatives(from, t, modes));
-        goes_on = zero.splat(TINY).lt((from.fastest * change).abs());
-        if !goes_on.any() {
+        continuing = zero.splat(TINY).lt((from.fastest * change).abs());
+        if !continuing.any() {
             break;
         }
     }
     let ticks = above((t + change) * zero.splat(TICKS));
     let after = ticks / zero.splat(TICKS);
-    let turned = after - t;
+    let phase = after - t;
     for mode in modes.iter_mut() {
-        mode.go_tiny(turned);
+        mode.advance_tiny(phase);
     }
-    let seen = derivatives(from, after, modes);
+    let values = derivatives(from, after, modes);
     // The trip is polished if only rounding errors remain.
-    let speed = seen[1].abs();
+    let speed = values[1].abs();
     let rounding =
         zero.splat(1e-15) * (level.abs() + reach) + speed * (zero.splat(4e-15) + zero.splat(4e-16) * after);
-    let mut certain = (level - seen[0]).abs().le(rounding)
-        & (from.fastest * turned).abs().lt(zero.splat(TINY + 1e-9))
+    let mut certain = (level - values[0]).abs().le(rounding)
+        & (from.fastest * phase).abs().lt(zero.splat(TINY + 1e-9))
         & after.lt(zero.splat(LONGEST))
         & (from.fastest * guess).lt(zero.splat(FARTHEST))
         & zero.le(ticks);
     // Both sides of each inequality are multiplied by the bound of |x''|, or by its square.
-    for (index, of) in levels.iter().enumerate() {
+    for (index, threshold) in levels.iter().enumerate() {
         let is_it = if index == 0 { first } else { !first };
-        let closing = of.towards * seen[1];
+        let closing = threshold.towards * values[1];
         let until = curvature * after - R::select(is_it, closing + closing, zero);
         let until = R::select(zero.lt(until), until, zero);
         let half = zero.splat(0.5) * until;
-        let gap = of.towards * (of.angle - (from.angle + centre)) - reach;
-        let (speed, acceleration) = (of.towards * from.rate, of.towards * from.moment);
+        let gap = threshold.towards * (threshold.angle - (from.angle + centre)) - reach;
+        let (speed, acceleration) = (threshold.towards * from.rate, threshold.towards * from.moment);
         let end = curvature * (gap * curvature - speed * until) - acceleration * until * half;
         let crest = zero.le(acceleration)
             | speed.le(zero)
@@ -257,10 +257,10 @@ pub fn predict<R: LaneFloat, D: DampingRule<R>, const LEVELS: usize>(
             | (speed * speed).lt(-(gap + gap) * acceleration);
         let mut clear = (zero.lt(gap) & zero.lt(end) & crest) | (is_it & until.le(zero));
         if !clear.all() {
-            let (gap, speed) = (of.towards * (of.angle - angle), of.towards * rate);
+            let (gap, speed) = (threshold.towards * (threshold.angle - angle), threshold.towards * rate);
             clear = clear | (zero.lt(gap) & zero.lt(gap * curvature - (speed + half) * until));
         }
         certain = certain & clear;
     }
-    PredictedCrossing { certain, first, ticks, after, seen: [seen[0], seen[1], seen[2]] }
+    PredictedCrossing { certain, first, ticks, after, observation: [values[0], values[1], values[2]] }
 }

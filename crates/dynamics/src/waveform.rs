@@ -117,7 +117,7 @@ impl Waveform {
     pub fn series(&self, middle: f64, t: f64) -> Series {
         let mut series = [0.0; TERMS];
         for term in self.terms.iter().filter(|term| term.from <= middle && middle < term.to) {
-            let (pole, coefficients) = term.about(t);
+            let (pole, coefficients) = term.shifted(t);
             // Product of exp(pole t) and each power of t.
             let mut factor = Phasor::new(1.0, 0.0);
             for k in 0..TERMS {
@@ -182,7 +182,7 @@ impl Term {
             }
             exp(own * h) * sum
         };
-        let (own, coefficients) = self.about(start);
+        let (own, coefficients) = self.shifted(start);
         let driven = if matches!(self.shape, TermShape::Polynomial(_)) {
             part(own, coefficients)
         } else {
@@ -196,13 +196,13 @@ impl Term {
     fn travel(&self, from: f64, to: f64) -> f64 {
         let Some((start, end)) = self.within(from, to) else { return 0.0 };
         let h = end - start;
-        let (own, coefficients) = self.about(start);
+        let (own, coefficients) = self.shifted(start);
         let (mut impulse, mut travel) = (0.0, 0.0);
         let mut power = h;
         for (n, c) in coefficients.into_iter().enumerate() {
             // Integrals of t^n exp(z t) and of (1 - t) t^n exp(z t) from 0 to 1.
             let z = own * h;
-            let (whole, left) = match (n, &self.shape) {
+            let (whole, remainder) = match (n, &self.shape) {
                 (_, TermShape::Polynomial(_)) => {
                     let n = n as f64;
                     (Phasor::new(1.0 / (n + 1.0), 0.0), Phasor::new(1.0 / ((n + 1.0) * (n + 2.0)), 0.0))
@@ -211,7 +211,7 @@ impl Term {
                 _ => (moment(n, z), moment(n, z) - moment(n + 1, z)),
             };
             impulse += (c * whole).re * power;
-            travel += (c * left).re * power * h;
+            travel += (c * remainder).re * power * h;
             power *= h;
         }
         travel + impulse * (to - end)
@@ -224,7 +224,7 @@ impl Term {
     }
 
     /// Returns the shape as Re(exp(pole t) sum c\[n\] t^n) in the time t since another origin: pole and c.
-    fn about(&self, origin: f64) -> (Phasor, Vec<Phasor>) {
+    fn shifted(&self, origin: f64) -> (Phasor, Vec<Phasor>) {
         let since = origin - self.from;
         let (pole, coefficients) = match &self.shape {
             TermShape::Polynomial(c) => (Phasor::default(), c.iter().map(|c| Phasor::new(*c, 0.0)).collect()),

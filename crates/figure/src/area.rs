@@ -25,9 +25,9 @@ pub fn polygons(points: &[Point], window: &Window, pixels: u32) -> Vec<Vec<Point
     let parts = points.split(|(x, y)| !x.is_finite() || !y.is_finite());
     let held = parts.map(|part| part.iter().map(hold).collect::<Vec<_>>());
     let fewer = |part: Vec<Point>| match sides(&part) {
-        Some((there, back)) => {
-            let back: Vec<Point> = back.iter().rev().copied().collect();
-            let mut fewer = thin(there, window, pixels);
+        Some((upper, lower)) => {
+            let back: Vec<Point> = lower.iter().rev().copied().collect();
+            let mut fewer = thin(upper, window, pixels);
             fewer.extend(thin(&back, window, pixels).into_iter().rev());
             fewer
         }
@@ -39,8 +39,8 @@ pub fn polygons(points: &[Point], window: &Window, pixels: u32) -> Vec<Vec<Point
 /// The two sides of a polygon between two lines: to the right, and back again; none of any other.
 fn sides(polygon: &[Point]) -> Option<(&[Point], &[Point])> {
     let turn = polygon.windows(2).position(|pair| pair[1].0 < pair[0].0)? + 1;
-    let (there, back) = polygon.split_at(turn);
-    back.is_sorted_by(|a, b| a.0 >= b.0).then_some((there, back))
+    let (upper, lower) = polygon.split_at(turn);
+    lower.is_sorted_by(|a, b| a.0 >= b.0).then_some((upper, lower))
 }
 
 #[cfg(test)]
@@ -63,14 +63,14 @@ mod tests {
     #[test]
     fn a_band_has_no_more_points_than_pixels_can_show() {
         let window = Window { x: 0.0..1.0, y: -1.0..1.0 };
-        let saw = |sign: f64| -> Vec<Point> {
+        let sawtooth = |sign: f64| -> Vec<Point> {
             (0..100_000)
                 .map(|i| {
                     (f64::from(i) / 1e5, sign * if i == 31_415 { 0.9 } else { 0.2 + 0.1 * f64::from(i % 7) })
                 })
                 .collect()
         };
-        let found = polygons(&band(&saw(-1.0), &saw(1.0)), &window, 500);
+        let found = polygons(&band(&sawtooth(-1.0), &sawtooth(1.0)), &window, 500);
         assert_eq!(found.len(), 1);
         assert!(found[0].len() <= 2 * 4 * 501, "{}", found[0].len());
         // No peak is lost on either side.

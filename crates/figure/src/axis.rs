@@ -14,7 +14,7 @@ pub struct FigureAxis {
     /// Scale of the axis.
     pub scale: Scale,
     /// Largest value of the stacked axes that share the prefix.
-    beside: f64,
+    stacked_size: f64,
 }
 
 /// Scale of an axis.
@@ -69,7 +69,7 @@ impl FigureAxis {
         let middle = if range.start.is_finite() { range.start } else { 0.0 };
         let half = if middle == 0.0 { 1.0 } else { 0.05 * middle.abs() };
         let range = if wide { range } else { middle - half..middle + half };
-        Self { name: name.to_owned(), unit, range, scale: Scale::Linear, beside: 0.0 }
+        Self { name: name.to_owned(), unit, range, scale: Scale::Linear, stacked_size: 0.0 }
     }
 
     /// Creates an axis around all values, with a small margin.
@@ -94,7 +94,7 @@ impl FigureAxis {
         let (low, high) = if high > 0.0 { (low.log10().floor(), high.log10().ceil()) } else { (-1.0, 0.0) };
         let low = low.min(high - 1.0).max(high - DECADES);
         let range = 10_f64.powf(low)..10_f64.powf(high);
-        Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic, beside: 0.0 }
+        Self { name: name.to_owned(), unit, range, scale: Scale::Logarithmic, stacked_size: 0.0 }
     }
 
     /// Returns the axes of stacked panels: axes of one unit share a prefix, unless one of them would show too small
@@ -111,7 +111,7 @@ impl FigureAxis {
                     && other.scale == Scale::Linear
                     && other.size() <= factor * axis.size()
             };
-            axis.beside = all.iter().filter(near).map(Self::size).fold(0.0, f64::max);
+            axis.stacked_size = all.iter().filter(near).map(Self::size).fold(0.0, f64::max);
         }
         axes
     }
@@ -169,8 +169,8 @@ impl FigureAxis {
             let Range { start, end } = self.extent();
             let (first, last) = (start.round() as i32, end.round() as i32);
             let step = (last - first).unsigned_abs().div_ceil(most.max(1)).max(1);
-            let at = (first..=last).rev().step_by(step as usize).map(|power| 10_f64.powi(power));
-            return Ticks { at: at.collect(), form: Form::Power };
+            let positions = (first..=last).rev().step_by(step as usize).map(|power| 10_f64.powi(power));
+            return Ticks { at: positions.collect(), form: Form::Power };
         }
         let factor = self.factor();
         let (low, high) = (self.range.start / factor, self.range.end / factor);
@@ -201,7 +201,7 @@ impl FigureAxis {
         if self.unit.is_empty() || self.scale == Scale::Logarithmic {
             return ("", self.exponent_of_unit());
         }
-        let size = self.size().max(self.beside) * 10_f64.powi(self.exponent_of_unit());
+        let size = self.size().max(self.stacked_size) * 10_f64.powi(self.exponent_of_unit());
         let half = (self.range.end - self.range.start) / 2.0;
         // A short time has the prefix of its length, however late it is.
         let measure = if self.unit == "s" { half } else { size };
@@ -217,11 +217,11 @@ impl FigureAxis {
 
 impl Ticks {
     /// Returns the text of a tick.
-    pub fn text(&self, at: f64) -> String {
+    pub fn text(&self, value: f64) -> String {
         let Form::Decimal { factor, decimals } = self.form else {
-            return format!("10{}", superscript(at.log10().round() as i32));
+            return format!("10{}", superscript(value.log10().round() as i32));
         };
-        let value = at / factor;
+        let value = value / factor;
         let plain = decimals <= 6 && value.abs() < 1e7;
         let text = if plain { format!("{value:.decimals$}") } else { format!("{value:.1e}") };
         let zero = text.trim_start_matches('-').chars().all(|c| matches!(c, '0' | '.' | 'e'));
@@ -258,7 +258,7 @@ mod tests {
 
     fn texts(axis: &FigureAxis, most: u32) -> Vec<String> {
         let ticks = axis.ticks(most);
-        ticks.at.iter().map(|at| ticks.text(*at)).collect()
+        ticks.at.iter().map(|value| ticks.text(*value)).collect()
     }
 
     #[test]

@@ -64,15 +64,15 @@ impl Layout {
 
     /// Returns the layers in the legend, each with its row and the left end of its entry (px).
     fn entries(self, panel: &Panel) -> Vec<(&Layer, (u32, u32))> {
-        let (mut row, mut left) = (0, LEFT);
+        let (mut row, mut column) = (0, LEFT);
         let mut entries = Vec::new();
         for layer in panel.layers.iter().filter(|layer| !layer.name.is_empty() && layer.is_shown(panel)) {
             let wide = 23 + letters(&layer.name);
-            if left > LEFT && left + wide > self.width {
-                (row, left) = (row + 1, LEFT);
+            if column > LEFT && column + wide > self.width {
+                (row, column) = (row + 1, LEFT);
             }
-            entries.push((layer, (row, left)));
-            left += wide + 16;
+            entries.push((layer, (row, column)));
+            column += wide + 16;
         }
         entries
     }
@@ -220,13 +220,14 @@ fn draw_axes(area: &Area<'_>, (across, up): (&FigureAxis, &FigureAxis), plot: &P
     let (grid, frame) = (stroke(GRID, 0.6), stroke(colour::GREY, 0.8));
     let ticks = across.ticks(if plot.across < 400 { plot.across / 55 } else { plot.across / 85 });
     for (place, label) in
-        ticks.at.iter().map(|at| (plot.place((across.place(*at), y.start)).0, ticks.text(*at)))
+        ticks.at.iter().map(|tick| (plot.place((across.place(*tick), y.start)).0, ticks.text(*tick)))
     {
         area.draw(&PathElement::new([(place, corner.1), (place, opposite.1)], grid))?;
         area.draw_text(&label, &text(11.0, HPos::Center, VPos::Top), (place, corner.1 + gap))?;
     }
     let ticks = up.ticks(if plot.height < 120 { plot.height / 20 } else { plot.height / 28 });
-    for (place, label) in ticks.at.iter().map(|at| (plot.place((x.start, up.place(*at))).1, ticks.text(*at)))
+    for (place, label) in
+        ticks.at.iter().map(|tick| (plot.place((x.start, up.place(*tick))).1, ticks.text(*tick)))
     {
         area.draw(&PathElement::new([(corner.0, place), (opposite.0, place)], grid))?;
         area.draw_text(&label, &text(11.0, HPos::Right, VPos::Center), (corner.0 - gap, place))?;
@@ -254,19 +255,20 @@ fn draw_line(area: &Area<'_>, layer: &Layer, points: Vec<(i32, i32)>) -> Result<
 
 /// Draws the legend above the panel, in rows.
 fn draw_legend(area: &Area<'_>, panel: &Panel, layout: Layout) -> Result<(), Error> {
-    for (layer, (row, left)) in layout.entries(panel) {
+    for (layer, (row, column)) in layout.entries(panel) {
         let middle = LEGEND / 2 + 1 + ROW * row;
-        let (from, to) = (at(left, middle), at(left + 18, middle));
+        let (from, to) = (at(column, middle), at(column + 18, middle));
         match layer.shape {
             LayerShape::Line(_) | LayerShape::Dashes => draw_line(area, layer, vec![from, to])?,
             LayerShape::Area(_) => {
                 let [low, high] = [middle + 5, middle - 5];
-                let corners = [at(left, low), at(left + 18, low), at(left + 18, high), at(left, high)];
+                let corners =
+                    [at(column, low), at(column + 18, low), at(column + 18, high), at(column, high)];
                 area.draw(&Polygon::new(corners, layer.style()))?;
             }
-            _ => draw_mark(area, layer, at(left + 9, middle))?,
+            _ => draw_mark(area, layer, at(column + 9, middle))?,
         }
-        area.draw_text(&layer.name, &text(11.0, HPos::Left, VPos::Center), at(left + 23, middle))?;
+        area.draw_text(&layer.name, &text(11.0, HPos::Left, VPos::Center), at(column + 23, middle))?;
     }
     Ok(())
 }

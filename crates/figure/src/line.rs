@@ -43,8 +43,8 @@ impl Window {
                 return None;
             }
         }
-        let at = |t: f64| (a.0 + t * dx, a.1 + t * dy);
-        (enter < leave).then(|| (at(enter), at(leave)))
+        let point_at = |t: f64| (a.0 + t * dx, a.1 + t * dy);
+        (enter < leave).then(|| (point_at(enter), point_at(leave)))
     }
 }
 

@@ -301,8 +301,8 @@ fn table(font: &[u8], tag: [u8; 4]) -> Option<usize> {
 }
 
 /// Returns a 16-bit integer of a TrueType font.
-fn number(font: &[u8], at: usize) -> Option<u16> {
-    Some(u16::from_be_bytes(font.get(at..at + 2)?.try_into().ok()?))
+fn number(font: &[u8], offset: usize) -> Option<u16> {
+    Some(u16::from_be_bytes(font.get(offset..offset + 2)?.try_into().ok()?))
 }
 
 /// Writer of a file's objects in sequence.

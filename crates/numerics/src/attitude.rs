@@ -73,13 +73,13 @@ impl JsonSchema for Attitude {
 
 /// Returns the attitude after rotations by yaw, then pitch, then roll about the rotated axes (rad; sequence 3-2-1).
 pub fn from_yaw_pitch_roll(roll: f64, pitch: f64, yaw: f64) -> Quaternion<f64> {
-    let about = |axis: usize, angle: f64| {
+    let rotation = |axis: usize, angle: f64| {
         let (sin, cos) = libm::sincos(0.5 * angle);
         let mut vector = Vector::zeros();
         vector[axis] = sin;
         Quaternion::from_parts(cos, vector)
     };
-    about(2, yaw) * about(1, pitch) * about(0, roll)
+    rotation(2, yaw) * rotation(1, pitch) * rotation(0, roll)
 }
 
 /// Returns the attitude of a body with the axes x, y and z, right-handed unit vectors in inertial axes.
@@ -128,18 +128,18 @@ pub fn rotation_vector(from: &Quaternion<f64>, to: &Quaternion<f64>) -> Vector {
     let difference = from.conjugate() * to;
     let sine = difference.vector().norm();
     let twice = libm::copysign(2.0, difference.w);
-    let stretch = if sine == 0.0 { 1.0 } else { libm::atan2(sine, difference.w.abs()) / sine };
-    difference.vector() * (twice * stretch)
+    let scale = if sine == 0.0 { 1.0 } else { libm::atan2(sine, difference.w.abs()) / sine };
+    difference.vector() * (twice * scale)
 }
 
 /// Converts a scenario's numbers to a vector.
-pub fn vector(of: &[Finite; 3]) -> Vector {
-    Vector::new(of[0].get(), of[1].get(), of[2].get())
+pub fn vector(components: &[Finite; 3]) -> Vector {
+    Vector::new(components[0].get(), components[1].get(), components[2].get())
 }
 
 /// Converts a scenario's rows to a tensor.
-pub fn tensor(of: &[[Finite; 3]; 3]) -> Matrix3<f64> {
-    Matrix3::from_fn(|row, column| of[row][column].get())
+pub fn tensor(rows: &[[Finite; 3]; 3]) -> Matrix3<f64> {
+    Matrix3::from_fn(|row, column| rows[row][column].get())
 }
 
 /// No principal moment of inertia is more than the sum of the others, but for rounding to this part.
@@ -161,7 +161,7 @@ pub fn impossible_moments(tensor: &Matrix3<f64>) -> Option<String> {
 /// Returns an error message if a tensor is not symmetric.
 pub fn asymmetry(tensor: &Matrix3<f64>) -> Option<String> {
     let mut below = (0..3).flat_map(|row| (0..row).map(move |column| (row, column)));
-    let (row, column) = below.find(|at| tensor[*at] != tensor[(at.1, at.0)])?;
+    let (row, column) = below.find(|element| tensor[*element] != tensor[(element.1, element.0)])?;
     let (found, other) = (tensor[(row, column)], tensor[(column, row)]);
     Some(format!("must be symmetric, got {found} and {other} across the diagonal"))
 }
@@ -184,21 +184,21 @@ mod tests {
 
     #[test]
     fn angles_come_back_and_errors_are_small_rotations() {
-        let at = from_yaw_pitch_roll(0.3, -0.7, 2.1);
-        for (found, exact) in angles(&at).into_iter().zip([0.3, -0.7, 2.1]) {
+        let attitude = from_yaw_pitch_roll(0.3, -0.7, 2.1);
+        for (found, exact) in angles(&attitude).into_iter().zip([0.3, -0.7, 2.1]) {
             assert!((found - exact).abs() < 1e-15, "{found} {exact}");
         }
         // Rotates further by a small angle about the body's y axis, with both signs of the quaternion.
-        let further = at * from_yaw_pitch_roll(0.0, 1e-3, 0.0);
+        let further = attitude * from_yaw_pitch_roll(0.0, 1e-3, 0.0);
         for q in [further, -further] {
-            let error = rotation_vector(&at, &q);
+            let error = rotation_vector(&attitude, &q);
             assert!((error - Vector::new(0.0, 1e-3, 0.0)).norm() < 1e-15, "{error}");
         }
         // However long it is: 150 degrees, and nearly half a turn.
         let long = [[0.0, 0.0, 2.617_993_877_991_494], [0.0, -3.1, 0.0], [1.8, 0.0, -2.4]];
         for by in long.into_iter().chain([[1e-9, 0.0, -2e-9], [0.3, -0.1, 0.2], [0.0; 3]]).map(Vector::from) {
-            for q in [at * rotation(&by), -(at * rotation(&by))] {
-                assert!((rotation_vector(&at, &q) - by).norm() < 1e-15 * by.norm().max(1.0), "{by}");
+            for q in [attitude * rotation(&by), -(attitude * rotation(&by))] {
+                assert!((rotation_vector(&attitude, &q) - by).norm() < 1e-15 * by.norm().max(1.0), "{by}");
             }
         }
         // The square of the shortest is 0.

@@ -19,11 +19,11 @@ impl Biquad {
     /// K at which both have the same gain and phase at a frequency below pi/period (rad/s).
     pub fn tustin(numerator: [f64; 3], denominator: [f64; 3], frequency: f64, period: f64) -> Self {
         let k = frequency / libm::tan(0.5 * frequency * period);
-        let of = |[c0, c1, c2]: [f64; 3]| {
+        let polynomial = |[c0, c1, c2]: [f64; 3]| {
             let (first, second) = (c1 * k, c2 * k * k);
             [second + first + c0, 2.0 * (c0 - second), second - first + c0]
         };
-        let (b, [a0, a1, a2]) = (of(numerator), of(denominator));
+        let (b, [a0, a1, a2]) = (polynomial(numerator), polynomial(denominator));
         Self::new(b.map(|b| b / a0), [a1 / a0, a2 / a0])
     }
 
@@ -55,10 +55,11 @@ impl Biquad {
     pub fn response(&self, frequency: f64, period: f64) -> [f64; 2] {
         let (sin, cos) = libm::sincos(frequency * period);
         // Here z^-1 = cos - i sin, z^-2 = z^-1 squared.
-        let of = |[c0, c1, c2]: [f64; 3]| {
+        let polynomial = |[c0, c1, c2]: [f64; 3]| {
             [c0 + c1 * cos + c2 * (cos * cos - sin * sin), -c1 * sin - c2 * 2.0 * sin * cos]
         };
-        let ([nr, ni], [dr, di]) = (of(self.numerator), of([1.0, self.denominator[0], self.denominator[1]]));
+        let ([nr, ni], [dr, di]) =
+            (polynomial(self.numerator), polynomial([1.0, self.denominator[0], self.denominator[1]]));
         let phase = libm::atan2(ni * dr - nr * di, nr * dr + ni * di);
         [libm::hypot(nr, ni) / libm::hypot(dr, di), phase]
     }

@@ -35,11 +35,11 @@ fn principal<const N: usize>(angles: [(f64, f64); N], complement: f64) -> [f64; 
     let x = angles.map(|(_, cos)| cos * cos);
     let z = angles.map(|(sin, cos)| cos * cos + complement * (sin * sin));
     let carlson = carlson(Triples { x, y: [1.0; N], z, sum: [0.0; N], power: [1.0; N] });
-    from_fn(|at| {
-        let ((sin, cos), (rf, rd)) = (angles[at], carlson[at]);
+    from_fn(|lane| {
+        let ((sin, cos), (rf, rd)) = (angles[lane], carlson[lane]);
         // By DLMF 19.25.10: no two terms have different signs, so nothing cancels near m = 1.
         let s2 = sin * sin;
-        sin * (complement * (rf + m * s2 * rd / 3.0) + m * cos / f64::sqrt(z[at]))
+        sin * (complement * (rf + m * s2 * rd / 3.0) + m * cos / f64::sqrt(z[lane]))
     })
 }
 
@@ -48,13 +48,13 @@ fn principal<const N: usize>(angles: [(f64, f64); N], complement: f64) -> [f64; 
 ///
 /// The duplication theorem contracts the differences of the arguments by a factor 4 per round; a Taylor series
 /// completes the result (\[Carlson95\]).
-fn carlson<const N: usize>(mut of: Triples<N>) -> [(f64, f64); N] {
+fn carlson<const N: usize>(mut triples: Triples<N>) -> [(f64, f64); N] {
     loop {
-        let apart = of.needs_duplication();
+        let apart = triples.needs_duplication();
         if !apart.contains(&true) {
-            return from_fn(|at| of.series(at));
+            return from_fn(|lane| triples.series(lane));
         }
-        of = of.doubled(apart);
+        triples = triples.doubled(apart);
     }
 }
 
@@ -70,41 +70,42 @@ struct Triples<const N: usize> {
 }
 
 impl<const N: usize> Triples<N> {
-    fn mean(&self, at: usize) -> f64 {
-        (self.x[at] + self.y[at] + 3.0 * self.z[at]) / 5.0
+    fn mean(&self, lane: usize) -> f64 {
+        (self.x[lane] + self.y[lane] + 3.0 * self.z[lane]) / 5.0
     }
 
     /// Returns which triples are too far apart for the series.
     fn needs_duplication(&self) -> [bool; N] {
-        from_fn(|at| {
-            let mean = self.mean(at);
-            let [x, y, z] = [self.x[at], self.y[at], self.z[at]].map(|of| (mean - of).abs());
+        from_fn(|lane| {
+            let mean = self.mean(lane);
+            let [x, y, z] =
+                [self.x[lane], self.y[lane], self.z[lane]].map(|argument| (mean - argument).abs());
             x.max(y).max(z) >= 0.002 * mean
         })
     }
 
     /// Returns the triples after one more duplication of the selected ones.
     #[expect(clippy::needless_range_loop, reason = "the compiler takes several at once")]
-    fn doubled(&self, which: [bool; N]) -> Self {
+    fn doubled(&self, lanes_to_double: [bool; N]) -> Self {
         let mut next = *self;
-        for at in 0..N {
-            let (x, y, z) = (self.x[at], self.y[at], self.z[at]);
+        for lane in 0..N {
+            let (x, y, z) = (self.x[lane], self.y[lane], self.z[lane]);
             let (rx, ry, rz) = (f64::sqrt(x), f64::sqrt(y), f64::sqrt(z));
             let lambda = rx * (ry + rz) + ry * rz;
-            let sum = self.sum[at] + self.power[at] / (rz * (z + lambda));
-            let choose = |new: f64, old: f64| if which[at] { new } else { old };
-            next.x[at] = choose(0.25 * (x + lambda), x);
-            next.y[at] = choose(0.25 * (y + lambda), y);
-            next.z[at] = choose(0.25 * (z + lambda), z);
-            next.sum[at] = choose(sum, self.sum[at]);
-            next.power[at] = choose(0.25 * self.power[at], self.power[at]);
+            let sum = self.sum[lane] + self.power[lane] / (rz * (z + lambda));
+            let choose = |new: f64, old: f64| if lanes_to_double[lane] { new } else { old };
+            next.x[lane] = choose(0.25 * (x + lambda), x);
+            next.y[lane] = choose(0.25 * (y + lambda), y);
+            next.z[lane] = choose(0.25 * (z + lambda), z);
+            next.sum[lane] = choose(sum, self.sum[lane]);
+            next.power[lane] = choose(0.25 * self.power[lane], self.power[lane]);
         }
         next
     }
 
-    fn series(&self, at: usize) -> (f64, f64) {
-        let (x, y, z) = (self.x[at], self.y[at], self.z[at]);
-        let rd = 3.0 * self.sum[at] + self.power[at] * rd_series(x, y, z, self.mean(at));
+    fn series(&self, lane: usize) -> (f64, f64) {
+        let (x, y, z) = (self.x[lane], self.y[lane], self.z[lane]);
+        let rd = 3.0 * self.sum[lane] + self.power[lane] * rd_series(x, y, z, self.mean(lane));
         (rf_series(x, y, z), rd)
     }
 }

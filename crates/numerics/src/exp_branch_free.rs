@@ -16,13 +16,13 @@ const LN_2: [f64; 2] = [6.931_471_803_691_238_164_90e-1, 1.908_214_929_270_587_7
 
 /// Coefficients 1/n! from n = 2 on.
 const TERMS: [f64; 12] = {
-    let mut of = [0.5; 12];
+    let mut coefficients = [0.5; 12];
     let mut n = 1;
     while n < 12 {
-        of[n] = of[n - 1] / (n + 2) as f64;
+        coefficients[n] = coefficients[n - 1] / (n + 2) as f64;
         n += 1;
     }
-    of
+    coefficients
 };
 
 /// Returns exp(x) for x up to 1; within 1 unit in the last place, and 0 below -708.

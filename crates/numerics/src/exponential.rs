@@ -63,41 +63,41 @@ impl SimdTask for MatrixBatch<'_> {
         let scale = kind.load(&scales);
         let zero = kind.splat(0.0);
         let mut small = vec![zero; order * order];
-        for (at, entry) in small.iter_mut().enumerate() {
+        for (index, entry) in small.iter_mut().enumerate() {
             for (lane, matrix) in matrices.iter().enumerate() {
-                each[lane] = matrix.as_slice()[at];
+                each[lane] = matrix.as_slice()[index];
             }
             *entry = kind.load(&each) * scale;
         }
         let mut term = vec![zero; order * order];
-        for at in 0..order {
-            term[at * order + at] = kind.splat(1.0);
+        for row in 0..order {
+            term[row * order + row] = kind.splat(1.0);
         }
         let mut sum = term.clone();
         let mut room = term.clone();
         for n in 1..=15 {
             multiply(&term, &small, order, &mut room);
             let divisor = kind.splat(f64::from(n));
-            for at in 0..order * order {
-                term[at] = room[at] / divisor;
-                sum[at] = sum[at] + term[at];
+            for index in 0..order * order {
+                term[index] = room[index] / divisor;
+                sum[index] = sum[index] + term[index];
             }
         }
         for done in 0..squarings.into_iter().max().unwrap_or(0) {
             for lane in 0..R::LANES {
                 each[lane] = f64::from(u8::from(done < squarings[lane]));
             }
-            let goes_on = zero.lt(kind.load(&each));
+            let continuing = zero.lt(kind.load(&each));
             multiply(&sum, &sum, order, &mut room);
-            for at in 0..order * order {
-                sum[at] = R::select(goes_on, room[at], sum[at]);
+            for index in 0..order * order {
+                sum[index] = R::select(continuing, room[index], sum[index]);
             }
         }
         let mut found = vec![DMatrix::zeros(order, order); matrices.len()];
-        for (at, entry) in sum.iter().enumerate() {
+        for (index, entry) in sum.iter().enumerate() {
             entry.store(&mut each);
             for (lane, matrix) in found.iter_mut().enumerate() {
-                matrix.as_mut_slice()[at] = each[lane];
+                matrix.as_mut_slice()[index] = each[lane];
             }
         }
         found

@@ -20,7 +20,7 @@ pub struct Extrapolation {
     /// Row i contains the extrapolation of the columns from i to the newest: the first row is the best value.
     table: Vec<Vec<f64>>,
     before: Vec<f64>,
-    here: Vec<f64>,
+    solution: Vec<f64>,
     rate: Vec<f64>,
 }
 
@@ -32,7 +32,7 @@ impl Extrapolation {
             tolerance,
             table: vec![zero.clone(); SUBSTEPS.len()],
             before: zero.clone(),
-            here: zero.clone(),
+            solution: zero.clone(),
             rate: zero,
         }
     }
@@ -83,25 +83,25 @@ impl Extrapolation {
 
     /// Applies the modified midpoint rule with the substeps of a column, into its row.
     fn midpoint(&mut self, field: &impl RightHandSide, t: f64, y: &[f64], h: f64, column: usize) {
-        let Self { table, before, here, rate, .. } = self;
+        let Self { table, before, solution, rate, .. } = self;
         let small = h / f64::from(SUBSTEPS[column]);
         before.copy_from_slice(y);
         field.rate(t, y, rate);
-        for ((here, y), rate) in here.iter_mut().zip(y).zip(rate.iter()) {
-            *here = y + small * rate;
+        for ((value, y), rate) in solution.iter_mut().zip(y).zip(rate.iter()) {
+            *value = y + small * rate;
         }
         for k in 1..SUBSTEPS[column] {
-            field.rate(t + f64::from(k) * small, here, rate);
-            for ((before, here), rate) in before.iter_mut().zip(here.iter_mut()).zip(rate.iter()) {
+            field.rate(t + f64::from(k) * small, solution, rate);
+            for ((before, current), rate) in before.iter_mut().zip(solution.iter_mut()).zip(rate.iter()) {
                 let next = *before + 2.0 * small * rate;
-                *before = *here;
-                *here = next;
+                *before = *current;
+                *current = next;
             }
         }
-        field.rate(t + h, here, rate);
-        let smooth = table[column].iter_mut().zip(before.iter()).zip(here.iter().zip(rate.iter()));
-        for ((value, before), (here, rate)) in smooth {
-            *value = 0.5 * (before + here + small * rate);
+        field.rate(t + h, solution, rate);
+        let smooth = table[column].iter_mut().zip(before.iter()).zip(solution.iter().zip(rate.iter()));
+        for ((value, before), (current, rate)) in smooth {
+            *value = 0.5 * (before + current + small * rate);
         }
     }
 }
@@ -116,7 +116,7 @@ pub struct Trajectory {
     /// Length of the step after `next` (s).
     step: f64,
     /// Value of y at the last observed time.
-    here: Vec<f64>,
+    solution: Vec<f64>,
 }
 
 impl Trajectory {
@@ -127,18 +127,18 @@ impl Trajectory {
             node: (0.0, y.clone()),
             next: (0.0, y.clone()),
             step,
-            here: y,
+            solution: y,
         }
     }
 
     /// Returns y at the last observed time.
     pub fn current(&self) -> &[f64] {
-        &self.here
+        &self.solution
     }
 
     /// Begins a new segment at the last observed time.
     pub fn depart(&mut self) {
-        self.node = (0.0, self.here.clone());
+        self.node = (0.0, self.solution.clone());
         self.next = self.node.clone();
     }
 
@@ -159,14 +159,14 @@ impl Trajectory {
     /// counts from the start of the segment.
     pub fn at(&mut self, field: &impl RightHandSide, h: f64) -> &[f64] {
         while !self.step_towards(field, h) {}
-        let Self { integrator, node, here, .. } = self;
+        let Self { integrator, node, solution, .. } = self;
         // An observation between two steps changes neither.
-        here.clone_from(&node.1);
+        solution.clone_from(&node.1);
         let mut t = node.0;
         while t < h {
-            t += integrator.step(field, t, here, h - t).0;
+            t += integrator.step(field, t, solution, h - t).0;
         }
-        here
+        solution
     }
 }
 

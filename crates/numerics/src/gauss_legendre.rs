@@ -28,8 +28,8 @@ pub fn exact_sum<const N: usize>(
     b: SVector<f64, N>,
 ) -> (SVector<f64, N>, SVector<f64, N>) {
     let sum = a + b;
-    let of_b = sum - a;
-    (sum, (a - (sum - of_b)) + (b - of_b))
+    let rest_of_sum = sum - a;
+    (sum, (a - (sum - rest_of_sum)) + (b - rest_of_sum))
 }
 
 #[cfg(test)]

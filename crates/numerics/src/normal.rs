@@ -39,17 +39,17 @@ pub fn quantile(p: f64) -> f64 {
         3.754_408_661_907_416,
         1.0,
     ];
-    let at = |coefficients: &[f64], x: f64| coefficients.iter().fold(0.0, |sum, c| sum * x + c);
+    let horner = |coefficients: &[f64], x: f64| coefficients.iter().fold(0.0, |sum, c| sum * x + c);
     if p > 0.5 {
         // Here 1 - p is exact, and the tail keeps its digits.
         return -quantile(1.0 - p);
     }
     let z = if p < 0.02425 {
         let q = f64::sqrt(-2.0 * libm::log(p));
-        at(&C, q) / at(&D, q)
+        horner(&C, q) / horner(&D, q)
     } else {
         let q = p - 0.5;
-        at(&A, q * q) * q / at(&B, q * q)
+        horner(&A, q * q) * q / horner(&B, q * q)
     };
     let density = libm::exp(-0.5 * z * z) / f64::sqrt(2.0 * std::f64::consts::PI);
     let step = (cumulative(z) - p) / density;

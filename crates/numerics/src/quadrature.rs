@@ -46,11 +46,11 @@ pub fn nodes(length: f64, fastest: f64) -> Vec<(f64, f64)> {
 /// Returns the number of nodes that suffices for the mean of exp(i x s) over s in [-1, 1]: the error of n nodes is at
 /// most 4^n n!^4 / ((2 n + 1) (2 n)!^3) times the derivative of order 2 n.
 fn enough(x: f64) -> usize {
-    let (mut left, mut n) = (1.0, 0.0);
-    while left > LEFT && n < 2.0 * TURN {
+    let (mut remainder, mut n) = (1.0, 0.0);
+    while remainder > LEFT && n < 2.0 * TURN {
         n += 1.0;
         let odd = 2.0 * n - 1.0;
-        left *= x * x * n / (2.0 * (2.0 * n + 1.0) * odd * odd);
+        remainder *= x * x * n / (2.0 * (2.0 * n + 1.0) * odd * odd);
     }
     // Minimum for slowly varying accelerations.
     (n as usize).max(4)
@@ -102,14 +102,14 @@ mod tests {
             assert!(nodes.len() as f64 <= 1.1 * turn + 7.0, "{turn} {}", nodes.len());
             let mean = |f: &dyn Fn(f64) -> f64| nodes.iter().map(|(t, w)| w * f(*t)).sum::<f64>() / 2.5;
             assert!((mean(&|_| 1.0) - 1.0).abs() < 1e-15 && (mean(&|t| t * t * t) - 3.90625).abs() < 1e-14);
-            for (factor, left) in [(0.3, 2e-15), (1.0, 2e-15), (2.0, 1e-6)] {
+            for (factor, tolerance) in [(0.3, 2e-15), (1.0, 2e-15), (2.0, 1e-6)] {
                 let w = factor * turn / 2.5;
                 if w == 0.0 {
                     continue;
                 }
                 let exact = libm::cos(1.25 * w + 0.3) * libm::sin(1.25 * w) / (1.25 * w);
                 let off = mean(&|t| libm::cos(w * t + 0.3)) - exact;
-                assert!(off.abs() < left, "{turn} {factor}: {off:e}");
+                assert!(off.abs() < tolerance, "{turn} {factor}: {off:e}");
             }
         }
     }

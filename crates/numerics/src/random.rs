@@ -81,17 +81,17 @@ mod tests {
     #[test]
     fn streams_are_independent_of_each_other() {
         let seed = Seed { scenario: 7, run: 57 };
-        let alone: Vec<f64> = {
+        let single: Vec<f64> = {
             let mut stream = seed.stream("sensor");
             (0..4).map(|_| stream.uniform()).collect()
         };
         let mut other = seed.stream("adaptation");
         let mut stream = seed.stream("sensor");
-        let beside: Vec<f64> = (0..4).map(|_| (other.uniform(), stream.uniform()).1).collect();
-        assert_eq!(alone, beside);
+        let interleaved: Vec<f64> = (0..4).map(|_| (other.uniform(), stream.uniform()).1).collect();
+        assert_eq!(single, interleaved);
         assert_ne!(other.uniform(), stream.uniform());
         let next_run = Seed { run: 58, ..seed }.stream("sensor").uniform();
-        assert_ne!(alone[0], next_run);
+        assert_ne!(single[0], next_run);
     }
 
     #[test]
@@ -101,15 +101,15 @@ mod tests {
         // normal number.
         for _ in 0..300 {
             stream.normal();
-            let (mut left, mut right) = (stream.clone(), stream.clone());
-            left.uniform();
-            right.uniform();
+            let (mut first_copy, mut second_copy) = (stream.clone(), stream.clone());
+            first_copy.uniform();
+            second_copy.uniform();
             for _ in 0..40 {
-                assert_eq!(left.normal(), right.normal());
+                assert_eq!(first_copy.normal(), second_copy.normal());
             }
-            let mut alone = stream.clone();
-            assert_eq!(alone.normal(), stream.normal());
-            assert_eq!(alone.uniform(), stream.uniform());
+            let mut single = stream.clone();
+            assert_eq!(single.normal(), stream.normal());
+            assert_eq!(single.uniform(), stream.uniform());
         }
     }
 

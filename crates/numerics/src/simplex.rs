@@ -49,19 +49,19 @@ impl LinearProgramme {
         let scales: Vec<f64> =
             (0..rows).map(size).map(|size| if size > 0.0 { 1.0 / size } else { 1.0 }).collect();
         let largest = self.most.iter().copied().fold(0.0, f64::max);
-        let asked = b.iter().zip(&scales).map(|(b, scale)| (b * scale).abs()).fold(0.0, f64::max);
-        let unit = largest.min(asked);
-        if asked == 0.0 || largest == 0.0 {
-            return (vec![0.0; count], if asked == 0.0 { 1.0 } else { 0.0 });
+        let demand = b.iter().zip(&scales).map(|(b, scale)| (b * scale).abs()).fold(0.0, f64::max);
+        let unit = largest.min(demand);
+        if demand == 0.0 || largest == 0.0 {
+            return (vec![0.0; count], if demand == 0.0 { 1.0 } else { 0.0 });
         }
         // Solutions are scaled to the size of 1, however small the request. Columns: x in its unit and that of the
         // request, then s, then an initial slack for each row.
         let mut columns: Vec<Vec<f64>> = self
             .columns
             .iter()
-            .map(|column| column.iter().zip(&scales).map(|(a, scale)| a * scale * (unit / asked)).collect())
+            .map(|column| column.iter().zip(&scales).map(|(a, scale)| a * scale * (unit / demand)).collect())
             .collect();
-        columns.push(b.iter().zip(&scales).map(|(b, scale)| -b * scale / asked).collect());
+        columns.push(b.iter().zip(&scales).map(|(b, scale)| -b * scale / demand).collect());
         for row in 0..rows {
             columns.push((0..rows).map(|other| if other == row { 1.0 } else { 0.0 }).collect());
         }
@@ -82,7 +82,7 @@ impl LinearProgramme {
         // Rounding must not request more than is available.
         let part = tableau.values[count].clamp(0.0, 1.0);
         // That fraction is the request from here on; s is then fixed to zero.
-        tableau.rhs = tableau.columns[count].iter().map(|of| -of * part).collect();
+        tableau.rhs = tableau.columns[count].iter().map(|value| -value * part).collect();
         (tableau.values[count], tableau.most[count], tableau.above[count]) = (0.0, 0.0, false);
         tableau.refresh();
         let dearest = costs.iter().map(|cost| cost.abs()).fold(f64::MIN_POSITIVE, f64::max);
@@ -115,7 +115,7 @@ impl Tableau<'_> {
             let lead = &done[pivot];
             for row in below {
                 let factor = row[pivot] / lead[pivot];
-                row.iter_mut().zip(lead).skip(pivot).for_each(|(a, of)| *a -= factor * of);
+                row.iter_mut().zip(lead).skip(pivot).for_each(|(a, pivot_value)| *a -= factor * pivot_value);
             }
         }
         let mut found = vec![0.0; n];
@@ -129,8 +129,8 @@ impl Tableau<'_> {
     /// Moves from vertex to vertex until the costs no longer decrease.
     fn minimise(&mut self, costs: &[f64]) {
         for _ in 0..MOST {
-            let of_basis: Vec<f64> = self.basis.iter().map(|index| costs[*index]).collect();
-            let prices = self.solve(&of_basis, true);
+            let basis_costs: Vec<f64> = self.basis.iter().map(|index| costs[*index]).collect();
+            let prices = self.solve(&basis_costs, true);
             let Some((enters, sense)) = self.entering(costs, &prices) else { return };
             let column = self.solve(&self.columns[enters], false);
             // Step length and its limit: the entering variable at its other bound, or one of the basis at one of its
@@ -185,13 +185,16 @@ impl Tableau<'_> {
 
     /// Computes the values of the basis from those outside of it.
     fn refresh(&mut self) {
-        let mut left = self.rhs.clone();
+        let mut remainder = self.rhs.clone();
         for (index, column) in self.columns.iter().enumerate() {
             if self.values[index] != 0.0 && !self.basis.contains(&index) {
-                left.iter_mut().zip(column).for_each(|(left, a)| *left -= a * self.values[index]);
+                remainder
+                    .iter_mut()
+                    .zip(column)
+                    .for_each(|(residual, a)| *residual -= a * self.values[index]);
             }
         }
-        let found = self.solve(&left, false);
+        let found = self.solve(&remainder, false);
         for (index, value) in self.basis.clone().into_iter().zip(found) {
             self.values[index] = value.clamp(0.0, self.most[index]);
         }
@@ -211,14 +214,19 @@ mod tests {
             let numbers: Vec<f64> = line.split(',').map(|cell| cell.parse().expect("a number")).collect();
             let (rows, count) = (numbers[0] as usize, numbers[1] as usize);
             let mut rest = numbers[2..].iter().copied();
-            let mut take = |n: usize| -> Vec<f64> { rest.by_ref().take(n).collect() };
-            let columns: Vec<Vec<f64>> = (0..count).map(|_| take(rows)).collect();
-            let (most, costs, b, told) = (take(count), take(count), take(rows), take(2));
+            let mut next_values = |n: usize| -> Vec<f64> { rest.by_ref().take(n).collect() };
+            let columns: Vec<Vec<f64>> = (0..count).map(|_| next_values(rows)).collect();
+            let (most, costs, b, expected) =
+                (next_values(count), next_values(count), next_values(rows), next_values(2));
             let programme = LinearProgramme::new(rows, columns.clone(), most.clone());
             let (x, part) = programme.cheapest(&b, &costs);
             let cost: f64 = x.iter().zip(&costs).map(|(x, cost)| x * cost).sum();
-            assert!((part - told[0]).abs() < 1e-9, "{cases}: {part} of it, not {}", told[0]);
-            assert!((cost - told[1]).abs() < 1e-9 * told[1].max(1.0), "{cases}: {cost}, not {}", told[1]);
+            assert!((part - expected[0]).abs() < 1e-9, "{cases}: {part} of it, not {}", expected[0]);
+            assert!(
+                (cost - expected[1]).abs() < 1e-9 * expected[1].max(1.0),
+                "{cases}: {cost}, not {}",
+                expected[1]
+            );
             assert!(x.iter().zip(&most).all(|(x, most)| (0.0..=most * (1.0 + 1e-15)).contains(x)));
             for row in 0..rows {
                 let sum: f64 = x.iter().zip(&columns).map(|(x, column)| x * column[row]).sum();
@@ -236,11 +244,11 @@ mod tests {
         let columns: Vec<Vec<f64>> = (0..9).map(|k| column(0.7 * f64::from(k))).collect();
         let programme = LinearProgramme::new(3, columns, vec![1.0; 9]);
         let costs = [1.0, 1.5, 2.0, 1.0, 1.5, 2.0, 1.0, 1.5, 2.0];
-        let of = |size: f64| programme.cheapest(&[0.02 * size, -0.01 * size, 0.004 * size], &costs);
-        let (whole, part) = of(1.0);
+        let solution = |size: f64| programme.cheapest(&[0.02 * size, -0.01 * size, 0.004 * size], &costs);
+        let (whole, part) = solution(1.0);
         assert!(part == 1.0 && whole.iter().any(|x| *x > 0.0));
         for size in [1e-3, 1e-7, 1e-12, 1e-20] {
-            let (x, part) = of(size);
+            let (x, part) = solution(size);
             let off = x.iter().zip(&whole).map(|(x, whole)| (x / size - whole).abs()).fold(0.0, f64::max);
             assert!(part == 1.0 && off < 1e-12, "{size:e}: {part} {off:e}");
         }

@@ -37,10 +37,10 @@ const ARC: usize = 9;
 const LAGRANGE: [[f64; PAIRS]; PAIRS] = lagrange();
 
 const fn lagrange() -> [[f64; PAIRS]; PAIRS] {
-    let mut of = [[0.0; PAIRS]; PAIRS];
+    let mut coefficients = [[0.0; PAIRS]; PAIRS];
     let mut j = 0;
     while j < PAIRS {
-        let at = NODES[j].0 * NODES[j].0;
+        let abscissa = NODES[j].0 * NODES[j].0;
         let (mut polynomial, mut m) = ([0.0; PAIRS], 0);
         polynomial[0] = 1.0;
         while m < PAIRS {
@@ -48,17 +48,17 @@ const fn lagrange() -> [[f64; PAIRS]; PAIRS] {
                 let root = NODES[m].0 * NODES[m].0;
                 let mut k = PAIRS - 1;
                 while k > 0 {
-                    polynomial[k] = (polynomial[k - 1] - root * polynomial[k]) / (at - root);
+                    polynomial[k] = (polynomial[k - 1] - root * polynomial[k]) / (abscissa - root);
                     k -= 1;
                 }
-                polynomial[0] = -root * polynomial[0] / (at - root);
+                polynomial[0] = -root * polynomial[0] / (abscissa - root);
             }
             m += 1;
         }
-        of[j] = polynomial;
+        coefficients[j] = polynomial;
         j += 1;
     }
-    of
+    coefficients
 }
 
 /// Returns the integral over [0, h] of abs(c + W exp(-(s + i w) t)), from c and from W at both ends.
@@ -76,21 +76,21 @@ pub fn damped<R: LaneFloat>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, f
     let (mut after, mut before) = ([[zero; 2]; PAIRS], [[zero; 2]; PAIRS]);
     for pair in 0..PAIRS {
         let t = half * NODES[pair].0;
-        let ((sin, cos), left) = (sincos(frequency * t), exp(-(decay * t)));
-        let more = one / left;
-        after[pair] = [left * cos, -(left * sin)];
+        let ((sin, cos), decay_factor) = (sincos(frequency * t), exp(-(decay * t)));
+        let more = one / decay_factor;
+        after[pair] = [decay_factor * cos, -(decay_factor * sin)];
         before[pair] = [more * cos, more * sin];
     }
-    let ((sin, cos), left) = (sincos(frequency * half), exp(-(decay * half)));
-    let middle = [left * cos, -(left * sin)];
+    let ((sin, cos), decay_factor) = (sincos(frequency * half), exp(-(decay * half)));
+    let middle = [decay_factor * cos, -(decay_factor * sin)];
     let across = times(middle, middle);
     let mut deviation = times(from, middle);
     let rate = [decay * half, frequency * half];
     let short = radians.le(zero + SHORTEST);
     let (mut sum, mut panel) = (zero, zero);
     loop {
-        let goes_on = panel.lt(count);
-        if !goes_on.any() {
+        let continuing = panel.lt(count);
+        if !continuing.any() {
             break;
         }
         let mut sizes = [[zero; 2]; PAIRS];
@@ -105,10 +105,10 @@ pub fn damped<R: LaneFloat>(centre: [R; 2], [from, to]: [[R; 2]; 2], decay: R, f
             let (root, near) = root(centre, deviation, rate);
             let near = short & near;
             if near.any() {
-                part = R::select(near, beside(root, &sizes), part);
+                part = R::select(near, end_integral(root, &sizes), part);
             }
         }
-        sum = sum + R::select(goes_on, part, zero);
+        sum = sum + R::select(continuing, part, zero);
         deviation = times(deviation, across);
         panel = panel + one;
     }
@@ -140,15 +140,15 @@ fn root<R: LaneFloat>(centre: [R; 2], deviation: [R; 2], rate: [R; 2]) -> ([R; 2
 /// dx with S = |x - zero|, zero = a + i b, follow from the derivative of x^(k-1) S³: (k + 2) M_k = [x^(k-1) S³] + (2
 /// k + 1) a M_(k-1) - (k - 1) (a² + b²) M_(k-2).
 #[inline(always)]
-fn beside<R: LaneFloat>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
+fn end_integral<R: LaneFloat>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
     let (zero, half) = (a.splat(0.0), a.splat(0.5));
     let b = b * b + 1e-60;
     let (mut even, mut odd) = ([zero; PAIRS], [zero; PAIRS]);
     for pair in 0..PAIRS {
         let x = a.splat(NODES[pair].0);
-        let (left, right) = (x + a, x - a);
-        let earlier = sizes[pair][0] / (left * left + b).sqrt();
-        let later = sizes[pair][1] / (right * right + b).sqrt();
+        let (before_shift, after_shift) = (x + a, x - a);
+        let earlier = sizes[pair][0] / (before_shift * before_shift + b).sqrt();
+        let later = sizes[pair][1] / (after_shift * after_shift + b).sqrt();
         let (sum, difference) = (half * (later + earlier), half * (later - earlier) / x);
         for k in 0..PAIRS {
             even[k] = even[k] + sum * LAGRANGE[pair][k];
@@ -158,7 +158,7 @@ fn beside<R: LaneFloat>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
     // Positions of the ends relative to the zero.
     let (before, after) = (-a - 1.0, -a + 1.0);
     let (first, last) = ((before * before + b).sqrt(), (after * after + b).sqrt());
-    let reach = |of: R, size: R| R::select(zero.lt(of), of + size, b / (size - of));
+    let reach = |x: R, size: R| R::select(zero.lt(x), x + size, b / (size - x));
     let angle = logarithm(reach(after, last) / reach(before, first));
     let (low, high) = (first * first * first, last * last * last);
     let (up, across, square) = (high + low, high - low, a * a + b);
@@ -177,13 +177,13 @@ fn beside<R: LaneFloat>([a, b]: [R; 2], sizes: &[[R; 2]; PAIRS]) -> R {
 
 /// Returns the natural logarithm, lane by lane.
 #[inline(always)]
-fn logarithm<R: LaneFloat>(of: R) -> R {
+fn logarithm<R: LaneFloat>(x: R) -> R {
     let mut all = [1.0; 16];
-    of.store(&mut all);
+    x.store(&mut all);
     for lane in 0..R::LANES {
         all[lane] = libm::log(all[lane]);
     }
-    of.load(&all)
+    x.load(&all)
 }
 
 /// Returns the length of the panels (rad).
@@ -235,8 +235,8 @@ mod tests {
 
     /// Returns the deviation after the time `t`.
     fn later([re, im]: [f64; 2], decay: f64, frequency: f64, t: f64) -> [f64; 2] {
-        let ((sin, cos), left) = (libm::sincos(frequency * t), libm::exp(-decay * t));
-        times([re, im], [left * cos, -left * sin])
+        let ((sin, cos), decay_factor) = (libm::sincos(frequency * t), libm::exp(-decay * t));
+        times([re, im], [decay_factor * cos, -decay_factor * sin])
     }
 
     fn over(centre: [f64; 2], from: [f64; 2], decay: f64, frequency: f64, h: f64) -> f64 {

@@ -72,7 +72,7 @@ mod tests {
 
     #[test]
     fn closed_form_agrees_with_quadrature() {
-        let mut seen = [0; 4];
+        let mut branch_counts = [0; 4];
         for row in ORACLE.lines().skip(1) {
             let numbers: Vec<f64> = row.split(',').map(|cell| cell.parse().expect("a number")).collect();
             let [c, re, im, w, h, exact] = numbers[..] else { panic!("{row}") };
@@ -80,9 +80,10 @@ mod tests {
             let value = over(c, deviation, w, h);
             let (large, small) = (c.abs().max(abs(deviation)), c.abs().min(abs(deviation)));
             assert!((value - exact).abs() < 1e-13 * large * h.max(1.0 / w), "{row}: {value}");
-            seen[[SMALL, MIDDLE, LARGE].iter().filter(|limit| small / large >= **limit).count()] += 1;
+            branch_counts[[SMALL, MIDDLE, LARGE].iter().filter(|limit| small / large >= **limit).count()] +=
+                1;
         }
-        assert!(seen.iter().all(|count| *count > 5), "{seen:?}");
+        assert!(branch_counts.iter().all(|count| *count > 5), "{branch_counts:?}");
         assert_eq!(over(0.0, Complex { re: 0.0, im: 0.0 }, 2.0, 5.0), 0.0);
     }
 

@@ -44,18 +44,18 @@ const fn fourier(power: f64) -> [[f64; POWERS]; ALONE + 1] {
         binomial[k] = binomial[k - 1] * (0.5 * power - (k - 1) as f64) / k as f64;
         k += 1;
     }
-    let mut of = [[0.0; POWERS]; ALONE + 1];
+    let mut coefficients = [[0.0; POWERS]; ALONE + 1];
     let mut n = 0;
     while n < ALONE + 1 {
         let twice = if n == 0 { 1.0 } else { 2.0 / n as f64 };
         let mut k = 0;
         while k < POWERS {
-            of[n][k] = twice * binomial[k] * binomial[k + n];
+            coefficients[n][k] = twice * binomial[k] * binomial[k + n];
             k += 1;
         }
         n += 1;
     }
-    of
+    coefficients
 }
 
 const LENGTH: [[f64; POWERS]; ALONE + 1] = fourier(1.0);
@@ -175,18 +175,18 @@ impl<R: LaneFloat> Circle<R> {
     /// Selects one of two circles with the same scale, per lane.
     #[inline(always)]
     #[must_use]
-    pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
-        let mut one = *yes;
-        one.modulus = R::select(mask, yes.modulus, no.modulus);
+    pub fn select(mask: R::Mask, chosen: &Self, otherwise: &Self) -> Self {
+        let mut one = *chosen;
+        one.modulus = R::select(mask, chosen.modulus, otherwise.modulus);
         for end in 0..2 {
             for part in 0..2 {
-                one.ends[end][part] = R::select(mask, yes.ends[end][part], no.ends[end][part]);
+                one.ends[end][part] = R::select(mask, chosen.ends[end][part], otherwise.ends[end][part]);
             }
         }
-        one.angle = R::select(mask, yes.angle, no.angle);
-        one.length = R::select(mask, yes.length, no.length);
-        one.inverse = R::select(mask, yes.inverse, no.inverse);
-        one.sum = R::select(mask, yes.sum, no.sum);
+        one.angle = R::select(mask, chosen.angle, otherwise.angle);
+        one.length = R::select(mask, chosen.length, otherwise.length);
+        one.inverse = R::select(mask, chosen.inverse, otherwise.inverse);
+        one.sum = R::select(mask, chosen.sum, otherwise.sum);
         one
     }
 

@@ -16,7 +16,7 @@ pub struct Computed {
     laboratory: Box<dyn Laboratory>,
     /// Callback that receives each command when it starts.
     begin: Box<dyn Fn(&str) + Send + Sync>,
-    told: Mutex<BTreeMap<String, Value>>,
+    values: Mutex<BTreeMap<String, Value>>,
     drawn: Mutex<BTreeMap<String, (String, String)>>,
     /// Commands with their durations (s).
     times: Mutex<Vec<(String, f64)>>,
@@ -28,7 +28,7 @@ impl Computed {
         Self {
             laboratory: Box::new(laboratory),
             begin: Box::new(begin),
-            told: Mutex::default(),
+            values: Mutex::default(),
             drawn: Mutex::default(),
             times: Mutex::default(),
         }
@@ -39,7 +39,7 @@ impl Computed {
     /// # Errors
     /// If the command is unknown or fails.
     pub fn run(&self, command: &str) -> Result<Value, Error> {
-        self.once(&self.told, command, || value(self.laboratory.run(command)?))
+        self.once(&self.values, command, || value(self.laboratory.run(command)?))
     }
 
     /// Returns the times (s) and the values of a column of a run's full log.
@@ -47,18 +47,18 @@ impl Computed {
     /// # Errors
     /// If the command is unknown or fails.
     pub fn column(&self, command: &str, topic: &str, name: &str) -> Result<Value, Error> {
-        self.once(&self.told, &format!("{command} {topic} {name}"), || {
+        self.once(&self.values, &format!("{command} {topic} {name}"), || {
             value(json!(self.laboratory.column(command, topic, name)?))
         })
     }
 
-    /// Returns the figure `what` of a command as SVG with the name `name`, and the command as a user would enter it.
+    /// Returns the figure `kind` of a command as SVG with the name `name`, and the command as a user would enter it.
     ///
     /// # Errors
     /// If the command is unknown or fails, or has no such figure.
-    pub fn draw(&self, command: &str, what: &str, name: &str) -> Result<(String, String), Error> {
-        self.once(&self.drawn, &format!("{command}: figure {what}"), || {
-            let (figure, shown) = self.laboratory.draw(command, what)?;
+    pub fn draw(&self, command: &str, kind: &str, name: &str) -> Result<(String, String), Error> {
+        self.once(&self.drawn, &format!("{command}: figure {kind}"), || {
+            let (figure, shown) = self.laboratory.draw(command, kind)?;
             Ok((svg(name, &figure)?, shown))
         })
     }
@@ -88,8 +88,8 @@ impl Computed {
 }
 
 /// Converts JSON output to a template value.
-fn value(told: serde_json::Value) -> Result<Value, String> {
-    serde_json::from_value(told).map_err(|error| error.to_string())
+fn value(json: serde_json::Value) -> Result<Value, String> {
+    serde_json::from_value(json).map_err(|error| error.to_string())
 }
 
 /// Locks a mutex; a panicked thread leaves its value intact.

@@ -36,11 +36,11 @@ pub trait Laboratory: Send + Sync {
     /// If the command is unknown, is not a simulation, or fails.
     fn column(&self, command: &str, topic: &str, name: &str) -> Result<[Vec<f64>; 2], String>;
 
-    /// Returns the figure `what` of a command, and the command as a user would enter it.
+    /// Returns the figure `kind` of a command, and the command as a user would enter it.
     ///
     /// # Errors
     /// If the command is unknown or fails, or has no such figure.
-    fn draw(&self, command: &str, what: &str) -> Result<(Figure, String), String>;
+    fn draw(&self, command: &str, kind: &str) -> Result<(Figure, String), String>;
 }
 
 /// Section of a paper in both output forms.

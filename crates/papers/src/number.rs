@@ -51,8 +51,8 @@ pub fn add_to(environment: &mut Environment) {
         list.into_iter().skip(place).collect::<Vec<_>>()
     });
     // Tests of a missing number fail.
-    environment.add_test("near", |value: Option<f64>, of: f64, part: f64| {
-        value.is_some_and(|value| (value - of).abs() <= part * of.abs())
+    environment.add_test("near", |value: Option<f64>, reference: f64, part: f64| {
+        value.is_some_and(|value| (value - reference).abs() <= part * reference.abs())
     });
     environment.add_test("between", |value: Option<f64>, low: f64, high: f64| {
         value.is_some_and(|value| low <= value && value <= high)

@@ -87,8 +87,8 @@ pub fn fill(computed: &Arc<Computed>, template: &str, form: Form) -> Result<(Str
     let outcome = Arc::new(Mutex::new(Outcome::default()));
     let mut environment = environment(computed)?;
     let (known, list) = (Arc::clone(computed), Arc::clone(&outcome));
-    let figure = move |name: &str, command: &str, what: &str, caption: &str| -> Result<String, Error> {
-        let (svg, command) = known.draw(command, what, name)?;
+    let figure = move |name: &str, command: &str, kind: &str, caption: &str| -> Result<String, Error> {
+        let (svg, command) = known.draw(command, kind, name)?;
         Ok(show(&list, form, Drawn { name: name.to_owned(), caption: caption.to_owned(), command, svg }))
     };
     environment.add_function("figure", figure);
@@ -156,8 +156,8 @@ mod tests {
             Err(format!("{command}: no log"))
         }
 
-        fn draw(&self, command: &str, what: &str) -> Result<(Figure, String), String> {
-            Err(format!("{command}: no figure `{what}`"))
+        fn draw(&self, command: &str, kind: &str) -> Result<(Figure, String), String> {
+            Err(format!("{command}: no figure `{kind}`"))
         }
     }
 
@@ -168,12 +168,12 @@ mod tests {
     #[test]
     fn a_wrong_number_turns_a_verdict() {
         let quiet = "{% set run = run('simulate quiet') %}";
-        let of = |printed: &str| {
+        let number = |printed: &str| {
             let verdict = format!("{{{{ yes('pushes', run.pushes_right is near({printed}, 0.01)) }}}}");
             filled(&format!("{quiet}{{{{ run.pushes_right }}}} {verdict}")).expect("a page")
         };
-        let ((right, known), (wrong, other)) = (of("21"), of("22"));
-        assert_eq!([right.as_str(), wrong.as_str()], ["21 yes", "21 no"]);
+        let ((expected, known), (wrong, other)) = (number("21"), number("22"));
+        assert_eq!([expected.as_str(), wrong.as_str()], ["21 yes", "21 no"]);
         assert!(known.verdicts[0].is_as_expected() && !other.verdicts[0].is_as_expected());
         let refuted = filled("{{ no('more', 1 > 2) }}").expect("a page").1;
         assert!(refuted.verdicts[0].is_as_expected());

@@ -55,8 +55,8 @@ mod tests {
             for set in between(template, "{% set ", " %}") {
                 let name = set.split(" =").next().unwrap_or_default();
                 let word = |c: char| c.is_alphanumeric() || c == '_';
-                let uses = template.match_indices(name).filter(|(at, _)| {
-                    let (before, after) = (&template[..*at], &template[at + name.len()..]);
+                let uses = template.match_indices(name).filter(|(position, _)| {
+                    let (before, after) = (&template[..*position], &template[position + name.len()..]);
                     !before.ends_with(|c| word(c) || c == '"') && !after.starts_with(word)
                 });
                 assert!(uses.count() > 1, "{}.md: `{name}` is not used", paper.name());
@@ -81,11 +81,11 @@ mod tests {
                 let is_small =
                     |word: &str| word.contains(|c: char| c.is_ascii_digit()) && word.contains(['.', 'e']);
                 let typed: Vec<&str> = cell.split_whitespace().filter(|word| is_small(word)).collect();
-                let given = typed
+                let stated = typed
                     .iter()
                     .filter(|word| !GIVEN.contains(&word.trim_end_matches([',', ';', ':', '.'])))
                     .count();
-                assert_eq!(given, 0, "{typed:?} in {cell}");
+                assert_eq!(stated, 0, "{typed:?} in {cell}");
             }
         }
         assert!(cells > 30, "{cells}");

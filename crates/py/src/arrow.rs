@@ -24,8 +24,8 @@ fn refused(error: ArrowError) -> PyErr {
 }
 
 /// Numbers, where NaN stands for none, whole numbers, or texts.
-fn values(given: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
-    if let Ok(numbers) = given.extract::<PyReadonlyArray1<'_, f64>>() {
+fn values(object: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
+    if let Ok(numbers) = object.extract::<PyReadonlyArray1<'_, f64>>() {
         let numbers = numbers.as_array();
         return Ok(if numbers.iter().any(|number| number.is_nan()) {
             Arc::new(
@@ -35,22 +35,22 @@ fn values(given: &Bound<'_, PyAny>) -> PyResult<ArrayRef> {
             Arc::new(Float64Array::from(numbers.to_vec()))
         });
     }
-    if let Ok(integers) = given.extract::<PyReadonlyArray1<'_, i64>>() {
+    if let Ok(integers) = object.extract::<PyReadonlyArray1<'_, i64>>() {
         return Ok(Arc::new(Int64Array::from(integers.as_array().to_vec())));
     }
-    if let Ok(counts) = given.extract::<PyReadonlyArray1<'_, u64>>() {
+    if let Ok(counts) = object.extract::<PyReadonlyArray1<'_, u64>>() {
         return Ok(Arc::new(UInt64Array::from(counts.as_array().to_vec())));
     }
-    match given.extract::<Vec<String>>() {
+    match object.extract::<Vec<String>>() {
         Ok(texts) => Ok(Arc::new(StringArray::from(texts))),
-        Err(_) => Err(PyTypeError::new_err(format!("no column of {}", given.get_type()))),
+        Err(_) => Err(PyTypeError::new_err(format!("no column of {}", object.get_type()))),
     }
 }
 
 fn batch(columns: Vec<Given<'_>>, about: HashMap<String, String>) -> PyResult<RecordBatch> {
     let (mut fields, mut arrays) = (Vec::new(), Vec::<ArrayRef>::new());
-    for (name, unit, width, offsets, given) in columns {
-        let inner = values(&given)?;
+    for (name, unit, width, offsets, object) in columns {
+        let inner = values(&object)?;
         let item = Arc::new(Field::new("item", inner.data_type().clone(), true));
         let array: ArrayRef = match (width, offsets) {
             (Some(width), _) => {

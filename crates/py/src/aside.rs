@@ -1,4 +1,4 @@
-//! Work beside Python: without the interpreter's lock, and stopped by its signals.
+//! Work on threads without the interpreter's lock, stopped by Python's signals.
 
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -12,23 +12,23 @@ use flexsc_core::record::{Record, RecordError, Sample};
 use pyo3::exceptions::PyRuntimeError;
 use pyo3::prelude::*;
 
-/// Period at which Python is asked for signals.
-pub const LOOK: Duration = Duration::from_millis(20);
-/// How long work may take to end once it is asked to stop: what has not ended then is left behind.
-const PATIENCE: Duration = Duration::from_millis(150);
+/// Period at which Python's signals are checked.
+pub const SIGNAL_PERIOD: Duration = Duration::from_millis(20);
+/// Longest time for which a requested stop waits; work that has not ended then is abandoned.
+const STOP_TIMEOUT: Duration = Duration::from_millis(150);
 /// Stack of a main thread on most systems (bytes).
 const STACK: usize = 8 << 20;
 
-/// A record that ends its run when Python asks.
+/// Record that ends its run when Python requests it.
 #[derive(Clone, Default)]
 pub struct Stop(Arc<AtomicBool>);
 
 impl Stop {
-    pub fn ask(&self) {
+    pub fn request_stop(&self) {
         self.0.store(true, Ordering::Relaxed);
     }
 
-    pub fn asked(&self) -> bool {
+    pub fn is_requested(&self) -> bool {
         self.0.load(Ordering::Relaxed)
     }
 }
@@ -39,11 +39,11 @@ impl Record for Stop {
     }
 
     fn poll(&mut self) -> Result<(), RecordError> {
-        if self.asked() { Err(RecordError::Interrupted) } else { Ok(()) }
+        if self.is_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 
     fn piece(&mut self, _: Instant, _: &MotionPiece) -> Result<(), RecordError> {
-        if self.asked() { Err(RecordError::Interrupted) } else { Ok(()) }
+        if self.is_requested() { Err(RecordError::Interrupted) } else { Ok(()) }
     }
 }
 
@@ -63,7 +63,7 @@ pub fn aside<T: Send + 'static>(
         })?;
         let mut raised: Option<(PyErr, WallInstant)> = None;
         loop {
-            match (wait.recv_timeout(LOOK), &raised) {
+            match (wait.recv_timeout(SIGNAL_PERIOD), &raised) {
                 (Ok(worked), _) => return raised.map_or(Ok(worked), |(error, _)| Err(error)),
                 (Err(RecvTimeoutError::Disconnected), _) => {
                     return Err(PyRuntimeError::new_err("the engine panicked: please report it"));
@@ -74,7 +74,7 @@ pub fn aside<T: Send + 'static>(
                     stop.0.store(raised.is_some(), Ordering::Relaxed);
                 }
                 (Err(RecvTimeoutError::Timeout), Some((error, since))) => {
-                    if since.elapsed() >= PATIENCE {
+                    if since.elapsed() >= STOP_TIMEOUT {
                         return Err(Python::attach(|py| error.clone_ref(py)));
                     }
                 }

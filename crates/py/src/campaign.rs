@@ -233,13 +233,13 @@ pub fn campaign_statistics(
     rows: usize,
 ) -> PyResult<Vec<Summary>> {
     let columns: HashMap<String, ColumnCells> =
-        columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
+        columns.iter().map(|(name, object)| Ok((name.clone(), column(object)?))).collect::<PyResult<_>>()?;
     let work = work.0.clone();
     let reported = aside(py, move |_| {
-        let of = |names: &[&str]| -> Result<_, DirectoryError> {
+        let selection_of = |names: &[&str]| -> Result<_, DirectoryError> {
             Ok(names.iter().map(|name| columns.get(*name).cloned()).collect())
         };
-        work.statistics(rows, of)
+        work.statistics(rows, selection_of)
     })?;
     Ok(reported.map_err(failed)?.into_iter().map(summary).collect())
 }

@@ -9,14 +9,14 @@ use pyo3::prelude::*;
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Clone)]
 pub struct Commands {
-    pub given: CommandLog,
+    pub commands: CommandLog,
     pub until: Instant,
 }
 
 impl Commands {
     /// Of a run as it is in its scenario, unless it was stepped.
     pub fn from_stepped(stepped: Option<&Self>) -> Self {
-        stepped.cloned().unwrap_or_else(|| Self { given: CommandLog::default(), until: Instant::END })
+        stepped.cloned().unwrap_or_else(|| Self { commands: CommandLog::default(), until: Instant::END })
     }
 }
 
@@ -25,18 +25,18 @@ impl Commands {
     /// From whole seconds and femtoseconds past them, and the commands as text.
     #[new]
     fn new(until: (u64, u64), text: &str) -> PyResult<Self> {
-        let given =
+        let commands =
             CommandLog::parse(text).ok_or_else(|| PyValueError::new_err("not the text of commands"))?;
-        Ok(Self { given, until: Instant::from_parts(until.0, until.1) })
+        Ok(Self { commands, until: Instant::from_parts(until.0, until.1) })
     }
 
     fn __getnewargs__(&self) -> ((u64, u64), String) {
-        (self.until.parts(), self.given.to_csv())
+        (self.until.parts(), self.commands.to_csv())
     }
 
     /// Whether none was given.
     #[getter]
     fn none(&self) -> bool {
-        self.given.is_empty()
+        self.commands.is_empty()
     }
 }

@@ -13,7 +13,7 @@ use rayon::prelude::*;
 use rayon::{ThreadPool, ThreadPoolBuilder};
 
 use crate::Scenario;
-use crate::aside::{LOOK, Stop};
+use crate::aside::{SIGNAL_PERIOD, Stop};
 use crate::error::scenario_error;
 use crate::stepping::{FieldRow, Simulator, command_limit, command_unit, fields, span, steer};
 
@@ -26,19 +26,19 @@ struct Flight {
     number: u64,
     simulation: Option<Simulation>,
     /// Commands of the run from its start; `None` if they were not kept.
-    given: Option<CommandLog>,
+    commands: Option<CommandLog>,
     failed: Option<String>,
 }
 
 impl Flight {
     /// A run before its start.
     fn new(campaign: &Campaign, number: u64, record: &mut impl Record) -> Self {
-        let begun = if campaign.keys().next().is_none() {
+        let started = if campaign.keys().next().is_none() {
             Ok(Simulation::new(campaign.scenario(), number))
         } else {
             campaign.run(number).map(|run| Simulation::new(&run.scenario, number)).map_err(RunError::from)
         };
-        let opened = begun.and_then(|mut simulation| {
+        let opened = started.and_then(|mut simulation| {
             simulation.open(record)?;
             Ok(simulation)
         });
@@ -46,24 +46,24 @@ impl Flight {
             Ok(simulation) => Self {
                 number,
                 simulation: Some(simulation),
-                given: Some(CommandLog::default()),
+                commands: Some(CommandLog::default()),
                 failed: None,
             },
-            Err(error) => Self { number, simulation: None, given: None, failed: Some(error.to_string()) },
+            Err(error) => Self { number, simulation: None, commands: None, failed: Some(error.to_string()) },
         }
     }
 
-    /// Goes on, and puts what moves into a row.
-    fn go(
+    /// Advances the simulation, and writes its state into a row.
+    fn advance(
         &mut self,
         row: &mut [f64],
         on: impl FnOnce(&mut Simulation, &mut Option<CommandLog>) -> Result<(), RunError>,
     ) {
-        let Self { simulation, given, failed, .. } = self;
+        let Self { simulation, commands, failed, .. } = self;
         let Some(simulation) = simulation.as_mut().filter(|_| failed.is_none()) else {
             return row.fill(f64::NAN);
         };
-        if let Err(error) = on(simulation, given).and_then(|()| Ok(simulation.observe(row)?)) {
+        if let Err(error) = on(simulation, commands).and_then(|()| Ok(simulation.observe(row)?)) {
             *failed = Some(error.to_string());
             row.fill(f64::NAN);
         }
@@ -81,7 +81,7 @@ pub struct Simulators {
 }
 
 impl Simulators {
-    /// Does something with each flight and its row, on all threads, as long as Python lets it.
+    /// Applies a function to each simulation and its row, on all threads, until Python's signals stop it.
     fn each(
         &mut self,
         py: Python<'_>,
@@ -91,22 +91,24 @@ impl Simulators {
         let mut rows = vec![0.0; flights.len() * width];
         let raised = py.detach(|| {
             let (stop, (done, wait)) = (Stop::default(), channel());
-            let (asked, mut raised) = (stop.clone(), None);
+            let (stop_flag, mut raised) = (stop.clone(), None);
             let rows = &mut rows;
             pool.in_place_scope(|scope| {
                 scope.spawn(move |_| {
                     let each = flights.par_iter_mut().zip(rows.par_chunks_exact_mut(width));
                     each.with_min_len(TOGETHER)
                         .enumerate()
-                        .for_each_with(asked, |asked, (index, (flight, row))| on(index, flight, row, asked));
+                        .for_each_with(stop_flag, |stop_flag, (index, (flight, row))| {
+                            on(index, flight, row, stop_flag)
+                        });
                     // The receiver is gone if Python raised.
                     let _ = done.send(());
                 });
-                while let Err(RecvTimeoutError::Timeout) = wait.recv_timeout(LOOK) {
+                while let Err(RecvTimeoutError::Timeout) = wait.recv_timeout(SIGNAL_PERIOD) {
                     if raised.is_none() {
                         raised = Python::attach(|py| py.check_signals().err());
                         if raised.is_some() {
-                            stop.ask();
+                            stop.request_stop();
                         }
                     }
                 }
@@ -132,7 +134,7 @@ impl Simulators {
         let pool = ThreadPoolBuilder::new().num_threads(threads).build();
         let pool = pool.map_err(|error| PyRuntimeError::new_err(error.to_string()))?;
         let fields = Simulation::new(&scenario.inner, 0).observation_fields(&scenario.inner);
-        let flight = |number| Flight { number, simulation: None, given: None, failed: None };
+        let flight = |number| Flight { number, simulation: None, commands: None, failed: None };
         let mut simulators = Self {
             campaign: Arc::new(campaign),
             flights: runs.into_iter().map(flight).collect(),
@@ -211,7 +213,7 @@ impl Simulators {
                 let number = runs.as_ref().map_or(flight.number, |runs| runs[index]);
                 *flight = Flight::new(&campaign, number, stop);
             }
-            flight.go(row, |_, _| Ok(()));
+            flight.advance(row, |_, _| Ok(()));
         })?;
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])
     }
@@ -228,14 +230,14 @@ impl Simulators {
         let values: Option<Vec<f64>> = values.map(|values| values.as_array().iter().copied().collect());
         let mask: Option<Vec<bool>> = mask.map(|mask| mask.as_array().iter().copied().collect());
         let rows = self.each(py, |index, flight, row, stop| {
-            flight.go(row, |simulation, given| {
+            flight.advance(row, |simulation, commands| {
                 if mask.as_ref().is_some_and(|mask| !mask[index]) {
                     return Ok(());
                 }
                 if let Some(values) = &values {
                     let values = &values[index * axes..(index + 1) * axes];
-                    *given = given.take().filter(|_| keeps);
-                    steer(simulation, given.as_mut(), values);
+                    *commands = commands.take().filter(|_| keeps);
+                    steer(simulation, commands.as_mut(), values);
                 }
                 Ok(simulation.run_up_to(simulation.time() + span, stop)?)
             });
@@ -244,7 +246,7 @@ impl Simulators {
     }
 
     fn look<'py>(&mut self, py: Python<'py>) -> PyResult<Bound<'py, PyArray2<f64>>> {
-        let rows = self.each(py, |_, flight, row, _| flight.go(row, |_, _| Ok(())))?;
+        let rows = self.each(py, |_, flight, row, _| flight.advance(row, |_, _| Ok(())))?;
         rows.into_pyarray(py).reshape([self.flights.len(), self.width])
     }
 
@@ -255,7 +257,7 @@ impl Simulators {
             (Some(simulation), None) => Ok(Simulator::from_simulation(
                 simulation.clone(),
                 self.campaign.scenario(),
-                flight.given.clone(),
+                flight.commands.clone(),
             )),
             (_, why) => {
                 let why = why.clone().unwrap_or_default();

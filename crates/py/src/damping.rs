@@ -22,9 +22,9 @@ fn refused(wrong: Option<(&'static str, String)>) -> PyResult<()> {
 }
 
 fn convergence((weights, frequency, period, damping): Recurrence) -> PyResult<Convergence> {
-    let of = Convergence { frequency, damping, period, weights };
-    refused(of.inconsistency())?;
-    Ok(of)
+    let convergence = Convergence { frequency, damping, period, weights };
+    refused(convergence.inconsistency())?;
+    Ok(convergence)
 }
 
 #[pyfunction]
@@ -45,22 +45,25 @@ pub fn relay_damping_json(
         return Err(PyValueError::new_err(format!("a push {why}; see frequencies, period and delay")));
     }
     let rows = aside(py, move |stop| {
-        frequencies.iter().map_while(|of| (!stop.asked()).then(|| pulsed.mode(*of))).collect::<Vec<_>>()
+        frequencies
+            .iter()
+            .map_while(|frequency| (!stop.is_requested()).then(|| pulsed.mode(*frequency)))
+            .collect::<Vec<_>>()
     })?;
     Ok(json!(rows).to_string())
 }
 
 #[pyfunction]
 pub fn observer_region_json(observer: Recurrence, kappa: f64, elastic: Vec<f64>) -> PyResult<String> {
-    let of = convergence(observer)?;
-    Ok(json!({"edges": of.region(kappa, &elastic), "area": of.area(kappa)}).to_string())
+    let convergence = convergence(observer)?;
+    Ok(json!({"edges": convergence.region(kappa, &elastic), "area": convergence.area(kappa)}).to_string())
 }
 
 #[pyfunction]
 pub fn observer_margin_json(observer: Recurrence, kappas: Vec<f64>) -> PyResult<String> {
-    let of = convergence(observer)?;
-    let radii: Vec<f64> = kappas.iter().map(|kappa| of.spectral_radius(*kappa)).collect();
-    Ok(json!({"margin": of.margin(), "spectral_radius": radii}).to_string())
+    let convergence = convergence(observer)?;
+    let radii: Vec<f64> = kappas.iter().map(|kappa| convergence.spectral_radius(*kappa)).collect();
+    Ok(json!({"margin": convergence.margin(), "spectral_radius": radii}).to_string())
 }
 
 #[pyfunction]
@@ -89,7 +92,7 @@ pub fn identify_json(
     allowed(&IdentificationTrial::cost(runs as f64, cycles, squared), yes)?;
     let row = aside(py, move |stop| {
         let runs = (0..runs).into_par_iter();
-        let found = runs.map(|number| (!stop.asked()).then(|| trial.run(number))).while_some();
+        let found = runs.map(|number| (!stop.is_requested()).then(|| trial.run(number))).while_some();
         trial.row(&found.collect::<Vec<_>>())
     })?;
     Ok(json!(row).to_string())

@@ -53,7 +53,12 @@ impl Figure {
 
     /// The panels, from top to bottom.
     fn panels<'py>(&self, py: Python<'py>) -> PyResult<Vec<Bound<'py, PyDict>>> {
-        self.0.panels.iter().zip(&self.0.upward()).map(|(of, y)| panel(py, of, y)).collect()
+        self.0
+            .panels
+            .iter()
+            .zip(&self.0.upward())
+            .map(|(layered_panel, y)| panel(py, layered_panel, y))
+            .collect()
     }
 }
 
@@ -61,7 +66,8 @@ fn panel<'py>(py: Python<'py>, panel: &Panel, y: &FigureAxis) -> PyResult<Bound<
     let reported = PyDict::new(py);
     reported.set_item("x", axis(py, &panel.x)?)?;
     reported.set_item("y", axis(py, y)?)?;
-    let layers = panel.layers.iter().map(|of| layer(py, of)).collect::<PyResult<Vec<_>>>()?;
+    let layers =
+        panel.layers.iter().map(|drawn_layer| layer(py, drawn_layer)).collect::<PyResult<Vec<_>>>()?;
     reported.set_item("layers", layers)?;
     let bar = panel.bar.as_ref().map(|bar| {
         (bar.name.as_str(), bar.colours.iter().copied().map(hex).collect::<Vec<_>>(), bar.edges.clone())
@@ -98,8 +104,9 @@ fn layer<'py>(py: Python<'py>, layer: &Layer) -> PyResult<Bound<'py, PyDict>> {
     reported.set_item("colour", hex(layer.colour))?;
     reported.set_item("shape", shape)?;
     reported.set_item("size", size)?;
-    let points: Vec<Vec<f64>> =
-        [|p: &(f64, f64)| p.0, |p: &(f64, f64)| p.1].map(|of| layer.points.iter().map(of).collect()).into();
+    let points: Vec<Vec<f64>> = [|p: &(f64, f64)| p.0, |p: &(f64, f64)| p.1]
+        .map(|coordinate| layer.points.iter().map(coordinate).collect())
+        .into();
     reported.set_item("points", PyArray2::from_vec2(py, &points)?)?;
     Ok(reported)
 }
@@ -112,8 +119,8 @@ fn place(log: &Log) -> PathBuf {
 /// A log of a run in memory, with its events.
 #[pyfunction]
 pub fn log_of(py: Python<'_>, scenario: &Scenario, run: u64, stepped: Option<&Commands>) -> PyResult<Log> {
-    let (run, Commands { given, until }) = (scenario.run(run), Commands::from_stepped(stepped));
-    let log = aside(py, move |_| figures::log_of(&run, &given, until))?.map_err(PyValueError::new_err)?;
+    let (run, Commands { commands, until }) = (scenario.run(run), Commands::from_stepped(stepped));
+    let log = aside(py, move |_| figures::log_of(&run, &commands, until))?.map_err(PyValueError::new_err)?;
     Ok(Log(Arc::new(log)))
 }
 
@@ -142,7 +149,7 @@ pub fn campaign_figures(
     metrics: Vec<String>,
 ) -> PyResult<Vec<(String, Figure)>> {
     let columns: HashMap<String, ColumnCells> =
-        columns.iter().map(|(name, given)| Ok((name.clone(), column(given)?))).collect::<PyResult<_>>()?;
+        columns.iter().map(|(name, object)| Ok((name.clone(), column(object)?))).collect::<PyResult<_>>()?;
     let work = work.0.clone();
     let drawn = aside(py, move |_| {
         figures::column_figure(&work, &|name| columns.get(name).cloned(), kind.as_deref(), &metrics)
@@ -172,10 +179,11 @@ pub fn modes_figure(scenario: &Scenario) -> Option<Figure> {
             figures::modes(&modal.frequencies_rad_s, &size(&modal.gains), ("modal gain", ""))
         }
         BodyAxes::Three(body) => {
-            let of = ModeInfluences::from_scenario(&scenario.inner, body);
-            let most = |mode: usize| of.influences.iter().map(|axis| axis[mode].abs()).fold(0.0, f64::max);
-            let most: Vec<f64> = (0..of.frequencies_rad_s.len()).map(most).collect();
-            figures::modes(&of.frequencies_rad_s, &most, ("influence", ""))
+            let influences = ModeInfluences::from_scenario(&scenario.inner, body);
+            let most =
+                |mode: usize| influences.influences.iter().map(|axis| axis[mode].abs()).fold(0.0, f64::max);
+            let most: Vec<f64> = (0..influences.frequencies_rad_s.len()).map(most).collect();
+            figures::modes(&influences.frequencies_rad_s, &most, ("influence", ""))
         }
     };
     figure.map(|figure| Figure(Arc::new(figure)))

@@ -20,15 +20,15 @@ pub fn sample<'py>(
     times: Vec<f64>,
     stepped: Option<&Commands>,
 ) -> PyResult<Bound<'py, PyDict>> {
-    let (run, Commands { given, .. }) = (scenario.run(run), Commands::from_stepped(stepped));
-    let seen = aside(py, move |mut stop| -> Result<Trace, SimulationError> {
+    let (run, Commands { commands, .. }) = (scenario.run(run), Commands::from_stepped(stepped));
+    let trace = aside(py, move |mut stop| -> Result<Trace, SimulationError> {
         let mut trace = Trace::new(Detail::Full);
-        given.sample_motion(&run, &times, &mut stop, &mut trace)?;
+        commands.sample_motion(&run, &times, &mut stop, &mut trace)?;
         Ok(trace)
     })?;
-    let seen = seen.map_err(|error| simulation_error(&scenario.inner.name, error))?;
+    let trace = trace.map_err(|error| simulation_error(&scenario.inner.name, error))?;
     let topics = PyDict::new(py);
-    for (name, rows) in seen.into_columns() {
+    for (name, rows) in trace.into_columns() {
         topics.set_item(name, columns::rows_to_dict(py, rows)?)?;
     }
     Ok(topics)

@@ -162,8 +162,8 @@ impl Scenario {
     }
 
     fn draw(&self, run: u64) -> PyResult<Self> {
-        let study = Campaign::new(self.inner.clone(), &self.origin, []).map_err(scenario_error)?;
-        Self::new(&self.origin, study.run(run).map(|run| run.scenario))
+        let campaign = Campaign::new(self.inner.clone(), &self.origin, []).map_err(scenario_error)?;
+        Self::new(&self.origin, campaign.run(run).map(|run| run.scenario))
     }
 
     #[getter]
@@ -232,10 +232,10 @@ fn simulate<'py>(
 ) -> PyResult<(Bound<'py, PyDict>, Bound<'py, PyDict>)> {
     allowed(&scenario.inner.cost(detail(log)?, true), yes)?;
     let (run, mut trace) = (scenario.run(run), detail(log)?.map(Trace::new));
-    let Commands { given, until } = Commands::from_stepped(stepped);
+    let Commands { commands, until } = Commands::from_stepped(stepped);
     let is_own = scenario.inner.has_custom_parts();
     let (metrics, trace) = aside(py, move |stop| {
-        let metrics = parts::known_thread(is_own, || given.simulate(&run, until, (&mut trace, stop)));
+        let metrics = parts::known_thread(is_own, || commands.simulate(&run, until, (&mut trace, stop)));
         (metrics, trace)
     })?;
     let metrics = metrics.map_err(|error| simulation_error(scenario.name(), error))?;

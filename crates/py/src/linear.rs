@@ -45,6 +45,6 @@ pub fn exponential<'py>(
         return Err(PyValueError::new_err("must be a square matrix of finite numbers"));
     }
     let found = of_matrix(&DMatrix::from_fn(order, order, |row, column| matrix[(row, column)]));
-    let flat: Vec<f64> = (0..order * order).map(|at| found[(at / order, at % order)]).collect();
+    let flat: Vec<f64> = (0..order * order).map(|index| found[(index / order, index % order)]).collect();
     flat.to_pyarray(py).reshape([order, order])
 }

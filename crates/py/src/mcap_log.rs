@@ -24,14 +24,14 @@ pub fn to_mcap(
 ) -> PyResult<u64> {
     let none = || PyValueError::new_err("log must be 'events', 'full' or 'scene' for a file");
     let (run, detail) = (scenario.run(run), detail(log)?.ok_or_else(none)?);
-    let Commands { given, until } = Commands::from_stepped(stepped);
+    let Commands { commands, until } = Commands::from_stepped(stepped);
     let (place, is_own) = (path.clone(), scenario.inner.has_custom_parts());
     let written = aside(py, move |stop| {
-        let provenance = with_layout(given.provenance(&run), &run.scenario, detail);
+        let provenance = with_layout(commands.provenance(&run), &run.scenario, detail);
         let mut file = LogFile::create(&place, &provenance, detail)?;
         let scene = Scene::for_detail(&run.scenario, detail);
         let metrics =
-            parts::known_thread(is_own, || given.simulate(&run, until, ((&mut file, scene), stop)))?;
+            parts::known_thread(is_own, || commands.simulate(&run, until, ((&mut file, scene), stop)))?;
         Ok(file.finish(&metrics, RunEnd::at(until, run.scenario.duration))?)
     })?;
     written.map_err(|error| error::unwritten(&path, scenario.name(), error))

@@ -36,13 +36,13 @@ fn sampled(scenario: &Scenario, settled: Settled) -> PyResult<(SampledLoop, &Pd,
         let origin = scenario.inner.name.clone();
         scenario_error(flexsc_core::ScenarioError::Key { origin, key, why })
     };
-    let (band, horizon, alone, _) = settled;
-    let (of, law) = SampledLoop::from_scenario(&scenario.inner).map_err(refused)?;
+    let (band, horizon, single, _) = settled;
+    let (sampled_loop, law) = SampledLoop::from_scenario(&scenario.inner).map_err(refused)?;
     if !(horizon.is_finite() && horizon > 0.0) {
         return Err(PyValueError::new_err(format!("horizon must be a positive number, got {horizon}")));
     }
-    let window = of.settling_window(band, horizon).map_err(refused)?;
-    Ok((of, law, window, if alone { Scaling::First } else { Scaling::All }))
+    let window = sampled_loop.settling_window(band, horizon).map_err(refused)?;
+    Ok((sampled_loop, law, window, if single { Scaling::First } else { Scaling::All }))
 }
 
 pub fn all_positive(name: &str, values: &[f64]) -> PyResult<()> {
@@ -69,11 +69,11 @@ pub fn gain_regions_json(
     limit: f64,
     settled: Settled,
 ) -> PyResult<String> {
-    let (of, _, window, scaling) = sampled(scenario, settled)?;
+    let (sampled_loop, _, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     let gains = stepped(gains)?;
-    allow(&of, frequencies.len() * gains.values().len(), of.period, 0.0, settled)?;
-    let rows = aside(py, move |_| regions(&of, &frequencies, scaling, gains, window, limit))?;
+    allow(&sampled_loop, frequencies.len() * gains.values().len(), sampled_loop.period, 0.0, settled)?;
+    let rows = aside(py, move |_| regions(&sampled_loop, &frequencies, scaling, gains, window, limit))?;
     Ok(json!(rows).to_string())
 }
 
@@ -87,7 +87,7 @@ pub fn robust_gains_json(
     goal: (bool, f64, f64),
     settled: Settled,
 ) -> PyResult<String> {
-    let (of, _, window, scaling) = sampled(scenario, settled)?;
+    let (sampled_loop, _, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     let ((part, delay), (itae, quantile, margin)) = (off, goal);
     for (name, value, fits) in [
@@ -104,14 +104,14 @@ pub fn robust_gains_json(
         gains: stepped(gains)?,
         scaling,
         window,
-        doubt: ModelUncertainty { frequency: part, modal_gain: part, authority: part, delay },
+        uncertainty: ModelUncertainty { frequency: part, modal_gain: part, authority: part, delay },
         goal: if itae { RobustGoal::Itae } else { RobustGoal::Settling },
         quantile,
         margin,
     };
-    let closed = frequencies.len() * search.gains.values().len() * search.doubt.max_loops();
-    allow(&of, closed, of.period, delay, settled)?;
-    Ok(json!(aside(py, move |_| optimize(&of, &frequencies, search))?).to_string())
+    let closed = frequencies.len() * search.gains.values().len() * search.uncertainty.max_loops();
+    allow(&sampled_loop, closed, sampled_loop.period, delay, settled)?;
+    Ok(json!(aside(py, move |_| optimize(&sampled_loop, &frequencies, search))?).to_string())
 }
 
 #[pyfunction]
@@ -123,15 +123,15 @@ pub fn stability_map_json(
     gain: Option<f64>,
     settled: Settled,
 ) -> PyResult<String> {
-    let (of, law, window, scaling) = sampled(scenario, settled)?;
+    let (sampled_loop, law, window, scaling) = sampled(scenario, settled)?;
     all_positive("frequencies", &frequencies)?;
     all_positive("periods", &periods)?;
     let shortest = periods.iter().copied().fold(f64::INFINITY, f64::min);
-    allow(&of, frequencies.len() * periods.len(), shortest, 0.0, settled)?;
+    allow(&sampled_loop, frequencies.len() * periods.len(), shortest, 0.0, settled)?;
     let law = law.clone();
     let cells = aside(py, move |_| {
         let gain = |frequency: f64| gain.unwrap_or_else(|| law.extra_gain(frequency));
-        map(&of, &frequencies, &periods, scaling, gain, window)
+        map(&sampled_loop, &frequencies, &periods, scaling, gain, window)
     })?;
     Ok(json!(cells).to_string())
 }

@@ -13,7 +13,7 @@ use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use crate::Scenario;
-use crate::aside::LOOK;
+use crate::aside::SIGNAL_PERIOD;
 use crate::commands::Commands;
 use crate::error::simulation_error;
 
@@ -22,7 +22,7 @@ pub type FieldRow = (&'static str, &'static str, &'static str, Option<usize>);
 
 /// The fields of a simulation's row.
 pub fn fields(fields: &[ObservationField]) -> Vec<FieldRow> {
-    let group = |of| match of {
+    let group = |quantity| match quantity {
         ObservationGroup::True => "state",
         ObservationGroup::Measured => "measured",
         ObservationGroup::Estimated => "believed",
@@ -50,10 +50,10 @@ pub fn about_axes(values: &[f64]) -> [f64; 3] {
 }
 
 /// Gives a simulation commands, and keeps them where they are kept.
-pub fn steer(simulation: &mut Simulation, given: Option<&mut CommandLog>, values: &[f64]) {
+pub fn steer(simulation: &mut Simulation, commands: Option<&mut CommandLog>, values: &[f64]) {
     let values = about_axes(values);
-    if let Some(given) = given.filter(|_| !simulation.is_finished()) {
-        given.push(simulation.time(), values);
+    if let Some(commands) = commands.filter(|_| !simulation.is_finished()) {
+        commands.push(simulation.time(), values);
     }
     simulation.set_external_command(values.map(Command::Torque));
 }
@@ -81,7 +81,7 @@ impl Record for Signals {
 
     fn poll(&mut self) -> Result<(), RecordError> {
         self.polls += 1;
-        if self.polls.is_multiple_of(64) && self.since.elapsed() > LOOK {
+        if self.polls.is_multiple_of(64) && self.since.elapsed() > SIGNAL_PERIOD {
             self.since = WallInstant::now();
             self.raised = Python::attach(|py| py.check_signals().err());
         }
@@ -98,7 +98,7 @@ pub struct Simulator {
     limit: Vec<f64>,
     fields: Vec<ObservationField>,
     /// Commands of the run, if they were kept.
-    given: Option<CommandLog>,
+    commands: Option<CommandLog>,
     /// Why it cannot go on.
     failed: Option<String>,
 }
@@ -107,7 +107,7 @@ impl Simulator {
     pub fn from_simulation(
         simulation: Simulation,
         scenario: &flexsc_core::Scenario,
-        given: Option<CommandLog>,
+        commands: Option<CommandLog>,
     ) -> Self {
         Self {
             fields: simulation.observation_fields(scenario),
@@ -116,13 +116,13 @@ impl Simulator {
             axes: scenario.axis_count(),
             unit: command_unit(scenario),
             limit: command_limit(scenario),
-            given,
+            commands,
             failed: None,
         }
     }
 
-    /// Goes on, as long as Python lets it.
-    fn go<T: Send>(
+    /// Advances the simulation until Python's signals stop it.
+    fn advance<T: Send>(
         &mut self,
         py: Python<'_>,
         on: impl FnOnce(&mut Simulation, &mut Signals) -> Result<T, SimulationError> + Send,
@@ -132,8 +132,8 @@ impl Simulator {
         }
         let mut signals = Signals { since: WallInstant::now(), polls: 0, raised: None };
         let simulation = &mut self.simulation;
-        let gone = py.detach(|| on(simulation, &mut signals));
-        gone.map_err(|error| {
+        let result = py.detach(|| on(simulation, &mut signals));
+        result.map_err(|error| {
             let interrupted = signals.raised.is_some();
             let why = if interrupted { "was interrupted".to_owned() } else { error.to_string() };
             self.failed = Some(format!("{}: {why}; restore a snapshot, or start again", self.name));
@@ -151,7 +151,7 @@ impl Simulator {
             &scenario.inner,
             Some(CommandLog::default()),
         );
-        simulator.go(py, |simulation, record| simulation.open(record))?;
+        simulator.advance(py, |simulation, record| simulation.open(record))?;
         Ok(simulator)
     }
 
@@ -194,23 +194,23 @@ impl Simulator {
     /// Commands from now on; `values` are as many as there are axes, and finite.
     fn steer(&mut self, values: PyReadonlyArray1<'_, f64>) {
         let values: Vec<f64> = values.as_array().iter().copied().collect();
-        steer(&mut self.simulation, self.given.as_mut(), &values);
+        steer(&mut self.simulation, self.commands.as_mut(), &values);
     }
 
     /// Returns the commands of the run and the instant that it has reached; `None` if the commands were not kept.
     fn commands(&self) -> Option<Commands> {
         let until = if self.simulation.is_finished() { Instant::END } else { self.simulation.time() };
-        Some(Commands { given: self.given.clone()?, until })
+        Some(Commands { commands: self.commands.clone()?, until })
     }
 
     fn step(&mut self, py: Python<'_>, dt: f64) -> PyResult<()> {
         let until = self.simulation.time() + span(dt)?;
-        self.go(py, |simulation, record| simulation.run_up_to(until, record))
+        self.advance(py, |simulation, record| simulation.run_up_to(until, record))
     }
 
     fn run_until(&mut self, py: Python<'_>, time: f64) -> PyResult<()> {
         let until = Instant::START + Span::from_seconds(time);
-        self.go(py, |simulation, record| simulation.run_up_to(until, record))
+        self.advance(py, |simulation, record| simulation.run_up_to(until, record))
     }
 
     fn run_to_next(&mut self, py: Python<'_>, occasion: &str, time: f64) -> PyResult<bool> {
@@ -225,7 +225,7 @@ impl Simulator {
             }
         };
         let until = if time.is_finite() { Instant::START + Span::from_seconds(time) } else { Instant::END };
-        self.go(py, |simulation, record| simulation.run_to_next(occasion, until, record))
+        self.advance(py, |simulation, record| simulation.run_to_next(occasion, until, record))
     }
 
     fn copy(&self) -> Self {
@@ -234,7 +234,7 @@ impl Simulator {
             name: self.name.clone(),
             limit: self.limit.clone(),
             fields: self.fields.clone(),
-            given: self.given.clone(),
+            commands: self.commands.clone(),
             failed: self.failed.clone(),
             ..*self
         }

@@ -5,12 +5,12 @@ use numpy::PyReadonlyArray1;
 use pyo3::prelude::*;
 
 /// A column of a table, as the engine has it.
-pub fn column(given: &Bound<'_, PyAny>) -> PyResult<ColumnCells> {
-    if let Ok(numbers) = given.extract::<PyReadonlyArray1<'_, f64>>() {
+pub fn column(object: &Bound<'_, PyAny>) -> PyResult<ColumnCells> {
+    if let Ok(numbers) = object.extract::<PyReadonlyArray1<'_, f64>>() {
         return Ok(ColumnCells::Numbers(numbers.as_array().to_vec()));
     }
-    if let Ok(integers) = given.extract::<PyReadonlyArray1<'_, i64>>() {
+    if let Ok(integers) = object.extract::<PyReadonlyArray1<'_, i64>>() {
         return Ok(ColumnCells::Integers(integers.as_array().iter().copied().map(Some).collect()));
     }
-    Ok(ColumnCells::Words(given.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
+    Ok(ColumnCells::Words(object.extract::<Vec<String>>()?.into_iter().map(Some).collect()))
 }

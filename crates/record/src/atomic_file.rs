@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 /// Largest number of attempts: another process may remove a new file in the short time before it is locked.
 const ATTEMPTS: u32 = 100;
 /// Time for which another process that writes the same file in one go is awaited.
-const PATIENCE: Duration = Duration::from_secs(2);
+const BUSY_TIMEOUT: Duration = Duration::from_secs(2);
 
 /// File that is being written, under the name of its final path with the suffix `.partial`.
 /// || The temporary file is always created new, so that no existing link, pipe or file is written to, and it is locked
@@ -18,7 +18,7 @@ const PATIENCE: Duration = Duration::from_secs(2);
 #[derive(Debug)]
 pub struct AtomicFile {
     file: File,
-    beside: PathBuf,
+    temporary: PathBuf,
     place: PathBuf,
     finished: bool,
 }
@@ -36,13 +36,13 @@ impl AtomicFile {
         let partial = PathBuf::from(partial);
         for _ in 0..ATTEMPTS {
             if let Some(file) = claim(&partial)? {
-                return Ok(Self { file, beside: partial, place, finished: false });
+                return Ok(Self { file, temporary: partial, place, finished: false });
             }
         }
         Err(busy())
     }
 
-    /// Begins a file at this very place: a link there is refused, where [`create`](Self::create) writes what it leads to.
+    /// Begins a file at exactly this path: a link is refused, whereas [`create`](Self::create) writes its target.
     pub fn create_unlinked(path: &Path) -> io::Result<Self> {
         unlinked(path)?;
         Self::create(path)
@@ -53,7 +53,7 @@ impl AtomicFile {
         let began = Instant::now();
         loop {
             match Self::create(path) {
-                Err(error) if is_busy(&error) && began.elapsed() < PATIENCE => {
+                Err(error) if is_busy(&error) && began.elapsed() < BUSY_TIMEOUT => {
                     thread::sleep(Duration::from_millis(5));
                 }
                 done => return done,
@@ -69,7 +69,7 @@ impl AtomicFile {
     /// Moves the file to its final path, and returns its size in bytes.
     pub fn finish(mut self) -> io::Result<u64> {
         let bytes = self.file.metadata()?.len();
-        fs::rename(&self.beside, &self.place)?;
+        fs::rename(&self.temporary, &self.place)?;
         self.finished = true;
         Ok(bytes)
     }
@@ -108,24 +108,24 @@ impl Seek for AtomicFile {
 
 impl Drop for AtomicFile {
     fn drop(&mut self) {
-        if !self.finished && is_at(&self.file, &self.beside) {
+        if !self.finished && is_at(&self.file, &self.temporary) {
             // An error of the removal is less important than the reason for it.
-            let _ = fs::remove_file(&self.beside);
+            let _ = fs::remove_file(&self.temporary);
         }
     }
 }
 
 /// Stores the entries of a file's directory on disk, if the system supports it.
-fn sync_directory(of: &Path) -> io::Result<()> {
+fn sync_directory(path: &Path) -> io::Result<()> {
     if cfg!(unix) {
-        let directory = of.parent().filter(|parent| !parent.as_os_str().is_empty());
+        let directory = path.parent().filter(|parent| !parent.as_os_str().is_empty());
         File::open(directory.unwrap_or(Path::new(".")))?.sync_all()?;
     }
     Ok(())
 }
 
-/// Writes a file that is on the disk before its name is: what was there stays until the new one is whole, even through a loss
-/// of power. A link is refused.
+/// Writes a file that is on the disk before its name is: an existing file stays until the new one is complete, even if
+/// power fails. A link is refused.
 pub fn write_synced(path: &Path, bytes: &[u8]) -> io::Result<()> {
     unlinked(path)?;
     let mut partial = AtomicFile::create_waiting(path)?;
@@ -145,37 +145,37 @@ pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
 /// Writes files that belong together: none is moved to its final path before all are complete, and no other process
 /// writes one of them in between. An error is returned with its file.
 pub fn write_all(files: &[(PathBuf, Vec<u8>)]) -> Result<(), (PathBuf, io::Error)> {
-    let of = |path: &PathBuf| {
+    let with_path = |path: &PathBuf| {
         let path = path.clone();
         move |error| (path, error)
     };
-    let begun = files.iter().map(|(path, bytes)| begin(path, bytes).map_err(of(path)));
-    for (partial, (path, bytes)) in begun.collect::<Result<Vec<_>, _>>()?.into_iter().zip(files) {
+    let started = files.iter().map(|(path, bytes)| begin(path, bytes).map_err(with_path(path)));
+    for (partial, (path, bytes)) in started.collect::<Result<Vec<_>, _>>()?.into_iter().zip(files) {
         match partial {
-            Some(partial) => partial.finish().map(|_| ()).map_err(of(path))?,
-            None => fs::write(path, bytes).map_err(of(path))?,
+            Some(partial) => partial.finish().map(|_| ()).map_err(with_path(path))?,
+            None => fs::write(path, bytes).map_err(with_path(path))?,
         }
     }
     Ok(())
 }
 
-/// Refuses a path at which there is anything but a file: a link, a pipe, a directory.
+/// Refuses a path that exists and is not a file: a link, a pipe or a directory.
 ///
-/// Directories may come from others, and what lies in them must not decide where files are written.
+/// Directories may be untrusted: their content must not decide where files are written.
 pub fn unlinked(path: &Path) -> io::Result<()> {
     match fs::symlink_metadata(path) {
-        Ok(there) if there.is_file() => Ok(()),
-        Ok(there) if there.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
+        Ok(entry) if entry.is_file() => Ok(()),
+        Ok(entry) if entry.is_dir() => Err(io::ErrorKind::IsADirectory.into()),
         Ok(_) => Err(blocking_file(path)),
         Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(()),
         Err(error) => Err(error),
     }
 }
 
-/// Opens a file for reading: never what a link leads to, nor a pipe, which would have to be waited for.
+/// Opens a file for reading; refuses links, and pipes, which would block.
 ///
 /// # Errors
-/// [`io::ErrorKind::InvalidData`] if it is no file; what the file system reports.
+/// [`io::ErrorKind::InvalidData`] if it is not a file; errors of the file system.
 pub fn open(path: &Path) -> io::Result<File> {
     if fs::symlink_metadata(path)?.is_file() {
         let mut options = OpenOptions::new();
@@ -184,7 +184,7 @@ pub fn open(path: &Path) -> io::Result<File> {
     Err(io::Error::new(io::ErrorKind::InvalidData, "is not a file"))
 }
 
-/// Opens a file for a lock, and makes it if it is not there: never what a link leads to, nor a pipe.
+/// Opens a file for a lock, and creates it if it is missing; refuses links and pipes.
 pub fn open_to_lock(path: &Path) -> io::Result<File> {
     unlinked(path)?;
     let mut options = OpenOptions::new();
@@ -193,7 +193,7 @@ pub fn open_to_lock(path: &Path) -> io::Result<File> {
 
 /// Writes the temporary file with all bytes; `None` for a device, which is not written.
 fn begin(path: &Path, bytes: &[u8]) -> io::Result<Option<AtomicFile>> {
-    if fs::metadata(path).is_ok_and(|there| !there.is_file() && !there.is_dir()) {
+    if fs::metadata(path).is_ok_and(|entry| !entry.is_file() && !entry.is_dir()) {
         return Ok(None);
     }
     let mut partial = AtomicFile::create_waiting(path)?;
@@ -209,9 +209,9 @@ pub fn is_busy(error: &io::Error) -> bool {
 /// Returns the final path of a file: the target of a link, so that the link is kept.
 fn place(path: &Path) -> io::Result<PathBuf> {
     match fs::metadata(path) {
-        Ok(there) if there.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
-        Ok(there) if !there.is_file() => return Err(blocking_file(path)),
-        Ok(there) if there.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
+        Ok(entry) if entry.is_dir() => return Err(io::ErrorKind::IsADirectory.into()),
+        Ok(entry) if !entry.is_file() => return Err(blocking_file(path)),
+        Ok(entry) if entry.permissions().readonly() => return Err(io::ErrorKind::PermissionDenied.into()),
         _ => {}
     }
     Ok(fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()))
@@ -234,16 +234,16 @@ fn claim(partial: &Path) -> io::Result<Option<File>> {
 }
 
 fn remove_stale(partial: &Path) -> io::Result<()> {
-    let gone = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
+    let is_missing = |error: &io::Error| error.kind() == io::ErrorKind::NotFound;
     match fs::symlink_metadata(partial) {
-        Ok(there) if there.is_file() => {}
+        Ok(entry) if entry.is_file() => {}
         Ok(_) => return Err(blocking_file(partial)),
-        Err(error) if gone(&error) => return Ok(()),
+        Err(error) if is_missing(&error) => return Ok(()),
         Err(error) => return Err(error),
     }
     let file = match open_itself(partial) {
         Ok(file) => file,
-        Err(error) if gone(&error) => return Ok(()),
+        Err(error) if is_missing(&error) => return Ok(()),
         Err(error) => return Err(error),
     };
     lock(&file)?;
@@ -281,9 +281,9 @@ fn lock(file: &File) -> io::Result<()> {
 #[cfg(unix)]
 fn is_at(file: &File, path: &Path) -> bool {
     use std::os::unix::fs::MetadataExt;
-    let identity = |of: fs::Metadata| (of.dev(), of.ino());
-    let there = fs::symlink_metadata(path).map(identity);
-    there.is_ok_and(|there| file.metadata().is_ok_and(|file| identity(file) == there))
+    let identity = |metadata: fs::Metadata| (metadata.dev(), metadata.ino());
+    let entry = fs::symlink_metadata(path).map(identity);
+    entry.is_ok_and(|identity_on_disk| file.metadata().is_ok_and(|file| identity(file) == identity_on_disk))
 }
 
 #[cfg(not(unix))]

@@ -82,7 +82,7 @@ impl Columns {
 
     /// Appends a row of the type for which the columns were created.
     pub fn push<R: Row>(&mut self, row: &R) {
-        row.put(&mut ColumnFiller { columns: self.columns.iter_mut() });
+        row.write_to(&mut ColumnFiller { columns: self.columns.iter_mut() });
     }
 }
 
@@ -147,7 +147,7 @@ impl Sink for ColumnFiller<'_> {
     }
 
     fn row<R: Row>(&mut self, row: &R) {
-        row.put(self);
+        row.write_to(self);
     }
 
     fn rows<R: Row>(&mut self, rows: &[R]) {

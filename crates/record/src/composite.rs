@@ -37,8 +37,8 @@ impl<R: Record + ?Sized> Record for &mut R {
         (**self).piece_demand()
     }
 
-    fn piece(&mut self, now: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
-        (**self).piece(now, stretch)
+    fn piece(&mut self, now: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
+        (**self).piece(now, piece)
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
@@ -72,8 +72,8 @@ impl<R: Record> Record for Option<R> {
         self.as_ref().map_or(PieceDemand::None, Record::piece_demand)
     }
 
-    fn piece(&mut self, now: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
-        self.as_mut().map_or(Ok(()), |record| record.piece(now, stretch))
+    fn piece(&mut self, now: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
+        self.as_mut().map_or(Ok(()), |record| record.piece(now, piece))
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
@@ -107,9 +107,9 @@ impl<A: Record, B: Record> Record for (A, B) {
         self.0.piece_demand().and(self.1.piece_demand())
     }
 
-    fn piece(&mut self, now: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
-        self.0.piece(now, stretch)?;
-        self.1.piece(now, stretch)
+    fn piece(&mut self, now: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
+        self.0.piece(now, piece)?;
+        self.1.piece(now, piece)
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {

@@ -229,18 +229,18 @@ impl<'a> DecoderBuilder<'a> {
     ) -> Result<FieldTarget, String> {
         let index = columns.columns.len();
         let (scalar, column) = match kind {
-            FieldContent::Message(of, message) if !is_time(of) => {
+            FieldContent::Message(message_type, message) if !is_time(message_type) => {
                 let path = format!("{path}.");
                 if !is_list(field) {
                     return Ok(FieldTarget::Inner(self.add(
                         columns,
                         &format!("{name}."),
                         &path,
-                        (of, message),
+                        (message_type, message),
                     )?));
                 }
                 let mut inner = Columns::default();
-                let shape = self.add(&mut inner, "", &path, (of, message))?;
+                let shape = self.add(&mut inner, "", &path, (message_type, message))?;
                 columns.columns.push((name, Column::Rows(Vec::new(), inner)));
                 return Ok(FieldTarget::Rows(index, shape));
             }
@@ -268,15 +268,15 @@ fn scalar(kind: &FieldContent<'_>) -> (ScalarKind, Column) {
     let integers = Column::Integers(Vec::new());
     match kind {
         FieldContent::Message(..) => (ScalarKind::Time, numbers),
-        FieldContent::Enum(of) if of.value.len() > MOST_LABELS => {
-            (ScalarKind::Word((*of).clone()), Column::Texts(Vec::new()))
+        FieldContent::Enum(enumeration) if enumeration.value.len() > MOST_LABELS => {
+            (ScalarKind::Word((*enumeration).clone()), Column::Texts(Vec::new()))
         }
-        FieldContent::Enum(of) => {
-            let labels = of.value.iter().map(|value| label_of(value.name())).collect();
-            let known = of.value.iter().map(EnumValueDescriptorProto::number).collect();
+        FieldContent::Enum(enumeration) => {
+            let labels = enumeration.value.iter().map(|value| label_of(value.name())).collect();
+            let known = enumeration.value.iter().map(EnumValueDescriptorProto::number).collect();
             (ScalarKind::Label(known), Column::Labels(Vec::new(), labels))
         }
-        FieldContent::Scalar(of) => match of {
+        FieldContent::Scalar(scalar) => match scalar {
             Type::Double => (ScalarKind::Double, numbers),
             Type::Float => (ScalarKind::Float, numbers),
             Type::Int32 => (ScalarKind::Int32, integers),
@@ -319,47 +319,59 @@ impl ScalarKind {
     ) -> Result<Option<()>, String> {
         Ok(match (column, self, raw) {
             (Column::Numbers(values), Self::Double, WireValue::Fixed64(bits)) => {
-                put(values, f64::from_bits(bits))
+                store_value(values, f64::from_bits(bits))
             }
             (Column::Numbers(values), Self::Float, WireValue::Fixed32(bits)) => {
-                put(values, f64::from(f32::from_bits(bits)))
+                store_value(values, f64::from(f32::from_bits(bits)))
             }
-            (Column::Numbers(values), Self::Time, WireValue::Block(time)) => put(values, seconds(time)?),
-            (Column::Integers(values), Self::Int32, WireValue::Varint(n)) => put(values, i64::from(n as i32)),
+            (Column::Numbers(values), Self::Time, WireValue::Block(time)) => {
+                store_value(values, seconds(time)?)
+            }
+            (Column::Integers(values), Self::Int32, WireValue::Varint(n)) => {
+                store_value(values, i64::from(n as i32))
+            }
             (Column::Integers(values), Self::Int64, WireValue::Varint(n))
-            | (Column::Integers(values), Self::SignedFixed64, WireValue::Fixed64(n)) => put(values, n as i64),
+            | (Column::Integers(values), Self::SignedFixed64, WireValue::Fixed64(n)) => {
+                store_value(values, n as i64)
+            }
             (Column::Integers(values), Self::Zigzag, WireValue::Varint(n)) => {
-                put(values, (n >> 1) as i64 ^ -((n & 1) as i64))
+                store_value(values, (n >> 1) as i64 ^ -((n & 1) as i64))
             }
             (Column::Integers(values), Self::SignedFixed32, WireValue::Fixed32(n)) => {
-                put(values, i64::from(n as i32))
+                store_value(values, i64::from(n as i32))
             }
             (Column::Counts(values), Self::Unsigned, WireValue::Varint(n))
-            | (Column::Counts(values), Self::Fixed64, WireValue::Fixed64(n)) => put(values, n),
-            (Column::Counts(values), Self::Bool, WireValue::Varint(n)) => put(values, u64::from(n != 0)),
-            (Column::Counts(values), Self::Fixed32, WireValue::Fixed32(n)) => put(values, u64::from(n)),
-            (Column::Counts(values), Self::Bytes, WireValue::Block(bytes)) => put(values, bytes.len() as u64),
+            | (Column::Counts(values), Self::Fixed64, WireValue::Fixed64(n)) => store_value(values, n),
+            (Column::Counts(values), Self::Bool, WireValue::Varint(n)) => {
+                store_value(values, u64::from(n != 0))
+            }
+            (Column::Counts(values), Self::Fixed32, WireValue::Fixed32(n)) => {
+                store_value(values, u64::from(n))
+            }
+            (Column::Counts(values), Self::Bytes, WireValue::Block(bytes)) => {
+                store_value(values, bytes.len() as u64)
+            }
             (Column::Labels(values, _), Self::Label(known), WireValue::Varint(n)) => {
                 let index = known.iter().position(|known| *known == n as i32).unwrap_or(MOST_LABELS);
-                put(values, index as u8)
+                store_value(values, index as u8)
             }
-            (Column::Texts(values), Self::Word(of), WireValue::Varint(n)) => {
-                let value = of.value.iter().find(|value| value.number() == n as i32);
+            (Column::Texts(values), Self::Word(labels), WireValue::Varint(n)) => {
+                let value = labels.value.iter().find(|value| value.number() == n as i32);
                 let word = value.map_or_else(|| n.to_string(), |value| value.name().to_owned());
                 budget.reserve(word.len())?;
-                put(values, word)
+                store_value(values, word)
             }
             (Column::Texts(values), Self::Text, WireValue::Block(bytes)) => {
                 budget.reserve(bytes.len())?;
                 let text = std::str::from_utf8(bytes).map_err(|_| "a text in it is not UTF-8".to_owned())?;
-                put(values, text.to_owned())
+                store_value(values, text.to_owned())
             }
             _ => None,
         })
     }
 }
 
-fn put<T>(values: &mut [T], value: T) -> Option<()> {
+fn store_value<T>(values: &mut [T], value: T) -> Option<()> {
     values.last_mut().map(|last| *last = value)
 }
 

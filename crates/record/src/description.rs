@@ -18,8 +18,8 @@ pub fn topics() -> Value {
     Value::Object(topics.collect::<Map<_, _>>())
 }
 
-fn fields(of: &[RowField]) -> Value {
-    of.iter().map(field).collect()
+fn fields(row_fields: &[RowField]) -> Value {
+    row_fields.iter().map(field).collect()
 }
 
 fn field(field: &RowField) -> Value {

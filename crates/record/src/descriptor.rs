@@ -46,7 +46,8 @@ impl DescriptorPool {
     }
 
     fn add_enums(&mut self, scope: &str, enums: Vec<EnumDescriptorProto>) {
-        self.enums.extend(enums.into_iter().map(|of| (within(scope, of.name()), of)));
+        self.enums
+            .extend(enums.into_iter().map(|enumeration| (within(scope, enumeration.name()), enumeration)));
     }
 
     /// Returns the message of a full name.
@@ -72,11 +73,14 @@ impl DescriptorPool {
             return full(name);
         }
         let mut scope = Some(scope);
-        while let Some(around) = scope {
-            if let Some(kind) = full(&within(around, name)) {
+        while let Some(outer_scope) = scope {
+            if let Some(kind) = full(&within(outer_scope, name)) {
                 return Some(kind);
             }
-            scope = around.rsplit_once('.').map(|(outer, _)| outer).or((!around.is_empty()).then_some(""));
+            scope = outer_scope
+                .rsplit_once('.')
+                .map(|(outer, _)| outer)
+                .or((!outer_scope.is_empty()).then_some(""));
         }
         None
     }

@@ -303,8 +303,8 @@ impl Row for Plumes {
     const DOC: &'static [&'static str] = SceneUpdate::DOC;
     const FIELDS: &'static [super::row::RowField] = SceneUpdate::FIELDS;
 
-    fn put<S: Sink>(&self, sink: &mut S) {
-        self.0.put(sink);
+    fn write_to<S: Sink>(&self, sink: &mut S) {
+        self.0.write_to(sink);
     }
 }
 

@@ -261,12 +261,14 @@ impl Log {
                     let Some(channel) = channels.get(&header.channel_id) else {
                         return Err(McapError::UnknownChannel(header.sequence, header.channel_id));
                     };
-                    let Some(index) = topics.iter().position(|asked| *asked == channel.topic) else {
+                    let Some(index) = topics.iter().position(|requested| *requested == channel.topic) else {
                         return Ok(ControlFlow::Continue(()));
                     };
                     let time = header.log_time.saturating_sub(self.epoch_ns) as f64 / 1e9;
                     let schema = schemas.get(&channel.schema_id);
-                    if let Err(why) = take(&mut tables[index], channel, schema, &data, time, &mut budget) {
+                    if let Err(why) =
+                        append_message(&mut tables[index], channel, schema, &data, time, &mut budget)
+                    {
                         undecodable = Some((channel.topic.clone(), why));
                         return Ok(ControlFlow::Break(()));
                     }
@@ -290,7 +292,7 @@ fn units_in(metadata: BTreeMap<String, String>) -> BTreeMap<String, String> {
 }
 
 /// Appends a message of a topic to its table.
-fn take(
+fn append_message(
     table: &mut Option<TopicTable>,
     channel: &Channel,
     schema: Option<&Arc<Schema>>,

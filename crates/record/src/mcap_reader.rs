@@ -22,10 +22,10 @@ pub fn outer_records(bytes: &[u8]) -> Result<Vec<(u8, &[u8])>, McapError> {
     let mut rest = Remaining(bytes.get(mcap::MAGIC.len()..).unwrap_or_default());
     let mut records = Vec::new();
     loop {
-        let head = rest.take(HEAD).ok_or(McapError::UnexpectedEof)?;
+        let head = rest.read_bytes(HEAD).ok_or(McapError::UnexpectedEof)?;
         let opcode = head[0];
         let length = u64::from_le_bytes(std::array::from_fn(|i| head[1 + i]));
-        let body = usize::try_from(length).ok().and_then(|length| rest.take(length));
+        let body = usize::try_from(length).ok().and_then(|length| rest.read_bytes(length));
         let body = body.ok_or(McapError::RecordTooLarge { opcode, len: length })?;
         if opcode == op::FOOTER {
             return Ok(records);
@@ -40,11 +40,11 @@ pub fn outer_records(bytes: &[u8]) -> Result<Vec<(u8, &[u8])>, McapError> {
 pub fn for_each_record(
     bytes: &[u8],
     options: LinearReaderOptions,
-    mut tell: impl FnMut(Record<'_>) -> Result<ControlFlow<()>, McapError>,
+    mut visit: impl FnMut(Record<'_>) -> Result<ControlFlow<()>, McapError>,
 ) -> Result<(), McapError> {
     let most = bytes.len().saturating_mul(UNPACKED);
     let options = options.with_record_length_limit(most.clamp(SMALLEST_LIMIT, LARGEST));
-    let mut left = most.saturating_add(LARGEST);
+    let mut remaining = most.saturating_add(LARGEST);
     let mut reader = LinearReader::new_with_options(options);
     let mut rest = bytes;
     while let Some(event) = reader.next_event() {
@@ -57,12 +57,12 @@ pub fn for_each_record(
                 rest = later;
             }
             LinearReadEvent::Record { opcode, data } => {
-                left = left.checked_sub(RECORD + data.len()).ok_or_else(|| {
+                remaining = remaining.checked_sub(RECORD + data.len()).ok_or_else(|| {
                     let why = format!("the file unpacks to more than {UNPACKED} times its size");
                     McapError::DecompressionError(why)
                 })?;
                 if let Some(record) = parsed(opcode, data)?
-                    && tell(record)?.is_break()
+                    && visit(record)?.is_break()
                 {
                     break;
                 }
@@ -76,15 +76,15 @@ pub fn for_each_record(
 pub fn parsed(opcode: u8, body: &[u8]) -> Result<Option<Record<'_>>, McapError> {
     let mut rest = Remaining(body);
     let sound = match opcode {
-        op::SCHEMA => rest.take(2).and_then(|_| rest.blocks(3)),
-        op::CHANNEL => rest.take(4).and_then(|_| rest.blocks(2)).and_then(|()| rest.map()),
-        op::MESSAGE => rest.take(22).map(|_| ()),
+        op::SCHEMA => rest.read_bytes(2).and_then(|_| rest.blocks(3)),
+        op::CHANNEL => rest.read_bytes(4).and_then(|_| rest.blocks(2)).and_then(|()| rest.map()),
+        op::MESSAGE => rest.read_bytes(22).map(|_| ()),
         op::METADATA => rest.blocks(1).and_then(|()| rest.map()),
         op::ATTACHMENT => {
-            let data = rest.take(16).and_then(|_| rest.blocks(2)).and_then(|()| rest.number::<8>());
-            data.and_then(|length| rest.take(length)).and_then(|_| rest.take(4)).map(|_| ())
+            let data = rest.read_bytes(16).and_then(|_| rest.blocks(2)).and_then(|()| rest.number::<8>());
+            data.and_then(|length| rest.read_bytes(length)).and_then(|_| rest.read_bytes(4)).map(|_| ())
         }
-        op::DATA_END => rest.take(4).map(|_| ()),
+        op::DATA_END => rest.read_bytes(4).map(|_| ()),
         _ => return Ok(None),
     };
     match sound {
@@ -97,7 +97,7 @@ pub fn parsed(opcode: u8, body: &[u8]) -> Result<Option<Record<'_>>, McapError> 
 struct Remaining<'a>(&'a [u8]);
 
 impl<'a> Remaining<'a> {
-    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+    fn read_bytes(&mut self, count: usize) -> Option<&'a [u8]> {
         let (now, later) = self.0.split_at_checked(count)?;
         self.0 = later;
         Some(now)
@@ -106,14 +106,14 @@ impl<'a> Remaining<'a> {
     /// Reads a length of `N` bytes.
     fn number<const N: usize>(&mut self) -> Option<usize> {
         let mut number = [0; 8];
-        number[..N].copy_from_slice(self.take(N)?);
+        number[..N].copy_from_slice(self.read_bytes(N)?);
         usize::try_from(u64::from_le_bytes(number)).ok()
     }
 
     /// Reads bytes preceded by their length.
     fn block(&mut self) -> Option<&'a [u8]> {
         let length = self.number::<4>()?;
-        self.take(length)
+        self.read_bytes(length)
     }
 
     fn blocks(&mut self, count: usize) -> Option<()> {

@@ -63,8 +63,8 @@ pub enum RunEnd {
 
 impl RunEnd {
     /// Returns the end of a run of the given duration that was left at the instant `left`.
-    pub fn at(left: Instant, duration: Span) -> Self {
-        if left < Instant::START + duration { Self::Interrupted } else { Self::Complete }
+    pub fn at(start: Instant, duration: Span) -> Self {
+        if start < Instant::START + duration { Self::Interrupted } else { Self::Complete }
     }
 
     fn verb(self) -> &'static str {

@@ -95,7 +95,7 @@ impl Metrics {
                 }
                 MetricValue::Quantities(quantities) => {
                     let each = quantities.iter().enumerate();
-                    each.for_each(|(index, of)| push(index, of.value, "", &of.unit));
+                    each.for_each(|(index, quantity)| push(index, quantity.value, "", &quantity.unit));
                 }
             }
         }
@@ -126,7 +126,7 @@ impl MetricValue {
     pub fn numbers(&self) -> Vec<f64> {
         match self {
             Self::Numbers(numbers) => numbers.clone(),
-            Self::Quantities(quantities) => quantities.iter().map(|of| of.value).collect(),
+            Self::Quantities(quantities) => quantities.iter().map(|quantity| quantity.value).collect(),
             Self::Count(_) | Self::Number(_) | Self::Word(_) => Vec::new(),
         }
     }

@@ -148,11 +148,11 @@ fn add_enumeration(package: &str, labels: &LoggedEnum, files: &mut Vec<FileDescr
 
 /// Adds the file of a time message of `google.protobuf`.
 fn add_time(name: &str, files: &mut Vec<FileDescriptorProto>) -> String {
-    let field = |(name, number, of): (&str, i32, Type)| FieldDescriptorProto {
+    let field = |(name, number, field_type): (&str, i32, Type)| FieldDescriptorProto {
         name: Some(name.to_owned()),
         number: Some(number),
         label: Some(Label::Optional as i32),
-        r#type: Some(of as i32),
+        r#type: Some(field_type as i32),
         json_name: Some(name.to_owned()),
         ..FieldDescriptorProto::default()
     };
@@ -166,7 +166,7 @@ fn add_time(name: &str, files: &mut Vec<FileDescriptorProto>) -> String {
 }
 
 fn descriptor(package: &str, field: &RowField, number: i32) -> FieldDescriptorProto {
-    let (of, type_name) = match field.kind {
+    let (field_type, type_name) = match field.kind {
         FieldKind::Number => (Type::Double, None),
         FieldKind::Count => (Type::Uint64, None),
         FieldKind::Text => (Type::String, None),
@@ -182,7 +182,7 @@ fn descriptor(package: &str, field: &RowField, number: i32) -> FieldDescriptorPr
         name: Some(field.name.to_owned()),
         number: Some(number),
         label: Some(if repeated { Label::Repeated } else { Label::Optional } as i32),
-        r#type: Some(of as i32),
+        r#type: Some(field_type as i32),
         type_name,
         json_name: Some(field.name.to_owned()),
         ..FieldDescriptorProto::default()
@@ -214,7 +214,7 @@ impl<'a> Encoder<'a> {
     /// Encodes a row.
     #[inline]
     pub fn encode<R: Row>(row: &R, buffer: &'a mut Vec<u8>) {
-        row.put(&mut Self::new(buffer));
+        row.write_to(&mut Self::new(buffer));
     }
 
     fn key(&mut self, wire: WireType) {

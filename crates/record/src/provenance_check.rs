@@ -57,17 +57,21 @@ pub fn existing_log(path: &Path, run: &Provenance) -> ExistingLog {
 }
 
 /// Returns the first key in which two scenarios differ, with both values if they are short.
-pub fn difference(there: &str, here: &str) -> String {
-    let (Ok(there), Ok(here)) = (there.parse::<Table>(), here.parse::<Table>()) else { return String::new() };
-    let Some((key, there, here)) = first_difference("", &there, &here) else { return String::new() };
+pub fn difference(existing: &str, current: &str) -> String {
+    let (Ok(existing), Ok(current)) = (existing.parse::<Table>(), current.parse::<Table>()) else {
+        return String::new();
+    };
+    let Some((key, existing, current)) = first_difference("", &existing, &current) else {
+        return String::new();
+    };
     let short = |value: &Value| {
         let text = value.to_string();
         let is_long = matches!(value, Value::Table(_) | Value::Array(_)) && text.len() > 60;
         (!is_long).then_some(text)
     };
-    match (there, here) {
-        (Some(there), Some(here)) => match (short(there), short(here)) {
-            (Some(there), Some(here)) => format!(" (`{key}`: {there} before, {here} now)"),
+    match (existing, current) {
+        (Some(existing), Some(current)) => match (short(existing), short(current)) {
+            (Some(existing), Some(current)) => format!(" (`{key}`: {existing} before, {current} now)"),
             _ => format!(" (`{key}`: changed)"),
         },
         (Some(_), None) => format!(" (`{key}`: removed)"),
@@ -78,13 +82,15 @@ pub fn difference(there: &str, here: &str) -> String {
 
 type Difference<'a> = (String, Option<&'a Value>, Option<&'a Value>);
 
-fn first_difference<'a>(within: &str, there: &'a Table, here: &'a Table) -> Option<Difference<'a>> {
-    let keys = there.keys().chain(here.keys().filter(|key| !there.contains_key(*key)));
-    keys.filter(|key| there.get(*key) != here.get(*key)).find_map(|key| {
+fn first_difference<'a>(within: &str, existing: &'a Table, current: &'a Table) -> Option<Difference<'a>> {
+    let keys = existing.keys().chain(current.keys().filter(|key| !existing.contains_key(*key)));
+    keys.filter(|key| existing.get(*key) != current.get(*key)).find_map(|key| {
         let path = if within.is_empty() { key.clone() } else { format!("{within}.{key}") };
-        match (there.get(key), here.get(key)) {
-            (Some(Value::Table(there)), Some(Value::Table(here))) => first_difference(&path, there, here),
-            (there, here) => Some((path, there, here)),
+        match (existing.get(key), current.get(key)) {
+            (Some(Value::Table(existing)), Some(Value::Table(current))) => {
+                first_difference(&path, existing, current)
+            }
+            (existing, current) => Some((path, existing, current)),
         }
     })
 }
@@ -118,9 +124,9 @@ impl LogOrigin {
                     McapRecord::Attachment { header, data, .. } if header.name == COMMANDS => {
                         commands = Some(data.into_owned());
                     }
-                    McapRecord::Metadata(mut about) if about.name == "flexsc.run" => {
-                        let mut said = |key: &str| about.metadata.remove(key).unwrap_or_default();
-                        let (version, seed, run) = (said("version"), said("seed"), said("run"));
+                    McapRecord::Metadata(mut metadata) if metadata.name == "flexsc.run" => {
+                        let mut entry = |key: &str| metadata.metadata.remove(key).unwrap_or_default();
+                        let (version, seed, run) = (entry("version"), entry("seed"), entry("run"));
                         return Some(Self { toml, version, seed, run, commands });
                     }
                     McapRecord::Message { .. } | McapRecord::Chunk { .. } | McapRecord::DataEnd(_) => {

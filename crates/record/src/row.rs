@@ -108,7 +108,7 @@ pub trait Row {
     const FIELDS: &'static [RowField];
 
     /// Writes the fields into a sink, in their order.
-    fn put<S: Sink>(&self, sink: &mut S);
+    fn write_to<S: Sink>(&self, sink: &mut S);
 }
 
 /// Row that is a message of a topic.
@@ -143,13 +143,13 @@ pub trait FieldType {
     const KIND: FieldKind;
 
     /// Writes the field into a sink.
-    fn put<S: Sink>(&self, sink: &mut S);
+    fn write_to<S: Sink>(&self, sink: &mut S);
 }
 
 impl FieldType for f64 {
     const KIND: FieldKind = FieldKind::Number;
     #[inline]
-    fn put<S: Sink>(&self, sink: &mut S) {
+    fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.number(*self);
     }
 }
@@ -157,21 +157,21 @@ impl FieldType for f64 {
 impl FieldType for u64 {
     const KIND: FieldKind = FieldKind::Count;
     #[inline]
-    fn put<S: Sink>(&self, sink: &mut S) {
+    fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.count(*self);
     }
 }
 
 impl FieldType for String {
     const KIND: FieldKind = FieldKind::Text;
-    fn put<S: Sink>(&self, sink: &mut S) {
+    fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.text(self);
     }
 }
 
 impl FieldType for bool {
     const KIND: FieldKind = FieldKind::Flag;
-    fn put<S: Sink>(&self, sink: &mut S) {
+    fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.flag(*self);
     }
 }
@@ -182,7 +182,7 @@ pub struct LogDate(pub u64);
 
 impl FieldType for LogDate {
     const KIND: FieldKind = FieldKind::Time("Timestamp");
-    fn put<S: Sink>(&self, sink: &mut S) {
+    fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
     }
 }
@@ -193,7 +193,7 @@ pub struct LogSpan(pub u64);
 
 impl FieldType for LogSpan {
     const KIND: FieldKind = FieldKind::Time("Duration");
-    fn put<S: Sink>(&self, sink: &mut S) {
+    fn write_to<S: Sink>(&self, sink: &mut S) {
         sink.time(self.0);
     }
 }
@@ -232,8 +232,8 @@ macro_rules! rows {
                 ];
 
                 #[inline]
-                fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
-                    $($crate::row::FieldType::put(&self.$field, sink);)+
+                fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
+                    $($crate::row::FieldType::write_to(&self.$field, sink);)+
                 }
             }
 
@@ -247,14 +247,14 @@ macro_rules! rows {
 
             impl $crate::row::FieldType for $name {
                 const KIND: $crate::row::FieldKind = $crate::row::FieldKind::Row(&<$name>::MESSAGE);
-                fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
+                fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                     sink.row(self);
                 }
             }
 
             impl $crate::row::FieldType for Vec<$name> {
                 const KIND: $crate::row::FieldKind = $crate::row::FieldKind::Rows(&<$name>::MESSAGE);
-                fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
+                fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                     sink.rows(self);
                 }
             }
@@ -302,7 +302,7 @@ macro_rules! label_cells {
         $(impl $crate::row::FieldType for $of {
             const KIND: $crate::row::FieldKind = $crate::row::FieldKind::Label(&<$of>::LABELS);
             #[inline]
-            fn put<S: $crate::row::Sink>(&self, sink: &mut S) {
+            fn write_to<S: $crate::row::Sink>(&self, sink: &mut S) {
                 sink.label(*self as usize, &<$of>::LABELS);
             }
         })+

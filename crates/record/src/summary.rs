@@ -23,9 +23,9 @@ fn line((meaning, value): &NamedMetric) -> MetricLine {
         MetricValue::Number(value) => number(*value),
         MetricValue::Word(word) => (*word).to_owned(),
         MetricValue::Numbers(numbers) => list(numbers, |value| number(*value)),
-        MetricValue::Quantities(quantities) => {
-            list(quantities, |of| format!("{} {}", number(of.value), of.unit).trim_end().to_owned())
-        }
+        MetricValue::Quantities(quantities) => list(quantities, |quantity| {
+            format!("{} {}", number(quantity.value), quantity.unit).trim_end().to_owned()
+        }),
     };
     MetricLine { name: meaning.name.to_owned(), value, unit: meaning.unit.to_owned() }
 }

@@ -59,7 +59,7 @@ impl<'a> WireMessage<'a> {
             1 => WireValue::Fixed64(self.fixed64()?),
             2 => {
                 let length = usize::try_from(self.varint()?).ok()?;
-                WireValue::Block(self.take(length)?)
+                WireValue::Block(self.read_bytes(length)?)
             }
             3 => WireValue::Group,
             4 => return Some((number, None)),
@@ -102,7 +102,7 @@ impl<'a> WireMessage<'a> {
         Some(u32::from_le_bytes(*now))
     }
 
-    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+    fn read_bytes(&mut self, count: usize) -> Option<&'a [u8]> {
         let (now, rest) = self.0.split_at_checked(count)?;
         self.0 = rest;
         Some(now)

@@ -1,6 +1,6 @@
 //! Switching without end: more switchings than a motion can need, in a span in which no mode has moved.
 
-/// Switchings of a window: whole cycles of the relay law, so that a flight looks at the end of one.
+/// Number of switchings in a window: whole cycles of the relay law, as the kernel checks at the end of a cycle.
 pub const SWITCHINGS: u64 = 3 * CYCLES;
 /// Cycles of a window.
 pub const CYCLES: u64 = 341;

@@ -42,7 +42,7 @@ impl<R: LaneFloat, D: DampingRule<R>> EnvelopePhasor<R, D> {
     #[inline(always)]
     pub fn advance(&self, time: R, span: R) -> (PhasorState<R>, R) {
         if D::IS_DAMPED {
-            return self.fade(time, span);
+            return self.advance_damped(time, span);
         }
         let PhasorState { frame: [re, im], axis: from, deviation: before } = self.now;
         let (sin, cos) = sincos(self.frequency * time);
@@ -55,23 +55,23 @@ impl<R: LaneFloat, D: DampingRule<R>> EnvelopePhasor<R, D> {
 
     /// Advances a phasor as [`Self::advance`] does, for modes that may be damped.
     #[inline(always)]
-    fn fade(&self, time: R, span: R) -> (PhasorState<R>, R) {
+    fn advance_damped(&self, time: R, span: R) -> (PhasorState<R>, R) {
         let (PhasorState { frame: [re, im], axis: from, deviation: before }, decay) =
             (self.now, self.damping.decay_rate(time));
-        let turning = self.damping.frequency(self.frequency);
-        let (sin, cos) = sincos(turning * time);
-        let left = exp(-(decay * span));
+        let damped_frequency = self.damping.frequency(self.frequency);
+        let (sin, cos) = sincos(damped_frequency * time);
+        let decay_factor = exp(-(decay * span));
         let equilibrium = self.imaginary(self.equilibrium);
-        let (c, s) = (cos - from[0] * left, sin - from[1] * left);
-        let re = re * left + (self.equilibrium * c - equilibrium * s);
-        let im = im * left + (self.equilibrium * s + equilibrium * c);
+        let (c, s) = (cos - from[0] * decay_factor, sin - from[1] * decay_factor);
+        let re = re * decay_factor + (self.equilibrium * c - equilibrium * s);
+        let im = im * decay_factor + (self.equilibrium * s + equilibrium * c);
         let deviation = [(re * cos + im * sin) - self.equilibrium, (im * cos - re * sin) - equilibrium];
         let ends = [before, deviation];
-        let mut integral = damped([self.equilibrium, equilibrium], ends, decay, turning, span);
-        let stays = decay.le(decay.splat(0.0));
-        if stays.any() {
+        let mut integral = damped([self.equilibrium, equilibrium], ends, decay, damped_frequency, span);
+        let is_undamped = decay.le(decay.splat(0.0));
+        if is_undamped.any() {
             let undamped = undamped(self.equilibrium, ends, self.frequency, span);
-            integral = R::select(stays, undamped, integral);
+            integral = R::select(is_undamped, undamped, integral);
         }
         (PhasorState { frame: [re, im], axis: [cos, sin], deviation }, integral)
     }
@@ -103,12 +103,12 @@ impl<R: LaneFloat, D: DampingRule<R>> EnvelopePhasor<R, D> {
 impl<R: LaneFloat> PhasorState<R> {
     /// Selects one of two states per lane.
     #[inline(always)]
-    pub fn select(mask: R::Mask, yes: &Self, no: &Self) -> Self {
-        let mut one = *yes;
+    pub fn select(mask: R::Mask, chosen: &Self, otherwise: &Self) -> Self {
+        let mut one = *chosen;
         for part in 0..2 {
-            one.frame[part] = R::select(mask, yes.frame[part], no.frame[part]);
-            one.axis[part] = R::select(mask, yes.axis[part], no.axis[part]);
-            one.deviation[part] = R::select(mask, yes.deviation[part], no.deviation[part]);
+            one.frame[part] = R::select(mask, chosen.frame[part], otherwise.frame[part]);
+            one.axis[part] = R::select(mask, chosen.axis[part], otherwise.axis[part]);
+            one.deviation[part] = R::select(mask, chosen.deviation[part], otherwise.deviation[part]);
         }
         one
     }
@@ -124,11 +124,11 @@ pub fn advance_group<R: LaneFloat, D: DampingRule<R>>(
     span: R,
     mut integral: R,
 ) -> R {
-    for some in tracks.chunks_mut(SIDE) {
-        let count = some.len();
-        let each = four.run(PhasorGroupTask { tracks: some, time: time.lane(0), span: span.lane(0) });
-        for of in &each[..count] {
-            integral = integral + *of;
+    for group in tracks.chunks_mut(SIDE) {
+        let count = group.len();
+        let each = four.run(PhasorGroupTask { tracks: group, time: time.lane(0), span: span.lane(0) });
+        for window_integral in &each[..count] {
+            integral = integral + *window_integral;
         }
     }
     integral
@@ -168,11 +168,11 @@ impl<R: LaneFloat, D: DampingRule<R>> SimdTask for PhasorGroupTask<'_, R, D> {
                 deviation: [load!(now.deviation[0]), load!(now.deviation[1])],
             },
         };
-        let (there, integral) = all.advance(kind.splat(self.time), kind.splat(self.span));
+        let (advanced, integral) = all.advance(kind.splat(self.time), kind.splat(self.span));
         macro_rules! store {
             ($($part:tt)+) => {{
                 let mut each = [0.0; SIDE];
-                there.$($part)+.store(&mut each);
+                advanced.$($part)+.store(&mut each);
                 for lane in 0..=last {
                     let to = &mut self.tracks[lane].now.$($part)+;
                     *to = to.splat(each[lane]);

@@ -46,9 +46,9 @@ pub struct RunSetup {
 
 impl RunSetup {
     /// Returns the torque at a phase of the cycle (N m).
-    pub fn torque(&self, place: CyclePhase, side: f64) -> f64 {
+    pub fn torque(&self, phase: CyclePhase, side: f64) -> f64 {
         let [strong, weak] = self.torques;
-        match place {
+        match phase {
             CyclePhase::Coast => side * weak,
             CyclePhase::Push => -side * strong,
             CyclePhase::Brake => side * strong,
@@ -71,7 +71,7 @@ pub enum CyclePhase {
 #[derive(Clone, Debug, Default)]
 pub struct LaneState {
     /// Time: whole seconds and femtoseconds.
-    pub at: (u64, u64),
+    pub time: (u64, u64),
     /// Rigid angle (rad).
     pub angle: f64,
     /// Rigid rate (rad/s).
@@ -88,15 +88,15 @@ pub struct LaneState {
 #[derive(Clone, Debug, Default)]
 pub struct LaneHandover {
     /// Phase of the cycle that begins.
-    pub place: Option<CyclePhase>,
+    pub phase: Option<CyclePhase>,
     /// State of the body.
     pub from: LaneState,
     /// Start time of the last push.
-    pub pushed: (u64, u64),
-    /// How often it has switched since the last window of switchings ended, and when that was.
+    pub push_start: (u64, u64),
+    /// Number of switchings since the last window of switchings ended, and the time of that end.
     pub switched: (u64, (u64, u64)),
     /// Time up to which the envelope is integrated.
-    pub seen: (u64, u64),
+    pub integrated_to: (u64, u64),
     /// Integral of the envelope since the end of the last window.
     pub integral: f64,
     /// Phasors of the envelope: in the rotating frame (2), axis of that frame (2), equilibrium, deviation (2).
@@ -116,7 +116,7 @@ pub struct FoundCrossing {
 
 /// Host of the runs in the lanes: supplies setups, receives events.
 pub trait LaneHost {
-    /// Returns true if `switched` must be called for every switching.
+    /// Returns true if `on_switching` must be called for every switching.
     fn wants_switchings(&self) -> bool;
     /// Returns true if `on_possible_band_exit` must be called where bounds do not keep the angle within the band.
     fn wants_band_exits(&self) -> bool;
@@ -127,21 +127,22 @@ pub trait LaneHost {
     fn find_crossing(
         &mut self,
         lane: usize,
-        place: CyclePhase,
+        phase: CyclePhase,
         from: &LaneState,
         found: &mut FoundCrossing,
     ) -> bool;
     /// Rejects a lane that the kernel cannot continue: its run must be computed singly.
     fn reject(&mut self, lane: usize);
-    /// A lane has switched [`SWITCHINGS`](crate::SWITCHINGS) times in a span that is too short for a motion, up to here; its run ends.
-    fn chatters(&mut self, lane: usize, at: (u64, u64));
+    /// Receives a lane that has switched [`SWITCHINGS`](crate::SWITCHINGS) times in a span too short for a motion; its
+    /// run ends.
+    fn chatters(&mut self, lane: usize, now: (u64, u64));
     /// Receives a switching of the law to a phase of the cycle.
-    fn on_switching(&mut self, lane: usize, to: CyclePhase, now: &LaneState);
+    fn on_switching(&mut self, lane: usize, next: CyclePhase, state: &LaneState);
     /// Receives the envelope integral of a window that has ended; returns the braking gain from then on.
-    fn on_window(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64;
+    fn on_window(&mut self, lane: usize, now: (u64, u64), integral: f64, gain: f64) -> f64;
     /// Receives a motion from `from`, at a phase of the cycle, during which the angle may leave the band (rad) before
     /// `until`.
-    fn on_possible_band_exit(&mut self, lane: usize, place: CyclePhase, from: &LaneState, until: (u64, u64));
+    fn on_possible_band_exit(&mut self, lane: usize, phase: CyclePhase, from: &LaneState, until: (u64, u64));
     /// Returns true if the run must stop.
     fn should_stop(&self) -> bool {
         false

@@ -1,6 +1,6 @@
 //! Kernel of the relay law: runs in SIMD lanes, at the same phase of the cycle, each with its own time.
 //!
-//! The law's cycle is coast, push and brake in every run. The lanes of a [`Flight`] are at the same phase of it, each
+//! The law's cycle is coast, push and brake in every run. The lanes of a [`RelayKernel`] are at the same phase of it, each
 //! at its own time; coordinates are mirrored where the left boundary is reached, so that all push back from the
 //! right. A lane whose run has ended receives the next run at the end of the cycle. The results of a lane do not
 //! depend on other lanes.
@@ -35,7 +35,7 @@ const ROWS: usize = 6;
 
 /// Mirrors a number, if a mirror is given.
 #[inline(always)]
-fn seen<R: LaneFloat>(mirror: Option<R>, number: R) -> R {
+fn mirrored<R: LaneFloat>(mirror: Option<R>, number: R) -> R {
     match mirror {
         Some(mirror) => mirror * number,
         None => number,
@@ -51,7 +51,7 @@ pub struct RelayKernel<R: LaneFloat, D> {
     rate: R,
     modes: Vec<LaneMode<R, D>>,
     /// Modes during a motion, for numbers of modes other than two.
-    moved: Vec<PredictedMode<R, D>>,
+    predicted_modes: Vec<PredictedMode<R, D>>,
     fastest: R,
     longest: R,
     edge: R,
@@ -61,67 +61,67 @@ pub struct RelayKernel<R: LaneFloat, D> {
     k_t: R,
     band: R,
     /// Start of the last push (single runs only), and duration of the last push (s).
-    pushed: LaneTime<R>,
-    lasted: R,
+    push_start: LaneTime<R>,
+    push_duration: R,
     tracks: Vec<EnvelopePhasor<R, D>>,
     /// SIMD instructions for the phasors of a single run.
-    four: SimdWidth4,
+    simd: SimdWidth4,
     /// True if any run has windows.
-    watches: bool,
+    has_windows: bool,
     /// Events that the host requested: switchings, and possible exits from the band.
-    listens: bool,
-    looks: bool,
+    wants_switchings: bool,
+    wants_band_exits: bool,
     /// Time up to which the envelope is integrated, its integral, end of the current window, and length of the
     /// windows.
-    seen: LaneTime<R>,
+    integrated_to: LaneTime<R>,
     integral: R,
     closes: LaneTime<R>,
     window: LaneTime<R>,
     /// True for the lanes with an active run.
     active: [bool; MOST],
-    /// Cycles since the flight began, and the number of the one after which lanes are looked at for chatter.
+    /// Number of cycles since the kernel started, and the number of cycles after which lanes are checked for chatter.
     cycles: u64,
-    looked_at: u64,
-    /// For each lane, after how many cycles its last window of switchings ended, and when.
+    next_chatter_check: u64,
+    /// Number of cycles, and time, at which the last window of switchings of each lane ended.
     marks: [u64; MOST],
     marked: LaneTime<R>,
     /// State of all lanes as plain numbers, and of one of them.
     rows: Vec<[f64; MOST]>,
-    sight: LaneState,
+    lane_state: LaneState,
     /// Result of the last search.
     found: FoundCrossing,
 }
 
 impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
-    /// True for a single run, which is handed back to the host where it ends.
-    const IS_ALONE: bool = R::LANES == 1;
+    /// True for a single run, which is handed back to the host at its end.
+    const IS_SINGLE: bool = R::LANES == 1;
 
     /// Computes all runs of a host.
     #[inline(always)]
     pub fn run(kind: R, structure: LaneShape, host: &mut dyn LaneHost) {
-        let mut flight = Self::new(kind, structure.modes, structure.tracks);
-        let mut place = CyclePhase::Brake;
+        let mut kernel = Self::new(kind, structure.modes, structure.tracks);
+        let mut phase = CyclePhase::Brake;
         // One phase per iteration, so that its code is instantiated once.
         loop {
-            place = match place {
-                CyclePhase::Coast if !Self::IS_ALONE || flight.active[0] => CyclePhase::Push,
-                CyclePhase::Push if !Self::IS_ALONE || flight.active[0] => CyclePhase::Brake,
+            phase = match phase {
+                CyclePhase::Coast if !Self::IS_SINGLE || kernel.active[0] => CyclePhase::Push,
+                CyclePhase::Push if !Self::IS_SINGLE || kernel.active[0] => CyclePhase::Brake,
                 _ => {
-                    if !flight.refill(host) || !flight.cycle(host) {
+                    if !kernel.refill(host) || !kernel.cycle(host) {
                         return;
                     }
                     CyclePhase::Coast
                 }
             };
-            flight.go(host, place);
+            kernel.compute_phase(host, phase);
         }
     }
 
     /// Computes the motion of one phase, and the switching at its end.
     #[inline(always)]
-    fn go(&mut self, host: &mut dyn LaneHost, place: CyclePhase) {
+    fn compute_phase(&mut self, host: &mut dyn LaneHost, phase: CyclePhase) {
         let one = self.angle.splat(1.0);
-        let (moment, towards, level) = match place {
+        let (moment, towards, level) = match phase {
             CyclePhase::Coast => (self.weak, one, self.edge),
             CyclePhase::Push => (-self.strong, -one, self.back),
             CyclePhase::Brake => (self.strong, one, self.edge),
@@ -129,29 +129,30 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         for track in &mut self.tracks {
             track.command(moment);
         }
-        if Self::IS_ALONE && place == CyclePhase::Push {
-            self.pushed = self.now;
+        if Self::IS_SINGLE && phase == CyclePhase::Push {
+            self.push_start = self.now;
         }
-        let (span, right) = if place == CyclePhase::Brake {
+        let (span, reaches_right) = if phase == CyclePhase::Brake {
             (self.brake(host, moment), one.le(one))
-        } else if place == CyclePhase::Push {
-            self.guarded(host, place, moment, &[PredictedLevel { angle: level, towards }])
+        } else if phase == CyclePhase::Push {
+            self.guarded(host, phase, moment, &[PredictedLevel { angle: level, towards }])
         } else {
             let other = PredictedLevel { angle: -self.edge, towards: -towards };
-            self.guarded(host, place, moment, &[PredictedLevel { angle: level, towards }, other])
+            self.guarded(host, phase, moment, &[PredictedLevel { angle: level, towards }, other])
         };
-        if place == CyclePhase::Push {
-            self.lasted = span.1;
+        if phase == CyclePhase::Push {
+            self.push_duration = span.1;
         }
         // After mirroring, the left boundary is the right one.
-        let mirror = if place == CyclePhase::Coast { Some(R::select(right, one, -one)) } else { None };
-        self.arrive(host, place, moment, span, mirror);
-        if Self::IS_ALONE && !self.active[0] {
+        let mirror =
+            if phase == CyclePhase::Coast { Some(R::select(reaches_right, one, -one)) } else { None };
+        self.arrive(host, phase, moment, span, mirror);
+        if Self::IS_SINGLE && !self.active[0] {
             return;
         }
         self.report_switchings(
             host,
-            match place {
+            match phase {
                 CyclePhase::Coast => CyclePhase::Push,
                 CyclePhase::Push => CyclePhase::Brake,
                 CyclePhase::Brake => CyclePhase::Coast,
@@ -176,7 +177,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     /// Computes the brake, whose duration is given by the law.
     #[inline(always)]
     fn brake(&mut self, host: &mut dyn LaneHost, moment: R) -> (LaneTime<R>, R) {
-        let nearest = nearest_ticks(self.k_t * self.lasted);
+        let nearest = nearest_ticks(self.k_t * self.push_duration);
         // Longer brakes require a single run.
         let fits = nearest.lt(nearest.splat(SHORT * 1e15));
         if !fits.all() {
@@ -190,9 +191,9 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let ticks = R::select(fits, nearest, nearest.splat(0.0));
         let after = ticks / ticks.splat(1e15);
         for mode in &mut self.modes {
-            let mut moved = mode.depart(moment);
-            moved.advance(after);
-            mode.store_end(&moved);
+            let mut mode_motion = mode.from_equilibrium(moment);
+            mode_motion.advance(after);
+            mode.store_end(&mode_motion);
         }
         (LaneTime::from_ticks(ticks), after)
     }
@@ -202,7 +203,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     fn guarded<const LEVELS: usize>(
         &mut self,
         host: &mut dyn LaneHost,
-        place: CyclePhase,
+        phase: CyclePhase,
         moment: R,
         levels: &[PredictedLevel<R>; LEVELS],
     ) -> ((LaneTime<R>, R), R::Mask) {
@@ -212,7 +213,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let found: PredictedCrossing<R> = match &mut self.modes[..] {
             // Two modes, the usual case, stay in registers.
             [first, second] if !D::IS_DAMPED => {
-                let mut two = [first.depart(moment), second.depart(moment)];
+                let mut two = [first.from_equilibrium(moment), second.from_equilibrium(moment)];
                 let found = predict(&from, levels, &mut two);
                 first.store_end(&two[0]);
                 second.store_end(&two[1]);
@@ -220,11 +221,11 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             }
             modes => {
                 for index in 0..modes.len() {
-                    self.moved[index] = modes[index].depart(moment);
+                    self.predicted_modes[index] = modes[index].from_equilibrium(moment);
                 }
-                let found = predict(&from, levels, &mut self.moved);
+                let found = predict(&from, levels, &mut self.predicted_modes);
                 for index in 0..modes.len() {
-                    modes[index].store_end(&self.moved[index]);
+                    modes[index].store_end(&self.predicted_modes[index]);
                 }
                 found
             }
@@ -236,7 +237,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         // Lanes without a certain crossing do not move yet.
         for mode in &mut self.modes {
             for part in 0..2 {
-                mode.end[part] = R::select(certain, mode.end[part], mode.at[part]);
+                mode.end[part] = R::select(certain, mode.end[part], mode.start[part]);
             }
         }
         let mut span = LaneTime::from_ticks(R::select(certain, found.ticks, zero));
@@ -249,9 +250,9 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
                 continue;
             }
             self.lane_state(lane);
-            let side = self.sight.side;
+            let side = self.lane_state.side;
             let found = &mut self.found;
-            if !host.find_crossing(lane, place, &self.sight, found) {
+            if !host.find_crossing(lane, phase, &self.lane_state, found) {
                 // No crossing within the run: the end of the run comes first.
                 span = span.with_lane(lane, (NEVER as u64, 0));
                 continue;
@@ -264,7 +265,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             }
             span = span.with_lane(lane, parts);
             after = after.with_lane(lane, seconds);
-            if place == CyclePhase::Coast {
+            if phase == CyclePhase::Coast {
                 first = first.with_lane(lane, if found.right == (side > 0.0) { 1.0 } else { -1.0 });
             }
             for index in 0..found.modes.len() {
@@ -282,7 +283,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     fn arrive(
         &mut self,
         host: &mut dyn LaneHost,
-        place: CyclePhase,
+        phase: CyclePhase,
         moment: R,
         (span, h): (LaneTime<R>, R),
         mirror: Option<R>,
@@ -291,26 +292,26 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let until = self.now.add(span);
         let ends = !until.is_at_or_before(self.end);
         let until = if ends.any() { LaneTime::select(ends, self.end, until) } else { until };
-        if Self::IS_ALONE && (ends.any() || host.should_stop()) {
-            self.hand_over(host, place);
+        if Self::IS_SINGLE && (ends.any() || host.should_stop()) {
+            self.hand_over(host, phase);
             return;
         }
         // If no run ends, the duration is the one found.
         let lasts = if ends.any() { None } else { Some(h) };
-        if self.looks {
+        if self.wants_band_exits {
             let span = match lasts {
                 Some(span) => span,
                 None => until.since(self.now).seconds(),
             };
-            self.check_band(host, place, moment, span, until);
+            self.check_band(host, phase, moment, span, until);
         }
         self.follow(host, until, lasts);
         self.now = until;
-        self.angle = seen(mirror, self.angle + h * (self.rate + h.splat(0.5) * moment * h));
-        self.rate = seen(mirror, self.rate + moment * h);
+        self.angle = mirrored(mirror, self.angle + h * (self.rate + h.splat(0.5) * moment * h));
+        self.rate = mirrored(mirror, self.rate + moment * h);
         for mode in &mut self.modes {
             for part in 0..2 {
-                mode.at[part] = seen(mirror, mode.end[part]);
+                mode.start[part] = mirrored(mirror, mode.end[part]);
             }
         }
         if let Some(mirror) = mirror {
@@ -332,48 +333,48 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     /// the last update, if known (s).
     #[inline(always)]
     fn follow(&mut self, host: &mut dyn LaneHost, until: LaneTime<R>, mut whole: Option<R>) {
-        if !self.watches {
+        if !self.has_windows {
             return;
         }
         let zero = self.angle.splat(0.0);
-        let mut goes_on = zero.le(zero);
+        let mut continuing = zero.le(zero);
         loop {
-            let due = goes_on & self.closes.is_at_or_before(until);
-            let at = if due.any() { LaneTime::select(due, self.closes, until) } else { until };
-            let time = at.seconds();
+            let due = continuing & self.closes.is_at_or_before(until);
+            let reached = if due.any() { LaneTime::select(due, self.closes, until) } else { until };
+            let time = reached.seconds();
             let span = match whole.take() {
                 Some(whole) if !due.any() => whole,
-                _ => at.since(self.seen).seconds(),
+                _ => reached.since(self.integrated_to).seconds(),
             };
-            if Self::IS_ALONE && !D::IS_DAMPED && self.tracks.len() > 1 {
+            if Self::IS_SINGLE && !D::IS_DAMPED && self.tracks.len() > 1 {
                 self.integral =
-                    envelope_lanes::advance_group(self.four, &mut self.tracks, time, span, self.integral);
+                    envelope_lanes::advance_group(self.simd, &mut self.tracks, time, span, self.integral);
             } else {
-                self.follow_each(goes_on, time, span);
+                self.follow_each(continuing, time, span);
             }
-            self.seen = LaneTime::select(goes_on, at, self.seen);
+            self.integrated_to = LaneTime::select(continuing, reached, self.integrated_to);
             if !due.any() {
                 return;
             }
             self.close(host, R::select(due, zero.splat(1.0), zero));
             self.integral = R::select(due, zero, self.integral);
             self.closes = LaneTime::select(due, self.closes.add(self.window), self.closes);
-            goes_on = due;
+            continuing = due;
         }
     }
 
     /// Integrates the modes of the envelope one after the other, in the lanes that continue.
     #[inline(always)]
-    fn follow_each(&mut self, goes_on: R::Mask, time: R, span: R) {
+    fn follow_each(&mut self, continuing: R::Mask, time: R, span: R) {
         let zero = time.splat(0.0);
         for track in &mut self.tracks {
-            let (mut there, mut integral) = track.advance(time, span);
+            let (mut advanced, mut integral) = track.advance(time, span);
             // Usually all lanes continue.
-            if !goes_on.all() {
-                there = PhasorState::select(goes_on, &there, &track.now);
-                integral = R::select(goes_on, integral, zero);
+            if !continuing.all() {
+                advanced = PhasorState::select(continuing, &advanced, &track.now);
+                integral = R::select(continuing, integral, zero);
             }
-            track.now = there;
+            track.now = advanced;
             self.integral = self.integral + integral;
         }
     }
@@ -383,7 +384,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         for lane in 0..R::LANES {
             if closing.lane(lane) > 0.0 {
                 let (integral, gain) = (self.integral.lane(lane), self.k_t.lane(lane));
-                let gain = host.on_window(lane, self.seen.lane(lane), integral, gain);
+                let gain = host.on_window(lane, self.integrated_to.lane(lane), integral, gain);
                 self.k_t = self.k_t.with_lane(lane, gain);
             }
         }

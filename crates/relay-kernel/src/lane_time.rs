@@ -61,8 +61,11 @@ impl<R: LaneFloat> LaneTime<R> {
 
     /// Selects one of two instants per lane.
     #[inline(always)]
-    pub fn select(mask: R::Mask, yes: Self, no: Self) -> Self {
-        Self { whole: R::select(mask, yes.whole, no.whole), part: R::select(mask, yes.part, no.part) }
+    pub fn select(mask: R::Mask, chosen: Self, otherwise: Self) -> Self {
+        Self {
+            whole: R::select(mask, chosen.whole, otherwise.whole),
+            part: R::select(mask, chosen.part, otherwise.part),
+        }
     }
 
     /// Returns the instant in one lane, as whole numbers.
@@ -81,8 +84,8 @@ impl<R: LaneFloat> LaneTime<R> {
 /// Returns 1 where the mask is set, else 0. Products with it are exact, and avoid mispredicted branches for a single
 /// number.
 #[inline(always)]
-fn one<R: LaneFloat>(is: R::Mask, kind: R) -> R {
-    R::select(is, kind.splat(1.0), kind.splat(0.0))
+fn one<R: LaneFloat>(mask: R::Mask, kind: R) -> R {
+    R::select(mask, kind.splat(1.0), kind.splat(0.0))
 }
 
 /// Returns the femtoseconds nearest to a time (s) that is not negative; ties are rounded up.

@@ -7,14 +7,13 @@
 //! parallel with it.
 
 mod chatter;
-#[cfg(feature = "damped")]
-mod damped;
 mod envelope_lanes;
 mod host;
 mod kernel;
+mod lane_runs;
 mod lane_time;
-mod undamped;
 
+use flexsc_dynamics::damping::Undamped;
 use flexsc_numerics::lanes::Processor;
 
 pub use chatter::{SWITCHINGS, shortest_window};
@@ -27,20 +26,20 @@ pub fn is_supported(structure: LaneShape) -> bool {
 }
 
 /// Computes all runs of a host in SIMD lanes; the structure must be supported ([`is_supported`]).
-pub fn fly_beside(processor: Processor, structure: LaneShape, host: &mut dyn LaneHost) {
+pub fn run_lanes(processor: Processor, structure: LaneShape, host: &mut dyn LaneHost) {
     #[cfg(feature = "damped")]
     if structure.is_damped {
-        return damped::run_lanes(processor, structure, host);
+        return lane_runs::run_lanes::<1, lane_runs::WithDamping>(processor, structure, host);
     }
-    undamped::fly_beside(processor, structure, host);
+    lane_runs::run_lanes::<2, Undamped>(processor, structure, host);
 }
 
 /// Computes the single run of a host; the structure must be supported ([`is_supported`]).
-pub fn fly_alone(structure: LaneShape, host: &mut dyn LaneHost) {
+pub fn run_single(structure: LaneShape, host: &mut dyn LaneHost) {
     let Some(processor) = Processor::best() else { return };
     #[cfg(feature = "damped")]
     if structure.is_damped {
-        return damped::run_single(processor, structure, host);
+        return lane_runs::run_single::<lane_runs::WithDamping>(processor, structure, host);
     }
-    undamped::fly_alone(processor, structure, host);
+    lane_runs::run_single::<Undamped>(processor, structure, host);
 }

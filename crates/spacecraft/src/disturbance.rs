@@ -143,7 +143,7 @@ impl Disturbance {
 /// Run-time state of a disturbance.
 #[derive(Clone, Debug)]
 pub struct DisturbanceState {
-    what: Disturbance,
+    disturbance: Disturbance,
     push: Option<ForceEffect>,
     /// Pulse train: start of the last pulse, true if the pulse is on, and instant of the next switching.
     beat: Option<(Instant, bool, Instant)>,
@@ -161,7 +161,7 @@ impl DisturbanceState {
             next: noisy.then(|| at(disturbance.from)),
             beat: disturbance.pulse.map(|_| (at(disturbance.from), false, at(disturbance.from))),
             push: body.and_then(|body| disturbance.force_effect(body)),
-            what: disturbance.clone(),
+            disturbance: disturbance.clone(),
             draws,
             drawn: 0.0,
         }
@@ -169,19 +169,19 @@ impl DisturbanceState {
 
     /// Returns the instant of the next noise draw or pulse edge.
     pub fn due(&self) -> Option<Instant> {
-        let ends = |next: &Instant| self.what.to.is_none_or(|to| *next < at(to));
+        let ends = |next: &Instant| self.disturbance.to.is_none_or(|to| *next < at(to));
         let beat = self.beat.map(|(_, _, next)| next).filter(ends);
         [self.next, beat].into_iter().flatten().min()
     }
 
     /// Returns true if the disturbance acts at `now`, within a pulse if it is pulsed.
     fn acts(&self, now: Instant) -> bool {
-        self.what.acts(now) && self.beat.is_none_or(|(_, on, _)| on)
+        self.disturbance.acts(now) && self.beat.is_none_or(|(_, on, _)| on)
     }
 
     /// Draws the noise anew and starts or ends pulses, if that is due by `now`.
     pub fn update(&mut self, now: Instant) {
-        if let (Some(pulses), Some((began, on, next))) = (self.what.pulse, &mut self.beat) {
+        if let (Some(pulses), Some((began, on, next))) = (self.disturbance.pulse, &mut self.beat) {
             while *next <= now {
                 *on = !*on;
                 if *on {
@@ -191,26 +191,26 @@ impl DisturbanceState {
                 }
             }
         }
-        let Some(period) = self.what.period else { return };
+        let Some(period) = self.disturbance.period else { return };
         while let Some(next) = self.next.filter(|next| *next <= now) {
             // A draw held for a period has the part of the white noise's power that falls into this period.
-            self.drawn = f64::sqrt(self.what.noise.get() / period.seconds()) * self.draws.normal();
+            self.drawn = f64::sqrt(self.disturbance.noise.get() / period.seconds()) * self.draws.normal();
             let next = next + period;
-            self.next = self.what.to.is_none_or(|to| next < at(to)).then_some(next);
+            self.next = self.disturbance.to.is_none_or(|to| next < at(to)).then_some(next);
         }
     }
 
     /// Returns the torque on the hub about an axis at an instant (N m), right-continuous.
     pub fn torque_on_hub(&self, now: Instant, axis: usize) -> f64 {
-        let about = self.what.about.map_or(0, Axis::index);
-        let acts = self.push.is_none() && about == axis && self.acts(now);
-        if acts { self.what.torque.get() + self.drawn } else { 0.0 }
+        let body_axis = self.disturbance.about.map_or(0, Axis::index);
+        let acts = self.push.is_none() && body_axis == axis && self.acts(now);
+        if acts { self.disturbance.torque.get() + self.drawn } else { 0.0 }
     }
 
     /// Returns the torque of the sine terms about an axis at an instant (N m).
-    fn swinging(&self, now: Instant, axis: usize) -> f64 {
-        let own = self.what.about.map_or(0, Axis::index) == axis && self.acts(now);
-        let sines = self.what.sines.iter().filter(|_| own);
+    fn sine_torque(&self, now: Instant, axis: usize) -> f64 {
+        let own = self.disturbance.about.map_or(0, Axis::index) == axis && self.acts(now);
+        let sines = self.disturbance.sines.iter().filter(|_| own);
         sines.map(|sine| sine.at(now.seconds())).sum()
     }
 
@@ -218,16 +218,16 @@ impl DisturbanceState {
     pub fn torque(&self, now: Instant, axis: usize) -> f64 {
         match &self.push {
             Some(push) if self.acts(now) => push.torque[axis],
-            _ => self.torque_on_hub(now, axis) + self.swinging(now, axis),
+            _ => self.torque_on_hub(now, axis) + self.sine_torque(now, axis),
         }
     }
 
     /// Adds the effect of a force, or the sine terms of a torque, to `onto` from `now` on.
     pub fn force_effect(&self, now: Instant, onto: &mut Wrench) {
-        if !self.what.sines.is_empty() && self.acts(now) {
-            let axis = self.what.about.map_or(0, Axis::index);
-            let about = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
-            onto.sines.extend(self.what.sines.iter().map(|sine| (about, *sine)));
+        if !self.disturbance.sines.is_empty() && self.acts(now) {
+            let axis = self.disturbance.about.map_or(0, Axis::index);
+            let direction = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+            onto.sines.extend(self.disturbance.sines.iter().map(|sine| (direction, *sine)));
         }
         if let Some(push) = self.push.as_ref().filter(|_| self.acts(now)) {
             onto.add_force_effect(push);

@@ -1,4 +1,4 @@
-//! The scenario file beside a campaign's tables: it identifies them, and any run can be repeated from it.
+//! Scenario file next to a campaign's tables: it identifies them, and any run can be repeated from it.
 
 use std::fs;
 use std::io::Write;
@@ -12,7 +12,7 @@ use flexsc_core::record::difference;
 use super::CampaignJob;
 use crate::error::CliError;
 
-/// Name of the file with a campaign's scenario, beside its tables.
+/// Name of the file with a campaign's scenario, in the directory of its tables.
 pub const SCENARIO: &str = "scenario.toml";
 /// First words of a scenario file that flexsc wrote.
 const MARK: &str = "# What the runs beside it were drawn from, by flexsc";
@@ -30,11 +30,11 @@ pub struct CampaignRecord<'a> {
 }
 
 impl<'a> CampaignRecord<'a> {
-    /// Returns the scenario file of a job of the campaign `study` in `directory`.
-    pub fn new(directory: &'a Path, job: &'a CampaignJob<'a>, study: &Campaign) -> Self {
+    /// Returns the scenario file of a job of a campaign in `directory`.
+    pub fn new(directory: &'a Path, job: &'a CampaignJob<'a>, campaign: &Campaign) -> Self {
         let prefix = job.prefix.map_or(String::new(), |name| format!("{name}-"));
-        let grids = study.design().describe();
-        let text = format!("{MARK} {}.\n{grids}{}", env!("CARGO_PKG_VERSION"), study.to_toml());
+        let grids = campaign.design().describe();
+        let text = format!("{MARK} {}.\n{grids}{}", env!("CARGO_PKG_VERSION"), campaign.to_toml());
         Self { directory, prefix, job, text }
     }
 
@@ -66,16 +66,16 @@ impl<'a> CampaignRecord<'a> {
             Err(CliError::Arguments(format!("{}: {why}\n\n{hint}", path.display())))
         };
         atomic_file::unlinked(path).map_err(CliError::write(path))?;
-        let there = match fs::read(path) {
-            Ok(there) => String::from_utf8_lossy(&there).into_owned(),
+        let existing = match fs::read(path) {
+            Ok(bytes) => String::from_utf8_lossy(&bytes).into_owned(),
             Err(_) => String::new(),
         };
-        if !there.is_empty() && !there.starts_with(MARK) {
+        if !existing.is_empty() && !existing.starts_with(MARK) {
             let why = "exists, and flexsc did not write it";
             return refused(path, why, "hint: give another directory with -o");
         }
         let tables = self.tables();
-        if there == self.text {
+        if existing == self.text {
             if self.job.part || self.job.force {
                 return Ok(true);
             }
@@ -94,10 +94,10 @@ impl<'a> CampaignRecord<'a> {
             return Ok(false);
         }
         match tables.first() {
-            Some(table) if there.is_empty() => refused(table, "exists, but its campaign is unknown", HINT),
-            _ if there.is_empty() => Ok(true),
+            Some(table) if existing.is_empty() => refused(table, "exists, but its campaign is unknown", HINT),
+            _ if existing.is_empty() => Ok(true),
             _ => {
-                let why = format!("contains another campaign{}", other(&there, &self.text));
+                let why = format!("contains another campaign{}", other(&existing, &self.text));
                 refused(path, &why, HINT)
             }
         }
@@ -122,20 +122,24 @@ impl<'a> CampaignRecord<'a> {
 }
 
 /// Describes the difference of two campaigns: scenario, version or swept keys.
-fn other(there: &str, here: &str) -> String {
-    let difference = difference(there, here);
+fn other(existing: &str, current: &str) -> String {
+    let difference = difference(existing, current);
     let comments = |text: &str| -> Vec<String> {
         text.lines().take_while(|line| line.starts_with('#')).map(str::to_owned).collect()
     };
     if !difference.is_empty() {
         return difference;
     }
-    let (there, here) = (comments(there), comments(here));
+    let (existing_comments, current_comments) = (comments(existing), comments(current));
     let not_in = |one: &[String], other: &[String]| {
         let line = one.iter().find(|line| !other.contains(line));
         line.map_or("nothing".to_owned(), |line| line.trim_start_matches("# ").to_owned())
     };
-    format!(" ({} before, {} now)", not_in(&there, &here), not_in(&here, &there))
+    format!(
+        " ({} before, {} now)",
+        not_in(&existing_comments, &current_comments),
+        not_in(&current_comments, &existing_comments)
+    )
 }
 
 /// Returns the number of rows of a table; 0 without a file.

@@ -28,22 +28,22 @@ fn csv(work: &RowMaker, rows: &RunRows) -> Result<Vec<u8>, csv::Error> {
     writer.write_record(columns.iter().map(|(field, _)| &field.name))?;
     for row in 0..rows.len() {
         writer.write_record(columns.iter().map(|(field, cells)| {
-            let about = [RUN, SEED].contains(&field.name.as_str()) || keys.contains(&field.name.as_str());
-            cell(cells, row, about)
+            let is_label = [RUN, SEED].contains(&field.name.as_str()) || keys.contains(&field.name.as_str());
+            cell(cells, row, is_label)
         }))?;
     }
     Ok(writer.into_inner().map_err(csv::IntoInnerError::into_error)?)
 }
 
 /// Returns a cell as text: values that describe the run as in a scenario, metrics with all digits.
-fn cell(cells: &ColumnCells, row: usize, about: bool) -> String {
+fn cell(cells: &ColumnCells, row: usize, is_label: bool) -> String {
     let text = match cells {
         ColumnCells::Integers(cells) => cells[row].map(|integer| integer.to_string()),
         ColumnCells::Numbers(cells) if cells[row].is_nan() => None,
-        ColumnCells::Numbers(cells) if about && cells[row].fract() == 0.0 => {
+        ColumnCells::Numbers(cells) if is_label && cells[row].fract() == 0.0 => {
             Some(format!("{:.1}", cells[row]))
         }
-        ColumnCells::Numbers(cells) if about => Some(cells[row].to_string()),
+        ColumnCells::Numbers(cells) if is_label => Some(cells[row].to_string()),
         ColumnCells::Numbers(cells) => Some(format!("{:e}", cells[row])),
         ColumnCells::Words(cells) => cells[row].clone(),
         ColumnCells::Lists(cells) => cells[row].as_ref().map(|list| json!(list).to_string()),

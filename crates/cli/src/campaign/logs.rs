@@ -1,4 +1,4 @@
-//! Simulation of runs with their logs: of one run, and of each run of a campaign beside its rows.
+//! Simulation of runs with their logs: one run, or each run of a campaign.
 
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -43,11 +43,11 @@ impl LogDetail {
 }
 
 /// Runs a campaign; if a detail is given, the log of each run is NAME-NUMBER.mcap beside the tables.
-pub fn run(study: &Arc<Campaign>, job: &CampaignJob<'_>, detail: Option<Detail>) -> Result<(), CliError> {
+pub fn run(campaign: &Arc<Campaign>, job: &CampaignJob<'_>, detail: Option<Detail>) -> Result<(), CliError> {
     let directory = job.table.map(Path::to_owned).unwrap_or_default();
-    let (name, force) = (study.scenario().name.clone(), job.force);
+    let (name, force) = (campaign.scenario().name.clone(), job.force);
     let log = move |number: u64| -> PathBuf { directory.join(format!("{name}-{number}.mcap")) };
-    run_all(study, job, {
+    run_all(campaign, job, {
         let (log, selection) = (log.clone(), job.selection.clone());
         move |run| match detail {
             // Runs that had not started before the interruption have no log.
@@ -80,9 +80,9 @@ pub fn simulate_to_log(
     let provenance = with_layout(Campaign::provenance(run), &run.scenario, detail);
     let mut log = LogFile::create(path, &provenance, detail)?;
     // From here on, this process has the file to itself.
-    if let (ExistingLog::Other(what), false) = (existing_log(path, &provenance), force) {
+    if let (ExistingLog::Other(description), false) = (existing_log(path, &provenance), force) {
         let text = format!(
-            "{}: {what}\n\nhint: give another directory with -o, or use --force to replace it",
+            "{}: {description}\n\nhint: give another directory with -o, or use --force to replace it",
             path.display()
         );
         return Err(RecordError::Io(NotReplaced(text).into()).into());

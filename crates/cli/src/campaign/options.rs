@@ -96,7 +96,7 @@ impl CampaignOptions {
             ("--json", json),
             ("--fail-fast", self.fail_fast),
         ];
-        match (&self.scheduler, other.into_iter().find(|(_, given)| *given)) {
+        match (&self.scheduler, other.into_iter().find(|(_, is_given)| *is_given)) {
             (Some(address), Some((option, _))) => Err(CliError::Arguments(format!(
                 "--scheduler {address}: its workers write only Parquet files; leave out {option}"
             ))),

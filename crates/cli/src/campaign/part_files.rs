@@ -37,10 +37,10 @@ pub fn failure(error: DirectoryError) -> CliError {
 pub fn create(path: &Path, manifest: Manifest, job: &CampaignJob<'_>) -> Result<Directory, CliError> {
     let runs = manifest.runs();
     let mut directory = Directory::create(path, manifest, job.force).map_err(failure)?;
-    let there = directory.work().manifest.runs();
-    if !job.part && there != runs {
+    let present = directory.work().manifest.runs();
+    if !job.part && present != runs {
         if !job.force {
-            let (before, now) = (there.end - there.start, runs.end - runs.start);
+            let (before, now) = (present.end - present.start, runs.end - runs.start);
             let why =
                 format!("holds {} of this campaign, and {now} would replace them", counted(before, "run"));
             return Err(CliError::Arguments(format!("{}: {why}\n\n{HINT}", path.join(MANIFEST).display())));
@@ -52,22 +52,22 @@ pub fn create(path: &Path, manifest: Manifest, job: &CampaignJob<'_>) -> Result<
 
 /// Makes the missing runs of a job.
 pub fn run(
-    study: &Arc<Campaign>,
+    campaign: &Arc<Campaign>,
     job: &CampaignJob<'_>,
     path: &Path,
     work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
 ) -> Result<CampaignReport, CliError> {
-    let mut manifest = Manifest::new(study, job.range.clone(), &job.selection)
-        .map_err(|why| CliError::Arguments(format!("{}: {why}", study.scenario().name)))?;
+    let mut manifest = Manifest::new(campaign, job.range.clone(), &job.selection)
+        .map_err(|why| CliError::Arguments(format!("{}: {why}", campaign.scenario().name)))?;
     if job.scheduler.is_some() {
         manifest.limit_part_size(scheduler::TASK_S);
     }
     let directory = create(path, manifest, job)?;
     let missing = directory.missing_among(job.range.clone()).map_err(failure)?;
     let count = |ranges: &[Range<u64>]| ranges.iter().map(|runs| runs.end - runs.start).sum::<u64>();
-    let (all, left) = (job.range.end - job.range.start, count(&missing));
-    if left < all && !job.json {
-        say!("{}: {} of {} are there", path.display(), all - left, counted(all, "run"));
+    let (all, remaining) = (job.range.end - job.range.start, count(&missing));
+    if remaining < all && !job.json {
+        say!("{}: {} of {} are there", path.display(), all - remaining, counted(all, "run"));
     }
     if let Some(address) = job.scheduler {
         // The process that hands out the runs needs the lock.
@@ -79,7 +79,7 @@ pub fn run(
     let mut making = PartProgress {
         directory: &directory,
         job,
-        live: LiveStatistics::new(all, all - left),
+        live: LiveStatistics::new(all, all - remaining),
         part: None,
         next: 0,
         made: 0,
@@ -92,18 +92,18 @@ pub fn run(
         let campaign = &directory.work().campaign;
         let (range, threads) = (gap.clone(), job.threads());
         let work = move |run: &CampaignRun| work(run);
-        let report = |outcome| making.take(outcome, &mut parts);
+        let report = |outcome| making.append_runs(outcome, &mut parts);
         let done = if job.plain {
             campaign.for_each_run_in_batches(range, threads, &job.selection, work, report)
         } else {
             campaign.for_each_run(range, threads, work, report)
         };
         if let Err(failure) = done {
-            let made = all - left + making.made;
+            let made = all - remaining + making.made;
             drop(making);
             return Err(match failure {
-                CliError::Interrupted(at) => CliError::Interrupted(format!(
-                    "{at}; {} holds {made} of {}, and the same command continues",
+                CliError::Interrupted(text) => CliError::Interrupted(format!(
+                    "{text}; {} holds {made} of {}, and the same command continues",
                     path.display(),
                     counted(all, "run")
                 )),
@@ -141,7 +141,7 @@ struct PartProgress<'a> {
 }
 
 impl PartProgress<'_> {
-    fn take<'r>(
+    fn append_runs<'r>(
         &mut self,
         outcome: Option<RunOutcome>,
         parts: &mut impl Iterator<Item = &'r Range<u64>>,
@@ -181,12 +181,12 @@ pub fn summary(directory: &Directory, range: &Range<u64>) -> Result<CampaignRepo
     write_statistics(&directory.path().join(STATISTICS), &statistics)?;
     let work = directory.work();
     let shown = points::runs(&work.campaign, range);
-    let there = directory.parts().map_err(failure)?;
+    let present = directory.parts().map_err(failure)?;
     let within = |runs: &Range<u64>, part: &Range<u64>| runs.start.max(part.start)..runs.end.min(part.end);
     let column = |name: &str| -> Result<_, CliError> {
         let Some(field) = work.fields().iter().find(|field| field.name == name) else { return Ok(None) };
         let mut all = ColumnCells::empty(field.kind);
-        for (runs, part) in shown.iter().flat_map(|runs| there.iter().map(move |part| (runs, part))) {
+        for (runs, part) in shown.iter().flat_map(|runs| present.iter().map(move |part| (runs, part))) {
             let runs = within(runs, part);
             if !runs.is_empty() {
                 let cells = directory.columns_of(part, &[name]).map_err(failure)?.remove(0);

@@ -32,9 +32,9 @@ pub struct Points {
 }
 
 /// Returns the runs whose points are printed; empty for a campaign that is not a sweep.
-pub fn runs(study: &Campaign, range: &Range<u64>) -> Vec<Range<u64>> {
-    let replicas = study.design().replicas;
-    let points = study.design().point(range.start)..study.design().point(range.end - 1) + 1;
+pub fn runs(campaign: &Campaign, range: &Range<u64>) -> Vec<Range<u64>> {
+    let replicas = campaign.design().replicas;
+    let points = campaign.design().point(range.start)..campaign.design().point(range.end - 1) + 1;
     let count = points.end - points.start;
     let shown = if count <= ALL {
         vec![points]
@@ -42,25 +42,25 @@ pub fn runs(study: &Campaign, range: &Range<u64>) -> Vec<Range<u64>> {
         vec![points.start..points.start + ENDS, points.end - ENDS..points.end]
     };
     let most = count.min(ALL).saturating_mul(replicas);
-    if study.design().keys().is_empty() || most > MOST_RUNS {
+    if campaign.design().keys().is_empty() || most > MOST_RUNS {
         return Vec::new();
     }
-    let of = |points: Range<u64>| {
+    let runs_of = |points: Range<u64>| {
         (points.start * replicas).max(range.start)..(points.end * replicas).min(range.end)
     };
-    shown.into_iter().map(of).collect()
+    shown.into_iter().map(runs_of).collect()
 }
 
 impl Points {
     /// Returns the points of the runs in a range; `column` returns the cells of the printed runs for a column name,
     /// `None` for an unknown one.
     pub fn new<E>(
-        (study, range): (&Campaign, &Range<u64>),
+        (campaign, range): (&Campaign, &Range<u64>),
         (statistics, selection): (&[Statistics], &Selection),
         column: impl Fn(&str) -> Result<Option<ColumnCells>, E>,
     ) -> Result<Option<Self>, E> {
-        let design = study.design();
-        if runs(study, range).is_empty() {
+        let design = campaign.design();
+        if runs(campaign, range).is_empty() {
             return Ok(None);
         }
         let mut keys = Vec::new();
@@ -98,7 +98,7 @@ impl Points {
                 let _ = writeln!(text, "  ... {} more points", self.all - 2 * ENDS);
             }
             let first = point * self.replicas as usize;
-            let of = first..(first + self.replicas as usize).min(cells);
+            let cells_of_point = first..(first + self.replicas as usize).min(cells);
             text.push(' ');
             for (name, cells) in &self.keys {
                 let _ = write!(text, " {:>width$}", value(cells, first), width = cell_width(name) - 1);
@@ -107,7 +107,7 @@ impl Points {
                 let _ = write!(
                     text,
                     " {:>width$}",
-                    metric(name, cells, of.clone()),
+                    metric(name, cells, cells_of_point.clone()),
                     width = cell_width(name) - 1
                 );
             }
@@ -129,9 +129,9 @@ fn cell_width(name: &str) -> usize {
 
 /// Returns the metrics to print: the selected ones, else the main ones that vary, else any that vary.
 fn chosen<'a>(statistics: &'a [Statistics], selection: &'a Selection) -> Vec<&'a str> {
-    let there = |name: &str| statistics.iter().find(|s| s.name == name && s.runs + s.infinite > 0);
+    let has_runs = |name: &str| statistics.iter().find(|s| s.name == name && s.runs + s.infinite > 0);
     if let Some(names) = selection.names() {
-        return names.iter().copied().filter(|name| there(name).is_some()).collect();
+        return names.iter().copied().filter(|name| has_runs(name).is_some()).collect();
     }
     let varies = |s: &&Statistics| s.sd > 0.0 || s.infinite > 0;
     let all: Vec<&str> = statistics.iter().filter(varies).map(|s| s.name).collect();
@@ -154,7 +154,7 @@ fn metric(name: &str, cells: &ColumnCells, runs: Range<usize>) -> String {
     let mean = values.iter().sum::<f64>() / values.len() as f64;
     match (goal::NAMES.contains(&name), &values[..]) {
         (_, []) => "-".to_owned(),
-        (true, [met]) => verdict(*met > 0.0).to_owned(),
+        (true, [value]) => verdict(*value > 0.0).to_owned(),
         (true, _) => format!("{:.0} of {}", mean * values.len() as f64, values.len()),
         _ if matches!(cells, ColumnCells::Integers(_)) && mean == mean.trunc() => format!("{mean}"),
         _ => short(mean),

@@ -8,7 +8,7 @@ use flexsc_core::metrics::{MetricValue, Metrics, goal};
 use indicatif::ProgressBar;
 use serde_json::{Value as Json, json};
 
-use super::{MAIN, met};
+use super::{MAIN, success_rate};
 use crate::number::short;
 use crate::progress::{self, Lines};
 
@@ -57,10 +57,10 @@ impl RunningMean {
 /// Returns the lines of a table with the statistics of some metrics.
 pub fn table(metrics: &[(&str, RunningMean)]) -> String {
     let mut text = String::new();
-    let any = metrics.iter().filter(|(_, so_far)| so_far.count > 0);
+    let any = metrics.iter().filter(|(_, statistics)| statistics.count > 0);
     let (verdicts, any): (Vec<_>, Vec<_>) = any.partition(|(name, _)| goal::NAMES.contains(name));
     for (name, RunningMean { count, mean, .. }) in verdicts {
-        let _ = writeln!(text, "  {name:32}{:>10}", met(*count, *mean));
+        let _ = writeln!(text, "  {name:32}{:>10}", success_rate(*count, *mean));
     }
     if any.is_empty() {
         text.truncate(text.trim_end().len());
@@ -71,13 +71,13 @@ pub fn table(metrics: &[(&str, RunningMean)]) -> String {
             "so far", "runs", "mean", "sd", "least", "most"
         );
     }
-    for (name, so_far) in any {
-        let RunningMean { count, mean, least, most, .. } = so_far;
+    for (name, statistics) in any {
+        let RunningMean { count, mean, least, most, .. } = statistics;
         let _ = write!(
             text,
             "\n  {name:32}{count:>10}{:>12}{:>11}{:>11}{:>11}",
             short(*mean),
-            short(so_far.sd()),
+            short(statistics.sd()),
             short(*least),
             short(*most)
         );
@@ -105,10 +105,10 @@ pub struct LiveStatistics {
 }
 
 impl LiveStatistics {
-    /// Creates a bar over `runs` runs, of which `there` were completed before.
-    pub fn new(runs: u64, there: u64) -> Self {
-        let bar = progress::bar_from(runs, there, "runs");
-        let lines = Lines::new(runs, there, "runs");
+    /// Creates a bar over `runs` runs, of which `present` were completed before.
+    pub fn new(runs: u64, present: u64) -> Self {
+        let bar = progress::bar_from(runs, present, "runs");
+        let lines = Lines::new(runs, present, "runs");
         Self { bar, lines, metrics: Vec::new(), failed: 0, shown: Instant::now() }
     }
 

@@ -65,7 +65,7 @@ impl CampaignReport {
         }
         let is_verdict = |s: &&Statistics| goal::NAMES.contains(&s.name);
         for s in self.statistics.iter().filter(is_verdict).filter(|s| s.runs > 0) {
-            say!("  {:32}{}", s.name, met(s.runs as u64, s.mean));
+            say!("  {:32}{}", s.name, success_rate(s.runs as u64, s.mean));
         }
         let quantiles = QUANTILES.map(|q| format!("{:>11}", format!("{:.0} %", 100.0 * q))).concat();
         say!("  {:32}{:>6}{:>12}{:>11}{quantiles}", "metric", "runs", "mean", "sd");
@@ -81,11 +81,11 @@ impl CampaignReport {
 }
 
 /// Formats the number of runs that meet a goal, given their fraction.
-pub fn met(runs: u64, fraction: f64) -> String {
-    let met = (fraction * runs as f64).round() as u64;
-    let (low, high) = wilson(met, runs);
+pub fn success_rate(runs: u64, fraction: f64) -> String {
+    let successes = (fraction * runs as f64).round() as u64;
+    let (low, high) = wilson(successes, runs);
     let [part, low, high] = [fraction, low, high].map(|part| format!("{:.0}", 100.0 * part));
-    format!("{met} of {runs} met ({part} %, 95 % interval {low} to {high})")
+    format!("{successes} of {runs} met ({part} %, 95 % interval {low} to {high})")
 }
 
 /// Returns a verdict as one word.
@@ -95,12 +95,12 @@ pub fn verdict(is_met: bool) -> &'static str {
 
 #[cfg(test)]
 mod tests {
-    use super::met;
+    use super::success_rate;
 
     #[test]
     fn verdicts_are_counted() {
         // scipy.stats.binomtest(103, 200).proportion_ci(0.95, "wilson"): 0.4461 to 0.5833.
-        assert_eq!(met(200, 0.515), "103 of 200 met (52 %, 95 % interval 45 to 58)");
-        assert_eq!(met(8, 1.0), "8 of 8 met (100 %, 95 % interval 68 to 100)");
+        assert_eq!(success_rate(200, 0.515), "103 of 200 met (52 %, 95 % interval 45 to 58)");
+        assert_eq!(success_rate(8, 1.0), "8 of 8 met (100 %, 95 % interval 68 to 100)");
     }
 }

@@ -14,9 +14,9 @@ use crate::stop;
 pub const TASK_S: f64 = 1.0;
 
 /// Polling period for the end of the Python process.
-const LOOK: Duration = Duration::from_millis(20);
+const POLL_PERIOD: Duration = Duration::from_millis(20);
 /// Longest time for the Python process to end after it is asked to.
-const PATIENCE: Duration = Duration::from_millis(1500);
+const STOP_TIMEOUT: Duration = Duration::from_millis(1500);
 
 /// Makes the missing runs of a directory that all workers can reach, and waits for them.
 pub fn make(directory: &Path, address: &str) -> Result<(), CliError> {
@@ -46,16 +46,16 @@ fn ended(mut child: Child) -> io::Result<ExitStatus> {
         }
         if stop::stop_requested() {
             drop(child.stdin.take());
-            let asked = Instant::now();
-            while asked.elapsed() < PATIENCE {
+            let started = Instant::now();
+            while started.elapsed() < STOP_TIMEOUT {
                 if let Some(status) = child.try_wait()? {
                     return Ok(status);
                 }
-                thread::sleep(LOOK);
+                thread::sleep(POLL_PERIOD);
             }
             child.kill()?;
             return child.wait();
         }
-        thread::sleep(LOOK);
+        thread::sleep(POLL_PERIOD);
     }
 }

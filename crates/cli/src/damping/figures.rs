@@ -29,14 +29,14 @@ pub fn figure(rows: &[DampedMode], limit: f64) -> Figure {
     let gain = line(&|row| row.gain_limit_1_s);
     let cycle = line(&|row| row.limit_cycle_rate_rad_s);
     let values =
-        |of: &[Point]| of.iter().map(|point| point.1).filter(|v| v.is_finite()).collect::<Vec<f64>>();
+        |values: &[Point]| values.iter().map(|point| point.1).filter(|v| v.is_finite()).collect::<Vec<f64>>();
     let panel = |x: FigureAxis, y: FigureAxis, points: Vec<Point>, name: &str| {
         let mut layers = Vec::new();
         let label = y.name.split(" (").next().unwrap_or_default().to_owned();
         if limit < range.end {
             let edge = y.range.clone();
-            let at = vec![(limit, edge.start), (limit, edge.end)];
-            layers.push(Layer::new(name, colour::VERMILLION, LayerShape::Dashes, at));
+            let boundary = vec![(limit, edge.start), (limit, edge.end)];
+            layers.push(Layer::new(name, colour::VERMILLION, LayerShape::Dashes, boundary));
         }
         layers.push(Layer::new(&label, colour::BLUE, LayerShape::Line(1.6), points));
         Panel::new(x, y, layers)

@@ -111,7 +111,7 @@ impl IdentifyArgs {
     pub fn results(&self) -> Result<IdentifyResults, CliError> {
         let shipped =
             SETS.iter().map(|(modes, rate)| (modes.iter().map(|(f, mu)| (TAU * f, *mu)).collect(), *rate));
-        let asked: Vec<(Vec<(f64, f64)>, f64)> = if self.modes.is_empty() {
+        let mode_sets: Vec<(Vec<(f64, f64)>, f64)> = if self.modes.is_empty() {
             shipped.collect()
         } else {
             self.modes.iter().map(|ModeSet(modes)| (modes.clone(), self.rate)).collect()
@@ -119,15 +119,15 @@ impl IdentifyArgs {
         let Some(rate) = NonNegative::new(self.rate) else {
             return Err(CliError::Arguments(format!("--rate must be 0 or more, got {}", self.rate)));
         };
-        let modes: usize = asked.iter().map(|(modes, _)| modes.len() * modes.len()).sum();
+        let modes: usize = mode_sets.iter().map(|(modes, _)| modes.len() * modes.len()).sum();
         self.consent.check(&IdentificationTrial::cost(
             self.off.len() as f64 * self.runs as f64,
             self.cycles,
             modes as f64,
         ))?;
         let mut sets = Vec::new();
-        let bar = progress::bar((asked.len() * self.off.len()) as u64, "rows");
-        for (modes, rate_of_set) in asked {
+        let bar = progress::bar((mode_sets.len() * self.off.len()) as u64, "rows");
+        for (modes, rate_of_set) in mode_sets {
             let mut rows = Vec::new();
             for off in &self.off {
                 let mut trial = IdentificationTrial::published(modes.clone(), *off);

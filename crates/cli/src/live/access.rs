@@ -30,13 +30,13 @@ pub struct AccessControl {
     /// Additional origins that the user allows.
     allowed: Vec<String>,
     /// Refused origins that have been printed.
-    told: Mutex<BTreeSet<String>>,
+    refused_origins: Mutex<BTreeSet<String>>,
 }
 
 impl AccessControl {
     /// Returns the access control of a server at this address; `allowed` are origins in addition to the known ones.
     pub fn new(address: &str, allowed: &[String]) -> Self {
-        Self { own: host(address).to_owned(), allowed: allowed.to_vec(), told: Mutex::default() }
+        Self { own: host(address).to_owned(), allowed: allowed.to_vec(), refused_origins: Mutex::default() }
     }
 
     /// Returns an error with the reason if a request must not connect.
@@ -46,9 +46,11 @@ impl AccessControl {
             let first = values.next().map(|value| value.to_str().unwrap_or("?"));
             if values.next().is_some() { Some("?") } else { first }
         };
-        let asked = only(HOST).unwrap_or_default();
-        if !self.is_loopback(host(asked)) {
-            return Err(format!("this server is not `{asked}`: ask for its address, or for localhost"));
+        let requested_host = only(HOST).unwrap_or_default();
+        if !self.is_loopback(host(requested_host)) {
+            return Err(format!(
+                "this server is not `{requested_host}`: ask for its address, or for localhost"
+            ));
         }
         match only(ORIGIN) {
             Some(origin) if !self.is_known_origin(origin) => {
@@ -76,7 +78,7 @@ impl AccessControl {
     }
 
     fn refuse(&self, origin: &str) {
-        let mut reported = self.told.lock().unwrap_or_else(PoisonError::into_inner);
+        let mut reported = self.refused_origins.lock().unwrap_or_else(PoisonError::into_inner);
         let short: String = origin.chars().take(100).collect();
         if reported.len() < MAX_PRINTED_ORIGINS && reported.insert(short.clone()) {
             say!("  live           refused a page of {short}; --allow-origin lets it in");
@@ -88,11 +90,12 @@ impl AccessControl {
 pub fn origin(text: &str) -> Result<String, String> {
     let lower = text.trim_end_matches('/').to_ascii_lowercase();
     let named = lower.split_once("://").filter(|(scheme, host)| {
-        let of = |extra: &'static str| move |c: char| c.is_ascii_alphanumeric() || extra.contains(c);
+        let allowed_with =
+            |extra: &'static str| move |c: char| c.is_ascii_alphanumeric() || extra.contains(c);
         !scheme.is_empty()
-            && scheme.chars().all(of("+-."))
+            && scheme.chars().all(allowed_with("+-."))
             && !host.is_empty()
-            && host.chars().all(of("-._:[]"))
+            && host.chars().all(allowed_with("-._:[]"))
     });
     let Some((scheme, host)) = named else {
         return Err(format!("must be an origin such as https://viewer.example, got `{text}`"));

@@ -56,9 +56,9 @@ fn agree(
     if let Err(why) = gate.admit(request.headers()) {
         return refuse(StatusCode::FORBIDDEN, why);
     }
-    let asked = request.headers().get_all(SUBPROTOCOL).iter().filter_map(|value| value.to_str().ok());
-    let asked: Vec<&str> = asked.flat_map(|names| names.split(',')).map(str::trim).collect();
-    let Some(name) = SUBPROTOCOLS.into_iter().find(|name| asked.contains(name)) else {
+    let requested = request.headers().get_all(SUBPROTOCOL).iter().filter_map(|value| value.to_str().ok());
+    let requested: Vec<&str> = requested.flat_map(|names| names.split(',')).map(str::trim).collect();
+    let Some(name) = SUBPROTOCOLS.into_iter().find(|name| requested.contains(name)) else {
         return refuse(
             StatusCode::BAD_REQUEST,
             format!("ask for the subprotocol {}", SUBPROTOCOLS.join(" or ")),
@@ -159,10 +159,14 @@ mod tests {
         let mut frames: VecDeque<_> = (0..256).map(|_| OutgoingFrame::binary(vec![0; 1 << 16])).collect();
         let is_full = |sent: Result<(), Error>| matches!(sent, Err(Error::Io(error)) if would_block(&error));
         assert!(is_full(send(&mut socket, &mut frames)));
-        let left = frames.len();
+        let frame_count = frames.len();
         for _ in 0..3 {
             assert!(is_full(send(&mut socket, &mut frames)));
         }
-        assert!(left > 0 && frames.len() == left, "{} of {left} frames left", frames.len());
+        assert!(
+            frame_count > 0 && frames.len() == frame_count,
+            "{} of {frame_count} frames left",
+            frames.len()
+        );
     }
 }

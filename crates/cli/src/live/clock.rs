@@ -7,7 +7,7 @@ use std::time::{Duration, Instant as WallInstant};
 use flexsc_core::numerics::time::{Instant, Span};
 
 /// Polling period of a held run.
-pub const LOOK: Duration = Duration::from_millis(50);
+pub const POLL_PERIOD: Duration = Duration::from_millis(50);
 /// Largest lag (s of real time) that a run which was too slow for its speed catches up with.
 const LARGEST_LAG: f64 = 0.1;
 
@@ -64,7 +64,7 @@ impl fmt::Display for Speed {
 /// Clock that decides when simulated time may advance.
 #[derive(Clone, Debug)]
 pub struct Clock {
-    begun: bool,
+    has_begun: bool,
     paused: bool,
     speed: Speed,
     /// Period of the log, by which a single step advances.
@@ -84,7 +84,7 @@ impl Clock {
     /// Returns a clock that has not started.
     pub fn new(speed: Speed, period: Span, wall: WallInstant) -> Self {
         Self {
-            begun: false,
+            has_begun: false,
             paused: false,
             speed,
             period,
@@ -98,27 +98,27 @@ impl Clock {
 
     /// Starts the clock if it has not started.
     pub fn begin(&mut self, wall: WallInstant) {
-        if !self.begun {
-            self.begun = true;
+        if !self.has_begun {
+            self.has_begun = true;
             self.wall = wall;
         }
     }
 
     /// Returns the time to wait until the instant `at`; if it is due, releases it and returns `None`.
-    pub fn wait(&mut self, at: Instant, wall: WallInstant) -> Option<Duration> {
-        if !self.begun || (self.paused && at > self.until) {
-            return Some(LOOK);
+    pub fn wait(&mut self, time: Instant, wall: WallInstant) -> Option<Duration> {
+        if !self.has_begun || (self.paused && time > self.until) {
+            return Some(POLL_PERIOD);
         }
         if !self.paused && self.speed.finite().is_some() {
             self.advance(wall);
-            let ahead = (at.seconds() - self.position) / self.speed.0;
+            let ahead = (time.seconds() - self.position) / self.speed.0;
             if ahead > 0.0 {
-                return Some(Duration::try_from_secs_f64(ahead).unwrap_or(LOOK).min(LOOK));
+                return Some(Duration::try_from_secs_f64(ahead).unwrap_or(POLL_PERIOD).min(POLL_PERIOD));
             }
-            self.position = self.position.min(at.seconds() + LARGEST_LAG * self.speed.0);
+            self.position = self.position.min(time.seconds() + LARGEST_LAG * self.speed.0);
         }
-        self.shown = at;
-        while self.next <= at {
+        self.shown = time;
+        while self.next <= time {
             self.next += self.period;
         }
         None
@@ -196,7 +196,7 @@ mod tests {
         let wall = WallInstant::now();
         let speed = speed.parse().expect("a speed");
         let mut clock = Clock::new(speed, Span::from_seconds(0.1), wall);
-        assert_eq!(clock.wait(at(0.0), wall), Some(LOOK), "it has not begun");
+        assert_eq!(clock.wait(at(0.0), wall), Some(POLL_PERIOD), "it has not begun");
         clock.begin(wall);
         assert_eq!(clock.wait(at(0.0), wall), None);
         (clock, wall)
@@ -227,15 +227,15 @@ mod tests {
         assert_eq!(clock.wait(at(0.15), wall), None);
         clock.pause();
         assert_eq!(clock.wait(at(0.15), wall), None, "the same instant");
-        assert_eq!(clock.wait(at(0.16), wall), Some(LOOK));
+        assert_eq!(clock.wait(at(0.16), wall), Some(POLL_PERIOD));
         clock.step();
         assert_eq!(clock.wait(at(0.16), wall), None);
         assert_eq!(clock.wait(at(0.2), wall), None);
-        assert_eq!(clock.wait(at(0.21), wall), Some(LOOK));
+        assert_eq!(clock.wait(at(0.21), wall), Some(POLL_PERIOD));
         clock.step();
         clock.step();
         assert_eq!(clock.wait(at(0.4), wall), None);
-        assert_eq!(clock.wait(at(0.41), wall), Some(LOOK));
+        assert_eq!(clock.wait(at(0.41), wall), Some(POLL_PERIOD));
         clock.resume(wall);
         assert_eq!(clock.wait(at(9.0), wall), None);
     }

@@ -8,9 +8,9 @@ use std::time::{Duration, Instant as WallInstant};
 const LISTEN: Duration = Duration::from_millis(5);
 /// Time limit of a write, after which the client's patience limit is checked.
 const PUSH: Duration = Duration::from_millis(50);
-/// Least data (bytes) that a client must receive within [`PATIENCE`] while frames are waiting, unless it receives all.
+/// Least data (bytes) that a client must receive within [`PROGRESS_TIMEOUT`] while frames are waiting, unless it receives all.
 const LEAST: u64 = 64 << 10;
-const PATIENCE: Duration = Duration::from_secs(10);
+const PROGRESS_TIMEOUT: Duration = Duration::from_secs(10);
 
 /// Connection to a client.
 pub struct Connection {
@@ -50,24 +50,28 @@ impl Connection {
         let (since, sent) = *self.waiting.get_or_insert((now, self.sent));
         if self.sent - sent >= LEAST {
             self.waiting = Some((now, self.sent));
-        } else if now.duration_since(since) >= PATIENCE {
+        } else if now.duration_since(since) >= PROGRESS_TIMEOUT {
             return Err(io::Error::other("the client takes nothing"));
         }
         Ok(())
     }
 
     /// Returns the time left for the handshake; an error if it is over.
-    fn left(&self) -> io::Result<Option<Duration>> {
+    fn remaining(&self) -> io::Result<Option<Duration>> {
         let Some(until) = self.until else { return Ok(None) };
-        let left = until.saturating_duration_since(WallInstant::now());
-        if left.is_zero() { Err(io::Error::other("the greeting takes too long")) } else { Ok(Some(left)) }
+        let remaining = until.saturating_duration_since(WallInstant::now());
+        if remaining.is_zero() {
+            Err(io::Error::other("the greeting takes too long"))
+        } else {
+            Ok(Some(remaining))
+        }
     }
 }
 
 impl Read for Connection {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
-        if let Some(left) = self.left()? {
-            self.stream.set_read_timeout(Some(left))?;
+        if let Some(remaining) = self.remaining()? {
+            self.stream.set_read_timeout(Some(remaining))?;
         }
         self.stream.read(buffer)
     }
@@ -75,8 +79,8 @@ impl Read for Connection {
 
 impl Write for Connection {
     fn write(&mut self, buffer: &[u8]) -> io::Result<usize> {
-        if let Some(left) = self.left()? {
-            self.stream.set_write_timeout(Some(left))?;
+        if let Some(remaining) = self.remaining()? {
+            self.stream.set_write_timeout(Some(remaining))?;
         }
         let written = self.stream.write(buffer)?;
         self.sent += written as u64;

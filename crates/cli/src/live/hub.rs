@@ -8,7 +8,7 @@ use std::time::{Duration, Instant as WallInstant};
 use flexsc_core::numerics::time::Instant;
 use flexsc_core::record::{LogTopic, Message, MessageSink, RecordError};
 
-use super::clock::{Clock, LOOK};
+use super::clock::{Clock, POLL_PERIOD};
 use super::outbox::OutgoingFrame;
 use super::protocol::{self, Request, StatusLevel};
 use super::server_state::ServerState;
@@ -30,9 +30,9 @@ pub struct ClientSlot(Arc<AtomicUsize>);
 
 impl ClientSlot {
     fn new(count: &Arc<AtomicUsize>, most: usize) -> Option<Self> {
-        let more = |taken: usize| (taken < most).then_some(taken + 1);
-        let taken = count.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
-        taken.is_ok().then(|| Self(count.clone()))
+        let more = |clients: usize| (clients < most).then_some(clients + 1);
+        let seat = count.fetch_update(Ordering::Relaxed, Ordering::Relaxed, more);
+        seat.is_ok().then(|| Self(count.clone()))
     }
 }
 
@@ -66,9 +66,9 @@ impl Hub {
     }
 
     /// Blocks the run until its clock releases an instant.
-    pub fn pace(&self, at: Instant) -> Result<(), RecordError> {
+    pub fn pace(&self, time: Instant) -> Result<(), RecordError> {
         let mut state = self.lock();
-        while let Some(time) = state.clock.wait(at, WallInstant::now()) {
+        while let Some(time) = state.clock.wait(time, WallInstant::now()) {
             if stop::stop_requested() {
                 return Err(RecordError::Interrupted);
             }
@@ -143,7 +143,7 @@ impl Hub {
         let mut state = self.lock();
         state.closing = true;
         while !state.clients.is_empty() && began.elapsed() < at_most {
-            state = self.wait(state, LOOK);
+            state = self.wait(state, POLL_PERIOD);
         }
     }
 }
@@ -160,7 +160,7 @@ impl MessageSink for Publisher {
     fn push(&mut self, message: Message<'_>) -> Result<(), RecordError> {
         let mut state = self.0.lock();
         while state.clients.values().any(|client| client.outbox.is_full()) && !stop::stop_requested() {
-            state = self.0.wait(state, LOOK);
+            state = self.0.wait(state, POLL_PERIOD);
         }
         state.publish(message);
         Ok(())

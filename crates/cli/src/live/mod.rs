@@ -31,7 +31,7 @@ use flexsc_view::with_layout;
 use crate::error::CliError;
 use crate::{say, stop};
 use access::AccessControl;
-use clock::{Clock, LOOK, Speed};
+use clock::{Clock, POLL_PERIOD, Speed};
 use hub::{Hub, Publisher};
 use server_state::ServerState;
 
@@ -132,7 +132,7 @@ impl Live {
             );
         }
         while self.hub.clients() > 0 && !stop::stop_requested() {
-            thread::sleep(LOOK);
+            thread::sleep(POLL_PERIOD);
         }
     }
 }
@@ -164,7 +164,7 @@ fn accept(hub: &Arc<Hub>, gate: &Arc<AccessControl>, listener: &TcpListener) {
     let mut silent: VecDeque<(Weak<()>, TcpStream)> = VecDeque::new();
     while !hub.closing() {
         let Ok((stream, _)) = listener.accept() else {
-            thread::sleep(LOOK);
+            thread::sleep(POLL_PERIOD);
             continue;
         };
         silent.retain(|(greeting, _)| greeting.strong_count() > 0);

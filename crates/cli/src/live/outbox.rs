@@ -75,8 +75,8 @@ mod tests {
         assert!(!outbox.is_full());
         outbox.push(frame(FULL / 32));
         assert!(outbox.is_full());
-        let taken = outbox.take().expect("frames");
-        assert_eq!(taken.len(), 2, "a batch");
+        let frames = outbox.take().expect("frames");
+        assert_eq!(frames.len(), 2, "a batch");
         assert!(!outbox.is_full() && !outbox.is_empty());
         for _ in 0..32 {
             outbox.push(frame(FULL / 32));

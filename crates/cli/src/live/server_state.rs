@@ -160,14 +160,14 @@ impl ServerState {
     pub fn answer(&mut self, id: u64, request: Request) {
         match request {
             Request::Subscribe(pairs) => self.subscribe(id, &pairs),
-            Request::Unsubscribe(gone) => {
+            Request::Unsubscribe(ids) => {
                 if let Some(client) = self.clients.get_mut(&id) {
-                    client.subscriptions.retain(|_, subscription| !gone.contains(subscription));
+                    client.subscriptions.retain(|_, subscription| !ids.contains(subscription));
                 }
             }
             Request::GetParameters(names, request) => {
-                let asked = |name: &&str| names.is_empty() || names.iter().any(|n| n == name);
-                let known: Vec<_> = PARAMETERS.into_iter().filter(asked).collect();
+                let is_requested = |name: &&str| names.is_empty() || names.iter().any(|n| n == name);
+                let known: Vec<_> = PARAMETERS.into_iter().filter(is_requested).collect();
                 self.send(id, protocol::parameter_values(&known, request, &self.clock));
             }
             Request::SetParameters(values, request) => {

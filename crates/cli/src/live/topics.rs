@@ -19,10 +19,10 @@ pub fn expected(run: &CampaignRun, from: &Provenance, scene: &Scene) -> BTreeSet
         let mut simulation = Simulation::new(&run.scenario, run.number);
         let _ = simulation.run_until(Instant::START, &mut (&mut messages, scene.clone()));
     }
-    let later = later(&run.scenario);
+    let late_topics = later(&run.scenario);
     // Custom topics are advertised with their first messages.
     topics.0.retain(|&index| index < TOPICS.len());
-    topics.0.extend((0..TOPICS.len()).filter(|&index| later.contains(&TOPICS[index].name)));
+    topics.0.extend((0..TOPICS.len()).filter(|&index| late_topics.contains(&TOPICS[index].name)));
     topics.0
 }
 
@@ -48,7 +48,7 @@ fn later(scenario: &Scenario) -> Vec<&'static str> {
         ("/summary", true),
         ("/metrics", true),
     ];
-    topics.into_iter().filter(|(_, there)| *there).map(|(name, _)| name).collect()
+    topics.into_iter().filter(|(_, is_expected)| *is_expected).map(|(name, _)| name).collect()
 }
 
 /// Record that collects the topics of messages.
@@ -80,8 +80,8 @@ mod tests {
             let scenario = Scenario::load(&file.path()).expect("a scenario");
             let run = CampaignRun { number: 0, scenario, drawn: Vec::new() };
             let (from, scene) = (Campaign::provenance(&run), Scene::new(&run.scenario));
-            let (expected, mut seen) = (expected(&run, &from, &scene), TopicCollector::default());
-            let messages = MessageEncoder::new(&mut seen, &from, Detail::Scene).expect("messages");
+            let (expected, mut topics) = (expected(&run, &from, &scene), TopicCollector::default());
+            let messages = MessageEncoder::new(&mut topics, &from, Detail::Scene).expect("messages");
             // Long enough for an arrival, the windows of an adaptation, and a zero crossing of a wheel.
             let grips = run.scenario.study.bearings.iter().any(Bearing::can_stick);
             let seconds = match (run.scenario.adaptation.is_some(), grips) {
@@ -93,9 +93,9 @@ mod tests {
             let mut simulation = Simulation::new(&run.scenario, 0);
             simulation.run_until(until, &mut (messages, scene)).expect("a run");
             let name = |index: &usize| TOPICS[*index].name;
-            let unknown: Vec<_> = seen.0.difference(&expected).map(name).collect();
+            let unknown: Vec<_> = topics.0.difference(&expected).map(name).collect();
             assert!(unknown.is_empty(), "{}: {unknown:?}", file.path().display());
-            names.extend(seen.0.iter().map(name));
+            names.extend(topics.0.iter().map(name));
         }
         let all: BTreeSet<_> = TOPICS.iter().map(|topic| topic.name).collect();
         assert_eq!(all.difference(&names).collect::<Vec<_>>(), [&"/metrics", &"/summary"], "the last of all");

@@ -28,7 +28,7 @@ const COLOURS: [RGBColor; 14] = [
     RGBColor(140, 45, 4),
 ];
 
-/// Number of shades between two edges.
+/// Number of shades between two labelled limits.
 const SHADES: usize = 3;
 /// Number of points along an axis for which the grid of the map is refined.
 const FINE: usize = 160;
@@ -42,7 +42,7 @@ fn place(radius: f64) -> f64 {
     if radius.is_finite() { ((radius - 1.0) / NEAR).asinh() } else { f64::INFINITY }
 }
 
-/// Returns the positions of the limits between shades, with a text for each that is an edge.
+/// Returns the positions of the limits between shades, with a text for each labelled one.
 fn limits() -> Vec<(f64, String)> {
     let mut limits: Vec<(f64, String)> = Vec::new();
     for pair in EDGES.windows(2) {

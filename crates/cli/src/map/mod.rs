@@ -94,16 +94,21 @@ impl LoopFamily {
 impl MapArgs {
     /// Computes the map of a scenario.
     pub fn results(&self, scenario: &Scenario) -> Result<MapResults, CliError> {
-        let (of, law) = sampled(scenario)?;
-        let window = self.settled.window(&of, &scenario.name)?;
+        let (sampled_loop, law) = sampled(scenario)?;
+        let window = self.settled.window(&sampled_loop, &scenario.name)?;
         if let Some(gain) = self.gain.filter(|gain| !gain.is_finite()) {
             return Err(CliError::Arguments(format!("--gain must be a finite number, got {gain}")));
         }
         let (PositiveGrid(frequencies), PositiveGrid(periods)) = (&self.frequency, &self.period);
         let shortest = periods.iter().copied().fold(f64::INFINITY, f64::min);
-        self.settled.check_cost(&of, frequencies.len() * periods.len(), shortest, 0.0)?;
-        let (name, own) = (scenario.name.clone(), (of.frequency(), of.period));
-        let family = LoopFamily { of, law: law.clone(), gain: self.gain, scaling: self.settled.scaling() };
+        self.settled.check_cost(&sampled_loop, frequencies.len() * periods.len(), shortest, 0.0)?;
+        let (name, own) = (scenario.name.clone(), (sampled_loop.frequency(), sampled_loop.period));
+        let family = LoopFamily {
+            of: sampled_loop,
+            law: law.clone(),
+            gain: self.gain,
+            scaling: self.settled.scaling(),
+        };
         let gain = |frequency: f64| family.gain(frequency);
         let cells = map(&family.of, frequencies, periods, family.scaling, gain, window);
         Ok(MapResults { name, cells, own, units: self.units.units, family })
@@ -138,15 +143,15 @@ impl MapResults {
             move |factor: f64| format!("{} to {}", digits(low * factor), digits(high * factor))
         };
         let (factor, unit) = units.frequency();
-        let at = |frequency: f64, period: f64| {
+        let loop_at = |frequency: f64, period: f64| {
             format!("at {} {unit} and a period of {} s", digits(frequency * factor), digits(period))
         };
         say!("  frequency      {} {unit}", range(|cell| cell.frequency_rad_s)(factor));
         say!("  period         {} s", range(|cell| cell.period_s)(1.0));
-        say!("  scenario       {}", at(own.0, own.1));
+        say!("  scenario       {}", loop_at(own.0, own.1));
         let settled = stable().filter_map(|cell| Some((cell.settling_s?, cell)));
         if let Some((time, cell)) = settled.min_by(|a, b| a.0.total_cmp(&b.0)) {
-            say!("  settles first  in {} s {}", digits(time), at(cell.frequency_rad_s, cell.period_s));
+            say!("  settles first  in {} s {}", digits(time), loop_at(cell.frequency_rad_s, cell.period_s));
         }
     }
 }

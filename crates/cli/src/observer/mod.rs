@@ -58,7 +58,7 @@ struct ConvergenceRegion {
 
 /// Convergence of a recurrence observer.
 pub struct ObserverResults {
-    of: Convergence,
+    convergence: Convergence,
     regions: Vec<ConvergenceRegion>,
     margin: Option<GainMargin>,
 }
@@ -72,19 +72,26 @@ impl ObserverArgs {
                 "--weights must be three numbers, W1,W2,W3, got {count}"
             )));
         };
-        let of =
+        let convergence =
             Convergence { frequency: self.frequency, damping: self.damping, period: self.period, weights };
-        if let Some((name, why)) = of.inconsistency() {
+        if let Some((name, why)) = convergence.inconsistency() {
             return Err(CliError::Arguments(format!("--{name} {why}")));
         }
-        if let Some(wrong) = self.kappa.iter().find(|kappa| !(0.0..1e3).contains(*kappa)) {
+        if let Some(refused) = self.kappa.iter().find(|kappa| !(0.0..1e3).contains(*kappa)) {
             return Err(CliError::Arguments(format!(
-                "--kappa must be numbers of 0 or more below 1000, got {wrong}"
+                "--kappa must be numbers of 0 or more below 1000, got {refused}"
             )));
         }
-        let region =
-            |&kappa: &f64| ConvergenceRegion { kappa, area: of.area(kappa), converges: of.converges(kappa) };
-        Ok(ObserverResults { of, regions: self.kappa.iter().map(region).collect(), margin: of.margin() })
+        let region = |&kappa: &f64| ConvergenceRegion {
+            kappa,
+            area: convergence.area(kappa),
+            converges: convergence.converges(kappa),
+        };
+        Ok(ObserverResults {
+            convergence,
+            regions: self.kappa.iter().map(region).collect(),
+            margin: convergence.margin(),
+        })
     }
 }
 
@@ -94,22 +101,22 @@ pub fn run(args: &ObserverArgs) -> Result<(), CliError> {
 
 impl Results for ObserverResults {
     fn json(&self) -> Vec<Json> {
-        let (a, b) = self.of.recurrence();
+        let (a, b) = self.convergence.recurrence();
         vec![json!({"a": a, "b": b, "frozen": self.regions, "turning": self.margin})]
     }
 
     fn figures(&self) -> Vec<Named> {
         let kappas: Vec<f64> = self.regions.iter().map(|region| region.kappa).collect();
-        vec![("observer".to_owned(), figures::figure(&self.of, &kappas, self.margin))]
+        vec![("observer".to_owned(), figures::figure(&self.convergence, &kappas, self.margin))]
     }
 
     fn print(&self) -> Result<(), CliError> {
-        let Self { of, regions, margin } = self;
-        let ((a, b), [w1, w2, w3]) = (of.recurrence(), of.weights);
+        let Self { convergence, regions, margin } = self;
+        let ((a, b), [w1, w2, w3]) = (convergence.recurrence(), convergence.weights);
         say!(
             "observer   a mode of {:.4} Hz, sampled each {} s: A = {a:.10}, B = {b:.10}; W1 = {w1}, W2 = {w2}, W3 = {w3}",
-            of.frequency / TAU,
-            of.period
+            convergence.frequency / TAU,
+            convergence.period
         );
         for ConvergenceRegion { kappa, area, converges } in regions {
             let does = if *converges { "converges" } else { "does not converge" };

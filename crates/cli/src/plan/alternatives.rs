@@ -76,14 +76,14 @@ impl AlternativesResults {
         let (mut torques, mut own, mut hub) = (Vec::new(), Vec::new(), Vec::new());
         for (_, outcome) in outcomes() {
             torques.extend([outcome.torque.peak.value, outcome.torque.rms, outcome.torque.initial]);
-            let (left, angle) = (&outcome.residuals[shown], &outcome.residuals[0]);
-            own.extend([left.nominal, left.near, left.worst]);
+            let (residuals, angle) = (&outcome.residuals[shown], &outcome.residuals[0]);
+            own.extend([residuals.nominal, residuals.near, residuals.worst]);
             hub.extend([angle.nominal, angle.worst]);
         }
         // One unit per column, so that commands can be compared.
-        let (of_torque, torque_unit) = units.common(&torques, body.torque_unit());
-        let (of_own, own_unit) = units.common(&own, unit);
-        let (of_hub, hub_unit) = units.common(&hub, "rad");
+        let (torque_scale, torque_unit) = units.common(&torques, body.torque_unit());
+        let (own_scale, own_unit) = units.common(&own, unit);
+        let (hub_scale, hub_unit) = units.common(&hub, "rad");
         let band = format!("±{} %", percent(self.band));
         let (torque, own, hub) = (torque_unit.as_str(), own_unit.as_str(), hub_unit.as_str());
         let head: [[&str; 10]; HEAD] = [
@@ -93,12 +93,15 @@ impl AlternativesResults {
         ];
         let mut table: Vec<Vec<String>> = head.map(|line| line.map(str::to_owned).to_vec()).to_vec();
         for (name, outcome) in outcomes() {
-            let (left, angle) = (&outcome.residuals[shown], &outcome.residuals[0]);
+            let (residuals, angle) = (&outcome.residuals[shown], &outcome.residuals[0]);
             let mut line = vec![format!("{name:<26}"), format!("{:.4}", outcome.plan.time)];
             let torques = [outcome.torque.peak.value, outcome.torque.rms, outcome.torque.initial];
-            line.extend(torques.map(|torque| digits(torque * of_torque)));
-            line.extend([left.nominal, left.near, left.worst].map(|residual| digits(residual * of_own)));
-            line.extend([angle.nominal, angle.worst].map(|residual| digits(residual * of_hub)));
+            line.extend(torques.map(|torque| digits(torque * torque_scale)));
+            line.extend(
+                [residuals.nominal, residuals.near, residuals.worst]
+                    .map(|residual| digits(residual * own_scale)),
+            );
+            line.extend([angle.nominal, angle.worst].map(|residual| digits(residual * hub_scale)));
             table.push(line);
         }
         table

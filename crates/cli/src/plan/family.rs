@@ -67,9 +67,9 @@ impl<'a> CommandFamily<'a> {
             _ => None,
         };
         let members = if let Some((kind, suppression)) = series {
-            let beside: usize = suppression.zeros.iter().map(|target| target.times as usize).sum();
-            let plain = beside == 0;
-            let most = (suppression.suppress + beside).min(planned_for.modes.len());
+            let extra_zeros: usize = suppression.zeros.iter().map(|target| target.times as usize).sum();
+            let plain = extra_zeros == 0;
+            let most = (suppression.suppress + extra_zeros).min(planned_for.modes.len());
             let count = if plain { MOST } else { MOST - 1 };
             let member = |p: usize| {
                 let (name, colour) = (format!("p = {p}"), COLOURS[p % MOST]);

@@ -14,7 +14,7 @@ const BAND: u32 = 401;
 
 /// Returns all figures; `band` is the relative uncertainty of the frequencies.
 pub fn all(family: &CommandFamily, band: f64) -> Vec<Named> {
-    let named = |what: &str, figure| (format!("{}-plan-{what}", family.name), figure);
+    let named = |suffix: &str, figure| (format!("{}-plan-{suffix}", family.name), figure);
     let mut all = vec![named("torque", family.torque()), named("angle", family.angle())];
     // The hub's angle has a figure of its own.
     if family.shown > 0 {
@@ -49,7 +49,8 @@ impl CommandFamily<'_> {
     }
 
     fn angle(&self) -> Figure {
-        let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[0])).collect());
+        let lines =
+            self.lines(|plan| self.motion(plan).into_iter().map(|(t, motion)| (t, motion[0])).collect());
         // Several radians in milliradians would be long numbers.
         let y = FigureAxis::around("hub angle (rad)", "", heights(&lines));
         let (plan, end) = (self.plan, self.end());
@@ -64,7 +65,8 @@ impl CommandFamily<'_> {
 
     fn output(&self) -> Figure {
         let (name, unit) = self.coordinate();
-        let lines = self.lines(|plan| self.motion(plan).into_iter().map(|(t, seen)| (t, seen[1])).collect());
+        let lines =
+            self.lines(|plan| self.motion(plan).into_iter().map(|(t, motion)| (t, motion[1])).collect());
         let (label, unit) = name_and_unit(&name, &unit);
         let y = FigureAxis::around(&label, unit, heights(&lines));
         let below = vec![self.arrival(&y)];
@@ -73,9 +75,9 @@ impl CommandFamily<'_> {
 
     fn robustness(&self, band: f64) -> Figure {
         let factor = |i: u32| band * (2.0 * f64::from(i) / f64::from(BAND - 1) - 1.0);
-        let left = |plan: &Plan, off: f64| plan.residual_at(self.body, 1.0 + off)[self.shown];
+        let residual = |plan: &Plan, off: f64| plan.residual_at(self.body, 1.0 + off)[self.shown];
         let lines =
-            self.lines(|plan| (0..BAND).map(factor).map(|off| (1e2 * off, left(plan, off))).collect());
+            self.lines(|plan| (0..BAND).map(factor).map(|off| (1e2 * off, residual(plan, off))).collect());
         let (name, unit) = self.coordinate();
         let (label, unit) = name_and_unit(&format!("left in {name}"), &unit);
         let y = FigureAxis::decades(&label, unit, heights(&lines));
@@ -89,7 +91,7 @@ impl CommandFamily<'_> {
 
     fn figure(
         &self,
-        what: &str,
+        quantity: &str,
         x: FigureAxis,
         y: FigureAxis,
         below: Vec<Layer>,
@@ -99,7 +101,7 @@ impl CommandFamily<'_> {
             Layer::new(name, *colour, LayerShape::Line(1.5), points)
         };
         let layers = below.into_iter().chain(self.members.iter().zip(lines).map(layer)).collect();
-        let title = format!("{}: {what}", readable(self.name));
+        let title = format!("{}: {quantity}", readable(self.name));
         Figure { title, panels: vec![Panel::new(x, y, layers)], panel_height: 340 }
     }
 
@@ -120,11 +122,11 @@ impl CommandFamily<'_> {
         let count = (end / trajectory::step(self.body, end)).ceil();
         let mut motion = PlannedMotion::new(self.body, plan);
         let output = self.shown.checked_sub(1).and_then(|index| self.body.outputs.get(index));
-        let mut at = |t: f64| {
+        let mut sample_at = |t: f64| {
             let (hub, state) = motion.evaluate(t);
             (t, [hub.angle, output.map_or(hub.angle, |output| output.evaluate(state))])
         };
-        (0..=count as u32).map(|i| at(end * (f64::from(i) / count))).collect()
+        (0..=count as u32).map(|i| sample_at(end * (f64::from(i) / count))).collect()
     }
 }
 

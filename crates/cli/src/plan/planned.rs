@@ -112,12 +112,12 @@ impl PlanResults {
         let worst = format!("worst {} %", percent(report.band));
         let head: [&str; 7] = ["coordinate      ", "left", "worst 5 %", &worst, "", "deflection", "at"];
         let mut rows = vec![head.map(str::to_owned).to_vec()];
-        for (left, deflection) in report.residuals.iter().zip(&report.deflections) {
-            let residuals = [left.nominal, left.near, left.worst];
-            let (factor, unit) = units.common(&residuals, &left.unit);
-            let mut row = vec![format!("{:<16}", left.name)];
+        for (residual, deflection) in report.residuals.iter().zip(&report.deflections) {
+            let residuals = [residual.nominal, residual.near, residual.worst];
+            let (factor, unit) = units.common(&residuals, &residual.unit);
+            let mut row = vec![format!("{:<16}", residual.name)];
             row.extend(residuals.map(|residual| digits(residual * factor)));
-            row.extend([unit, units.quantity(deflection.value, &left.unit)]);
+            row.extend([unit, units.quantity(deflection.value, &residual.unit)]);
             row.push(format!("{} s", digits(deflection.time)));
             rows.push(row);
         }

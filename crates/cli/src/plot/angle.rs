@@ -68,21 +68,21 @@ struct SettlingCurve {
     /// Start of the goal (s).
     from: f64,
     /// Last time outside the band (s); `None` if the run ends outside it.
-    at: Option<f64>,
+    settled_at: Option<f64>,
 }
 
 impl SettlingCurve {
     /// Returns `None` without motion, or if no band is given after a manoeuvre, which may end anywhere near its goal.
     fn from_events(story: &RunEvents, times: &[f64], error: &[f64]) -> Option<Self> {
         let from = story.scenario.plan.as_ref().map_or(0.0, |plan| plan.time);
-        let given = story.scenario.reference.band.map(flexsc_core::numerics::quantity::Positive::get);
+        let band = story.scenario.reference.band.map(flexsc_core::numerics::quantity::Positive::get);
         let promise = story.scenario.expected_band();
         let promised = if from > 0.0 { None } else { error.first().map(|first| promise.band(first.abs())) };
-        let band = given.or(promised).filter(|band| *band > 0.0)?;
+        let band = band.or(promised).filter(|band| *band > 0.0)?;
         let outside = |(time, error): &(&f64, &f64)| **time >= from - 1e-9 && error.abs() > band;
         let last = times.iter().zip(error).rfind(outside).map_or(from, |(time, _)| *time);
-        let at = times.last().filter(|end| last < **end).map(|_| last);
-        Some(Self { band, from, at })
+        let settling = times.last().filter(|end| last < **end).map(|_| last);
+        Some(Self { band, from, settled_at: settling })
     }
 
     fn layers(&self, story: &RunEvents, y: &FigureAxis) -> Vec<Layer> {
@@ -90,9 +90,9 @@ impl SettlingCurve {
         let width = format!("within ±{} mrad", super::short(1e3 * self.band));
         let within = band(&level(-self.band), &level(self.band));
         let mut layers = vec![Layer::new(&width, colour::GREEN, LayerShape::Area(0.25), within)];
-        if let Some(at) = self.at {
-            let line = vec![(at, y.range.start), (at, y.range.end)];
-            let name = format!("settled at {at:.1} s");
+        if let Some(settling) = self.settled_at {
+            let line = vec![(settling, y.range.start), (settling, y.range.end)];
+            let name = format!("settled at {settling:.1} s");
             layers.push(Layer::new(&name, colour::VERMILLION, LayerShape::Dashes, line));
         }
         layers

@@ -13,8 +13,8 @@ use super::{consistency, time, title};
 const INSIDE: [f64; 2] = [0.206_224_040_965_200_46, 2.408_229_222_574_653];
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let over_time = |axis: usize, of: &dyn Fn(&AxisEstimate) -> f64| -> Vec<Point> {
-        cycles.rows::<AttitudeEstimate>().map(|(time, row)| (time, of(&row.axes[axis]))).collect()
+    let over_time = |axis: usize, value_of: &dyn Fn(&AxisEstimate) -> f64| -> Vec<Point> {
+        cycles.rows::<AttitudeEstimate>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()
     };
     let mut panels = panels(story, "rad", |axis| {
         let name = |name| if axis == 0 { name } else { "" };
@@ -33,10 +33,10 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     if let Some(last) = panels.last_mut() {
         last.x = last.x.unnamed();
     }
-    let norm_of = |of: fn(&AxisEstimate) -> f64| -> Vec<Point> {
+    let norm_of = |value_of: fn(&AxisEstimate) -> f64| -> Vec<Point> {
         cycles
             .rows::<AttitudeEstimate>()
-            .map(|(time, row)| (time, norm([0, 1, 2].map(|axis| of(&row.axes[axis])))))
+            .map(|(time, row)| (time, norm([0, 1, 2].map(|axis| value_of(&row.axes[axis])))))
             .collect()
     };
     let layers = vec![

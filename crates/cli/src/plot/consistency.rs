@@ -35,10 +35,10 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         };
         let mut layers = filter_lock::spans(motion, &y, named);
         let level = |height: f64| [(0.0, height), (story.end, height)];
-        let of = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
+        let samples = if averaged == 1 { "one sample".to_owned() } else { format!("{averaged} samples") };
         layers.extend([
             Layer::new(
-                &format!("95 % of chi-square, {of}"),
+                &format!("95 % of chi-square, {samples}"),
                 colour::GREEN,
                 LayerShape::Area(0.2),
                 band(&level(low), &level(high)),

@@ -12,11 +12,11 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let line = motion.time.iter().copied().zip(motion.angle.iter().copied());
     let line: Vec<Point> = line.filter(|(time, _)| *time >= shown.start - 1e-9).collect();
     let points = |timeout: bool| -> Vec<Point> {
-        let seen = story
+        let angles = story
             .switchings
             .iter()
             .filter(|s| s.timeout == timeout && s.time >= shown.start && s.time <= shown.end);
-        seen.map(|s| (s.time, s.angle)).collect()
+        angles.map(|s| (s.time, s.angle)).collect()
     };
     let borders: Vec<f64> = match story.scenario.law.relay() {
         Some(relay) => match relay.sides {

@@ -62,7 +62,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     };
     let panels = all.iter().take(PANELS).enumerate().map(panel).collect();
     let more = all.len().saturating_sub(PANELS);
-    let left = if more > 0 { format!(", points left out: {more}") } else { String::new() };
-    let what = format!("elastic deflection, in axes of the hub{left}");
-    Figure { title: title(story, &what), panels, panel_height: 160 }
+    let omitted = if more > 0 { format!(", points left out: {more}") } else { String::new() };
+    let subject = format!("elastic deflection, in axes of the hub{omitted}");
+    Figure { title: title(story, &subject), panels, panel_height: 160 }
 }

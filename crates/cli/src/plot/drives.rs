@@ -32,8 +32,8 @@ pub fn alike(x: FigureAxis, name: &str, unit: &'static str, lines: Vec<(String, 
 }
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let line = |of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
-        cycles.rows().map(|(time, row)| (time, of(row))).collect()
+    let line = |value_of: &dyn Fn(&DrivesMotion) -> f64| -> Vec<Point> {
+        cycles.rows().map(|(time, row)| (time, value_of(row))).collect()
     };
     let (drives, modes) =
         cycles.rows::<DrivesMotion>().next().map_or((0, 0), |(_, row)| (row.drives.len(), row.modes.len()));
@@ -64,12 +64,12 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     } else if let Some(last) = panels.last_mut() {
         last.x = x;
     }
-    let what = match (modes > constant, constant) {
+    let subject = match (modes > constant, constant) {
         (false, _) => "drives".to_owned(),
         (true, 0) => "drives and natural frequencies".to_owned(),
         (true, _) => format!("drives and natural frequencies ({constant} constant ones left out)"),
     };
-    Figure { title: title(story, &what), panels, panel_height: 240 }
+    Figure { title: title(story, &subject), panels, panel_height: 240 }
 }
 
 /// Adds a gap to a line wherever an angle wraps around.

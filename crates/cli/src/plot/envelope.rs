@@ -36,8 +36,8 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
             Layer::new("elastic angle", colour::BLUE, LayerShape::Line(1.2), elastic),
         ],
     );
-    let what = "envelope of the elastic modes";
-    Figure { title: title(story, what), panels: vec![whole, end], panel_height: 220 }
+    let subject = "envelope of the elastic modes";
+    Figure { title: title(story, subject), panels: vec![whole, end], panel_height: 220 }
 }
 
 /// Returns the figure of the window means alone, for three axes.
@@ -45,8 +45,8 @@ pub fn over_windows(story: &RunEvents) -> Figure {
     let all = story.means.iter().map(|mean| mean.value);
     let line = Layer::new("window means", colour::VERMILLION, LayerShape::Line(2.0), means(&story.means));
     let panel = Panel::new(time(0.0..story.end), FigureAxis::from_zero("envelope a", "rad", all), vec![line]);
-    let what = "envelope of the elastic modes";
-    Figure { title: title(story, what), panels: vec![panel], panel_height: 300 }
+    let subject = "envelope of the elastic modes";
+    Figure { title: title(story, subject), panels: vec![panel], panel_height: 300 }
 }
 
 /// Returns the window means as a line, constant over each window.

@@ -86,7 +86,7 @@ pub enum FigureKind {
 impl FigureKind {
     /// Returns the figures that a log has.
     pub fn all_in(story: &RunEvents) -> Vec<Self> {
-        Self::value_variants().iter().copied().filter(|what| what.is_in(story)).collect()
+        Self::value_variants().iter().copied().filter(|kind| kind.is_in(story)).collect()
     }
 
     /// Returns true if a log has the data of the figure.
@@ -180,17 +180,20 @@ impl FigureKind {
 }
 
 /// Returns the requested figures of the existing ones: all if none is requested.
-pub fn select(asked: &[FigureKind], there: &[FigureKind]) -> Result<Vec<FigureKind>, (String, String)> {
-    match asked.iter().find(|what| !there.contains(what)) {
+pub fn select(
+    requested: &[FigureKind],
+    drawable: &[FigureKind],
+) -> Result<Vec<FigureKind>, (String, String)> {
+    match requested.iter().find(|kind| !drawable.contains(kind)) {
         Some(missing) => {
-            let names: Vec<_> = there.iter().map(|what| what.name()).collect();
+            let names: Vec<_> = drawable.iter().map(|kind| kind.name()).collect();
             Err((missing.name(), names.join(", ")))
         }
-        None if asked.is_empty() => Ok(there.to_vec()),
+        None if requested.is_empty() => Ok(drawable.to_vec()),
         None => {
             let once =
-                |(index, what): (usize, &FigureKind)| (!asked[..index].contains(what)).then_some(*what);
-            Ok(asked.iter().enumerate().filter_map(once).collect())
+                |(index, kind): (usize, &FigureKind)| (!requested[..index].contains(kind)).then_some(*kind);
+            Ok(requested.iter().enumerate().filter_map(once).collect())
         }
     }
 }

@@ -11,8 +11,8 @@ pub fn figure(story: &RunEvents) -> Figure {
     let gains = story.steps.iter().map(|step| (step.time, step.gain));
     let line = steps([(0.0, story.start.1)].into_iter().chain(gains), story.end);
     let decided = |decision: &str| -> Vec<Point> {
-        let of_kind = story.steps.iter().filter(|step| step.decision == decision);
-        of_kind.map(|step| (step.time, step.gain)).collect()
+        let steps = story.steps.iter().filter(|step| step.decision == decision);
+        steps.map(|step| (step.time, step.gain)).collect()
     };
     let kinds = [
         ("begin", "first step", colour::BLACK, LayerShape::Ring),

@@ -19,8 +19,8 @@ pub fn applies_to(story: &RunEvents) -> bool {
 }
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let line = |of: &dyn Fn(&ControlMomentGyros) -> f64| -> Vec<Point> {
-        cycles.rows().map(|(time, row)| (time, of(row))).collect()
+    let line = |value_of: &dyn Fn(&ControlMomentGyros) -> f64| -> Vec<Point> {
+        cycles.rows().map(|(time, row)| (time, value_of(row))).collect()
     };
     let named = |lines: Vec<(String, Vec<Point>)>| -> Vec<Layer> {
         let layer = |(index, (name, points)): (usize, (String, Vec<Point>))| {
@@ -28,15 +28,16 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         };
         lines.into_iter().enumerate().map(layer).collect()
     };
-    let each = |of: fn(&flexsc_core::record::ControlMomentGyro) -> f64| {
-        let gimbal = |index: usize| (format!("gimbal {}", index + 1), line(&|row| of(&row.gyros[index])));
+    let each = |value_of: fn(&flexsc_core::record::ControlMomentGyro) -> f64| {
+        let gimbal =
+            |index: usize| (format!("gimbal {}", index + 1), line(&|row| value_of(&row.gyros[index])));
         named((0..story.scenario.study.gimbals.len()).map(gimbal).collect())
     };
     let values = |layers: &[Layer]| -> Vec<f64> {
         layers.iter().flat_map(|layer| &layer.points).map(|(_, value)| *value).collect()
     };
     let x = time(0.0..story.end);
-    let around = |name: &str, unit: &'static str, layers: Vec<Layer>| {
+    let panel_around = |name: &str, unit: &'static str, layers: Vec<Layer>| {
         Panel::new(x.unnamed(), FigureAxis::around(name, unit, values(&layers)), layers)
     };
     let limit = story.scenario.actuator.control_moment_gyros();
@@ -56,10 +57,10 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     ]);
     let measured = values(std::slice::from_ref(&measure));
     let panels = vec![
-        around("gimbal angle", "rad", each(|gyro| gyro.angle_rad)),
-        around("gimbal rate", "rad/s", rates),
+        panel_around("gimbal angle", "rad", each(|gyro| gyro.angle_rad)),
+        panel_around("gimbal rate", "rad/s", rates),
         Panel::new(x.unnamed(), FigureAxis::from_zero("singularity measure", "", measured), vec![measure]),
-        Panel { x: x.clone(), ..around("momentum", "N m s", momentum) },
+        Panel { x: x.clone(), ..panel_around("momentum", "N m s", momentum) },
     ];
     Figure { title: title(story, "control moment gyros"), panels, panel_height: 180 }
 }

@@ -10,9 +10,9 @@ use super::{time, title};
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let hinges = cycles.rows::<Hinges>().next().map_or(0, |(_, row)| row.hinges.len());
-    let lines = |of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {
+    let lines = |value_of: &dyn Fn(&HingeMotion) -> f64| -> Vec<(String, Vec<Point>)> {
         let line = |hinge: usize| {
-            cycles.rows::<Hinges>().map(|(time, row)| (time, of(&row.hinges[hinge]))).collect()
+            cycles.rows::<Hinges>().map(|(time, row)| (time, value_of(&row.hinges[hinge]))).collect()
         };
         (0..hinges).map(|hinge| (format!("hinge {}", hinge + 1), line(hinge))).collect()
     };

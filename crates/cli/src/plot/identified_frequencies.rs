@@ -29,9 +29,10 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         let line = |value: &dyn Fn(&ElasticEstimate) -> f64| -> Vec<Point> {
             cycles.rows::<ElasticEstimates>().map(|(time, row)| (time, value(&row.modes[index]))).collect()
         };
-        let [estimated, truth] = [line(&|of| of.frequency_rad_s), line(&|of| of.true_frequency_rad_s)];
+        let [estimated, truth] =
+            [line(&|mode| mode.frequency_rad_s), line(&|mode| mode.true_frequency_rad_s)];
         let [lower, upper] =
-            [-2.0, 2.0].map(|width| line(&|of| of.frequency_rad_s + width * of.frequency_sd_rad_s));
+            [-2.0, 2.0].map(|width| line(&|mode| mode.frequency_rad_s + width * mode.frequency_sd_rad_s));
         let most = BEYOND * truth.iter().map(|point| point.1).fold(0.0, f64::max);
         let shown = [&estimated, &truth, &lower, &upper].into_iter().flatten();
         let values = shown.map(|point| point.1.clamp(0.0, most)).collect::<Vec<_>>();

@@ -28,14 +28,14 @@ impl MotionData {
             .collect();
         let time = &self.time;
         let straight = |values: &[f64]| -> Vec<f64> {
-            let at = |(row, part): &(usize, f64)| match values.get(row + 1) {
+            let value_at = |(row, part): &(usize, f64)| match values.get(row + 1) {
                 Some(next) if *part > 0.0 => values[*row] + part * (next - values[*row]),
                 _ => values[*row],
             };
-            if values.len() < time.len() { values.to_vec() } else { rows.iter().map(at).collect() }
+            if values.len() < time.len() { values.to_vec() } else { rows.iter().map(value_at).collect() }
         };
         let cubic = |x: &[f64], v: &[f64]| -> [Vec<f64>; 2] {
-            let at = |(row, p): &(usize, f64)| {
+            let value_at = |(row, p): &(usize, f64)| {
                 let row = *row;
                 if *p == 0.0 {
                     return (x[row], v[row]);
@@ -47,7 +47,7 @@ impl MotionData {
                 let rate = 6.0 * p * q * (b - a) / h + q * (1.0 - 3.0 * p) * da + p * (3.0 * p - 2.0) * db;
                 (value, rate)
             };
-            let (values, rates) = rows.iter().map(at).unzip();
+            let (values, rates) = rows.iter().map(value_at).unzip();
             [values, rates]
         };
         let [angle, rate] = cubic(&self.angle, &self.rate);
@@ -84,13 +84,13 @@ mod tests {
     #[test]
     fn waves_are_met_between_rows_and_rows_stay() {
         let time: Vec<f64> = (0..40).map(|i| 2.0 * f64::from(i)).collect();
-        let of = |f: fn(f64) -> f64| -> Vec<f64> { time.iter().map(|t| f(0.4 * t)).collect() };
-        let rate: Vec<f64> = of(f64::cos).iter().map(|c| 0.4 * c).collect();
+        let values_of = |f: fn(f64) -> f64| -> Vec<f64> { time.iter().map(|t| f(0.4 * t)).collect() };
+        let rate: Vec<f64> = values_of(f64::cos).iter().map(|c| 0.4 * c).collect();
         let mut motion = MotionData {
-            angle: of(f64::sin),
+            angle: values_of(f64::sin),
             rate: rate.clone(),
-            elastic: of(f64::sin),
-            modes: vec![of(f64::sin)],
+            elastic: values_of(f64::sin),
+            modes: vec![values_of(f64::sin)],
             mode_rates: vec![rate],
             time: time.clone(),
             ..MotionData::default()

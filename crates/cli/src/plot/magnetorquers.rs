@@ -36,7 +36,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let x = time(0.0..story.end);
     let moments = Panel::new(x.unnamed(), y, layers);
     let wheels = story.scenario.study.wheels.is_some();
-    let norm = |of: [f64; 3]| of.iter().map(|part| part * part).sum::<f64>().sqrt();
+    let norm = |vector: [f64; 3]| vector.iter().map(|part| part * part).sum::<f64>().sqrt();
     let points: Vec<Point> = if wheels {
         cycles.values::<StoredMomentum>().map(|(time, stored)| (time, norm(stored.0))).collect()
     } else {

@@ -45,8 +45,8 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
             // A wheel has no planned manoeuvre, and the law's demand may be far above the wheel's torque.
             let mut on_body: Vec<(&str, _, &[f64])> = vec![("given by the wheel", colour::BLACK, applied)];
             on_body.extend(rest.iter().filter(|(name, ..)| *name == "disturbance").copied());
-            let asked = [("demanded by the law", colour::BLUE, feedback.as_slice())];
-            vec![panel(x.unnamed(), name, unit, &on_body), panel(x, name, unit, &asked)]
+            let demanded = [("demanded by the law", colour::BLUE, feedback.as_slice())];
+            vec![panel(x.unnamed(), name, unit, &on_body), panel(x, name, unit, &demanded)]
         }
         (true, _) => vec![panel(x, name, unit, &main)],
         (false, false) => vec![panel(x, name, unit, &rest)],

@@ -133,22 +133,22 @@ impl PlotArgs {
             .collect();
         // Logs of the same name in several directories are distinguished by their paths.
         let name = |run: usize| {
-            let alone = names.iter().filter(|name| **name == names[run]).count() == 1;
-            if alone { names[run].clone() } else { paths[run].display().to_string() }
+            let is_unique = names.iter().filter(|name| **name == names[run]).count() == 1;
+            if is_unique { names[run].clone() } else { paths[run].display().to_string() }
         };
         let mut figures = Vec::new();
         let mut runs: Vec<_> = all.into_iter().map(Vec::into_iter).map(Iterator::collect::<Vec<_>>).collect();
-        let kinds: Vec<String> = runs[0].iter().map(|(what, _)| what.clone()).collect();
-        for what in kinds {
-            let mut of_kind = Vec::new();
+        let kinds: Vec<String> = runs[0].iter().map(|(kind, _)| kind.clone()).collect();
+        for kind in kinds {
+            let mut same_kind = Vec::new();
             for (run, figures) in runs.iter_mut().enumerate() {
-                if let Some(place) = figures.iter().position(|(other, _)| *other == what) {
-                    of_kind.push((name(run), figures.swap_remove(place).1));
+                if let Some(place) = figures.iter().position(|(other, _)| *other == kind) {
+                    same_kind.push((name(run), figures.swap_remove(place).1));
                 }
             }
-            if of_kind.len() == paths.len() {
-                let title = what.replace('-', " ");
-                figures.extend(overlay::overlaid(&title, &of_kind).map(|figure| (what, figure)));
+            if same_kind.len() == paths.len() {
+                let title = kind.replace('-', " ");
+                figures.extend(overlay::overlaid(&title, &same_kind).map(|figure| (kind, figure)));
             }
         }
         if figures.is_empty() {
@@ -164,42 +164,42 @@ impl PlotArgs {
 /// # Errors
 /// A figure that the log does not have, or a run that cannot be repeated.
 pub fn figure_of(log: &Log, path: &Path, name: &str) -> Result<Figure, CliError> {
-    let what = FigureName::parse(name).map_err(CliError::Arguments)?;
-    let drawn = drawn(log, path, &[what])?.into_iter().next();
+    let kind = FigureName::parse(name).map_err(CliError::Arguments)?;
+    let drawn = drawn(log, path, &[kind])?.into_iter().next();
     let nothing = || CliError::Draw { path: path.to_owned(), why: format!("figure {name}: nothing to draw") };
     drawn.map(|(_, figure)| figure).ok_or_else(nothing)
 }
 
 /// Returns the figures that a log has.
-pub fn there(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliError> {
+pub fn drawable_kinds(log: &Log, path: &Path) -> Result<Vec<FigureKind>, CliError> {
     Ok(FigureKind::all_in(&RunEvents::read(log, path)?))
 }
 
 pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     if args.path.is_dir() {
-        let of_logs = [
+        let log_options = [
             ("more than one path", !args.others.is_empty()),
             ("--from", args.from.is_some()),
             ("--to", args.to.is_some()),
         ];
-        if let Some((given, _)) = of_logs.into_iter().find(|(_, given)| *given) {
+        if let Some((is_given, _)) = log_options.into_iter().find(|(_, is_given)| *is_given) {
             let path = args.path.display();
-            return Err(CliError::Arguments(format!("{given}: only for logs, and {path} is a directory")));
+            return Err(CliError::Arguments(format!("{is_given}: only for logs, and {path} is a directory")));
         }
         return campaign::run(args);
     }
-    let of_campaigns = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
-    if let Some((option, _)) = of_campaigns.into_iter().find(|(_, given)| *given) {
+    let campaign_options = [("metric", !args.metric.is_empty()), ("worst", args.worst.is_some())];
+    if let Some((option, _)) = campaign_options.into_iter().find(|(_, is_given)| *is_given) {
         let path = args.path.display();
         return Err(CliError::Arguments(format!("--{option}: {path} is not the directory of a campaign")));
     }
-    let beside = args.path.parent().unwrap_or(Path::new(""));
+    let directory = args.path.parent().unwrap_or(Path::new(""));
     let logs: Vec<&Path> = std::iter::once(&args.path).chain(&args.others).map(PathBuf::as_path).collect();
-    let target = FigureTarget::new(args.out.as_deref().unwrap_or(beside), args.format, &logs, args.force)?;
+    let target = FigureTarget::new(args.out.as_deref().unwrap_or(directory), args.format, &logs, args.force)?;
     let name = args.path.file_stem().unwrap_or_default().to_string_lossy();
     let figures =
         if args.others.is_empty() { args.figures_of(&args.path, &args.what)? } else { args.together()? };
-    let named = figures.into_iter().map(|(what, figure)| (format!("{name}-{what}"), figure));
+    let named = figures.into_iter().map(|(kind, figure)| (format!("{name}-{kind}"), figure));
     target.save(&named.collect::<Vec<_>>(), args.style()?, args.json)
 }
 
@@ -232,7 +232,7 @@ fn drawn_over(
             "{path}: there is no figure `{missing}` for this log\n\nhint: it has {there}"
         ))
     })?;
-    let any = |of: &[FigureKind]| of.iter().any(|what| chosen.contains(what));
+    let any = |kinds: &[FigureKind]| kinds.iter().any(|kind| chosen.contains(kind));
     let moving = any(&[FigureKind::PhasePlane, FigureKind::Envelope, FigureKind::Modes, FigureKind::Angle]);
     let all = any(&[
         FigureKind::Wheel,
@@ -254,13 +254,13 @@ fn drawn_over(
     } else {
         MotionData::default()
     };
-    let drawn = chosen.into_iter().filter_map(|what| {
-        let figure = what.figure(&story, &motion, &cycles)?;
+    let drawn = chosen.into_iter().filter_map(|kind| {
+        let figure = kind.figure(&story, &motion, &cycles)?;
         let figure = match &story.shown {
             Some(shown) => time_range::crop(figure, shown),
             None => figure,
         };
-        Some((what.name(), failures::shaded(figure, &story)))
+        Some((kind.name(), failures::shaded(figure, &story)))
     });
     let crop = |figure| story.shown.iter().fold(figure, time_range::crop);
     let topics = figures.into_iter().map(|(name, figure)| (name, crop(figure)));

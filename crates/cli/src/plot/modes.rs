@@ -27,9 +27,9 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     };
     let panels: Vec<_> = motion.modes.iter().zip(frequencies).take(PANELS).enumerate().map(panel).collect();
     let more = motion.modes.len().saturating_sub(PANELS);
-    let what =
+    let subject =
         if more > 0 { format!("elastic modes, {more} more left out") } else { "elastic modes".to_owned() };
-    Figure { title: title(story, &what), panels, panel_height: 130 }
+    Figure { title: title(story, &subject), panels, panel_height: 130 }
 }
 
 /// Formats a positive number with at most `most` significant digits.

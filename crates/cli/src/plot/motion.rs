@@ -123,7 +123,7 @@ fn estimates(columns: &Columns) -> Vec<DominantModeEstimate> {
         _ => &[],
     };
     let (gated, lock) = (labels(columns, "gated"), labels(columns, "lock"));
-    let is = |of: &[String], index: usize, label: &str| of.get(index).is_some_and(|own| own == label);
+    let is = |labels: &[String], index: usize, label: &str| labels.get(index).is_some_and(|own| own == label);
     let own = inner(columns, "modes", "frequency_rad_s");
     let names = [
         "time_s",
@@ -137,7 +137,8 @@ fn estimates(columns: &Columns) -> Vec<DominantModeEstimate> {
     let row = |(index, numbers): (usize, [f64; 7])| {
         let [time, read_frequency, frequency_sd, true_frequency, displacement, nis, nees] = numbers;
         let mode = modes.get(index).copied().unwrap_or_default() as usize;
-        let frequency = own.get(mode).and_then(|of| of.get(index)).copied().unwrap_or(f64::NAN);
+        let frequency =
+            own.get(mode).and_then(|frequencies| frequencies.get(index)).copied().unwrap_or(f64::NAN);
         let (gated, lost) = (is(&gated, index, "gated"), is(&lock, index, "lost"));
         DominantModeEstimate {
             time,
@@ -182,30 +183,30 @@ impl MotionRecorder {
     }
 
     fn observe(&mut self, time: f64, report: &Report) {
-        let kept = &mut self.motion;
-        kept.envelope.extend(report.get().map(|row: &record::Envelope| (time, row.envelope_rad)));
+        let data = &mut self.motion;
+        data.envelope.extend(report.get().map(|row: &record::Envelope| (time, row.envelope_rad)));
         let Some(attitude) = report.get::<record::Attitude>() else { return };
         if time > self.early && time < self.late {
             return;
         }
-        kept.time.push(time);
-        kept.angle.push(attitude.angle_rad);
-        kept.rate.extend(report.get().map(|row: &record::Rate| row.rate_rad_s));
+        data.time.push(time);
+        data.angle.push(attitude.angle_rad);
+        data.rate.extend(report.get().map(|row: &record::Rate| row.rate_rad_s));
         if let Some(modes) = report.get::<record::Modes>() {
-            kept.elastic.push(modes.elastic_rad);
-            extend(&mut kept.modes, modes.modes.iter().map(|mode| mode.displacement_rad));
-            extend(&mut kept.mode_rates, modes.modes.iter().map(|mode| mode.rate_rad_s));
+            data.elastic.push(modes.elastic_rad);
+            extend(&mut data.modes, modes.modes.iter().map(|mode| mode.displacement_rad));
+            extend(&mut data.mode_rates, modes.modes.iter().map(|mode| mode.rate_rad_s));
         }
         let outputs = report.get().into_iter().flat_map(|row: &record::Outputs| &row.outputs);
-        extend(&mut kept.outputs, outputs.map(|output| output.value));
-        kept.goal.extend(report.get().map(|row: &record::GoalMotion| row.angle_rad));
+        extend(&mut data.outputs, outputs.map(|output| output.value));
+        data.goal.extend(report.get().map(|row: &record::GoalMotion| row.angle_rad));
         if let Some(torque) = report.get::<record::Torque>() {
             let now = [torque.feedforward_nm, torque.feedback_nm, torque.applied_nm, torque.disturbance_nm];
-            kept.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
+            data.torques.iter_mut().zip(now).for_each(|(column, value)| column.push(value));
         }
         if let Some(wheel) = report.get::<record::WheelMotion>() {
-            kept.wheel[0].push(wheel.speed_rad_s);
-            kept.wheel[1].push(wheel.momentum_nm_s);
+            data.wheel[0].push(wheel.speed_rad_s);
+            data.wheel[1].push(wheel.momentum_nm_s);
         }
     }
 }

@@ -16,16 +16,16 @@ const COLOURS: [(&str, plotters::style::RGBColor); 3] =
 
 /// Returns true if a scenario has an orbit.
 pub fn applies_to(story: &RunEvents) -> bool {
-    story.scenario.environment.as_ref().is_some_and(|around| around.orbit.is_some())
+    story.scenario.environment.as_ref().is_some_and(|environment| environment.orbit.is_some())
 }
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     let shown: [(&str, &str, AxisSeries); 3] =
         [("field", "T", |axis| axis.field_t), ("nadir", "", |axis| axis.nadir), ("Sun", "", |axis| axis.sun)];
     let mut panels = Vec::new();
-    for (name, unit, of) in shown {
+    for (name, unit, value_of) in shown {
         let line = |axis: usize| -> Vec<Point> {
-            cycles.rows::<Orbit>().map(|(time, row)| (time, of(&row.axes[axis]))).collect()
+            cycles.rows::<Orbit>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()
         };
         let lines = [0, 1, 2].map(line);
         if lines.iter().flatten().all(|(_, value)| value.is_nan()) {
@@ -39,8 +39,13 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
             .enumerate()
             .map(|(index, [from, to])| {
                 let label = if index == 0 && panels.is_empty() { "shadow" } else { "" };
-                let edges = |level: f64| [(from, level), (to, level)];
-                Layer::new(label, colour::GREY, LayerShape::Area(0.2), band(&edges(low), &edges(high)))
+                let band_edge = |level: f64| [(from, level), (to, level)];
+                Layer::new(
+                    label,
+                    colour::GREY,
+                    LayerShape::Area(0.2),
+                    band(&band_edge(low), &band_edge(high)),
+                )
             })
             .collect();
         layers.extend(lines.into_iter().zip(COLOURS).map(|(points, (axis, colour))| {

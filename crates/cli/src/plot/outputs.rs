@@ -23,10 +23,10 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
         Panel::new(x, y, layers)
     };
     let panels = motion.outputs.iter().zip(outputs).enumerate().skip(skipped).map(panel).collect();
-    let what = if skipped > 0 {
+    let subject = if skipped > 0 {
         format!("observed coordinates, the first {skipped} left out")
     } else {
         "observed coordinates".to_owned()
     };
-    Figure { title: title(story, &what), panels, panel_height: 130 }
+    Figure { title: title(story, &subject), panels, panel_height: 130 }
 }

@@ -9,7 +9,7 @@ const COLOURS: [RGBColor; 6] =
 const LIGHTER: f64 = 0.45;
 
 /// Returns the overlay of the named runs' figures; `None` if their panels differ.
-pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
+pub fn overlaid(subject: &str, runs: &[(String, Figure)]) -> Option<Figure> {
     let (_, first) = runs.first()?;
     let alike = |figure: &Figure| {
         let axes = |figure: &Figure| -> Vec<[(String, &'static str, Scale); 2]> {
@@ -24,7 +24,7 @@ pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
     }
     let (panel_height, count) = (first.panel_height, first.panels.len());
     let names: Vec<&str> = runs.iter().map(|(name, _)| name.as_str()).collect();
-    let title = format!("{what}: {}", names.join(", "));
+    let title = format!("{subject}: {}", names.join(", "));
     let panel = |index: usize| -> Panel {
         let panels: Vec<(&str, &Panel)> =
             runs.iter().map(|(name, figure)| (name.as_str(), &figure.panels[index])).collect();
@@ -41,10 +41,10 @@ pub fn overlaid(what: &str, runs: &[(String, Figure)]) -> Option<Figure> {
 }
 
 /// Returns the axis that contains the axes of all panels.
-fn axis(panels: &[(&str, &Panel)], of: fn(&Panel) -> &FigureAxis) -> FigureAxis {
-    let mut all = of(panels[0].1).clone();
+fn axis(panels: &[(&str, &Panel)], axis_of: fn(&Panel) -> &FigureAxis) -> FigureAxis {
+    let mut all = axis_of(panels[0].1).clone();
     for (_, panel) in panels {
-        let range = &of(panel).range;
+        let range = &axis_of(panel).range;
         all.range = all.range.start.min(range.start)..all.range.end.max(range.end);
     }
     all

@@ -35,16 +35,16 @@ pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let last = path(&|time| time >= late - 1e-9 && time <= end + 1e-9);
     let shown = |s: &&SwitchingEvent| (s.time >= late && s.time <= end) || s.time <= early;
     let points = |timeout: bool| -> Vec<Point> {
-        let of_kind = story.switchings.iter().filter(shown).filter(|s| s.timeout == timeout);
-        of_kind.map(|s| (s.angle, s.rate)).collect()
+        let switchings = story.switchings.iter().filter(shown).filter(|s| s.timeout == timeout);
+        switchings.map(|s| (s.angle, s.rate)).collect()
     };
     let relay = story.scenario.law.relay();
     let zone = relay.into_iter().flat_map(|relay| [-relay.dead_zone.get(), relay.dead_zone.get()]);
     let all = || first.iter().chain(&last).copied();
     let x = FigureAxis::around("angle x", "rad", all().map(|p| p.0).chain(zone));
     let y = FigureAxis::around("rate dx/dt", "rad/s", all().map(|p| p.1));
-    let line = |name: &str, shape, at: f64| {
-        Layer::new(name, colour::GREY, shape, vec![(at, y.range.start), (at, y.range.end)])
+    let line = |name: &str, shape, angle: f64| {
+        Layer::new(name, colour::GREY, shape, vec![(angle, y.range.start), (angle, y.range.end)])
     };
     let (boundary, brake) = (LayerShape::Line(1.0), LayerShape::Dashes);
     let lines = |relay: &Relay| {

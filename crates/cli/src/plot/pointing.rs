@@ -16,10 +16,11 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         vec![Layer::new(name, colour::BLUE, LayerShape::Line(1.2), points)]
     };
     let mut panels = panels(story, "rad", line);
-    let of = |panel: &Panel| panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
+    let largest_error =
+        |panel: &Panel| panel.layers[0].points.iter().map(|point| point.1.abs()).fold(0.0, f64::max);
     for (axis, panel) in panels.iter_mut().enumerate() {
         let [goal, zone] = bands(story, axis);
-        let largest = of(panel);
+        let largest = largest_error(panel);
         let shown =
             [goal, zone].into_iter().flatten().filter(|half| *half <= WIDE * largest).fold(0.0, f64::max);
         let values: Vec<f64> = panel.layers[0].points.iter().map(|point| point.1).collect();
@@ -27,7 +28,7 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
             panel.y = FigureAxis::around(&panel.y.name, "rad", values.into_iter().chain([-shown, shown]));
         }
         let level = |height: f64| [(0.0, height), (story.end, height)];
-        let wide = |what: &str, half: f64| format!("{what} ±{} mrad", super::short(1e3 * half));
+        let wide = |name: &str, half: f64| format!("{name} ±{} mrad", super::short(1e3 * half));
         let mut below = Vec::new();
         if let Some(half) = goal {
             let area = band(&level(-half), &level(half));
@@ -36,13 +37,13 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
         let target = if axis == 0 { "target" } else { "" };
         below.push(Layer::new(target, colour::GREY, LayerShape::Line(0.8), level(0.0).to_vec()));
         if let Some(half) = zone {
-            let edges =
+            let bounds =
                 [(0.0, half), (story.end, half), (f64::NAN, f64::NAN), (0.0, -half), (story.end, -half)];
             below.push(Layer::new(
                 &wide("dead zone", half),
                 colour::GREY,
                 LayerShape::Dashes,
-                edges.to_vec(),
+                bounds.to_vec(),
             ));
         }
         below.append(&mut panel.layers);

@@ -68,8 +68,8 @@ impl RunEvents {
     pub fn read(log: &Log, path: &Path) -> Result<Self, CliError> {
         let toml = log.require_scenario()?;
         let scenario = Scenario::parse(&format!("{}: scenario.toml", path.display()), toml)?;
-        let about = log.metadata();
-        let run = about.get("run").and_then(|run| run.parse().ok()).unwrap_or(0);
+        let metadata = log.metadata();
+        let run = metadata.get("run").and_then(|run| run.parse().ok()).unwrap_or(0);
         let [law, command, means, objective, adaptation] =
             topics(log, ["/law", "/command", "/envelope_mean", "/objective", "/adaptation"])?;
         let first = |name: &str| law.numbers(name).and_then(|column| column.first().copied());
@@ -83,13 +83,13 @@ impl RunEvents {
         let decisions = labels(&adaptation, "decision");
         let steps = rows(&adaptation, ["time_s", "gain"]).zip(decisions);
         let steps = steps.map(|([time, gain], decision)| AdaptationStep { time, decision, gain }).collect();
-        let reported = about.get("time_s").and_then(|time| time.parse().ok());
+        let reported = metadata.get("time_s").and_then(|time| time.parse().ok());
         let last = switchings
             .last()
             .map(|s| s.time)
             .into_iter()
             .chain(means.last().or(objective.last()).map(|mean| mean.to));
-        let end = match about.get("end").map(String::as_str) {
+        let end = match metadata.get("end").map(String::as_str) {
             Some("complete") => scenario.duration.seconds(),
             _ => last.chain(reported).fold(0.0, f64::max),
         };

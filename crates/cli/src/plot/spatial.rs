@@ -62,8 +62,8 @@ impl CycleData {
     }
 
     /// Returns a number of each cycle over time.
-    pub fn over_time(&self, of: impl Fn(&ThreeAxisCycle) -> f64) -> Vec<Point> {
-        self.values().map(|(time, cycle)| (time, of(cycle))).collect()
+    pub fn over_time(&self, value_of: impl Fn(&ThreeAxisCycle) -> f64) -> Vec<Point> {
+        self.values().map(|(time, cycle)| (time, value_of(cycle))).collect()
     }
 
     /// Returns the propellant that the jets have used at each cycle (kg); NaN without jets.
@@ -112,12 +112,12 @@ pub fn panels(story: &RunEvents, unit: &'static str, lines: impl Fn(usize) -> Ve
 /// Returns the figure of the rigid rates, and of the rates with their elastic part, which an ideal gyro would measure.
 pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
-        let seen = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
+        let measured = cycles.over_time(|c| c.rigid_rate_rad_s[axis] + c.elastic_rate_rad_s[axis]);
         let rigid = cycles.over_time(|c| c.rigid_rate_rad_s[axis]);
         let name = |name| if axis == 0 { name } else { "" };
         vec![
             // If both coincide, the wider line remains visible.
-            Layer::new(name("at the gyro, with elastic part"), colour::SKY, LayerShape::Line(2.8), seen),
+            Layer::new(name("at the gyro, with elastic part"), colour::SKY, LayerShape::Line(2.8), measured),
             Layer::new(name("rigid part"), colour::BLACK, LayerShape::Line(1.0), rigid),
         ]
     };
@@ -126,9 +126,9 @@ pub fn rates(story: &RunEvents, cycles: &CycleData) -> Figure {
 
 /// Returns the figure of the position of the first point, and its velocity.
 pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let panel = |x: FigureAxis, name: &str, unit: &'static str, of: [fn(&Position) -> f64; 3]| {
+    let panel = |x: FigureAxis, name: &str, unit: &'static str, coordinates: [fn(&Position) -> f64; 3]| {
         let line = |(axis, colour): (usize, _)| {
-            let points = cycles.rows().map(|(time, position)| (time, of[axis](position))).collect();
+            let points = cycles.rows().map(|(time, position)| (time, coordinates[axis](position))).collect();
             Layer::new(["x", "y", "z"][axis], colour, LayerShape::Line(1.2), points)
         };
         let layers: Vec<Layer> =
@@ -137,8 +137,10 @@ pub fn position(story: &RunEvents, cycles: &CycleData) -> Figure {
         Panel { x, y: FigureAxis::around(name, unit, values.collect::<Vec<_>>()), layers, bar: None }
     };
     let x = time(0.0..story.end);
-    let places: [fn(&Position) -> f64; 3] = [|at| at.x_m, |at| at.y_m, |at| at.z_m];
-    let rates: [fn(&Position) -> f64; 3] = [|at| at.x_m_s, |at| at.y_m_s, |at| at.z_m_s];
+    let places: [fn(&Position) -> f64; 3] =
+        [|position| position.x_m, |position| position.y_m, |position| position.z_m];
+    let rates: [fn(&Position) -> f64; 3] =
+        [|position| position.x_m_s, |position| position.y_m_s, |position| position.z_m_s];
     Figure {
         title: title(story, "position in inertial axes"),
         panels: vec![panel(x.unnamed(), "position", "m", places), panel(x, "velocity", "m/s", rates)],
@@ -175,8 +177,8 @@ pub fn energy(story: &RunEvents, cycles: &CycleData) -> Figure {
     if fires {
         panels.push(panel(x, "propellant", "kg", fuel));
     }
-    let what = if fires { "elastic energy and propellant" } else { "elastic energy" };
-    Figure { title: title(story, what), panels, panel_height: 220 }
+    let subject = if fires { "elastic energy and propellant" } else { "elastic energy" };
+    Figure { title: title(story, subject), panels, panel_height: 220 }
 }
 
 /// Returns true if a panel of pulses has any.
@@ -230,7 +232,7 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
     let first = cycles.rows::<Tracking>().next();
     let lines = |axis: usize| {
         let count = first.map_or(0, |(_, tracking)| tracking.trackers.len());
-        let of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
+        let values_of = |mode: usize, value: fn(&TrackedMode) -> f64| -> Vec<Point> {
             let hertz = |tracking: &Tracking| value(&tracking.trackers[mode]) / std::f64::consts::TAU;
             cycles.rows().map(|(time, tracking)| (time, hertz(tracking))).collect()
         };
@@ -242,13 +244,13 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
                 name("true"),
                 colour::BLACK,
                 LayerShape::Dashes,
-                ends(of(mode, |of| of.true_frequency_rad_s)),
+                ends(values_of(mode, |mode| mode.true_frequency_rad_s)),
             );
             let estimate = Layer::new(
                 name("estimated"),
                 colour::VERMILLION,
                 LayerShape::Line(1.2),
-                of(mode, |of| of.frequency_rad_s),
+                values_of(mode, |mode| mode.frequency_rad_s),
             );
             layers.extend([estimate, truth]);
         }
@@ -264,7 +266,7 @@ pub fn tracking(story: &RunEvents, cycles: &CycleData) -> Figure {
 /// Returns the figure of the elastic rates that active damping acts on, with its thresholds and its pulses.
 pub fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
     let lines = |axis: usize| {
-        let of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
+        let values_of = |value: fn(&ChannelState) -> f64| -> Vec<Point> {
             cycles.rows::<Tracking>().map(|(time, row)| (time, value(&row.channels[axis]))).collect()
         };
         let name = |name| if axis == 0 { name } else { "" };
@@ -277,10 +279,15 @@ pub fn damping(story: &RunEvents, cycles: &CycleData) -> Figure {
                 name("predicted elastic rate"),
                 colour::SKY,
                 LayerShape::Line(1.0),
-                of(|c| c.acted_on_rad_s),
+                values_of(|c| c.acted_on_rad_s),
             ),
-            Layer::new(name("threshold"), colour::BLACK, LayerShape::Line(0.8), of(|c| c.threshold_rad_s)),
-            Layer::new("", colour::BLACK, LayerShape::Line(0.8), of(|c| -c.threshold_rad_s)),
+            Layer::new(
+                name("threshold"),
+                colour::BLACK,
+                LayerShape::Line(0.8),
+                values_of(|c| c.threshold_rad_s),
+            ),
+            Layer::new("", colour::BLACK, LayerShape::Line(0.8), values_of(|c| -c.threshold_rad_s)),
             Layer::new("fires", colour::VERMILLION, mark, fired),
         ]
     };

@@ -21,8 +21,9 @@ pub fn resolve(from: Option<f64>, to: Option<f64>, end: f64) -> Result<Option<Ra
     if start >= 0.0 && start < last {
         return Ok(Some(start..last));
     }
-    let asked = |time: Option<f64>| time.map_or("-".to_owned(), |time| time.to_string());
-    let why = format!("the run is from 0 to {end} s, got --from {} --to {}", asked(from), asked(to));
+    let limit_text = |time: Option<f64>| time.map_or("-".to_owned(), |time| time.to_string());
+    let why =
+        format!("the run is from 0 to {end} s, got --from {} --to {}", limit_text(from), limit_text(to));
     Err(CliError::Arguments(why))
 }
 
@@ -49,12 +50,12 @@ fn heights(panel: &Panel) -> Option<Range<f64>> {
     let upright = |layer: &Layer| layer.points.windows(2).all(|pair| pair[0].0 == pair[1].0);
     let lines =
         panel.layers.iter().filter(|layer| !matches!(layer.shape, LayerShape::Area(_)) && !upright(layer));
-    let seen = lines.flat_map(|layer| {
+    let values = lines.flat_map(|layer| {
         let inside = layer.points.iter().filter(|point| shown.contains(&point.0) || point.0 == shown.end);
-        let ends = [shown.start, shown.end].map(|time| at(layer, time));
+        let ends = [shown.start, shown.end].map(|time| value_at(layer, time));
         inside.map(|point| point.1).chain(ends.into_iter().flatten()).collect::<Vec<_>>()
     });
-    let finite = seen.filter(|value| value.is_finite());
+    let finite = values.filter(|value| value.is_finite());
     let (low, high) =
         finite.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), v| (low.min(v), high.max(v)));
     let margin = MARGIN * (high - low);
@@ -68,13 +69,13 @@ fn heights(panel: &Panel) -> Option<Range<f64>> {
 }
 
 /// Returns the value of a line at a time, interpolated between two of its points.
-fn at(layer: &Layer, time: f64) -> Option<f64> {
+fn value_at(layer: &Layer, time: f64) -> Option<f64> {
     if !matches!(layer.shape, LayerShape::Line(_) | LayerShape::Dashes) {
         return None;
     }
-    let around = layer.points.windows(2).find(|pair| pair[0].0 <= time && time < pair[1].0)?;
-    let part = (time - around[0].0) / (around[1].0 - around[0].0);
-    Some(around[0].1 + part * (around[1].1 - around[0].1))
+    let interval = layer.points.windows(2).find(|pair| pair[0].0 <= time && time < pair[1].0)?;
+    let part = (time - interval[0].0) / (interval[1].0 - interval[0].0);
+    Some(interval[0].1 + part * (interval[1].1 - interval[0].1))
 }
 
 #[cfg(test)]

@@ -6,18 +6,18 @@ use super::run_events::RunEvents;
 const ABBREVIATIONS: [&str; 9] = ["cmg", "ekf", "iss", "lqg", "lqr", "mc", "pd", "pid", "rw"];
 
 /// Returns the title of a figure: the scenario, the content of the figure, and the run.
-pub fn title(story: &RunEvents, what: &str) -> String {
+pub fn title(story: &RunEvents, subject: &str) -> String {
     let scenario = &story.scenario;
     let name = readable(&scenario.name);
     if !story.switches() {
         let run = if story.run == 0 { String::new() } else { format!(" (run {})", story.run) };
-        return format!("{name}: {what}{run}");
+        return format!("{name}: {subject}{run}");
     }
     let (first, seed) = (story.start.1, scenario.seed);
     let last = story.steps.last().map_or(first, |step| step.gain);
     let moved = if last == first { String::new() } else { format!(" → {}", short(last)) };
     let run = if story.run == 0 { String::new() } else { format!(", run {}", story.run) };
-    format!("{name}: {what} ({} = {}{moved}, seed {seed}{run})", story.tunes(), short(first))
+    format!("{name}: {subject} ({} = {}{moved}, seed {seed}{run})", story.tunes(), short(first))
 }
 
 /// Returns the name of a scenario in words: `iss-manoeuvre` as "ISS manoeuvre".

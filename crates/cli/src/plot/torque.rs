@@ -28,29 +28,31 @@ pub fn figure(story: &RunEvents) -> Figure {
     let levels = line.iter().map(|(_, torque)| torque.abs()).filter(|torque| *torque > 0.0);
     let strong = levels.clone().fold(0.0, f64::max);
     let weak = levels.filter(|level| *level < 0.2 * strong).fold(0.0, f64::max);
-    let (what, unit) = story.scenario.model.commanded_quantity();
+    let (quantity, unit) = story.scenario.model.commanded_quantity();
     let panel = |x: FigureAxis, name: &str, most: f64, named: bool| {
         let most = if most > 0.0 { 1.3 * most } else { 1.0 };
         let marks = |timeout: bool| -> Vec<Point> {
-            let of_kind = story.switchings.iter().filter(|s| s.timeout == timeout);
-            of_kind.map(|s| (s.time, s.torque)).collect()
+            let switchings = story.switchings.iter().filter(|s| s.timeout == timeout);
+            switchings.map(|s| (s.time, s.torque)).collect()
         };
         let legend = |name: &'static str| if named { name } else { "" };
         let zero = vec![(x.range.start, 0.0), (x.range.end, 0.0)];
         let layers = vec![
             Layer::new("", colour::GREY, LayerShape::Line(0.8), zero),
-            Layer::new(legend(what), colour::BLACK, LayerShape::Line(1.2), line.clone()),
+            Layer::new(legend(quantity), colour::BLACK, LayerShape::Line(1.2), line.clone()),
             Layer::new(legend("switching by guard"), colour::VERMILLION, LayerShape::Disc, marks(false)),
             Layer::new(legend("by timeout"), colour::BLUE, LayerShape::Diamond, marks(true)),
         ];
         Panel::new(x, FigureAxis::exact(name, unit, -most..most), layers)
     };
-    let title = title(story, what);
+    let title = title(story, quantity);
     if weak > 0.0 {
-        let panels =
-            vec![panel(x.unnamed(), what, strong, true), panel(x, &format!("weak {what}"), weak, false)];
+        let panels = vec![
+            panel(x.unnamed(), quantity, strong, true),
+            panel(x, &format!("weak {quantity}"), weak, false),
+        ];
         Figure { title, panels, panel_height: 200 }
     } else {
-        Figure { title, panels: vec![panel(x, what, strong, true)], panel_height: 300 }
+        Figure { title, panels: vec![panel(x, quantity, strong, true)], panel_height: 300 }
     }
 }

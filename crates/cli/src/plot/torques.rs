@@ -18,22 +18,22 @@ pub fn applies_to(story: &RunEvents) -> bool {
 }
 
 pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
-    let about = |axis: usize, of: fn(&Torque) -> f64| -> Vec<Point> {
-        cycles.rows::<Torques>().map(|(time, row)| (time, of(&row.axes[axis]))).collect()
+    let torque_about = |axis: usize, value_of: fn(&Torque) -> f64| -> Vec<Point> {
+        cycles.rows::<Torques>().map(|(time, row)| (time, value_of(&row.axes[axis]))).collect()
     };
     // Demands are steps, drawn with a wider line than the actuators' response.
     let lines = |axis: usize| {
         let name = |name| if axis == 0 { name } else { "" };
-        let [demanded, given] =
-            [about(axis, |torque| torque.feedback_nm), about(axis, |torque| torque.applied_nm)];
+        let [demanded, applied] =
+            [torque_about(axis, |torque| torque.feedback_nm), torque_about(axis, |torque| torque.applied_nm)];
         vec![
             Layer::new(name("demanded by the law"), colour::SKY, LayerShape::Line(2.8), demanded),
-            Layer::new(name("given by the actuators"), colour::BLACK, LayerShape::Line(1.0), given),
+            Layer::new(name("given by the actuators"), colour::BLACK, LayerShape::Line(1.0), applied),
         ]
     };
     let mut panels = panels(story, "N m", lines);
     let disturbing: Vec<Vec<Point>> =
-        (0..3).map(|axis| about(axis, |torque| torque.disturbance_nm)).collect();
+        (0..3).map(|axis| torque_about(axis, |torque| torque.disturbance_nm)).collect();
     if disturbing.iter().flatten().any(|(_, torque)| *torque != 0.0) {
         if let Some(last) = panels.last_mut() {
             last.x = last.x.unnamed();

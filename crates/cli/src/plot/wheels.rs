@@ -29,9 +29,9 @@ pub fn figure(story: &RunEvents, cycles: &CycleData) -> Figure {
     });
     let rubs = story.scenario.study.bearings.iter().any(Bearing::can_stick);
     let count = cycles.rows::<record::Wheels>().next().map_or(0, |(_, row)| row.wheels.len());
-    let each = |of: fn(&record::Wheel) -> f64| -> Vec<Vec<Point>> {
+    let each = |value_of: fn(&record::Wheel) -> f64| -> Vec<Vec<Point>> {
         let line = |wheel: usize| {
-            cycles.rows::<record::Wheels>().map(|(time, row)| (time, of(&row.wheels[wheel]))).collect()
+            cycles.rows::<record::Wheels>().map(|(time, row)| (time, value_of(&row.wheels[wheel]))).collect()
         };
         (0..count).map(line).collect()
     };

@@ -22,16 +22,16 @@ impl PageCommand {
         let mut reported = match &self.verb {
             Verb::Simulate(args) => {
                 let (scenario, path) = self.simulated(args)?;
-                let study = Campaign::new(scenario, &path.to_string_lossy(), None)?;
+                let campaign = Campaign::new(scenario, &path.to_string_lossy(), None)?;
                 match &args.runs {
-                    None => single(&study)?,
-                    Some(runs) => columns(&several(&Arc::new(study), runs.range.clone())?),
+                    None => single(&campaign)?,
+                    Some(runs) => columns(&several(&Arc::new(campaign), runs.range.clone())?),
                 }
             }
             Verb::Sweep(args) => {
                 let scenario = shipped_scenarios::load(&args.scenario, &args.set, args.seed)?;
-                let (study, range) = args.study(scenario, &args.scenario.to_string_lossy())?;
-                columns(&several(&Arc::new(study), range)?)
+                let (campaign, range) = args.campaign(scenario, &args.scenario.to_string_lossy())?;
+                columns(&several(&Arc::new(campaign), range)?)
             }
             _ => {
                 let mut lines = self.results()?.json();
@@ -59,18 +59,18 @@ impl PageCommand {
 }
 
 /// Returns the metrics of the scenario itself.
-fn single(study: &Campaign) -> Result<Json, CliError> {
-    let run = simulate::scenario_run(study);
+fn single(campaign: &Campaign) -> Result<Json, CliError> {
+    let run = simulate::scenario_run(campaign);
     let failed = |source| CliError::Run { name: run.scenario.name.clone(), source };
     let metrics = Campaign::simulate(&run, StopRecord).map_err(failed)?;
-    Ok(campaign::object(study, run.number, &run.drawn, Ok(&metrics))["metrics"].take())
+    Ok(campaign::object(campaign, run.number, &run.drawn, Ok(&metrics))["metrics"].take())
 }
 
 /// Returns the objects of some runs, all of which must succeed.
-fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, CliError> {
+fn several(campaign: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, CliError> {
     let runs = range.end - range.start;
     let mut objects = Vec::new();
-    study.for_each_run_in_batches(
+    campaign.for_each_run_in_batches(
         range,
         0,
         &Selection::ALL,
@@ -79,7 +79,7 @@ fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, CliErr
             let Some(RunOutcome { number, drawn, metrics, .. }) = outcome else { return Ok(()) };
             let failed = |why| CliError::Runs { failed: 1, runs, number, why };
             let metrics = metrics.map_err(|error| failed(error.to_string()))?;
-            objects.push(campaign::object(study, number, &drawn, Ok(&metrics)));
+            objects.push(campaign::object(campaign, number, &drawn, Ok(&metrics)));
             Ok::<(), CliError>(())
         },
     )?;
@@ -88,13 +88,13 @@ fn several(study: &Arc<Campaign>, range: Range<u64>) -> Result<Vec<Json>, CliErr
 
 /// Returns the objects of runs as columns.
 fn columns(objects: &[Json]) -> Json {
-    let of = |part: &str| -> Map<String, Json> {
+    let section = |part: &str| -> Map<String, Json> {
         let names = objects.first().and_then(|first| first[part].as_object()).into_iter().flat_map(Map::keys);
         let column = |name: &str| objects.iter().map(|object| object[part][name].clone()).collect();
         names.map(|name| (name.clone(), column(name))).collect()
     };
-    let mut reported = of("metrics");
-    reported.insert("drawn".to_owned(), Json::Object(of("drawn")));
+    let mut reported = section("metrics");
+    reported.insert("drawn".to_owned(), Json::Object(section("drawn")));
     reported.insert("runs".to_owned(), json!(objects.len()));
     Json::Object(reported)
 }

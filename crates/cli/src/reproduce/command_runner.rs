@@ -22,8 +22,8 @@ impl Laboratory for CommandRunner {
         Ok(["time_s", name].map(|name| columns.numbers(name).map(<[f64]>::to_vec).unwrap_or_default()))
     }
 
-    fn draw(&self, command: &str, what: &str) -> Result<(Figure, String), String> {
-        message(PageCommand::parse(command).and_then(|command| command.draw(what)))
+    fn draw(&self, command: &str, kind: &str) -> Result<(Figure, String), String> {
+        message(PageCommand::parse(command).and_then(|command| command.draw(kind)))
     }
 }
 

@@ -3,7 +3,7 @@
 //!
 //! A page names its commands and marks its numbers in comments, which are invisible to readers:
 //! - a comment of its own, `<!--{% set quiet = run("simulate scenarios/relay-quiet.toml") %}-->`, names a command's
-//!   output ([`super::tell`]);
+//!   output ([`super::command_output`]);
 //! - `0.34<!--{{ quiet.gain_final }}-->` is a number of the text, which must be the value rounded to its digits; such a
 //!   comment must not contain `--`, and in the cell of a table a `|` is written `\|`;
 //! - `<!--below 0.34 {{ quiet.gain_final }}-->`, on a line of its own, is such a number in the block that follows,
@@ -145,8 +145,8 @@ impl NumberMark<'_> {
 /// Returns true if a text contains a number, not as a part of a longer one.
 fn has_number(text: &str, number: &str) -> bool {
     let apart = |c: Option<char>| c.is_none_or(|c| !c.is_ascii_digit() && c != '.');
-    text.match_indices(number).any(|(at, _)| {
-        let (before, after) = (&text[..at], &text[at + number.len()..]);
+    text.match_indices(number).any(|(position, _)| {
+        let (before, after) = (&text[..position], &text[position + number.len()..]);
         // A full stop at the end of a sentence is not part of a number.
         let after = after
             .strip_prefix('.')
@@ -206,17 +206,17 @@ fn page_of_manoeuvres_has_the_numbers_of_its_commands() {
 
 #[test]
 fn a_wrong_number_is_a_fault() {
-    let of = |text: &str| faults(text).map_or_else(|error| error, |faults| faults.join("; "));
+    let faults_of = |text: &str| faults(text).map_or_else(|error| error, |faults| faults.join("; "));
     let set = "<!--{% set x = [1.0, 2.0, 4.26e-3] %}-->\n";
-    let right = [
+    let expected = [
         "So 2<!--{{ x[1] }}--> of them, 4.3e-3<!--{{ x[2] }}--> and -0.0043<!--{{ -x[2] }}--> rad, +1.00<!--{{ x[0] }}-->.",
         "| 1.0<!--{{ x\\|median }}--> |",
         "<!--made\n{% for y in x[:2] %}\n| {{ y|fixed(1) }} |\n{% endfor %}\n-->\n| 1.0 |\n| 2.0 |\n<!--end-->",
         "<!--below 0.004 {{ x[2] }}-->\n<!--below 1.0 {{ x[0] }}-->\n\n    a = 0.004 and 1.0.",
         "<!--below 2 {{ x[1] }}-->\n```\none\n\ntwo: 2\n```\n",
     ];
-    for text in right {
-        assert_eq!(of(&format!("{set}{text}")), "", "{text}");
+    for text in expected {
+        assert_eq!(faults_of(&format!("{set}{text}")), "", "{text}");
     }
     let wrong = [
         ("3<!--{{ x[1] }}-->", "line 2: `3` should be 2"),
@@ -230,7 +230,7 @@ fn a_wrong_number_is_a_fault() {
         ("2<!--{{ run('simulate scenarios/none.toml') }}-->", "there is no example"),
     ];
     for (text, why) in wrong {
-        let fault = of(&format!("{set}{text}"));
+        let fault = faults_of(&format!("{set}{text}"));
         assert!(fault.contains(why), "{text}: {fault}");
     }
 }

@@ -11,25 +11,25 @@ use crate::{Verb, plot, simulate};
 impl PageCommand {
     /// Returns the figure that the command draws, for a simulation from its log; and the command as a user would type
     /// it.
-    pub fn draw(&self, what: &str) -> Result<(Figure, String), CliError> {
+    pub fn draw(&self, kind: &str) -> Result<(Figure, String), CliError> {
         if let Verb::Simulate(args) = &self.verb {
-            return self.plot(args, what);
+            return self.plot(args, kind);
         }
-        let ends = |(name, _): &Named| name.ends_with(&format!("-{what}")) || name == what;
+        let ends = |(name, _): &Named| name.ends_with(&format!("-{kind}")) || name == kind;
         let figure = self.results()?.figures().into_iter().find(ends);
-        let (_, figure) = figure.ok_or_else(|| self.failure(&format!("no figure `{what}`")))?;
+        let (_, figure) = figure.ok_or_else(|| self.failure(&format!("no figure `{kind}`")))?;
         Ok((figure, format!("{} --figures DIR", self.text)))
     }
 
     /// Returns a figure of a run's log, with the motion of a single-axis body by repeating the run, as `flexsc plot`
     /// does.
-    fn plot(&self, args: &simulate::SimulateArgs, what: &str) -> Result<(Figure, String), CliError> {
+    fn plot(&self, args: &simulate::SimulateArgs, kind: &str) -> Result<(Figure, String), CliError> {
         let (scenario, path) = self.simulated(args)?;
         let spatial = scenario.axis_count() == 3;
         let (detail, option) = if spatial { (Detail::Full, " --log full") } else { (Detail::Events, "") };
-        let figure = plot::figure_of(&self.log(detail)?, path, what)?;
+        let figure = plot::figure_of(&self.log(detail)?, path, kind)?;
         let (text, name) = (&self.text, &scenario.name);
-        Ok((figure, format!("{text}{option} && flexsc plot {name}.mcap --what {what}")))
+        Ok((figure, format!("{text}{option} && flexsc plot {name}.mcap --what {kind}")))
     }
 
     /// Returns the log of a simulation in this detail.

@@ -112,10 +112,10 @@ const ROOM: usize = 16 << 20;
 
 /// Checks that a page can be written: that an existing file may be replaced, and that there is disk space.
 fn find_room(path: &Path) -> Result<(), CliError> {
-    if let Ok(there) = std::fs::metadata(path) {
-        let kind = match there.is_file() {
-            true if there.permissions().readonly() => Some(ErrorKind::PermissionDenied),
-            false if there.is_dir() => Some(ErrorKind::IsADirectory),
+    if let Ok(metadata) = std::fs::metadata(path) {
+        let kind = match metadata.is_file() {
+            true if metadata.permissions().readonly() => Some(ErrorKind::PermissionDenied),
+            false if metadata.is_dir() => Some(ErrorKind::IsADirectory),
             _ => None,
         };
         kind.map_or(Ok(()), |kind| Err(CliError::write(path)(kind.into())))?;

@@ -27,13 +27,13 @@ impl Summary<'_> {
             );
         }
         let (name, unit) = scenario.model.commanded_quantity();
-        let (given, asked) = (self.number("peak_torque_nm"), self.number("peak_feedback_torque_nm"));
-        let of_law = if asked == 0.0 {
+        let (peak, feedback_peak) = (self.number("peak_torque_nm"), self.number("peak_feedback_torque_nm"));
+        let law_part = if feedback_peak == 0.0 {
             String::new()
         } else {
-            format!("; at most {} demanded by the law", units.quantity(asked, unit))
+            format!("; at most {} demanded by the law", units.quantity(feedback_peak, unit))
         };
-        say!("  {name:<14} at most {} given{of_law}", units.quantity(given, unit));
+        say!("  {name:<14} at most {} given{law_part}", units.quantity(peak, unit));
         let after = if scenario.plan.is_some() { " after the manoeuvre" } else { "" };
         let late = scenario.duration.seconds() > LATE;
         let late_error = |unit: &str| {

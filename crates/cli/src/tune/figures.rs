@@ -35,7 +35,7 @@ impl TunedFigure<'_> {
         let middle = line(&|r| r.midpoint);
         let own: Vec<Point> = self.tuning.own.iter().flat_map(|own| self.points(own)).collect();
         let robust: Vec<Point> =
-            self.robust.map_or_else(Vec::new, |(of, _)| over(of, |r| r.frequency_rad_s, |r| r.gain));
+            self.robust.map_or_else(Vec::new, |(gains, _)| over(gains, |r| r.frequency_rad_s, |r| r.gain));
         let shown = [&lower, &upper, &own, &robust].into_iter().flatten().map(|point| point.1);
         let y = FigureAxis::around("gain k_d of the extra loop", "", shown.chain([0.0]));
         let x = self.frequency();
@@ -63,9 +63,9 @@ impl TunedFigure<'_> {
     }
 
     fn settling(&self) -> Figure {
-        let of =
+        let result_of =
             |value: &dyn Fn(&GainRegion) -> Option<f64>| over(self.regions, |r| r.frequency_rad_s, value);
-        let (middle, without) = (of(&|r| r.settling_s), of(&|r| r.settling_without_s));
+        let (middle, without) = (result_of(&|r| r.settling_s), result_of(&|r| r.settling_without_s));
         let robust = |value: &dyn Fn(&RobustGain) -> Option<f64>| {
             self.robust.map_or_else(Vec::new, |(rows, _)| over(rows, |r| r.frequency_rad_s, value))
         };

@@ -70,35 +70,39 @@ fn part(name: &str, value: f64) -> Result<(), CliError> {
 impl TuneArgs {
     /// Computes the tuning of a scenario's loop over the given gains.
     pub fn results(&self, scenario: &Scenario) -> Result<TuneResults, CliError> {
-        let (of, law) = sampled(scenario)?;
+        let (sampled_loop, law) = sampled(scenario)?;
         positive("--limit", self.limit)?;
-        let own = || PositiveGrid::new(of.frequency() / 6.0, of.frequency() * 4.0 / 3.0, 36);
+        let own =
+            || PositiveGrid::new(sampled_loop.frequency() / 6.0, sampled_loop.frequency() * 4.0 / 3.0, 36);
         let PositiveGrid(frequencies) = self.frequency.clone().unwrap_or_else(own);
         let tuning = TuneSetup {
             name: scenario.name.clone(),
             own: law.extra.clone(),
-            window: self.settled.window(&of, &scenario.name)?,
+            window: self.settled.window(&sampled_loop, &scenario.name)?,
             scaling: self.settled.scaling(),
             gains: self.gain.0,
             limit: self.limit,
-            of,
+            sampled_loop,
             frequencies,
         };
         let closed = tuning.frequencies.len() * tuning.gains.values().len();
         let found = match self.robust {
             None => {
-                self.settled.check_cost(&tuning.of, closed, tuning.of.period, 0.0)?;
+                self.settled.check_cost(&tuning.sampled_loop, closed, tuning.sampled_loop.period, 0.0)?;
                 TuneMethodResults::Regions(tuning.regions())
             }
             Some(off) => {
                 let search = self.search(&tuning, off)?;
                 self.settled.check_cost(
-                    &tuning.of,
-                    closed * search.doubt.max_loops(),
-                    tuning.of.period,
+                    &tuning.sampled_loop,
+                    closed * search.uncertainty.max_loops(),
+                    tuning.sampled_loop.period,
                     self.delay,
                 )?;
-                TuneMethodResults::Robust { off, rows: optimize(&tuning.of, &tuning.frequencies, search) }
+                TuneMethodResults::Robust {
+                    off,
+                    rows: optimize(&tuning.sampled_loop, &tuning.frequencies, search),
+                }
             }
         };
         Ok(TuneResults { tuning, found, units: self.units.units })
@@ -119,7 +123,12 @@ impl TuneArgs {
             gains: tuning.gains,
             scaling: tuning.scaling,
             window: tuning.window,
-            doubt: ModelUncertainty { frequency: off, modal_gain: off, authority: off, delay: self.delay },
+            uncertainty: ModelUncertainty {
+                frequency: off,
+                modal_gain: off,
+                authority: off,
+                delay: self.delay,
+            },
             goal: if self.itae { RobustGoal::Itae } else { RobustGoal::Settling },
             quantile: self.quantile,
             margin: self.margin,

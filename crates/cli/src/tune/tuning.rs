@@ -10,7 +10,7 @@ pub struct TuneSetup {
     /// Extra loop of the scenario, if it has one.
     pub own: Option<Extra>,
     /// Sampled loop of the scenario.
-    pub of: SampledLoop,
+    pub sampled_loop: SampledLoop,
     /// Frequencies of the dominant mode (rad/s).
     pub frequencies: Vec<f64>,
     /// Selection of the modes that are scaled with the dominant one.
@@ -26,6 +26,6 @@ pub struct TuneSetup {
 impl TuneSetup {
     /// Computes the region of the gains at each frequency.
     pub fn regions(&self) -> Vec<GainRegion> {
-        regions(&self.of, &self.frequencies, self.scaling, self.gains, self.window, self.limit)
+        regions(&self.sampled_loop, &self.frequencies, self.scaling, self.gains, self.window, self.limit)
     }
 }

@@ -66,8 +66,8 @@ impl ActuatorSet {
         executing.chain(self.unloader.iter().map(|unloader| &*unloader.actuator))
     }
 
-    fn sum(&self, of: impl Fn(&dyn Actuator) -> f64) -> f64 {
-        self.each().map(of).reduce(|sum, next| sum + next).unwrap_or(0.0)
+    fn sum(&self, value_of: impl Fn(&dyn Actuator) -> f64) -> f64 {
+        self.each().map(value_of).reduce(|sum, next| sum + next).unwrap_or(0.0)
     }
 
     /// Iterates over the actuators that act by pulses.

@@ -52,8 +52,8 @@ impl AssignedMember<'_> {
 
     /// Returns the key of the unloading settings: `actuator[1].unloads`, or the table within wheels that contains it.
     pub fn unloading_key(&self) -> String {
-        let beside = self.key.rsplit_once('.').map_or("", |(beside, _)| beside);
-        if beside.ends_with(".unloading") { beside.to_owned() } else { format!("{beside}.unloads") }
+        let prefix = self.key.rsplit_once('.').map_or("", |(prefix, _)| prefix);
+        if prefix.ends_with(".unloading") { prefix.to_owned() } else { format!("{prefix}.unloads") }
     }
 
     /// Checks the failures of an actuator on a body with `axes` axes; returns the first inconsistent key and the
@@ -127,10 +127,10 @@ impl OneOrMany<AssignedActuator> {
     }
 
     /// Returns the first actuator of a kind, with its key.
-    fn first<'a, T>(&'a self, of: impl Fn(&'a ActuatorKind) -> Option<T>) -> Option<(T, String)> {
+    fn first<'a, T>(&'a self, role_of: impl Fn(&'a ActuatorKind) -> Option<T>) -> Option<(T, String)> {
         self.iter()
             .enumerate()
-            .find_map(|(index, assigned)| Some((of(&assigned.kind)?, self.kind_key(index))))
+            .find_map(|(index, assigned)| Some((role_of(&assigned.kind)?, self.kind_key(index))))
     }
 
     /// Returns the flywheel about the first axis, with its key.

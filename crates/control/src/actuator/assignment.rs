@@ -130,7 +130,7 @@ impl<'de> Visitor<'de> for ActuatorSpecFile {
     fn visit_map<A: MapAccess<'de>>(self, map: A) -> Result<AssignedActuator, A::Error> {
         let mut keys = ActuatorEntry::deserialize(MapAccessDeserializer::new(map))?;
         let mut kinds = keys.kinds();
-        let given: Vec<_> = kinds.iter().map(|kind| format!("`{}`", kind.kind())).collect();
+        let accepted: Vec<_> = kinds.iter().map(|kind| format!("`{}`", kind.kind())).collect();
         let why = match (kinds.pop(), kinds.is_empty()) {
             (Some(kind), true) => {
                 return Ok(AssignedActuator {
@@ -144,9 +144,9 @@ impl<'de> Visitor<'de> for ActuatorSpecFile {
                 format!("needed here, and none is given: {}", ActuatorEntry::NAMES.trim_end_matches(", "))
             }
             (Some(_), false) => {
-                let given = given.join(", ");
+                let accepted = accepted.join(", ");
                 format!(
-                    "accepted here, and more than one is given: {given}; several are a list, [[actuator]]"
+                    "accepted here, and more than one is given: {accepted}; several are a list, [[actuator]]"
                 )
             }
         };

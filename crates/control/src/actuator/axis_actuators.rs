@@ -138,12 +138,18 @@ pub struct AxisActuators(Vec<Option<(Box<dyn AxisActuator>, AxisActuatorContext)
 impl AxisActuators {
     /// Creates the actuator of each axis about which it acts, with its failures.
     pub fn new(kind: &ActuatorKind, settings: Vec<AxisActuatorContext>) -> Self {
-        let of = |setting: AxisActuatorContext| {
+        let actuator_for = |setting: AxisActuatorContext| {
             let (actuator, axis) = (kind.axis_actuator(&setting), setting.axis);
-            let own = |of: &FailureScope<'_>| of.about.is_none_or(|about| about.index() == axis);
+            let own =
+                |scope: &FailureScope<'_>| scope.axis.is_none_or(|failing_axis| failing_axis.index() == axis);
             (FaultyActuator::with_failures(kind.failures(), own, actuator), setting)
         };
-        Self(settings.into_iter().map(|setting| (setting.share > 0.0).then(|| of(setting))).collect())
+        Self(
+            settings
+                .into_iter()
+                .map(|setting| (setting.share > 0.0).then(|| actuator_for(setting)))
+                .collect(),
+        )
     }
 
     /// Returns the actuator about an axis, if one acts there.
@@ -170,11 +176,11 @@ impl Actuator for AxisActuators {
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
         for (axis, (actuator, demand)) in self.0.iter_mut().zip(demands).enumerate() {
             let Some((actuator, setting)) = actuator else { continue };
-            let wanted = match demand {
+            let commanded = match demand {
                 Demand::Change(_) => setting.demanded_torque(demand) / actuator.properties().torque_per_unit,
                 Demand::Torque(_) | Demand::Moment(_) => setting.demanded_torque(demand),
             };
-            actuator.command(now, wanted, rigid[axis]);
+            actuator.command(now, commanded, rigid[axis]);
         }
     }
 

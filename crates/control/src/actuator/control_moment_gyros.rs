@@ -129,18 +129,19 @@ impl ControlMomentGyros {
 
     /// Returns the failures of a gimbal, if it has any.
     pub(super) fn gimbal_failures(&self, gyro: usize) -> Option<ActiveFailures> {
-        let own = |of: &FailureScope<'_>| of.gimbal.is_none_or(|number| number.get() as usize == gyro + 1);
+        let own =
+            |scope: &FailureScope<'_>| scope.gimbal.is_none_or(|number| number.get() as usize == gyro + 1);
         ActiveFailures::new(&self.faults, own)
     }
 
     /// Returns the largest torque about a single axis at the initial gimbal angles (N m).
     pub fn largest_torque(&self, axes: &[GyroAxes], axis: usize) -> f64 {
         let limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
-        let wanted = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
+        let unit_torque = Vector::from_fn(|row, _| if row == axis { 1.0 } else { 0.0 });
         let rates = steering::gimbal_rates(
             &steering::torque_directions(axes, &self.initial_angles()),
             None,
-            &wanted,
+            &unit_torque,
             0.0,
         );
         let largest = rates.into_iter().map(f64::abs).fold(0.0, f64::max);
@@ -154,10 +155,12 @@ impl ControlMomentGyros {
     pub fn axes(&self) -> Result<Vec<GyroAxes>, ConfigError> {
         let axes = self.directions()?;
         let count = axes.len();
-        let each = |key: &str, given: usize| {
-            let why =
-                format!("must be one for each of {}, got {given}", counted(count, "control moment gyro"));
-            if given == count { Ok(()) } else { Err(ConfigError::new(key, why)) }
+        let each = |key: &str, given_count: usize| {
+            let why = format!(
+                "must be one for each of {}, got {given_count}",
+                counted(count, "control moment gyro")
+            );
+            if given_count == count { Ok(()) } else { Err(ConfigError::new(key, why)) }
         };
         if !self.angles.is_empty() {
             each("angles", self.angles.len())?;
@@ -185,7 +188,7 @@ impl ControlMomentGyros {
     }
 
     fn directions(&self) -> Result<Vec<GyroAxes>, ConfigError> {
-        let Some(GimbalArrangement::Pyramid) = self.arrangement else { return self.given() };
+        let Some(GimbalArrangement::Pyramid) = self.arrangement else { return self.explicit_axes() };
         for (key, axes) in [("gimbal_axes", &self.gimbal_axes), ("spin_axes", &self.spin_axes)] {
             if !axes.is_empty() {
                 return Err(ConfigError::new(key, "must be left out with an `arrangement`"));
@@ -208,7 +211,7 @@ impl ControlMomentGyros {
             .to_vec())
     }
 
-    fn given(&self) -> Result<Vec<GyroAxes>, ConfigError> {
+    fn explicit_axes(&self) -> Result<Vec<GyroAxes>, ConfigError> {
         let refused = |key: &str, why: String| Err(ConfigError::new(key, why));
         if self.cant.is_some() {
             return refused("cant", "applies only to an `arrangement`, and none is given".to_owned());

@@ -33,7 +33,7 @@ pub struct ControlMomentGyrosState {
     preferred: Option<(Vec<f64>, f64)>,
     settings: Vec<AxisActuatorContext>,
     /// Torque on the body that laws demand, and torque of other sources that the gyros counteract (N m).
-    wanted: Vector,
+    demanded: Vector,
     against: Vector,
     /// Gimbal angles (rad) at the time `since`, and the rates from then on (rad/s).
     since: Instant,
@@ -59,7 +59,7 @@ impl ControlMomentGyros {
             robust: self.steering_weight(),
             preferred: self.null_motion(),
             settings: settings.to_vec(),
-            wanted: Vector::zeros(),
+            demanded: Vector::zeros(),
             against: Vector::zeros(),
             since: Instant::START,
             angles,
@@ -89,15 +89,15 @@ impl ControlMomentGyrosState {
     }
 
     /// Returns the torque on the body (N m) of gimbals with these rates and the columns of their angles.
-    fn given(&self, columns: &[Vector], rates: &[f64]) -> Vector {
+    fn body_torque(&self, columns: &[Vector], rates: &[f64]) -> Vector {
         columns.iter().zip(rates).fold(Vector::zeros(), |sum, (column, rate)| sum + column * *rate)
             * -self.momentum
     }
 
     /// Returns the rates that give the body the demanded torque, within the rate limit.
     fn steer(&self, columns: &[Vector], now: Instant) -> Vec<f64> {
-        let wanted = (self.against - self.wanted) / self.momentum;
-        let mut rates = steering::gimbal_rates(columns, self.robust.as_ref(), &wanted, now.seconds());
+        let momentum_rate = (self.against - self.demanded) / self.momentum;
+        let mut rates = steering::gimbal_rates(columns, self.robust.as_ref(), &momentum_rate, now.seconds());
         let largest = rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
         if largest > self.limit {
             for rate in &mut rates {
@@ -108,7 +108,7 @@ impl ControlMomentGyrosState {
             let towards: Vec<f64> =
                 preferred.iter().zip(&self.angles).map(|(to, angle)| gain * (to - angle)).collect();
             let more = steering::null_component(columns, &towards);
-            // The torque has priority: null motion uses what the limit leaves.
+            // The torque has priority: null motion uses the rest of the limit.
             let part = |(rate, more): (&f64, &f64)| {
                 let room = self.limit - libm::copysign(1.0, *more) * rate;
                 if more.abs() > room { room.max(0.0) / more.abs() } else { 1.0 }
@@ -133,12 +133,12 @@ impl ControlMomentGyrosState {
         let columns = steering::torque_directions(&self.axes, &self.angles);
         self.commanded = self.steer(&columns, now);
         self.drive();
-        self.see(&columns);
+        self.update_extremes(&columns);
     }
 
     /// Updates the extreme values with the rates from now on.
-    fn see(&mut self, columns: &[Vector]) {
-        let error = self.given(columns, &self.rates) - (self.wanted - self.against);
+    fn update_extremes(&mut self, columns: &[Vector]) {
+        let error = self.body_torque(columns, &self.rates) - (self.demanded - self.against);
         let SteeringRecord { largest_rate_rad_s, least_measure, largest_error_nm } = &mut self.steered;
         *largest_rate_rad_s = self.rates.iter().map(|rate| rate.abs()).fold(*largest_rate_rad_s, f64::max);
         *least_measure = least_measure.min(steering::singularity_measure(columns));
@@ -175,7 +175,7 @@ impl ControlMomentGyrosState {
         } else if any {
             self.turn(now);
             self.drive();
-            self.see(&steering::torque_directions(&self.axes, &self.angles));
+            self.update_extremes(&steering::torque_directions(&self.axes, &self.angles));
         }
     }
 }
@@ -221,7 +221,7 @@ impl Actuator for ControlMomentGyrosState {
     fn command(&mut self, now: Instant, demands: &[Demand], _: [f64; 3]) {
         self.turn(now);
         for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
-            self.wanted[axis] = setting.demanded_torque(demand);
+            self.demanded[axis] = setting.demanded_torque(demand);
         }
         self.steer_now(now);
     }
@@ -242,16 +242,16 @@ impl Actuator for ControlMomentGyrosState {
     fn effort(&self, axis: usize) -> AxisEffort {
         let columns = steering::torque_directions(&self.axes, &self.angles);
         AxisEffort {
-            demanded: self.wanted[axis],
-            held: self.given(&columns, &self.rates)[axis],
+            demanded: self.demanded[axis],
+            held: self.body_torque(&columns, &self.rates)[axis],
             firing: 0.0,
-            reduced_moment: self.given(&columns, &self.commanded)[axis] / self.settings[axis].inertia,
+            reduced_moment: self.body_torque(&columns, &self.commanded)[axis] / self.settings[axis].inertia,
         }
     }
 
     fn response(&self, now: Instant, axis: usize, _: [f64; 2]) -> AxisResponse {
         let columns = steering::torque_directions(&self.axes, &self.angles_at(now));
-        AxisResponse { applied: self.given(&columns, &self.rates)[axis], rotor: None }
+        AxisResponse { applied: self.body_torque(&columns, &self.rates)[axis], rotor: None }
     }
 
     fn capabilities(&self) -> Capabilities<'_> {

@@ -43,8 +43,8 @@ macro_rules! kinds {
             impl $name {
                 fn scope(&self) -> FailureScope<'_> {
                     let interval = Interval { from: self.from, to: self.to };
-                    let (about, wheel, gimbal) = (self.about, self.wheel, self.gimbal);
-                    FailureScope { interval, about, wheel, gimbal, thruster: self.thruster.as_deref() }
+                    let (axis, wheel, gimbal) = (self.about, self.wheel, self.gimbal);
+                    FailureScope { interval, axis, wheel, gimbal, thruster: self.thruster.as_deref() }
                 }
             }
         )+
@@ -97,7 +97,7 @@ pub struct FailureScope<'a> {
     /// Interval of the failure.
     pub interval: Interval,
     /// Axis that fails; `None` for all.
-    pub about: Option<Axis>,
+    pub axis: Option<Axis>,
     /// Wheel that fails, counted from 1; `None` for all.
     pub wheel: Option<NonZeroU32>,
     /// Gimbal that fails, counted from 1; `None` for all.
@@ -123,10 +123,10 @@ impl Failure {
     /// Returns the interval of the failure and the component that fails.
     pub fn scope(&self) -> FailureScope<'_> {
         match self {
-            Self::Dead(of) => of.scope(),
-            Self::Scaled(of) => of.scope(),
-            Self::Stuck(of) => of.scope(),
-            Self::Added(of) => of.scope(),
+            Self::Dead(failure) => failure.scope(),
+            Self::Scaled(failure) => failure.scope(),
+            Self::Stuck(failure) => failure.scope(),
+            Self::Added(failure) => failure.scope(),
         }
     }
 
@@ -148,19 +148,19 @@ impl Failure {
     /// Checks the failure against an actuator with these components; `turns`: it exerts torques. Returns a key and the
     /// reason.
     pub(super) fn validate(&self, parts: FailingComponent<'_>, turns: bool) -> Option<ConfigError> {
-        let FailureScope { interval, about, wheel, gimbal, thruster } = self.scope();
+        let FailureScope { interval, axis, wheel, gimbal, thruster } = self.scope();
         if let Some(fault) = interval.validate() {
             return Some(fault);
         }
-        let at = |key: &str, why: &str| Some(ConfigError::new(format!("{}.{key}", self.kind()), why));
+        let error_at = |key: &str, why: &str| Some(ConfigError::new(format!("{}.{key}", self.kind()), why));
         let (axes, wheels, gimbals, names): (usize, usize, usize, &[String]) = match parts {
             FailingComponent::Axes(axes) => (axes, 0, 0, &[]),
             FailingComponent::Wheels(wheels) => (0, wheels, 0, &[]),
             FailingComponent::Gimbals(gimbals) => (0, 0, gimbals, &[]),
             FailingComponent::Thrusters(names) => (0, 0, 0, names),
         };
-        if about.is_some() && axes < 3 {
-            return at(
+        if axis.is_some() && axes < 3 {
+            return error_at(
                 "about",
                 "must be left out for an actuator that does not act about three axes independently",
             );
@@ -168,22 +168,22 @@ impl Failure {
         if let Some(number) = wheel.filter(|wheel| wheel.get() as usize > wheels) {
             let why = format!("must be one of {wheels} wheels, counted from 1, got {number}");
             let none = "applies only to `[actuator.wheels]`, and this actuator has no wheels";
-            return at("wheel", if wheels == 0 { none } else { &why });
+            return error_at("wheel", if wheels == 0 { none } else { &why });
         }
         if let Some(number) = gimbal.filter(|gimbal| gimbal.get() as usize > gimbals) {
             let why = format!("must be one of {gimbals} gimbals, counted from 1, got {number}");
             let none = "applies only to `[actuator.control_moment_gyros]`, and this actuator has no gimbals";
-            return at("gimbal", if gimbals == 0 { none } else { &why });
+            return error_at("gimbal", if gimbals == 0 { none } else { &why });
         }
         if let Some(name) = thruster.filter(|name| !names.iter().any(|known| known == name)) {
             let known: Vec<_> = names.iter().map(|name| format!("`{name}`")).collect();
             let why = format!("must be one of the thrusters, {}, got `{name}`", known.join(", "));
             let none = "applies only to `[actuator.jets]`, and this actuator has no jets";
-            return at("thruster", if names.is_empty() { none } else { &why });
+            return error_at("thruster", if names.is_empty() { none } else { &why });
         }
         if (axes == 0 || !turns) && !self.sines().is_empty() {
             let why = "apply only to a torque on the body: wheels, gimbals, jets and magnetorquers can only add a constant; a `[[disturbance]]` can have sines";
-            return at("sines", why);
+            return error_at("sines", why);
         }
         if let FailingComponent::Thrusters(_) = parts {
             return self.thruster_fault();
@@ -193,18 +193,19 @@ impl Failure {
 
     /// Checks the failure of a thruster, whose thrust has a fixed direction.
     fn thruster_fault(&self) -> Option<ConfigError> {
-        let at = |key: &str, why: String| Some(ConfigError::new(format!("{}.{key}", self.kind()), why));
+        let error_at = |key: &str, why: String| Some(ConfigError::new(format!("{}.{key}", self.kind()), why));
         match self {
-            Self::Scaled(of) if of.factor.get() < 0.0 => {
-                at("factor", format!("must be 0 or more for a thruster, got {}", of.factor.get()))
+            Self::Scaled(failure) if failure.factor.get() < 0.0 => {
+                error_at("factor", format!("must be 0 or more for a thruster, got {}", failure.factor.get()))
             }
-            Self::Stuck(of) => {
-                let part = of.at.map(Finite::get).filter(|part| !(0.0..=1.0).contains(part))?;
-                at("at", format!("must be a fraction of the thrust, from 0 to 1, got {part}"))
+            Self::Stuck(failure) => {
+                let part = failure.at.map(Finite::get).filter(|part| !(0.0..=1.0).contains(part))?;
+                error_at("at", format!("must be a fraction of the thrust, from 0 to 1, got {part}"))
             }
-            Self::Added(of) if of.constant.get() < 0.0 => {
-                at("constant", format!("must be 0 or more for a thruster, got {}", of.constant.get()))
-            }
+            Self::Added(failure) if failure.constant.get() < 0.0 => error_at(
+                "constant",
+                format!("must be 0 or more for a thruster, got {}", failure.constant.get()),
+            ),
             _ => None,
         }
     }
@@ -216,7 +217,7 @@ pub(super) struct ActiveFailures {
     /// Failures, and the held value of a stuck one.
     failures: Vec<(Failure, Option<f64>)>,
     /// Times at which a failure begins or ends, latest first.
-    edges: Vec<Instant>,
+    change_times: Vec<Instant>,
     /// Factor on the commanded value, and the constant value that replaces it, if any.
     factor: f64,
     fixed: Option<f64>,
@@ -232,33 +233,33 @@ impl ActiveFailures {
         if own.is_empty() {
             return None;
         }
-        let of = |failure: &Failure| {
+        let bounds_of = |failure: &Failure| {
             let interval = failure.scope().interval;
             [Some(interval.start()), interval.end()]
         };
-        let mut edges: Vec<Instant> = own.iter().flat_map(of).flatten().collect();
-        edges.sort_by(|a, b| b.cmp(a));
-        edges.dedup();
+        let mut change_times: Vec<Instant> = own.iter().flat_map(bounds_of).flatten().collect();
+        change_times.sort_by(|a, b| b.cmp(a));
+        change_times.dedup();
         let failures = own.into_iter().map(|failure| (failure, None)).collect();
-        Some(Self { failures, edges, factor: 1.0, fixed: None, added: 0.0, sines: Vec::new() })
+        Some(Self { failures, change_times, factor: 1.0, fixed: None, added: 0.0, sines: Vec::new() })
     }
 
     /// Returns the next time at which a failure begins or ends.
     pub fn due(&self) -> Option<Instant> {
-        self.edges.last().copied()
+        self.change_times.last().copied()
     }
 
     /// Starts and ends failures at `now`, given the commanded value. Returns true if any started or ended.
-    pub fn update(&mut self, now: Instant, wanted: f64) -> bool {
-        let before = self.edges.len();
-        while self.edges.last().is_some_and(|edge| *edge <= now) {
-            self.edges.pop();
+    pub fn update(&mut self, now: Instant, commanded: f64) -> bool {
+        let before = self.change_times.len();
+        while self.change_times.last().is_some_and(|edge| *edge <= now) {
+            self.change_times.pop();
         }
-        if self.edges.len() == before {
+        if self.change_times.len() == before {
             return false;
         }
         // Without added errors, which act in addition to a stuck value.
-        let given = self.fixed.unwrap_or(self.factor * wanted);
+        let torque = self.fixed.unwrap_or(self.factor * commanded);
         (self.factor, self.fixed, self.added) = (1.0, None, 0.0);
         self.sines.clear();
         let mut dead = false;
@@ -268,13 +269,13 @@ impl ActiveFailures {
             }
             match failure {
                 Failure::Dead(_) => dead = true,
-                Failure::Scaled(of) => self.factor *= of.factor.get(),
-                Failure::Stuck(of) => {
-                    self.fixed = Some(*held.get_or_insert_with(|| of.at.map_or(given, Finite::get)));
+                Failure::Scaled(failure) => self.factor *= failure.factor.get(),
+                Failure::Stuck(failure) => {
+                    self.fixed = Some(*held.get_or_insert_with(|| failure.at.map_or(torque, Finite::get)));
                 }
-                Failure::Added(of) => {
-                    self.added += of.constant.get();
-                    self.sines.extend_from_slice(&of.sines);
+                Failure::Added(failure) => {
+                    self.added += failure.constant.get();
+                    self.sines.extend_from_slice(&failure.sines);
                 }
             }
         }
@@ -285,8 +286,8 @@ impl ActiveFailures {
     }
 
     /// Returns the output for a commanded value, without the sines.
-    pub fn output(&self, wanted: f64) -> f64 {
-        self.fixed.unwrap_or(self.factor * wanted) + self.added
+    pub fn output(&self, commanded: f64) -> f64 {
+        self.fixed.unwrap_or(self.factor * commanded) + self.added
     }
 
     /// Returns the factor on the commanded value; `None` if the output is constant.
@@ -301,10 +302,10 @@ impl ActiveFailures {
 
     /// Returns all sines of the failures, each with its interval.
     pub fn scheduled_sines(&self) -> impl Iterator<Item = (Sine, Interval)> + '_ {
-        let of = |(failure, _): &'_ (Failure, Option<f64>)| {
+        let term_of = |(failure, _): &'_ (Failure, Option<f64>)| {
             let interval = failure.scope().interval;
             failure.sines().iter().map(move |sine| (*sine, interval)).collect::<Vec<_>>()
         };
-        self.failures.iter().flat_map(of)
+        self.failures.iter().flat_map(term_of)
     }
 }

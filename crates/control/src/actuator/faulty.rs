@@ -32,12 +32,15 @@ impl FaultyActuator {
     ) -> Box<dyn AxisActuator> {
         let Some(failing) = ActiveFailures::new(failures, concerns) else { return inner };
         let until = |outage: Interval| outage.to.map_or(f64::MAX, Time::get);
-        let terms = failing.scheduled_sines().map(|(sine, of)| sine.term(of.from.get(), until(of))).collect();
+        let terms = failing
+            .scheduled_sines()
+            .map(|(sine, scope)| sine.term(scope.from.get(), until(scope)))
+            .collect();
         Box::new(Self { inner, failing, added: Arc::new(Waveform { terms }) })
     }
 
     /// Returns the torque without failures, with the waveform (N m).
-    fn wanted(&self, now: Instant) -> f64 {
+    fn commanded(&self, now: Instant) -> f64 {
         let waveform = self.inner.waves(now).waveform;
         self.inner.torques().held + waveform.map_or(0.0, |forced| forced.at(0.0))
     }
@@ -75,8 +78,8 @@ impl AxisActuator for FaultyActuator {
 
     fn serve(&mut self, now: Instant, rigid_rate: f64) {
         self.inner.serve(now, rigid_rate);
-        let wanted = self.wanted(now);
-        self.failing.update(now, wanted);
+        let commanded = self.commanded(now);
+        self.failing.update(now, commanded);
     }
 
     fn torques(&self) -> AxisTorques {
@@ -85,11 +88,11 @@ impl AxisActuator for FaultyActuator {
     }
 
     fn response(&self, now: Instant, rates: [f64; 2]) -> AxisResponse {
-        let (wanted, t) = (self.wanted(now), now.seconds());
+        let (commanded, t) = (self.commanded(now), now.seconds());
         let added: f64 = self.failing.sines().iter().map(|sine| sine.at(t)).sum();
         let AxisResponse { applied, rotor } = self.inner.response(now, rates);
         // Back-EMF is not affected.
-        AxisResponse { applied: applied - wanted + self.failing.output(wanted) + added, rotor }
+        AxisResponse { applied: applied - commanded + self.failing.output(commanded) + added, rotor }
     }
 
     fn properties(&self) -> AxisProperties {

@@ -188,14 +188,14 @@ impl FlywheelState {
 
     /// Executes the commands whose delay has elapsed.
     fn turn(&mut self, now: Instant, rigid_rate: f64) {
-        while let Some((_, command)) = self.delayed.front().copied().filter(|(at, _)| *at <= now) {
+        while let Some((_, command)) = self.delayed.front().copied().filter(|(due, _)| *due <= now) {
             self.delayed.pop_front();
             let torque = self.wheel.gain.get() * command;
             // A torque that accelerates the body decelerates the wheel.
-            let spent = self
+            let is_at_speed_limit = self
                 .speed(rigid_rate)
                 .is_some_and(|(speed, limit)| speed.abs() >= limit && speed * torque < 0.0);
-            self.held = if spent { 0.0 } else { torque };
+            self.held = if is_at_speed_limit { 0.0 } else { torque };
         }
     }
 

@@ -30,7 +30,10 @@ pub struct Friction {
 impl Friction {
     /// Returns the breakaway torque of a wheel's bearing (N m).
     pub fn breakaway_torque(&self, wheel: usize) -> f64 {
-        self.breakaway.as_ref().map_or(self.coulomb.for_wheel(wheel), |of| of.for_wheel(wheel)).get()
+        self.breakaway
+            .as_ref()
+            .map_or(self.coulomb.for_wheel(wheel), |breakaway| breakaway.for_wheel(wheel))
+            .get()
     }
 
     /// Checks the values against each other and the number of wheels.

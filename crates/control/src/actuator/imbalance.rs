@@ -103,34 +103,34 @@ impl Imbalance {
             let torque = [0, 1].map(|part| moment[part] + point.cross(&force[part]));
             let beyond = |part: usize| -> Vec<f64> {
                 let modes = shapes.iter().zip(&flexible.modes);
-                let of = |((translation, rotation), mode): (
+                let effect_of = |((translation, rotation), mode): (
                     &(Vector, Vector),
                     &flexsc_dynamics::three_axis::FreeMode,
                 )| {
                     translation.dot(&force[part]) + rotation.dot(&moment[part])
                         - mode.rotation.dot(&torque[part])
                 };
-                modes.map(of).collect()
+                modes.map(effect_of).collect()
             };
             HarmonicLine { order, torque, force, forces: [beyond(0), beyond(1)] }
         };
         let (first, second) = across(&rotor.axis);
         // Coefficients of cos x and sin x in e1 cos(x + phase) + e2 sin(x + phase).
-        let turning = |phase: f64| {
+        let force_at = |phase: f64| {
             let (sin, cos) = libm::sincos(phase);
             [first * cos + second * sin, second * cos - first * sin]
         };
-        let times = |of: [Vector; 2], by: f64| of.map(|part| part * by);
+        let times = |vectors: [Vector; 2], by: f64| vectors.map(|part| part * by);
         let plus = |a: [Vector; 2], b: [Vector; 2]| [a[0] + b[0], a[1] + b[1]];
         let (force, torque) = (self.static_.for_wheel(wheel).get(), self.dynamic.for_wheel(wheel).get());
         let mut lines = Vec::new();
         if force > 0.0 || torque > 0.0 {
-            let ahead = turning(self.phase.for_wheel(wheel).get());
-            lines.push(line(1.0, times(turning(0.0), force), times(ahead, torque)));
+            let ahead = force_at(self.phase.for_wheel(wheel).get());
+            lines.push(line(1.0, times(force_at(0.0), force), times(ahead, torque)));
         }
         for harmonic in &self.harmonics {
             let (sin, cos) = libm::sincos(harmonic.phase.get());
-            let across = turning(harmonic.phase.get());
+            let across = force_at(harmonic.phase.get());
             let along = times([rotor.axis * cos, rotor.axis * -sin], harmonic.axial.get());
             let force = plus(times(across, harmonic.force.get()), along);
             lines.push(line(harmonic.order.get(), force, times(across, harmonic.torque.get())));

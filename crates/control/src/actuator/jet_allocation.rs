@@ -55,8 +55,8 @@ fn programme(nozzles: &[ThrusterEffect], most: f64, force_free: bool) -> LinearP
 }
 
 /// Returns the right-hand side of a programme: a torque or an impulse, and zero force.
-fn asked(wanted: &Vector, force_free: bool) -> Vec<f64> {
-    wanted.iter().copied().chain([0.0; 3].into_iter().filter(|_| force_free)).collect()
+fn right_hand_side(demand: &Vector, force_free: bool) -> Vec<f64> {
+    demand.iter().copied().chain([0.0; 3].into_iter().filter(|_| force_free)).collect()
 }
 
 /// Returns, for each axis about which the jets act, the combined effects of the thrusters that give the largest
@@ -74,30 +74,32 @@ pub(super) fn largest_torques(
     let costs: Vec<f64> = nozzles.iter().map(|nozzle| nozzle.flow).collect();
     // More than all thrusters together can give.
     let beyond: f64 = nozzles.iter().map(|nozzle| nozzle.push.torque.norm()).sum::<f64>().max(1.0) * 2.0;
-    let group = |axis: usize, sign: f64| {
-        let mut wanted = Vector::zeros();
-        wanted[axis] = sign * beyond;
-        let (parts, _) = programme.cheapest(&asked(&wanted, jets.force_free), &costs);
-        let mut push = ForceEffect::default();
+    let sign_name = |axis: usize, sign: f64| {
+        let mut demand = Vector::zeros();
+        demand[axis] = sign * beyond;
+        let (parts, _) = programme.cheapest(&right_hand_side(&demand, jets.force_free), &costs);
+        let mut effect = ForceEffect::default();
         let mut flow = 0.0;
         for (nozzle, part) in nozzles.iter().zip(parts) {
-            push += &super::valves::scaled(&nozzle.push, part);
+            effect += &super::valves::scaled(&nozzle.push, part);
             flow += nozzle.flow * part;
         }
-        if sign * push.torque[axis] <= 1e-9 * beyond {
-            let (name, way) =
+        if sign * effect.torque[axis] <= 1e-9 * beyond {
+            let (name, sign_name) =
                 (flexsc_numerics::attitude::AXES[axis], if sign > 0.0 { "plus" } else { "minus" });
-            let alone = if jets.force_free { " without a force" } else { "" };
-            let why = format!("must be able to turn the body to {way} {name}{alone} and about no other axis");
+            let condition = if jets.force_free { " without a force" } else { "" };
+            let why = format!(
+                "must be able to turn the body to {sign_name} {name}{condition} and about no other axis"
+            );
             return Err(ConfigError::new("thrusters", why));
         }
-        let acceleration = push.torque[axis].abs() / inertia[axis];
-        Ok(GroupEffect { push, flow, acceleration })
+        let acceleration = effect.torque[axis].abs() / inertia[axis];
+        Ok(GroupEffect { push: effect, flow, acceleration })
     };
     let pair = |axis: usize| {
         let modes = nozzles.first().map_or(0, |nozzle| nozzle.push.forces.len());
         if acts[axis] {
-            Ok([group(axis, 1.0)?, group(axis, -1.0)?])
+            Ok([sign_name(axis, 1.0)?, sign_name(axis, -1.0)?])
         } else {
             Ok(GroupEffect::without_effect(modes))
         }
@@ -139,19 +141,19 @@ impl AllocatedJets {
     }
 
     /// Returns the demanded angular impulse over a cycle (N m s).
-    fn wanted(&self) -> Vector {
-        let about = |axis: usize| match self.demands[axis] {
+    fn torque_demand(&self) -> Vector {
+        let demand_about = |axis: usize| match self.demands[axis] {
             Demand::Torque(torque) => torque * self.period.seconds(),
             Demand::Change(0.0) | Demand::Moment(_) => 0.0,
             Demand::Change(change) => change * self.inertia[axis],
         };
-        Vector::from_fn(|axis, _| about(axis))
+        Vector::from_fn(|axis, _| demand_about(axis))
     }
 
     /// Begins a cycle with the current demands.
     fn begin(&mut self, now: Instant) {
         let period = self.period.seconds();
-        let b = asked(&self.wanted(), self.programme.rows() > 3);
+        let b = right_hand_side(&self.torque_demand(), self.programme.rows() > 3);
         let (times, _) = self.programme.cheapest(&b, &self.flows);
         let commanded: Vec<f64> = times.into_iter().map(|t| self.width.on_time(t, period)).collect();
         let before = std::mem::replace(&mut self.waiting, commanded);
@@ -247,7 +249,7 @@ impl Actuator for AllocatedJets {
         // Estimators assume that no thruster fails.
         let burning = self.torques.iter().zip(&self.ends).filter(|(_, end)| end.is_some());
         AxisEffort {
-            demanded: self.wanted()[axis] / self.period.seconds(),
+            demanded: self.torque_demand()[axis] / self.period.seconds(),
             held: self.valves.torque(axis),
             firing: 0.0,
             reduced_moment: burning.map(|(torque, _)| torque[axis]).sum::<f64>() / self.inertia[axis],

@@ -134,8 +134,8 @@ pub struct GroupEffect {
 impl GroupEffect {
     /// Returns two groups without effect on a body with `modes` modes.
     pub(super) fn without_effect(modes: usize) -> [Self; 2] {
-        let push = ForceEffect { forces: vec![0.0; modes], ..ForceEffect::default() };
-        [(); 2].map(|()| Self { push: push.clone(), ..Self::default() })
+        let effect = ForceEffect { forces: vec![0.0; modes], ..ForceEffect::default() };
+        [(); 2].map(|()| Self { push: effect.clone(), ..Self::default() })
     }
 }
 
@@ -208,10 +208,10 @@ impl Jets {
     pub fn thruster_effects(&self, body: &Spatial) -> Vec<ThrusterEffect> {
         let nozzle = |thruster: &Thruster| {
             let thrust = thruster.thrust.get();
-            let mut push = ForceEffect { forces: vec![0.0; body.modes.len()], ..ForceEffect::default() };
+            let mut effect = ForceEffect { forces: vec![0.0; body.modes.len()], ..ForceEffect::default() };
             let force = vector(&thruster.direction).normalize() * thrust;
-            push.add(body, &thruster.point, &vector(&thruster.offset), &force);
-            ThrusterEffect { push, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
+            effect.add(body, &thruster.point, &vector(&thruster.offset), &force);
+            ThrusterEffect { push: effect, flow: thrust / (self.specific_impulse.get() * G_0), thrust }
         };
         self.thrusters.iter().map(nozzle).collect()
     }
@@ -219,7 +219,7 @@ impl Jets {
     /// Returns the groups of each thruster: axis, and 0 for plus or 1 for minus.
     pub(super) fn memberships(&self) -> Vec<Vec<[usize; 2]>> {
         let Some(groups) = &self.groups else { return Vec::new() };
-        let of = |thruster: &Thruster| {
+        let effect_of = |thruster: &Thruster| {
             let mut own = Vec::new();
             for (axis, pair) in groups.each().into_iter().enumerate() {
                 for (side, names) in pair.into_iter().flat_map(|pair| [&pair.plus, &pair.minus]).enumerate() {
@@ -228,7 +228,7 @@ impl Jets {
             }
             own
         };
-        self.thrusters.iter().map(of).collect()
+        self.thrusters.iter().map(effect_of).collect()
     }
 
     /// Checks the jets and returns the groups on a body: plus and minus about each axis. `acts` selects the axes about
@@ -275,12 +275,12 @@ impl Jets {
                 "applies only to `allocation = \"least_propellant\"`",
             ));
         }
-        let Some(given) = &self.groups else {
+        let Some(listed) = &self.groups else {
             let why = "must be given, or `allocation = \"least_propellant\"`";
             return Err(ConfigError::new("groups", why));
         };
         let mut groups = [(); 3].map(|()| GroupEffect::without_effect(body.modes.len()));
-        for (axis, pair) in given.each().into_iter().enumerate() {
+        for (axis, pair) in listed.each().into_iter().enumerate() {
             match pair {
                 Some(pair) => {
                     groups[axis] = [
@@ -310,7 +310,7 @@ impl Jets {
         names: &[String],
     ) -> Result<GroupEffect, ConfigError> {
         let key = format!("groups.{}.{sign}", AXES[axis]);
-        let mut push = ForceEffect { forces: vec![0.0; body.modes.len()], ..ForceEffect::default() };
+        let mut effect = ForceEffect { forces: vec![0.0; body.modes.len()], ..ForceEffect::default() };
         let mut thrust = 0.0;
         for name in names {
             let Some(thruster) = self.thrusters.iter().find(|thruster| thruster.name == *name) else {
@@ -319,10 +319,10 @@ impl Jets {
                 return Err(ConfigError::new(key, why));
             };
             let force = vector(&thruster.direction).normalize() * thruster.thrust.get();
-            push.add(body, &thruster.point, &vector(&thruster.offset), &force);
+            effect.add(body, &thruster.point, &vector(&thruster.offset), &force);
             thrust += thruster.thrust.get();
         }
-        let torque = push.torque;
+        let torque = effect.torque;
         if sense * torque[axis] <= 0.0 {
             let (turns, [x, y, z]) = (AXES[axis], [torque.x, torque.y, torque.z]);
             let why = format!("must give a torque to {sign} {turns}, got [{x}, {y}, {z}] N m");
@@ -330,7 +330,7 @@ impl Jets {
         }
         let acceleration = torque[axis].abs() / body.inertia_tensor()[(axis, axis)];
         let flow = thrust / (self.specific_impulse.get() * G_0);
-        Ok(GroupEffect { push, flow, acceleration })
+        Ok(GroupEffect { push: effect, flow, acceleration })
     }
 
     /// Whether propellant is counted by thruster: each is commanded individually, or can fail.

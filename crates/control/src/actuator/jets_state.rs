@@ -95,7 +95,7 @@ impl JetsState {
     /// Returns the signed on-time of the demand about an axis (s).
     fn on_time(&self, axis: usize) -> f64 {
         let period = self.period.seconds();
-        let (wanted, sign) = match self.demands[axis] {
+        let (demanded, sign) = match self.demands[axis] {
             Demand::Change(change) => (change.abs() / self.group(axis, change).acceleration, change),
             Demand::Torque(torque) => {
                 let most = self.group(axis, torque).push.torque[axis].abs();
@@ -103,7 +103,7 @@ impl JetsState {
             }
             Demand::Moment(_) => (0.0, 0.0),
         };
-        if sign == 0.0 { 0.0 } else { sign.signum() * self.width.on_time(wanted, period) }
+        if sign == 0.0 { 0.0 } else { sign.signum() * self.width.on_time(demanded, period) }
     }
 
     /// Begins a cycle with the current demands.

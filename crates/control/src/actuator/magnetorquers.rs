@@ -56,10 +56,12 @@ impl Magnetorquers {
             limits: [0, 1, 2].map(|axis| self.moment.about(axis).get()),
             settings: settings.to_vec(),
             field: None,
-            wanted: Vector::zeros(),
+            demanded: Vector::zeros(),
             moment: Vector::zeros(),
             failing: [0, 1, 2].map(|axis| {
-                let own = |of: &FailureScope<'_>| of.about.is_none_or(|about| about.index() == axis);
+                let own = |scope: &FailureScope<'_>| {
+                    scope.axis.is_none_or(|failing_axis| failing_axis.index() == axis)
+                };
                 ActiveFailures::new(&self.faults, own)
             }),
         }
@@ -79,7 +81,7 @@ pub struct MagnetorquersState {
     /// Magnetic field in the body's axes (T), as last measured; `None` before that.
     field: Option<Vector>,
     /// Demanded torque (N m).
-    wanted: Vector,
+    demanded: Vector,
     /// Commanded magnetic moment, in the body's axes (A m²).
     moment: Vector,
     /// Failures of each torquer.
@@ -89,17 +91,17 @@ pub struct MagnetorquersState {
 impl MagnetorquersState {
     /// Returns the actual moments (A m²), subject to failures.
     fn held(&self) -> Vector {
-        let of = |axis: usize| {
-            let wanted = self.moment[axis];
-            self.failing[axis].as_ref().map_or(wanted, |failing| failing.output(wanted))
+        let coil = |axis: usize| {
+            let commanded = self.moment[axis];
+            self.failing[axis].as_ref().map_or(commanded, |failing| failing.output(commanded))
         };
-        Vector::from_fn(|axis, _| of(axis))
+        Vector::from_fn(|axis, _| coil(axis))
     }
 
     /// Commands the moment whose torque is the part of `torque` (N m) perpendicular to the field, scaled down as a
     /// whole if a limit is exceeded.
     fn give(&mut self, torque: Vector) {
-        self.wanted = torque;
+        self.demanded = torque;
         let moment = self
             .field
             .filter(|field| field.norm_squared() > 0.0)
@@ -110,17 +112,17 @@ impl MagnetorquersState {
     }
 
     /// Returns the torque in the measured field (N m).
-    fn given(&self) -> Vector {
+    fn torque_in_field(&self) -> Vector {
         self.field.map_or_else(Vector::zeros, |field| self.moment.cross(&field))
     }
 
     /// Commands the demanded moments (A m²), each limited separately.
     fn hold(&mut self, demands: &[Demand]) {
         for (axis, demand) in demands.iter().enumerate().take(3) {
-            let wanted = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
-            self.moment[axis] = wanted.clamp(-self.limits[axis], self.limits[axis]);
+            let demanded = if let Demand::Moment(moment) = demand { *moment } else { 0.0 };
+            self.moment[axis] = demanded.clamp(-self.limits[axis], self.limits[axis]);
         }
-        self.wanted = self.given();
+        self.demanded = self.torque_in_field();
     }
 }
 
@@ -147,9 +149,12 @@ impl Actuator for MagnetorquersState {
             return self.hold(demands);
         }
         let torque = |(demand, setting): (&Demand, &AxisActuatorContext)| setting.demanded_torque(demand);
-        let mut wanted = Vector::zeros();
-        wanted.iter_mut().zip(demands.iter().zip(&self.settings).map(torque)).for_each(|(own, of)| *own = of);
-        self.give(wanted);
+        let mut demanded = Vector::zeros();
+        demanded
+            .iter_mut()
+            .zip(demands.iter().zip(&self.settings).map(torque))
+            .for_each(|(total, torque)| *total = torque);
+        self.give(demanded);
     }
 
     fn apply(&self, _: Instant, onto: &mut Wrench) {
@@ -171,9 +176,9 @@ impl Actuator for MagnetorquersState {
     }
 
     fn effort(&self, axis: usize) -> AxisEffort {
-        let held = self.given()[axis];
+        let held = self.torque_in_field()[axis];
         AxisEffort {
-            demanded: self.wanted[axis],
+            demanded: self.demanded[axis],
             held,
             firing: 0.0,
             reduced_moment: held / self.settings[axis].inertia,
@@ -214,18 +219,20 @@ mod tests {
         let mut torquers = start("moment = 100.0");
         let (field, torque) = (Vector::new(2e-5, -1e-5, 3e-5), Vector::new(1e-4, 2e-4, -1e-4));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
-        assert_eq!(torquers.given(), Vector::zeros(), "no field is known");
+        assert_eq!(torquers.torque_in_field(), Vector::zeros(), "no field is known");
         torquers.update(Instant::START, ActuatorEvent::MagneticField(field));
         torquers.command(Instant::START, &torque.data.0[0].map(Demand::Torque), [0.0; 3]);
         let along = field.normalize();
         let exact = torque - along * along.dot(&torque);
-        assert!((torquers.given() - exact).norm() < 1e-18);
+        assert!((torquers.torque_in_field() - exact).norm() < 1e-18);
         // Ten times the torque exceeds the limit: all of it is scaled down.
         let mut weak = start("moment = [4.0, 100.0, 100.0]");
         weak.update(Instant::START, ActuatorEvent::MagneticField(field));
         weak.command(Instant::START, &(torque * 10.0).data.0[0].map(Demand::Torque), [0.0; 3]);
         assert!((weak.moment.x.abs() - 4.0).abs() < 1e-14);
-        assert!(weak.given().cross(&exact).norm() < 1e-18 && weak.given().dot(&exact) > 0.0);
+        assert!(
+            weak.torque_in_field().cross(&exact).norm() < 1e-18 && weak.torque_in_field().dot(&exact) > 0.0
+        );
         let mut wrench = Wrench::default();
         weak.apply(Instant::START, &mut wrench);
         assert_eq!(wrench.moment, weak.moment);

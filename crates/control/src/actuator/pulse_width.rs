@@ -14,9 +14,9 @@ pub struct PulseWidth {
 impl PulseWidth {
     /// Returns the executed length of a demanded pulse (s): at most `most`, a multiple of the quantum, and 0 if it
     /// would be shorter than the minimum.
-    pub fn on_time(&self, wanted: f64, most: f64) -> f64 {
+    pub fn on_time(&self, on_time_demand: f64, most: f64) -> f64 {
         let (minimum, quantum) = (self.minimum.get(), self.quantum.get());
-        let mut on = wanted.min(most);
+        let mut on = on_time_demand.min(most);
         if quantum > 0.0 {
             on = libm::round(on / quantum) * quantum;
         }

@@ -43,12 +43,14 @@ impl EndState {
     /// The warning about a state of this name, in which an actuator is at a limit for a share of the last seconds of a run; none
     /// of one that is free.
     pub fn warning(word: &str, share: f64, seconds: f64) -> Option<String> {
-        let of = format!("{:.0} % of the last {seconds} s", 100.0 * share);
+        let share_text = format!("{:.0} % of the last {seconds} s", 100.0 * share);
         match word {
-            "saturated" => Some(format!("the run ends in saturation: an actuator is at its limit in {of}")),
+            "saturated" => {
+                Some(format!("the run ends in saturation: an actuator is at its limit in {share_text}"))
+            }
             "cycling" => Some(format!(
                 "the run ends in an oscillation that does not decay: wheels alternate between their torque limits, and are at one \
-                 in {of}; the loop may be unstable"
+                 in {share_text}; the loop may be unstable"
             )),
             _ => None,
         }
@@ -94,7 +96,7 @@ struct LateWheel {
 impl Saturation {
     /// An empty gathering for runs of a duration (s) with these actuators.
     pub fn new(actuators: &OneOrMany<AssignedActuator>, duration: f64) -> Self {
-        let limit = |of: Option<Positive>| of.map_or(f64::INFINITY, Positive::get);
+        let limit = |bound: Option<Positive>| bound.map_or(f64::INFINITY, Positive::get);
         let wheels = actuators.wheels().map(|(wheels, _)| wheels);
         let torquers = actuators.magnetorquers().map(|(torquers, _)| torquers);
         let late = duration * (1.0 - LATE);
@@ -130,7 +132,7 @@ impl Saturation {
             torque |= forced;
             momentum |= full;
             if is_late {
-                own.take(if forced { wheel.torque_nm } else { 0.0 }, full, t >= self.middle);
+                own.record(if forced { wheel.torque_nm } else { 0.0 }, full, t >= self.middle);
             }
         }
         let mut moments = torquers.iter().zip(self.moments);
@@ -193,7 +195,7 @@ impl Saturation {
         })
     }
 
-    /// The warning about the end of the run, if there is anything to warn of.
+    /// Returns the warning about the end of the run, if any.
     pub fn warning(&self) -> Option<String> {
         EndState::warning(self.end_state()?.word(), self.late_share(), Self::late_seconds(self.duration))
     }
@@ -207,9 +209,9 @@ impl Saturation {
 }
 
 impl LateWheel {
-    /// Takes the torque of a cycle if that is at its limit, else 0, whether the wheel is as fast as it can be, and whether the cycle is in
-    /// the second half of the end.
-    fn take(&mut self, torque: f64, full: bool, second: bool) {
+    /// Records a cycle: `torque` (N m) if it is at its limit, else 0; `full` if the wheel is at its largest speed; `second`
+    /// if the cycle is in the second half of the end.
+    fn record(&mut self, torque: f64, full: bool, second: bool) {
         self.full += u64::from(full);
         if torque == 0.0 {
             return;

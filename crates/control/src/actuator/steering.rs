@@ -115,27 +115,27 @@ pub fn singularity_measure(columns: &[Vector]) -> f64 {
 }
 
 /// Returns A' (A A')^-1 u: the smallest rates with A d' = u.
-fn least(columns: &[Vector], gram: &Matrix3<f64>, wanted: &Vector) -> Vec<f64> {
+fn least(columns: &[Vector], gram: &Matrix3<f64>, demanded: &Vector) -> Vec<f64> {
     let singular = gram.determinant() < SINGULAR;
     let whole = if singular { gram + Matrix3::from_diagonal_element(LEAST) } else { *gram };
-    through(columns, &whole, wanted)
+    through(columns, &whole, demanded)
 }
 
 /// Returns A' M^-1 u; zeros if the matrix has no inverse.
-fn through(columns: &[Vector], matrix: &Matrix3<f64>, wanted: &Vector) -> Vec<f64> {
-    let solved = matrix.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * wanted);
+fn through(columns: &[Vector], matrix: &Matrix3<f64>, demanded: &Vector) -> Vec<f64> {
+    let solved = matrix.try_inverse().map_or_else(Vector::zeros, |inverse| inverse * demanded);
     columns.iter().map(|column| column.dot(&solved)).collect()
 }
 
 /// Returns gimbal rates (rad/s) with A d' = `wanted` by the steering rule, at `t` (s) after the start.
-pub fn gimbal_rates(columns: &[Vector], robust: Option<&Robustness>, wanted: &Vector, t: f64) -> Vec<f64> {
+pub fn gimbal_rates(columns: &[Vector], robust: Option<&Robustness>, demanded: &Vector, t: f64) -> Vec<f64> {
     let gram = gram(columns);
-    let Some(robust) = robust else { return least(columns, &gram, wanted) };
+    let Some(robust) = robust else { return least(columns, &gram, demanded) };
     let weight = robust.weight.get() * libm::exp(-robust.decay.get() * gram.determinant().max(0.0));
     let (sin, cos) = libm::sincos(robust.frequency.get() * t);
     let [a, b, c] = [sin, cos, -sin].map(|part| robust.dither.get() * part);
     let whole = gram + Matrix3::new(1.0, c, b, c, 1.0, a, b, a, 1.0) * weight;
-    through(columns, &whole, wanted)
+    through(columns, &whole, demanded)
 }
 
 /// Returns the null component of these rates, which gives no torque: d' - A' (A A')^-1 A d'; zeros at singular angles.
@@ -145,6 +145,6 @@ pub fn null_component(columns: &[Vector], rates: &[f64]) -> Vec<f64> {
         return vec![0.0; rates.len()];
     }
     let sum = columns.iter().zip(rates).fold(Vector::zeros(), |sum, (column, rate)| sum + column * *rate);
-    let turning = through(columns, &gram, &sum);
-    rates.iter().zip(turning).map(|(rate, turning)| rate - turning).collect()
+    let gimbal_motion = through(columns, &gram, &sum);
+    rates.iter().zip(gimbal_motion).map(|(rate, motion)| rate - motion).collect()
 }

@@ -75,7 +75,7 @@ impl Thrusters {
             feedback: 0.0,
             held: 0.0,
             pulse: None,
-            owed: 0.0,
+            remainder: 0.0,
         }
     }
 }
@@ -92,7 +92,7 @@ pub struct ThrustersState {
     held: f64,
     pulse: Option<ThrusterPulse>,
     /// Impulse left over for the next period (N m s).
-    owed: f64,
+    remainder: f64,
 }
 
 impl ThrustersState {
@@ -101,8 +101,8 @@ impl ThrustersState {
         let h = self.period.seconds();
         let planned = self.setting.planned_impulse(now, h);
         self.held = 0.0;
-        let (pulse, owed) = self.pulse(now, self.owed + planned + self.feedback * h);
-        self.owed = owed;
+        let (pulse, remainder) = self.pulse(now, self.remainder + planned + self.feedback * h);
+        self.remainder = remainder;
         self.pulse = (pulse.from < pulse.to).then_some(pulse);
     }
 

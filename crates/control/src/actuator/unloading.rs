@@ -78,12 +78,13 @@ impl WheelUnloading {
 
     /// Checks the choice of the unloading actuator; returns a key within the unloading and the reason.
     pub fn inconsistency(&self) -> Option<ConfigError> {
-        let at = |key: &str, why: &str| Some(ConfigError::new(key, why));
+        let error_at = |key: &str, why: &str| Some(ConfigError::new(key, why));
         match (&self.jets, &self.magnetorquers) {
-            (None, None) => at("jets", "must be given, or `magnetorquers`"),
-            (Some(_), Some(_)) => {
-                at("magnetorquers", "must be left out with `jets`: only one of the two can unload the wheels")
-            }
+            (None, None) => error_at("jets", "must be given, or `magnetorquers`"),
+            (Some(_), Some(_)) => error_at(
+                "magnetorquers",
+                "must be left out with `jets`: only one of the two can unload the wheels",
+            ),
             _ => None,
         }
     }
@@ -94,31 +95,31 @@ impl UnloadingTask {
     /// actuator.
     pub fn fault(&self, kind: &ActuatorKind) -> Option<(ConfigError, bool)> {
         let (above, below) = (self.above.get(), self.below.get());
-        let at = |key: &str, why: String| Some((ConfigError::new(key, why), false));
+        let error_at = |key: &str, why: String| Some((ConfigError::new(key, why), false));
         if below >= above {
-            return at("below", format!("must be less than `above`, {above} N m s, got {below}"));
+            return error_at("below", format!("must be less than `above`, {above} N m s, got {below}"));
         }
-        let of_torquers = [
+        let torquer_keys = [
             ("gain", self.gain.is_some(), true),
             ("period", self.period.is_some(), true),
             ("phase", self.phase.is_some(), false),
         ];
         match kind {
             ActuatorKind::Jets(jets) => {
-                if let Some((key, ..)) = of_torquers.into_iter().find(|(_, given, _)| *given) {
-                    return at(key, "applies only to `magnetorquers`: leave it out".to_owned());
+                if let Some((key, ..)) = torquer_keys.into_iter().find(|(_, is_given, _)| *is_given) {
+                    return error_at(key, "applies only to `magnetorquers`: leave it out".to_owned());
                 }
                 if self.torque.is_none() {
-                    return at("torque", "must be given with `jets`".to_owned());
+                    return error_at("torque", "must be given with `jets`".to_owned());
                 }
                 validate_jets(jets).map(|fault| (fault, true))
             }
             ActuatorKind::Magnetorquers(_) => {
                 if self.torque.is_some() {
-                    return at("torque", "applies only to `jets`: leave it out".to_owned());
+                    return error_at("torque", "applies only to `jets`: leave it out".to_owned());
                 }
-                let (key, ..) = of_torquers.into_iter().find(|(_, given, must)| *must && !given)?;
-                at(key, "must be given with `magnetorquers`".to_owned())
+                let (key, ..) = torquer_keys.into_iter().find(|(_, is_given, must)| *must && !is_given)?;
+                error_at(key, "must be given with `magnetorquers`".to_owned())
             }
             other => {
                 let why =
@@ -131,16 +132,16 @@ impl UnloadingTask {
 
 /// Checks jets that unload wheels; returns a key of the jets and the reason.
 fn validate_jets(jets: &Jets) -> Option<ConfigError> {
-    let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+    let error_at = |key: &str, why: String| Some(ConfigError::new(key, why));
     let Some(period) = jets.period.map(Span::seconds) else {
-        return at("period", "must be given: the law's cycles are those of the wheels".to_owned());
+        return error_at("period", "must be given: the law's cycles are those of the wheels".to_owned());
     };
     if jets.delay > 0 {
-        return at("delay", format!("must be 0 for jets that unload wheels, got {}", jets.delay));
+        return error_at("delay", format!("must be 0 for jets that unload wheels, got {}", jets.delay));
     }
     for (key, value) in [("minimum_on", jets.minimum_on.get()), ("quantum", jets.quantum.get())] {
         if value > period {
-            return at(key, format!("must be at most the period of {period} s, got {value}"));
+            return error_at(key, format!("must be at most the period of {period} s, got {value}"));
         }
     }
     None
@@ -209,18 +210,18 @@ impl UnloaderState {
         demands: &[Demand],
     ) -> Option<Vector> {
         let begins = self.next == now;
-        let taken = self.is_commanded(demands);
+        let is_commanded = self.is_commanded(demands);
         if begins {
             self.next = now + self.period;
-            if !taken {
+            if !is_commanded {
                 let [above, below] = self.limits;
                 self.active = stored.norm() > if self.active { below } else { above };
-                let wanted = self.wanted(stored);
-                self.actuator.command(now, &wanted.data.0[0].map(Demand::Torque), [0.0; 3]);
+                let demanded = self.torque_demand(stored);
+                self.actuator.command(now, &demanded.data.0[0].map(Demand::Torque), [0.0; 3]);
             }
         }
         self.actuator.update(now, ActuatorEvent::Due(rigid));
-        if !begins || taken {
+        if !begins || is_commanded {
             return None;
         }
         let mean = if self.gain.is_some() {
@@ -234,16 +235,16 @@ impl UnloaderState {
     }
 
     /// Returns the torque that reduces the wheels' momentum (N m).
-    fn wanted(&self, stored: Vector) -> Vector {
+    fn torque_demand(&self, stored: Vector) -> Vector {
         if !self.active {
             return Vector::zeros();
         }
         if let Some(gain) = self.gain {
             return stored * -gain;
         }
-        let wanted = stored / -self.period.seconds();
+        let demanded = stored / -self.period.seconds();
         // The direction is kept if one axis exceeds the limit of the jets.
-        let largest = wanted.amax();
-        if largest > self.torque { wanted * (self.torque / largest) } else { wanted }
+        let largest = demanded.amax();
+        if largest > self.torque { demanded * (self.torque / largest) } else { demanded }
     }
 }

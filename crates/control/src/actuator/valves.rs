@@ -27,7 +27,7 @@ impl Valves {
     /// Creates the closed valves of jets with these nozzles.
     pub fn new(jets: &Jets, nozzles: &[ThrusterEffect]) -> Self {
         let failing = |(nozzle, thruster): (&ThrusterEffect, &Thruster)| {
-            let own = |of: &FailureScope<'_>| of.thruster.is_none_or(|name| name == thruster.name);
+            let own = |scope: &FailureScope<'_>| scope.thruster.is_none_or(|name| name == thruster.name);
             // An added thrust is converted to a fraction of the thrust.
             let part = |failure: &Failure| match failure {
                 Failure::Added(added) => {
@@ -67,10 +67,10 @@ impl Valves {
 
     /// Returns each thruster with the fraction of its thrust.
     fn parts(&self) -> impl Iterator<Item = (&ThrusterEffect, f64)> {
-        let of = |((nozzle, failing), open): ((_, &Option<ActiveFailures>), &f64)| {
+        let force_of = |((nozzle, failing), open): ((_, &Option<ActiveFailures>), &f64)| {
             (nozzle, failing.as_ref().map_or(*open, |failing| failing.output(*open)))
         };
-        self.nozzles.iter().zip(&self.failing).zip(&self.open).map(of)
+        self.nozzles.iter().zip(&self.failing).zip(&self.open).map(force_of)
     }
 
     /// Sets the opening of each valve from `now` on, and starts and ends failures.
@@ -99,8 +99,8 @@ impl Valves {
 
     /// Returns the propellant used by each thruster (kg).
     pub fn fuels(&self, remaining: impl Fn(usize) -> f64) -> Vec<f64> {
-        let of = |(index, (fuel, flow)): (usize, (&f64, &f64))| fuel + flow * remaining(index);
-        self.fuels.iter().zip(&self.flows).enumerate().map(of).collect()
+        let consumed = |(index, (fuel, flow)): (usize, (&f64, &f64))| fuel + flow * remaining(index);
+        self.fuels.iter().zip(&self.flows).enumerate().map(consumed).collect()
     }
 
     /// Returns the current fraction of the thrust of each thruster.
@@ -122,11 +122,11 @@ impl Valves {
 }
 
 /// Returns a push multiplied by a factor.
-pub(super) fn scaled(push: &ForceEffect, part: f64) -> ForceEffect {
+pub(super) fn scaled(effect: &ForceEffect, part: f64) -> ForceEffect {
     ForceEffect {
-        torque: push.torque * part,
-        forces: push.forces.iter().map(|force| force * part).collect(),
-        force: push.force * part,
-        levers: push.levers.iter().map(|lever| lever * part).collect(),
+        torque: effect.torque * part,
+        forces: effect.forces.iter().map(|force| force * part).collect(),
+        force: effect.force * part,
+        levers: effect.levers.iter().map(|lever| lever * part).collect(),
     }
 }

@@ -56,8 +56,8 @@ impl Allocation {
     }
 
     /// Returns the torques of all wheels that give the torque `wanted` about the three axes (N m).
-    pub fn torques(&self, wanted: &Vector) -> Vec<f64> {
-        let mut torques: Vec<f64> = self.inverse.iter().map(|row| row.dot(wanted)).collect();
+    pub fn torques(&self, demanded: &Vector) -> Vec<f64> {
+        let mut torques: Vec<f64> = self.inverse.iter().map(|row| row.dot(demanded)).collect();
         if let (AllocationCriterion::LeastLargest, Some(null)) = (self.choice, &self.null) {
             let part = least_largest(&torques, null);
             torques.iter_mut().zip(null).for_each(|(torque, null)| *torque += part * null);
@@ -67,9 +67,9 @@ impl Allocation {
 
     /// Returns the largest torque about a single axis (N m), with `limit` (N m) for each wheel.
     pub fn largest_torque(&self, axis: usize, limit: f64) -> f64 {
-        let mut wanted = Vector::zeros();
-        wanted[axis] = 1.0;
-        limit / self.torques(&wanted).into_iter().map(f64::abs).fold(0.0, f64::max)
+        let mut demanded = Vector::zeros();
+        demanded[axis] = 1.0;
+        limit / self.torques(&demanded).into_iter().map(f64::abs).fold(0.0, f64::max)
     }
 }
 
@@ -115,25 +115,25 @@ mod tests {
     fn pyramid() -> Vec<Vector> {
         let (sin, cos) = libm::sincos(35.0_f64.to_radians());
         [45.0_f64, 135.0, 225.0, 315.0]
-            .map(|about| {
-                let (s, c) = libm::sincos(about.to_radians());
+            .map(|azimuth| {
+                let (s, c) = libm::sincos(azimuth.to_radians());
                 Vector::new(cos * c, cos * s, sin)
             })
             .to_vec()
     }
 
-    fn given(axes: &[Vector], torques: &[f64]) -> Vector {
+    fn combined_torque(axes: &[Vector], torques: &[f64]) -> Vector {
         axes.iter().zip(torques).fold(Vector::zeros(), |sum, (axis, torque)| sum + axis * *torque)
     }
 
     #[test]
     fn a_pyramid_of_four_gives_what_is_wanted() {
-        let wanted = -Vector::new(0.1, -0.05, 0.2);
+        let demanded = -Vector::new(0.1, -0.05, 0.2);
         let exact = [-0.108_752_79, -0.022_430_99, -0.065_591_89, -0.151_913_69];
         let [least_squares, least_largest] =
             [AllocationCriterion::PseudoInverse, AllocationCriterion::LeastLargest]
                 .map(|choice| Allocation::new(&pyramid(), choice).unwrap());
-        let torques = least_squares.torques(&wanted);
+        let torques = least_squares.torques(&demanded);
         for (found, exact) in torques.iter().zip(exact) {
             assert!((found - exact).abs() < 5e-9, "{found} {exact}");
         }
@@ -141,13 +141,13 @@ mod tests {
             assert!((found - exact).abs() < 1e-15);
         }
         // Result of the linear programme.
-        let torques = least_largest.torques(&wanted);
+        let torques = least_largest.torques(&demanded);
         let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
         assert!((largest - 0.130_333_24).abs() < 5e-9, "{largest}");
-        assert!((given(&pyramid(), &torques) - wanted).norm() < 1e-16);
+        assert!((combined_torque(&pyramid(), &torques) - demanded).norm() < 1e-16);
         // Already equal.
         let upwards = least_largest.torques(&Vector::z());
-        assert!((given(&pyramid(), &upwards) - Vector::z()).norm() < 1e-15, "{upwards:?}");
+        assert!((combined_torque(&pyramid(), &upwards) - Vector::z()).norm() < 1e-15, "{upwards:?}");
     }
 
     #[test]
@@ -157,10 +157,11 @@ mod tests {
             .to_vec();
         let allocation = Allocation::new(&axes, AllocationCriterion::LeastLargest).unwrap();
         let null = allocation.null_vector().unwrap();
-        assert!(given(&axes, null).norm() < 1e-15);
-        for wanted in [Vector::new(1.0, 2.0, -0.5), Vector::new(-0.2, 0.1, 3.0), Vector::new(0.0, 1.0, 0.0)] {
-            let torques = allocation.torques(&wanted);
-            assert!((given(&axes, &torques) - wanted).norm() < 1e-14);
+        assert!(combined_torque(&axes, null).norm() < 1e-15);
+        for demanded in [Vector::new(1.0, 2.0, -0.5), Vector::new(-0.2, 0.1, 3.0), Vector::new(0.0, 1.0, 0.0)]
+        {
+            let torques = allocation.torques(&demanded);
+            assert!((combined_torque(&axes, &torques) - demanded).norm() < 1e-14);
             let largest = |part: f64| {
                 let sizes = torques.iter().zip(null).map(|(u, n)| (u + part * n).abs());
                 sizes.fold(0.0, f64::max)

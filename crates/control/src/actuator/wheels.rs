@@ -150,7 +150,8 @@ impl Wheels {
 
     /// Returns the failures of a wheel, if it has any.
     pub(super) fn wheel_failures(&self, wheel: usize) -> Option<ActiveFailures> {
-        let own = |of: &FailureScope<'_>| of.wheel.is_none_or(|number| number.get() as usize == wheel + 1);
+        let own =
+            |scope: &FailureScope<'_>| scope.wheel.is_none_or(|number| number.get() as usize == wheel + 1);
         ActiveFailures::new(&self.faults, own)
     }
 
@@ -220,7 +221,7 @@ impl Wheels {
         let grips = self
             .friction
             .as_ref()
-            .is_some_and(|of| (0..wheels).any(|wheel| of.breakaway_torque(wheel) > 0.0));
+            .is_some_and(|friction| (0..wheels).any(|wheel| friction.breakaway_torque(wheel) > 0.0));
         if grips { Some("friction") } else { self.imbalance.as_ref().map(|_| "imbalance") }
     }
 
@@ -238,16 +239,16 @@ impl Wheels {
         let bearing = |(wheel, rotor): (usize, HubRotor)| {
             let friction = self.friction.as_ref();
             let lines = match &self.imbalance {
-                Some(of) => {
-                    of.harmonic_lines(wheel, &rotor, body).map_err(|fault| fault.within("imbalance"))?
+                Some(friction) => {
+                    friction.harmonic_lines(wheel, &rotor, body).map_err(|fault| fault.within("imbalance"))?
                 }
                 None => Vec::new(),
             };
             Ok(Bearing {
                 inertia: rotor.spin_inertia,
-                viscous: friction.map_or(0.0, |of| of.viscous.for_wheel(wheel).get()),
-                coulomb: friction.map_or(0.0, |of| of.coulomb.for_wheel(wheel).get()),
-                breakaway: friction.map_or(0.0, |of| of.breakaway_torque(wheel)),
+                viscous: friction.map_or(0.0, |friction| friction.viscous.for_wheel(wheel).get()),
+                coulomb: friction.map_or(0.0, |friction| friction.coulomb.for_wheel(wheel).get()),
+                breakaway: friction.map_or(0.0, |friction| friction.breakaway_torque(wheel)),
                 lines,
             })
         };
@@ -266,7 +267,7 @@ impl Wheels {
     /// Returns the unit axes of the wheels.
     fn directions(&self) -> Result<Vec<Vector>, ConfigError> {
         let Some(arrangement) = self.arrangement else {
-            return self.given();
+            return self.explicit_axes();
         };
         if !self.axes.is_empty() {
             return Err(ConfigError::new("axes", "must be left out with an `arrangement`"));
@@ -282,7 +283,7 @@ impl Wheels {
         Ok(signs.map(|[x, y]| Vector::new(x * part, y * part, up)).to_vec())
     }
 
-    fn given(&self) -> Result<Vec<Vector>, ConfigError> {
+    fn explicit_axes(&self) -> Result<Vec<Vector>, ConfigError> {
         if self.axes.is_empty() {
             return Err(ConfigError::new("axes", "must be given without an `arrangement`"));
         }

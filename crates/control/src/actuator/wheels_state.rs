@@ -36,13 +36,13 @@ pub struct WheelsState {
     bias: Option<SpeedBias>,
     settings: Vec<AxisActuatorContext>,
     /// Torque on the body that laws demand, and torque of other sources that the wheels counteract (N m).
-    wanted: Vector,
+    demanded: Vector,
     against: Vector,
     wheels: Vec<WheelState>,
     /// Time from which on the wheels' momenta are propagated.
     since: Instant,
     /// State of wheels in bearings, as computed by the motion.
-    turned: Vec<RotorObservation>,
+    observations: Vec<RotorObservation>,
     /// Tachometer that provides the speeds to the drives; without one they are exact.
     tachometer: Option<TachometerState>,
     /// Stored momentum by the tachometer's last reading (N m s).
@@ -102,10 +102,10 @@ impl WheelsState {
             speed_limit: limit(wheels.speed_limit),
             bias: wheels.speed_bias,
             settings: settings.to_vec(),
-            wanted: Vector::zeros(),
+            demanded: Vector::zeros(),
             against: Vector::zeros(),
             since: Instant::START,
-            turned: Vec::new(),
+            observations: Vec::new(),
             tachometer: None,
             known: None,
             compensation: wheels.compensation.clone(),
@@ -140,8 +140,8 @@ impl WheelsState {
         if let Some(tachometer) = &self.tachometer {
             return tachometer.speeds().to_vec();
         }
-        if !self.turned.is_empty() {
-            return self.turned.iter().map(|wheel| wheel.speed).collect();
+        if !self.observations.is_empty() {
+            return self.observations.iter().map(|wheel| wheel.speed).collect();
         }
         let axes = self.allocation.axes().iter();
         axes.zip(&self.wheels).map(|(axis, wheel)| wheel.momentum / self.inertia - axis.dot(rate)).collect()
@@ -149,7 +149,7 @@ impl WheelsState {
 
     /// Returns the motor torques that give the body the demanded torque, within the torque limit.
     fn motors(&self, speeds: &[f64]) -> Vec<f64> {
-        let mut torques = self.allocation.torques(&(self.against - self.wanted));
+        let mut torques = self.allocation.torques(&(self.against - self.demanded));
         let largest = torques.iter().map(|torque| torque.abs()).fold(0.0, f64::max);
         if largest > self.torque_limit {
             for torque in &mut torques {
@@ -176,7 +176,7 @@ impl WheelsState {
         let momentum = self.wheels[index].momentum;
         let room =
             (self.momentum_limit - ahead * momentum).min((self.speed_limit - ahead * speed) * self.inertia);
-        let Some(wheel) = self.turned.get(index) else {
+        let Some(wheel) = self.observations.get(index) else {
             return if room <= 0.0 { (0.0, f64::INFINITY) } else { (torque, room / torque.abs()) };
         };
         let limit = self.momentum_limit.min(self.speed_limit * self.inertia);
@@ -193,7 +193,7 @@ impl WheelsState {
         let mut torques = self.motors(&speeds);
         self.compensate(&speeds, &mut torques);
         for (index, torque) in torques.into_iter().enumerate() {
-            let speed = self.turned.get(index).map_or(speeds[index], |wheel| wheel.speed);
+            let speed = self.observations.get(index).map_or(speeds[index], |wheel| wheel.speed);
             self.drive(now, index, speed, torque);
         }
     }
@@ -226,14 +226,14 @@ impl WheelsState {
             self.turn(now);
             let speeds = self.speeds(rigid);
             for (index, known) in speeds.into_iter().enumerate() {
-                let speed = self.turned.get(index).map_or(known, |wheel| wheel.speed);
+                let speed = self.observations.get(index).map_or(known, |wheel| wheel.speed);
                 self.drive(now, index, speed, self.commanded[index]);
             }
         }
     }
 
     /// Returns the torque of a drive (N m) as estimators assume it: without failures.
-    fn believed(&self, index: usize) -> f64 {
+    fn assumed_torque(&self, index: usize) -> f64 {
         if self.failing[index].is_some() { self.commanded[index] } else { self.wheels[index].torque }
     }
 
@@ -242,8 +242,12 @@ impl WheelsState {
         let Some(FrictionCompensation { coulomb, viscous }) = self.compensation.as_deref() else { return };
         for (wheel, (torque, speed)) in torques.iter_mut().zip(speeds).enumerate() {
             // A wheel at rest is expected to move with the torque.
-            let way = if *speed == 0.0 { *torque } else { *speed };
-            let coulomb = if way == 0.0 { 0.0 } else { libm::copysign(coulomb.for_wheel(wheel).get(), way) };
+            let direction = if *speed == 0.0 { *torque } else { *speed };
+            let coulomb = if direction == 0.0 {
+                0.0
+            } else {
+                libm::copysign(coulomb.for_wheel(wheel).get(), direction)
+            };
             let added = *torque + coulomb + viscous.for_wheel(wheel).get() * speed;
             *torque = added.clamp(-self.torque_limit, self.torque_limit);
         }
@@ -251,13 +255,13 @@ impl WheelsState {
 }
 
 impl WheelsState {
-    /// Executes what is due. A wheel at its limit stays there until the next command; tachometers are read, and
+    /// Executes due commands. A wheel at its limit stays there until the next command; tachometers are read, and
     /// compensation follows.
     fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
         self.fail(now, &rigid.into());
-        let turned = self.turned.iter().map(|wheel| [wheel.angle, wheel.speed]);
+        let observations = self.observations.iter().map(|wheel| [wheel.angle, wheel.speed]);
         if let Some(tachometer) = self.tachometer.as_mut().filter(|tachometer| tachometer.due() == now) {
-            tachometer.read(now, turned);
+            tachometer.read(now, observations);
             self.known = self.measured_momentum(&rigid.into());
             if self.compensation.is_some() {
                 self.turn(now);
@@ -270,7 +274,7 @@ impl WheelsState {
             let full: Vec<usize> =
                 (0..self.wheels.len()).filter(|index| self.wheels[*index].full == Some(now)).collect();
             for index in full {
-                if let Some(wheel) = self.turned.get(index) {
+                if let Some(wheel) = self.observations.get(index) {
                     self.drive(now, index, wheel.speed, self.commanded[index]);
                 } else {
                     (self.wheels[index].torque, self.wheels[index].full) = (0.0, None);
@@ -290,7 +294,7 @@ impl Actuator for WheelsState {
     fn command(&mut self, now: Instant, demands: &[Demand], rigid: [f64; 3]) {
         self.turn(now);
         for (axis, (demand, setting)) in demands.iter().zip(&self.settings).enumerate().take(3) {
-            self.wanted[axis] = setting.demanded_torque(demand);
+            self.demanded[axis] = setting.demanded_torque(demand);
         }
         self.drive_all(now, &rigid.into());
     }
@@ -314,8 +318,8 @@ impl Actuator for WheelsState {
                 for (wheel, rotor) in self.wheels.iter_mut().zip(rotors) {
                     wheel.momentum = rotor.momentum;
                 }
-                self.turned.clear();
-                self.turned.extend_from_slice(rotors);
+                self.observations.clear();
+                self.observations.extend_from_slice(rotors);
             }
             ActuatorEvent::MagneticField(_) => {}
         }
@@ -323,9 +327,9 @@ impl Actuator for WheelsState {
 
     fn effort(&self, axis: usize) -> AxisEffort {
         let believed = self.allocation.axes().iter().enumerate();
-        let torque = -believed.map(|(index, about)| about[axis] * self.believed(index)).sum::<f64>();
+        let torque = -believed.map(|(index, about)| about[axis] * self.assumed_torque(index)).sum::<f64>();
         AxisEffort {
-            demanded: self.wanted[axis],
+            demanded: self.demanded[axis],
             held: self.held_torque(axis),
             firing: 0.0,
             reduced_moment: torque / self.settings[axis].inertia,
@@ -334,8 +338,8 @@ impl Actuator for WheelsState {
 
     fn response(&self, _: Instant, axis: usize, _: [f64; 2]) -> AxisResponse {
         let held = self.held_torque(axis);
-        let friction = self.turned.iter().zip(self.allocation.axes());
-        let applied = match &self.turned[..] {
+        let friction = self.observations.iter().zip(self.allocation.axes());
+        let applied = match &self.observations[..] {
             [] => held,
             _ => held + friction.map(|(wheel, about)| about[axis] * wheel.friction).sum::<f64>(),
         };

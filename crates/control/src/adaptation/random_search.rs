@@ -139,15 +139,15 @@ impl RandomSearchState {
         // The objective may stay at 0.
         let change = if mean == previous { 0.0 } else { ((mean - previous) / mean).abs() };
         self.settled = if change < self.constants.tolerance.get() { self.settled + 1 } else { 0 };
-        let late_enough = now.since(Instant::START) >= self.constants.earliest_freeze;
-        if self.constants.freeze && late_enough && self.settled >= self.constants.settled {
+        let may_freeze = now.since(Instant::START) >= self.constants.earliest_freeze;
+        if self.constants.freeze && may_freeze && self.settled >= self.constants.settled {
             self.frozen = true;
             self.draw = 0.0;
             return Some(self.advance(Decision::Freeze, change));
         }
         let decision = self.judge(mean < previous);
-        let turned = if decision == Decision::Turn { -1.0 } else { 1.0 };
-        self.draw = (turned * self.draw).signum() * uniform;
+        let direction = if decision == Decision::Turn { -1.0 } else { 1.0 };
+        self.draw = (direction * self.draw).signum() * uniform;
         Some(self.advance(decision, change))
     }
 

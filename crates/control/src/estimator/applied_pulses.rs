@@ -22,15 +22,16 @@ impl AppliedPulses {
             let duration = now.since(self.since).seconds();
             let start = self.since.since(self.began).seconds();
             let pulse = |(input, acceleration)| Pulse { input, acceleration, start, duration };
-            let given = self.moments.into_iter().enumerate().filter(|(_, acceleration)| *acceleration != 0.0);
-            self.pulses.extend(given.map(pulse));
+            let accelerations =
+                self.moments.into_iter().enumerate().filter(|(_, acceleration)| *acceleration != 0.0);
+            self.pulses.extend(accelerations.map(pulse));
         }
         (self.moments, self.since) = (moments, now);
     }
 
     /// Returns the pulses since the last sample and starts a new record at `now`; those of jets have exactly their
     /// commanded lengths.
-    pub fn take(&mut self, now: Instant, jets: Option<&dyn PulsedActuator>) -> Vec<Pulse> {
+    pub fn take_executed(&mut self, now: Instant, jets: Option<&dyn PulsedActuator>) -> Vec<Pulse> {
         self.input_changed(now, self.moments);
         self.began = now;
         let recorded = std::mem::take(&mut self.pulses);

@@ -223,9 +223,9 @@ impl EnvelopeMonitor {
     }
 
     /// Sets the equilibrium displacements (rad) of the modes from now on.
-    fn hold(&mut self, at: impl Fn(usize, &ModePhasor) -> f64) {
+    fn hold(&mut self, phasor_at: impl Fn(usize, &ModePhasor) -> f64) {
         for (index, track) in self.tracks.iter_mut().enumerate() {
-            let equilibrium = track.phasor(at(index, track), 0.0);
+            let equilibrium = track.phasor(phasor_at(index, track), 0.0);
             let shift = track.equilibrium - equilibrium;
             track.equilibrium = equilibrium;
             track.deviation += shift;

@@ -87,12 +87,12 @@ impl ObjectiveMeter {
     }
 
     /// Adds a piece of the exact motion about one axis.
-    pub fn add_piece(&mut self, stretch: &MotionPiece, beside: &MotionSample) {
-        let length = stretch.length;
-        let since = stretch.from - self.goal.from.seconds();
+    pub fn add_piece(&mut self, piece: &MotionPiece, state: &MotionSample) {
+        let length = piece.length;
+        let since = piece.from - self.goal.from.seconds();
         let error = || {
             let start = self.goal.angle + self.goal.rate * since;
-            stretch.angle.minus_line(start, self.goal.rate * length)
+            piece.angle.minus_line(start, self.goal.rate * length)
         };
         let part = match self.objective {
             Objective::PointingErrorMean => mean_of_absolute(&[&error()]),
@@ -106,11 +106,11 @@ impl ObjectiveMeter {
                 let rate = error().derivative();
                 mean_of_square(&rate) / (length * length)
             }
-            Objective::ElasticRms => mean_of_square(&stretch.angle.minus(&beside.rigid)),
-            Objective::TorqueMean => mean_of_absolute(&[&stretch.applied]),
-            Objective::WheelPowerMean => beside.wheel.map_or(0.0, |[rest, slope]| {
-                let speed = beside.rigid.derivative().scaled(slope / length).minus_line(-rest, 0.0);
-                mean_of_absolute(&[&stretch.applied, &speed])
+            Objective::ElasticRms => mean_of_square(&piece.angle.minus(&state.rigid)),
+            Objective::TorqueMean => mean_of_absolute(&[&piece.applied]),
+            Objective::WheelPowerMean => state.wheel.map_or(0.0, |[rest, slope]| {
+                let speed = state.rigid.derivative().scaled(slope / length).minus_line(-rest, 0.0);
+                mean_of_absolute(&[&piece.applied, &speed])
             }),
             Objective::EnvelopeMean | Objective::Switchings | Objective::Firings => return,
         };
@@ -147,12 +147,12 @@ impl ObjectiveMeter {
 
     /// Counts pulses: from the total `pulses` of jets, or, without it, the torques about the axes that start now.
     pub fn add_pulses(&mut self, now: Instant, pulses: Option<u64>, torques: [f64; 3]) {
-        let begun = torques.map(|torque| torque != 0.0);
+        let is_acting = torques.map(|torque| torque != 0.0);
         let new = match pulses {
             Some(pulses) => pulses - std::mem::replace(&mut self.pulses, pulses),
-            None => begun.iter().zip(&self.burning).map(|(now, before)| u64::from(*now && !before)).sum(),
+            None => is_acting.iter().zip(&self.burning).map(|(now, before)| u64::from(*now && !before)).sum(),
         };
-        self.burning = begun;
+        self.burning = is_acting;
         if now >= self.opened {
             self.sum += new as f64;
         }
@@ -186,8 +186,8 @@ impl ObjectiveMeter {
 }
 
 /// Returns the mean of the square over a piece; a piece is so short that the quadrature is exact to rounding.
-fn mean_of_square(of: &Polynomial) -> f64 {
-    quadrature::integral(&[0.0, 1.0], 1.0, |_, s| of.at(s) * of.at(s))
+fn mean_of_square(polynomial: &Polynomial) -> f64 {
+    quadrature::integral(&[0.0, 1.0], 1.0, |_, s| polynomial.at(s) * polynomial.at(s))
 }
 
 /// Returns the mean of the absolute value of a product over a piece, split where a factor changes its sign.
@@ -200,5 +200,7 @@ fn mean_of_absolute(factors: &[&Polynomial]) -> f64 {
         }
     }
     breaks.sort_by(f64::total_cmp);
-    quadrature::integral(&breaks, 1.0, |_, s| factors.iter().map(|of| of.at(s)).product::<f64>().abs())
+    quadrature::integral(&breaks, 1.0, |_, s| {
+        factors.iter().map(|factor| factor.at(s)).product::<f64>().abs()
+    })
 }

@@ -11,8 +11,8 @@ pub struct PassThrough;
 impl Part for PassThrough {}
 
 impl Estimator for PassThrough {
-    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let Some(measured) = taken.measured else { return };
+    fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        let Some(measured) = context.measured else { return };
         for (state_estimate, [angle, rate]) in state_estimates.iter_mut().zip(measured) {
             (state_estimate.angle, state_estimate.rate) = (*angle, *rate);
         }

@@ -34,7 +34,7 @@ pub struct RigidRateState {
     rates: Vec<f64>,
     /// Rate change per sample due to a steady torque (rad/s).
     drifts: Vec<f64>,
-    given: AppliedPulses,
+    applied_pulses: AppliedPulses,
 }
 
 impl RigidRate {
@@ -50,7 +50,7 @@ impl RigidRate {
             correction: self.correction.get(),
             rates: (0..axes).map(|axis| self.rate.about(axis).get()).collect(),
             drifts: vec![0.0; axes],
-            given: AppliedPulses::default(),
+            applied_pulses: AppliedPulses::default(),
         }
     }
 }
@@ -71,16 +71,16 @@ impl Part for RigidRateState {}
 
 impl Estimator for RigidRateState {
     fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
-        self.given.input_changed(now, moments);
+        self.applied_pulses.input_changed(now, moments);
     }
 
-    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let pulses = self.given.take(taken.now, taken.pulses);
+    fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        let pulses = self.applied_pulses.take_executed(context.now, context.pulses);
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             let own = pulses.iter().filter(|pulse| pulse.input == axis);
             let pushed = own.map(|pulse| pulse.acceleration * pulse.duration).sum();
-            state_estimate.rate = self.step(axis, taken.measured.map(|measured| measured[axis][1]), pushed);
-            if let Some(measured) = taken.measured {
+            state_estimate.rate = self.step(axis, context.measured.map(|measured| measured[axis][1]), pushed);
+            if let Some(measured) = context.measured {
                 state_estimate.angle = measured[axis][0];
             }
         }

@@ -18,7 +18,7 @@ pub struct AxisEstimators(Vec<AxisEstimator>);
 /// Run-time state of the estimator of one axis.
 #[derive(Clone, Debug)]
 struct AxisEstimator {
-    eye: AxisMethod,
+    method: AxisMethod,
     feeds: EstimateOutputs,
     /// Natural frequencies at the start (rad/s); the following fields are the excitabilities and the drift of the
     /// modes.
@@ -31,7 +31,7 @@ struct AxisEstimator {
     impulse: f64,
     /// Time of the last sample.
     sampled: Option<Instant>,
-    told: Innovation,
+    innovation: Innovation,
 }
 
 /// Estimation method of an axis.
@@ -71,13 +71,13 @@ impl BatchEstimator for AxisEstimators {
     fn batch_filter(&mut self, now: Instant) -> Option<(&mut KalmanFilter, Option<f64>)> {
         let [track] = &mut self.0[..] else { return None };
         let impulse = track.impulse + track.moment * now.since(track.since).seconds();
-        let AxisMethod::Filter(filter) = &mut track.eye else { return None };
+        let AxisMethod::Filter(filter) = &mut track.method else { return None };
         Some((filter, track.sampled.map(|sampled| impulse / now.since(sampled).seconds())))
     }
 
     fn true_filter_state(&self, now: Instant, truth: &AxisState) -> Vec<f64> {
         let track = &self.0[0];
-        if let AxisMethod::Filter(filter) = &track.eye {
+        if let AxisMethod::Filter(filter) = &track.method {
             track.truth(now.seconds(), truth, filter)
         } else {
             Vec::new()
@@ -88,20 +88,20 @@ impl BatchEstimator for AxisEstimators {
 impl Estimator for AxisEstimators {
     fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
         for (track, moment) in self.0.iter_mut().zip(moments) {
-            track.given(now, moment);
+            track.add_impulse(now, moment);
         }
     }
 
-    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        self.0[0].impulse += taken.waveform_impulse;
+    fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        self.0[0].impulse += context.waveform_impulse;
         for (axis, (track, state_estimate)) in self.0.iter_mut().zip(state_estimates).enumerate() {
-            track.take(axis, taken, state_estimate);
+            track.update_axis(axis, context, state_estimate);
         }
     }
 
     fn shift_origin(&mut self, by: [f64; 3]) {
         for (track, by) in self.0.iter_mut().zip(by) {
-            if let AxisMethod::Filter(filter) = &mut track.eye {
+            if let AxisMethod::Filter(filter) = &mut track.method {
                 filter.shift(by);
             }
         }
@@ -110,7 +110,7 @@ impl Estimator for AxisEstimators {
     fn lock_lost(&self) -> [bool; 3] {
         let mut lost = [false; 3];
         for (track, lost) in self.0.iter().zip(&mut lost) {
-            *lost = matches!(&track.eye, AxisMethod::Filter(filter) if filter.lock_lost());
+            *lost = matches!(&track.method, AxisMethod::Filter(filter) if filter.lock_lost());
         }
         lost
     }
@@ -142,7 +142,7 @@ impl AxisEstimator {
         let draws = &mut seed.stream(&stream);
         let filter = |filter| AxisMethod::Filter(Box::new(filter));
         let estimator = known.estimator?;
-        let eye = match estimator {
+        let method = match estimator {
             EstimatorKind::Envelope(_)
             | EstimatorKind::Attitude(_)
             | EstimatorKind::RigidRate(_)
@@ -156,7 +156,7 @@ impl AxisEstimator {
             }
         };
         Some(Self {
-            eye,
+            method,
             feeds: estimator.feeds(known.reads[axis] == EstimateNeeds::DominantMode),
             frequencies: model.modes.iter().map(|mode| mode.frequency.get()).collect(),
             excitability: model.modes.iter().map(|mode| mode.excitability().abs()).collect(),
@@ -165,28 +165,28 @@ impl AxisEstimator {
             since: Instant::START,
             impulse: 0.0,
             sampled: None,
-            told: Innovation::default(),
+            innovation: Innovation::default(),
         })
     }
 
     /// Sets the reduced moment (rad/s²) that the actuator applies from `now` on.
-    fn given(&mut self, now: Instant, moment: f64) {
+    fn add_impulse(&mut self, now: Instant, moment: f64) {
         self.impulse += self.moment * now.since(self.since).seconds();
         (self.moment, self.since) = (moment, now);
     }
 
     /// Updates the state estimate at a sample, with or without a measurement.
-    fn take(&mut self, axis: usize, taken: &SampleContext<'_>, state_estimate: &mut StateEstimate) {
-        let now = taken.now;
-        self.given(now, self.moment);
+    fn update_axis(&mut self, axis: usize, context: &SampleContext<'_>, state_estimate: &mut StateEstimate) {
+        let now = context.now;
+        self.add_impulse(now, self.moment);
         let period = self.sampled.replace(now).map(|sampled| now.since(sampled).seconds());
         let impulse = std::mem::take(&mut self.impulse);
-        if let Some(measured) = taken.measured {
+        if let Some(measured) = context.measured {
             [state_estimate.angle, state_estimate.rate] = measured[axis];
         }
-        match &mut self.eye {
+        match &mut self.method {
             AxisMethod::Ideal => {
-                let truth = (taken.truth)(axis);
+                let truth = (context.truth)(axis);
                 state_estimate.dominant = self.ideal(now.seconds(), &truth);
                 match self.feeds {
                     EstimateOutputs::Modes => {}
@@ -202,11 +202,11 @@ impl AxisEstimator {
                 }
             }
             AxisMethod::Filter(filter) => {
-                self.told = filter.lane_innovation().unwrap_or_else(|| {
+                self.innovation = filter.lane_innovation().unwrap_or_else(|| {
                     if let Some(period) = period {
                         filter.predict(impulse / period);
                     }
-                    filter.update(taken.measured.map(|measured| measured[axis].into()))
+                    filter.update(context.measured.map(|measured| measured[axis].into()))
                 });
                 state_estimate.dominant = filter.dominant();
                 let mean = filter.mean();
@@ -251,29 +251,30 @@ impl AxisEstimator {
         let ratio = |mode: usize| self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         let slope = |mode: usize| self.drift.as_ref().map_or(0.0, |drift| drift.slope(mode, t));
         let mut truth = state.to_vector(&self.frequencies).as_slice().to_vec();
-        for at in (model.motion_states()..model.order()).step_by(2) {
+        for index in (model.motion_states()..model.order()).step_by(2) {
             // The true value of a ratio common to all modes is that of the dominant one.
-            let mut owners = (0..model.modes()).filter(|owner| model.ratio_of(*owner) == Some(at));
-            let of = if model.ratio_of(mode) == Some(at) { mode } else { owners.next().unwrap_or(mode) };
+            let mut owners = (0..model.modes()).filter(|owner| model.ratio_of(*owner) == Some(index));
+            let owner =
+                if model.ratio_of(mode) == Some(index) { mode } else { owners.next().unwrap_or(mode) };
             // The ratio is relative to the nominal frequency in the filter's model.
-            let own = self.frequencies[of] * mean[at] / model.frequency(of, mean.as_slice());
-            truth.extend([own * ratio(of), own * slope(of)]);
+            let own = self.frequencies[owner] * mean[index] / model.frequency(owner, mean.as_slice());
+            truth.extend([own * ratio(owner), own * slope(owner)]);
         }
         truth
     }
 
     /// Returns the filter's log row at time `t` (s).
     fn row(&self, t: f64, state: &AxisState) -> Option<flexsc_record::Estimate> {
-        let AxisMethod::Filter(filter) = &self.eye else { return None };
-        let reported = self.told;
+        let AxisMethod::Filter(filter) = &self.method else { return None };
+        let reported = self.innovation;
         let (model, mode, mean) = (filter.model(), filter.mode(), filter.mean());
         let true_ratio = self.drift.as_ref().map_or(1.0, |drift| drift.ratio(mode, t));
         // In a batch, the covariance is kept there, and only the metrics use this row.
-        let borrowed = filter.is_in_lanes();
+        let in_lanes = filter.is_in_lanes();
         let known = model.ratio_of(mode);
-        let value = |offset: usize| known.map_or(1.0 - offset as f64, |at| mean[at + offset]);
+        let value = |offset: usize| known.map_or(1.0 - offset as f64, |index| mean[index + offset]);
         let sd = |offset: usize| {
-            known.map_or(0.0, |at| f64::sqrt(filter.covariance()[(at + offset, at + offset)]))
+            known.map_or(0.0, |index| f64::sqrt(filter.covariance()[(index + offset, index + offset)]))
         };
         let modes = (0..model.modes()).map(|index| {
             let (amplitude_rad, amplitude_sd_rad) = filter.amplitude(index);
@@ -286,7 +287,7 @@ impl AxisEstimator {
             }
         });
         let [states, measurements] = filter.dimensions();
-        let nees = if borrowed { filter.lane_nees() } else { filter.nees(&self.truth(t, state, filter)) };
+        let nees = if in_lanes { filter.lane_nees() } else { filter.nees(&self.truth(t, state, filter)) };
         Some(flexsc_record::Estimate {
             dominant: mode as u64,
             frequency_rad_s: filter.dominant().frequency,
@@ -297,7 +298,7 @@ impl AxisEstimator {
             ratio_sd: sd(0),
             ratio_rate_1_s: value(1),
             ratio_rate_sd_1_s: sd(1),
-            modes: if borrowed { Vec::new() } else { modes.collect() },
+            modes: if in_lanes { Vec::new() } else { modes.collect() },
             innovation_rad: reported.innovation,
             nis: reported.nis.unwrap_or(0.0) / measurements,
             measured: reported.nis.is_some().into(),

@@ -75,16 +75,16 @@ impl ActiveDamping {
     /// Each of `modes` has a frequency (rad/s) and an elastic acceleration a (rad/s²); `period` and `delay` are in s,
     /// `damping` is a ratio.
     pub fn threshold(&self, axis: usize, modes: &[[f64; 2]], period: f64, delay: f64, damping: f64) -> f64 {
-        if let Some(given) = &self.threshold {
-            return given[axis].get();
+        if let Some(threshold) = &self.threshold {
+            return threshold[axis].get();
         }
-        let of = |[frequency, acceleration]: &[f64; 2]| {
+        let curve_point = |[frequency, acceleration]: &[f64; 2]| {
             let margin = delay_margin(*frequency, delay, damping);
             let cycle = margin.map_or(0.0, |margin| margin.limit_cycle(*acceleration));
             (LIMIT_CYCLES * cycle).max(CYCLES * acceleration * period)
         };
         let excited = |[frequency, acceleration]: &[f64; 2]| acceleration / frequency;
-        modes.iter().max_by(|a, b| excited(a).total_cmp(&excited(b))).map_or(0.0, of)
+        modes.iter().max_by(|a, b| excited(a).total_cmp(&excited(b))).map_or(0.0, curve_point)
     }
 }
 
@@ -147,9 +147,9 @@ impl ActiveDampingState {
         }
         let [plus, minus] = self.authority.accelerations;
         let (sign, acceleration) = if rate > 0.0 { (-1.0, minus) } else { (1.0, plus) };
-        let wanted =
+        let demanded =
             if self.spec.pulse_width { rate.abs() / (acceleration * influence) } else { self.period };
-        let on = self.authority.width.on_time(wanted, self.period);
+        let on = self.authority.width.on_time(demanded, self.period);
         let kicked = exceeds(excess + sign * acceleration * on, allowed);
         if on > 0.0 && !(kicked && self.spec.guards.dead_zone) {
             damped.on = sign * on;
@@ -168,9 +168,9 @@ impl ActiveDampingState {
             return;
         }
         let mean = *sum / f64::from(WINDOW);
-        let in_vain = before.is_some_and(|before| mean > FALL * before);
-        self.window = (0.0, 0, (!in_vain).then_some(mean));
-        if in_vain && self.spec.guards.watchdog {
+        let has_no_effect = before.is_some_and(|before| mean > FALL * before);
+        self.window = (0.0, 0, (!has_no_effect).then_some(mean));
+        if has_no_effect && self.spec.guards.watchdog {
             self.rest = REST;
         }
     }

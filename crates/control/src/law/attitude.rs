@@ -169,13 +169,13 @@ impl AttitudeLawState {
     /// limit acts.
     fn feedback(&mut self, error: f64, rate: f64) -> (f64, bool) {
         let (wn, zeta) = (self.bandwidth, self.damping);
-        let kept = self.spec.integral.map_or(0.0, |_| self.integral / self.time);
-        let (angle, gain) = (error + kept, 2.0 * zeta * wn);
+        let integral_part = self.spec.integral.map_or(0.0, |_| self.integral / self.time);
+        let (angle, gain) = (error + integral_part, 2.0 * zeta * wn);
         let (feedback, limited) = match self.rate_limit {
             None => (-(wn * wn * angle + gain * rate), false),
             Some(limit) => {
-                let wanted = 0.5 * wn / zeta * angle;
-                (-gain * (rate + wanted.clamp(-limit, limit)), wanted.abs() > limit)
+                let target_rate = 0.5 * wn / zeta * angle;
+                (-gain * (rate + target_rate.clamp(-limit, limit)), target_rate.abs() > limit)
             }
         };
         (self.filters.iter_mut().fold(feedback, |sample, filter| filter.filter(sample)), limited)
@@ -184,12 +184,12 @@ impl AttitudeLawState {
     /// Changes the frequency of a filter and keeps its state.
     fn retune(&mut self, key: &str, value: f64) {
         let period = self.spec.period.seconds();
-        for (index, (filter, at_work)) in self.spec.filters.iter().zip(&mut self.filters).enumerate() {
-            let of = filter.tunable(period).map(|number| number.nested(&format!("filters[{index}].")));
-            if of.is_some_and(|number| number.key == key)
+        for (index, (filter, state)) in self.spec.filters.iter().zip(&mut self.filters).enumerate() {
+            let numbers = filter.tunable(period).map(|number| number.nested(&format!("filters[{index}].")));
+            if numbers.is_some_and(|number| number.key == key)
                 && let Some(Ok(tuned)) = filter.at(value).map(|filter| filter.sampled(period))
             {
-                at_work.retune(&tuned);
+                state.retune(&tuned);
             }
         }
     }

@@ -74,12 +74,13 @@ impl AttitudeProfile {
         sky: &OrbitEnvironment,
         modes: &[Mode],
     ) -> Result<Self, ConfigError> {
-        let mut way = Self { legs: Vec::new(), sky: sky.clone() };
+        let mut profile = Self { legs: Vec::new(), sky: sky.clone() };
         for (index, target) in targets.iter().enumerate() {
             let (begins, frame) = (target.starts(), target.frame);
             let path = if target.is_shaped() {
-                let ways = [way.seen_from(frame, begins), target.attitude()];
-                let turn = target.slew(ways, modes).map_err(|fault| fault.within(&format!("[{index}]")))?;
+                let attitudes = [profile.seen_from(frame, begins), target.attitude()];
+                let turn =
+                    target.slew(attitudes, modes).map_err(|fault| fault.within(&format!("[{index}]")))?;
                 SegmentPath::Shaped(turn)
             } else if target.table.is_empty() {
                 let to = target.attitude();
@@ -87,16 +88,16 @@ impl AttitudeProfile {
                 SegmentPath::Turn(target.acceleration.map_or_else(
                     || Slew::instantaneous(to),
                     |acceleration| {
-                        let from = way.seen_from(frame, begins);
+                        let from = profile.seen_from(frame, begins);
                         Slew::new([from, to], acceleration.get(), rate_limit, target.profile)
                     },
                 ))
             } else {
                 SegmentPath::Table(AttitudeTable::new(&target.table))
             };
-            way.legs.push(ProfileSegment { begins, frame, path });
+            profile.legs.push(ProfileSegment { begins, frame, path });
         }
-        Ok(way)
+        Ok(profile)
     }
 
     /// Returns the largest rate of the slew to a target (rad/s), if it is planned for modes.
@@ -109,11 +110,11 @@ impl AttitudeProfile {
 
     /// Returns the attitude of the profile at an instant relative to a frame.
     fn seen_from(&self, frame: Frame, now: Instant) -> Quaternion<f64> {
-        let here = self.at(now).attitude;
+        let current = self.at(now).attitude;
         if frame == Frame::Inertial {
-            return here;
+            return current;
         }
-        frame.state_at(&self.sky, now.seconds()).attitude.conjugate() * here
+        frame.state_at(&self.sky, now.seconds()).attitude.conjugate() * current
     }
 
     fn leg(&self, now: Instant) -> Option<&ProfileSegment> {
@@ -124,12 +125,12 @@ impl AttitudeProfile {
     pub fn at(&self, now: Instant) -> AttitudeMotion {
         self.leg(now).map_or_else(
             || AttitudeMotion::at_rest(AttitudeTarget::INERTIAL.attitude()),
-            |leg| self.seen(leg.frame, now, leg.path.at(now.since(leg.begins).seconds())),
+            |leg| self.to_inertial(leg.frame, now, leg.path.at(now.since(leg.begins).seconds())),
         )
     }
 
     /// Converts a pose in a frame to inertial axes.
-    fn seen(&self, frame: Frame, now: Instant, pose: AttitudeMotion) -> AttitudeMotion {
+    fn to_inertial(&self, frame: Frame, now: Instant, pose: AttitudeMotion) -> AttitudeMotion {
         if frame == Frame::Inertial {
             return pose;
         }
@@ -138,9 +139,10 @@ impl AttitudeProfile {
 
     /// Returns the attitude of the current target at an instant.
     pub fn target(&self, now: Instant) -> Quaternion<f64> {
-        let there =
-            |leg: &ProfileSegment| self.seen(leg.frame, now, AttitudeMotion::at_rest(leg.path.to())).attitude;
-        self.leg(now).map_or_else(|| AttitudeTarget::INERTIAL.attitude(), there)
+        let frame_motion = |leg: &ProfileSegment| {
+            self.to_inertial(leg.frame, now, AttitudeMotion::at_rest(leg.path.to())).attitude
+        };
+        self.leg(now).map_or_else(|| AttitudeTarget::INERTIAL.attitude(), frame_motion)
     }
 
     /// Returns the current target as written: the frame, and the attitude in it.
@@ -185,11 +187,11 @@ impl AttitudeProfile {
                 return Some(fault.within(&format!("[{index}]")));
             }
         }
-        let way = match Self::from_targets(targets, sky, modes) {
-            Ok(way) => way,
+        let profile = match Self::from_targets(targets, sky, modes) {
+            Ok(profile) => profile,
             Err(fault) => return Some(fault),
         };
-        for (index, pair) in way.legs.windows(2).enumerate() {
+        for (index, pair) in profile.legs.windows(2).enumerate() {
             let ends = pair[0].begins.seconds() + pair[0].path.duration();
             if pair[1].begins.seconds() < ends {
                 let why = format!(
@@ -211,7 +213,7 @@ impl AttitudeTarget {
         }
         let shaped = self.profile != SlewProfile::default();
         if !self.table.is_empty() {
-            let beside = [
+            let other_keys = [
                 ("roll", self.roll.get() != 0.0),
                 ("pitch", self.pitch.get() != 0.0),
                 ("yaw", self.yaw.get() != 0.0),
@@ -222,7 +224,7 @@ impl AttitudeTarget {
                 ("duration", self.duration.is_some()),
                 ("shaper", self.shaper.is_some()),
             ];
-            if let Some((key, _)) = beside.into_iter().find(|(_, given)| *given) {
+            if let Some((key, _)) = other_keys.into_iter().find(|(_, is_given)| *is_given) {
                 return Some(ConfigError::new(
                     key,
                     "must be left out with a `table`, which gives the whole motion",
@@ -274,17 +276,17 @@ mod tests {
         );
         let sky = OrbitEnvironment::default();
         assert_eq!(AttitudeProfile::validate(&two, &sky, &[]), None);
-        let way = AttitudeProfile::new(&two, &sky, &[]);
-        let yaw = |seconds: f64| flexsc_numerics::attitude::angles(&way.at(at(seconds)).attitude)[2];
+        let profile = AttitudeProfile::new(&two, &sky, &[]);
+        let yaw = |seconds: f64| flexsc_numerics::attitude::angles(&profile.at(at(seconds)).attitude)[2];
         // The rate is 0.02 rad/s after 10 s; 0.4 rad take 30 s.
         for (seconds, exact) in
             [(9.0, 0.0), (10.0, 0.5), (20.0, 0.5), (30.0, 0.6), (35.0, 0.7), (50.0, 0.9), (90.0, 0.9)]
         {
             assert!((yaw(seconds) - exact).abs() < 1e-15, "{seconds} {}", yaw(seconds));
         }
-        assert!((way.at(at(25.0)).rate.z - 0.01).abs() < 1e-15);
-        assert!((way.at(at(45.0)).acceleration.z + 2e-3).abs() < 1e-15);
-        let moving = [9.0, 10.0, 15.0, 20.0, 49.0, 51.0].map(|seconds| way.is_moving(at(seconds)));
+        assert!((profile.at(at(25.0)).rate.z - 0.01).abs() < 1e-15);
+        assert!((profile.at(at(45.0)).acceleration.z + 2e-3).abs() < 1e-15);
+        let moving = [9.0, 10.0, 15.0, 20.0, 49.0, 51.0].map(|seconds| profile.is_moving(at(seconds)));
         assert_eq!(moving, [false, false, false, true, true, false]);
     }
 
@@ -313,34 +315,34 @@ mod tests {
             "orbit = { semi_major_axis = 8e6, eccentricity = 0.1, inclination = 1.2 }\nsun = [1, 2, 3]",
         );
         let sky = OrbitEnvironment::new(&environment.unwrap(), Span::from_seconds(1e4), None);
-        let way = targets(
+        let profile_targets = targets(
             "target = [{ from = 0, frame = \"sun\", yaw = 0.3 }, { from = 50, frame = \"nadir\", roll = 0.2, acceleration = 2e-3 }, \
              { from = 400, frame = \"nadir\", table = [{ time = 0, roll = 0.2 }, { time = 20, pitch = 0.4 }, { time = 60, yaw = -0.3 }] }]",
         );
-        assert_eq!(AttitudeProfile::validate(&way, &sky, &[]), None);
-        let way = AttitudeProfile::new(&way, &sky, &[]);
-        let there = |seconds: f64, axis: Vector| -> Vector {
-            let q = way.at(at(seconds)).attitude;
+        assert_eq!(AttitudeProfile::validate(&profile_targets, &sky, &[]), None);
+        let profile = AttitudeProfile::new(&profile_targets, &sky, &[]);
+        let direction = |seconds: f64, axis: Vector| -> Vector {
+            let q = profile.at(at(seconds)).attitude;
             (q * Quaternion::from_imag(axis) * q.conjugate()).vector().into_owned()
         };
-        assert!((there(10.0, Vector::z()) - Vector::new(1.0, 2.0, 3.0).normalize()).norm() < 1e-15);
-        assert!(!way.is_moving(at(10.0)) && way.is_moving(at(60.0)) && way.is_moving(at(390.0)));
+        assert!((direction(10.0, Vector::z()) - Vector::new(1.0, 2.0, 3.0).normalize()).norm() < 1e-15);
+        assert!(!profile.is_moving(at(10.0)) && profile.is_moving(at(60.0)) && profile.is_moving(at(390.0)));
         // The slew starts at the previous target.
-        assert!((way.at(at(50.0)).attitude - way.at(at(49.999_999_999)).attitude).norm() < 1e-9);
+        assert!((profile.at(at(50.0)).attitude - profile.at(at(49.999_999_999)).attitude).norm() < 1e-9);
         // At its end the body's z is 0.2 rad from the nadir about the local x.
         let local = sky.position(390.0).unwrap().local;
-        assert!((there(390.0, Vector::x()) - local[0]).norm() < 1e-14);
-        assert!((there(390.0, Vector::z()).dot(&local[2]) - libm::cos(0.2)).abs() < 1e-14);
+        assert!((direction(390.0, Vector::x()) - local[0]).norm() < 1e-14);
+        assert!((direction(390.0, Vector::z()).dot(&local[2]) - libm::cos(0.2)).abs() < 1e-14);
         // Rate and acceleration are derivatives: during the slew, along the orbit and through the table.
         let h = 1e-3;
         for seconds in [60.0, 150.0, 390.0, 410.0, 435.0, 470.0] {
-            let [before, now, after] = [seconds - h, seconds, seconds + h].map(|t| way.at(at(t)));
+            let [before, now, after] = [seconds - h, seconds, seconds + h].map(|t| profile.at(at(t)));
             let turn = (before.attitude.conjugate() * after.attitude).vector() * 2.0;
             assert!((turn / (2.0 * h) - now.rate).norm() < 1e-9, "{seconds}");
             let change = (after.rate - before.rate) / (2.0 * h);
             assert!((change - now.acceleration).norm() < 1e-8, "{seconds}");
         }
-        assert!((way.at(at(390.0)).rate.norm() - sky.position(390.0).unwrap().turning[0]).abs() < 1e-15);
+        assert!((profile.at(at(390.0)).rate.norm() - sky.position(390.0).unwrap().turning[0]).abs() < 1e-15);
     }
 
     #[test]

@@ -40,12 +40,12 @@ impl TorqueDistribution {
             [0.0; 3]
         };
         let mut demands = [Demand::Torque(0.0); 3];
-        for ((demand, command), turning) in demands.iter_mut().zip(commands).zip(torques) {
+        for ((demand, command), torque) in demands.iter_mut().zip(commands).zip(torques) {
             *demand = match command {
                 Command::Torque(torque) => Demand::Torque(torque),
                 Command::Change(change) => Demand::Change(change),
                 Command::Moment(moment) => Demand::Moment(moment),
-                Command::Acceleration(_) => Demand::Torque(turning),
+                Command::Acceleration(_) => Demand::Torque(torque),
             };
         }
         demands
@@ -59,9 +59,11 @@ impl TorqueDistribution {
     ) -> [f64; 3] {
         let mut rate = Vector::zeros();
         rate.iter_mut().zip(state_estimates).for_each(|(rate, state_estimate)| *rate = state_estimate.rate);
-        let wanted =
-            commands.map(|command| if let Command::Acceleration(wanted) = command { wanted } else { 0.0 });
+        let accelerations =
+            commands.map(
+                |command| if let Command::Acceleration(acceleration) = command { acceleration } else { 0.0 },
+            );
         let momentum = self.inertia * rate + Vector::from(stored);
-        (self.inertia * Vector::from(wanted) + rate.cross(&momentum)).into()
+        (self.inertia * Vector::from(accelerations) + rate.cross(&momentum)).into()
     }
 }

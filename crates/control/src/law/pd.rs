@@ -112,13 +112,13 @@ impl Extra {
             Self::Gain(gain) => gain.get(),
             Self::Schedule(points) => {
                 let after = points.partition_point(|point| point.frequency.get() <= frequency);
-                let at = |index: usize| (points[index].frequency.get(), points[index].gain.get());
+                let point = |index: usize| (points[index].frequency.get(), points[index].gain.get());
                 match (after, points.len()) {
                     (_, 0) => 0.0,
-                    (0, _) => at(0).1,
-                    (after, count) if after == count => at(count - 1).1,
+                    (0, _) => point(0).1,
+                    (after, count) if after == count => point(count - 1).1,
                     (after, _) => {
-                        let ((low, from), (high, to)) = (at(after - 1), at(after));
+                        let ((low, from), (high, to)) = (point(after - 1), point(after));
                         from + (to - from) * (frequency - low) / (high - low)
                     }
                 }

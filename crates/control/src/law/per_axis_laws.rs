@@ -60,21 +60,21 @@ impl LawSpec for PerAxisLaws {
     }
 
     fn needs(&self) -> EstimateNeeds {
-        let of = |wanted: EstimateNeeds| self.all().into_iter().any(|law| law.needs() == wanted);
+        let any_law_needs = |needs: EstimateNeeds| self.all().into_iter().any(|law| law.needs() == needs);
         let order = [
             EstimateNeeds::ElasticRates,
             EstimateNeeds::DominantMode,
             EstimateNeeds::Motion,
             EstimateNeeds::Field,
         ];
-        order.into_iter().find(|wanted| of(*wanted)).unwrap_or(EstimateNeeds::Nothing)
+        order.into_iter().find(|needs| any_law_needs(*needs)).unwrap_or(EstimateNeeds::Nothing)
     }
 
     fn tunable(&self) -> Vec<Tunable> {
-        let of = |axis: usize| {
+        let law_about = |axis: usize| {
             let place = self.key_prefix(axis);
             self.about(axis).tunable().into_iter().map(move |number| number.nested(&place))
         };
-        (0..3).flat_map(of).collect()
+        (0..3).flat_map(law_about).collect()
     }
 }

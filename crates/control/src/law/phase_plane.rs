@@ -111,9 +111,9 @@ fn within_a_turn<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Finite, D
     if angle.get().abs() <= TAU {
         return Ok(angle);
     }
-    let got = angle.get();
+    let value = angle.get();
     Err(D::Error::custom(format!(
-        "must be an angle of -2 pi to 2 pi, in rad, or such as \"30 deg\", got {got}"
+        "must be an angle of -2 pi to 2 pi, in rad, or such as \"30 deg\", got {value}"
     )))
 }
 

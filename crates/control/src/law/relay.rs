@@ -84,9 +84,9 @@ impl Relay {
         let overshoot = (back * (1.0 - k_t) * (1.0 - k_t) / (4.0 * k_t)).min(0.5 * zone);
         let speed = f64::sqrt(2.0 * push * overshoot);
         let pushed = (speed + f64::sqrt(2.0 * push * (overshoot + back))) / push;
-        let left = speed * speed - 4.0 * weak * zone;
-        let coasted = if self.sides == RelaySides::Two && left > 0.0 {
-            4.0 * zone / (speed + f64::sqrt(left))
+        let discriminant = speed * speed - 4.0 * weak * zone;
+        let coasted = if self.sides == RelaySides::Two && discriminant > 0.0 {
+            4.0 * zone / (speed + f64::sqrt(discriminant))
         } else if weak > 0.0 {
             2.0 * speed / weak
         } else {
@@ -245,8 +245,8 @@ impl Relay {
         let until_guards =
             |torque, guards| ControlOutput { command: Command::Torque(torque), until: None, guards };
         let until_braked = |torque| {
-            let push = now.since(self.pushed_at).seconds();
-            let until = Some(now + Span::from_seconds(k_t * push));
+            let push_duration = now.since(self.pushed_at).seconds();
+            let until = Some(now + Span::from_seconds(k_t * push_duration));
             ControlOutput { command: Command::Torque(torque), until, guards: Guards::NONE }
         };
         let boundaries = match self.sides {

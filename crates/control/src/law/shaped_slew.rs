@@ -20,10 +20,10 @@ impl AttitudeTarget {
     /// A `ConfigError` with the key that does not fit the modes and the reason.
     pub(super) fn slew(
         &self,
-        ways: [Quaternion<f64>; 2],
+        attitudes: [Quaternion<f64>; 2],
         modes: &[Mode],
     ) -> Result<PlannedSlew, ConfigError> {
-        PlannedSlew::new(ways, |angle| {
+        PlannedSlew::new(attitudes, |angle| {
             let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
                 let task = RestToRestTask { time: duration.get(), impulse: 0.0, travel: angle };
                 let planned = command.waveform(&task, &command.zeros(modes)?);
@@ -31,7 +31,7 @@ impl AttitudeTarget {
             } else {
                 let acceleration = self.acceleration.map_or(0.0, Positive::get);
                 let rate_limit = self.rate_limit.map_or(f64::INFINITY, Positive::get);
-                Slew::new(ways, acceleration, rate_limit, self.profile).command()
+                Slew::new(attitudes, acceleration, rate_limit, self.profile).command()
             };
             let Some(shaper) = &self.shaper else { return Ok(plan) };
             Ok(convolve(&plan, &shaper.impulses(modes)?))
@@ -51,7 +51,7 @@ impl AttitudeTarget {
                 "must be given: it is how long the turn by `command` takes",
             )),
             (None, Some(_)) => Some(ConfigError::new("duration", "needs a `command`, whose duration it is")),
-            (Some(_), Some(_)) => limits.iter().find(|(_, given)| *given).map(|(key, _)| {
+            (Some(_), Some(_)) => limits.iter().find(|(_, is_given)| *is_given).map(|(key, _)| {
                 ConfigError::new(
                     *key,
                     "must be left out with a `command`, which is planned for its `duration`",
@@ -88,7 +88,7 @@ mod tests {
 
     /// Returns the residual of a mode after a slew, relative to that of a pulse with the largest acceleration, by
     /// Simpson's rule over the poses of the slew, independent of waveforms.
-    fn left(turn: &PlannedSlew, mode: &Mode, axis: Vector) -> f64 {
+    fn residual_amplitude(turn: &PlannedSlew, mode: &Mode, axis: Vector) -> f64 {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
         let damped = w * f64::sqrt(1.0 - zeta * zeta);
         let end = turn.duration();
@@ -140,8 +140,8 @@ mod tests {
             let turn =
                 target(keys).slew([from, to], &modes()).unwrap_or_else(|fault| panic!("{keys}: {fault}"));
             for mode in rest {
-                let left = left(&turn, &modes()[mode], axis);
-                assert!(left < bound, "{keys}: mode {mode} keeps {left:e}");
+                let residual = residual_amplitude(&turn, &modes()[mode], axis);
+                assert!(residual < bound, "{keys}: mode {mode} keeps {residual:e}");
             }
             // The slew ends at its target, at rest, and has a single axis.
             let near_end = turn.at(turn.duration() * (1.0 - 1e-12));
@@ -151,7 +151,7 @@ mod tests {
         }
         let plain = target("acceleration = 2e-3\nrate_limit = 0.02");
         let plain = plain.slew([from, to], &modes()).expect("a turn");
-        assert!(left(&plain, &modes()[0], axis) > 1e-2);
+        assert!(residual_amplitude(&plain, &modes()[0], axis) > 1e-2);
         // Without a shaper it is the closed-form slew.
         let slew = Slew::new([from, to], 2e-3, 0.02, SlewProfile::Trapezoid);
         for k in 0..60 {
@@ -162,10 +162,10 @@ mod tests {
 
     #[test]
     fn keys_that_do_not_fit_are_refused() {
-        let ways = [rotation(&Vector::zeros()), rotation(&Vector::new(0.0, 0.0, 0.5))];
+        let attitudes = [rotation(&Vector::zeros()), rotation(&Vector::new(0.0, 0.0, 0.5))];
         let fault = |keys: &str| {
             let target = target(keys);
-            let found = target.validate_shape().or_else(|| target.slew(ways, &modes()).err());
+            let found = target.validate_shape().or_else(|| target.slew(attitudes, &modes()).err());
             found.unwrap_or_else(|| panic!("{keys}")).to_string()
         };
         let cases = [

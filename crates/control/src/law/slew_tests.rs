@@ -68,8 +68,8 @@ type Met = (f64, usize, SlipDirection);
 
 #[test]
 fn sixty_degrees_by_four_wheels() {
-    let met = turn(wheels(200.0), Vec::new(), TURN);
-    assert!(met.is_empty());
+    let contacts = turn(wheels(200.0), Vec::new(), TURN);
+    assert!(contacts.is_empty());
 }
 
 /// Checks the slew with friction: six times a wheel stops and then slips in the other direction; the first two times
@@ -77,14 +77,14 @@ fn sixty_degrees_by_four_wheels() {
 #[test]
 fn the_same_with_friction() {
     let bearing = Bearing { inertia: 0.04, viscous: 5e-5, coulomb: 0.01, breakaway: 0.01, lines: Vec::new() };
-    let met = turn(wheels(40.0), vec![bearing; 4], RUBBING);
-    assert_eq!(met.len(), 6, "{met:?}");
-    for ((found, wheel, slip), (at, way)) in met
+    let contacts = turn(wheels(40.0), vec![bearing; 4], RUBBING);
+    assert_eq!(contacts.len(), 6, "{contacts:?}");
+    for ((found, wheel, direction), (time, expected)) in contacts
         .iter()
         .filter(|(_, wheel, _)| *wheel == 0)
         .zip([(12.712_848_560_1, -1.0), (166.691_652_789_7, 1.0)])
     {
-        assert!((found - at).abs() < 6e-10 && slip.sign() == way, "{wheel}: {found}");
+        assert!((found - time).abs() < 6e-10 && direction.sign() == expected, "{wheel}: {found}");
     }
 }
 
@@ -108,14 +108,14 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
     let mut laws: [Box<dyn Law>; 3] = [0, 1, 2].map(|_| law.start(&authority));
     let distribution = TorqueDistribution::for_three_axes(craft.inertia);
     let table = rows(table);
-    let mut met = 0;
+    let mut count = 0;
     for k in 0..=920 {
         let (t, now) = (PERIOD * f64::from(k), Instant::START + Span::from_seconds(PERIOD * f64::from(k)));
         let (attitude, rate) = (motion.view().attitude, motion.view().rate);
         let pose = slew.at(t);
         let angles = rotation_vector(&pose.attitude, &attitude);
         if let Some(row) = table.iter().find(|row| row[0] == t) {
-            met += 1;
+            count += 1;
             let three = |from: usize| Vector::from_row_slice(&row[from..from + 3]);
             let q = Quaternion::new(row[1], row[2], row[3], row[4]);
             // The reference table has 13 digits; the two codes agree to 1e-13, 1e-14, 2e-10 and 2e-13.
@@ -136,11 +136,11 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
             ..StateEstimate::default()
         };
         let estimates = [0, 1, 2].map(estimate);
-        let [wanted, acceleration] = pose.in_body_axes(&angles);
+        let [reference, acceleration] = pose.in_body_axes(&angles);
         let mut axis = 0;
         let commands = laws.each_mut().map(|law| {
             let goal =
-                Setpoint { from: now, angle: 0.0, rate: wanted[axis], acceleration: acceleration[axis] };
+                Setpoint { from: now, angle: 0.0, rate: reference[axis], acceleration: acceleration[axis] };
             axis += 1;
             law.decide(now, DecisionCause::Timeout, &goal, &estimates[axis - 1]).command
         });
@@ -168,7 +168,7 @@ fn turn(mut wheels: WheelsState, bearings: Vec<Bearing>, table: &str) -> Vec<Met
         let rotors = motion.rotor_observations(None);
         wheels.update(now + Span::from_seconds(PERIOD), ActuatorEvent::Rotors(&rotors));
     }
-    assert_eq!(met, table.len());
+    assert_eq!(count, table.len());
     events
 }
 

@@ -117,22 +117,22 @@ impl LawSpec for Stages {
     }
 
     fn needs(&self) -> EstimateNeeds {
-        let of = |wanted: EstimateNeeds| self.laws().any(|law| law.needs() == wanted);
+        let any_law_needs = |needs: EstimateNeeds| self.laws().any(|law| law.needs() == needs);
         let order = [
             EstimateNeeds::ElasticRates,
             EstimateNeeds::DominantMode,
             EstimateNeeds::Motion,
             EstimateNeeds::Field,
         ];
-        order.into_iter().find(|wanted| of(*wanted)).unwrap_or(EstimateNeeds::Nothing)
+        order.into_iter().find(|needs| any_law_needs(*needs)).unwrap_or(EstimateNeeds::Nothing)
     }
 
     fn tunable(&self) -> Vec<Tunable> {
-        let of = |(index, law): (usize, &LawKind)| {
+        let stage_name = |(index, law): (usize, &LawKind)| {
             let place = self.place(index);
             law.tunable().into_iter().map(move |number| number.nested(&place))
         };
-        self.laws().enumerate().flat_map(of).collect()
+        self.laws().enumerate().flat_map(stage_name).collect()
     }
 }
 

@@ -168,7 +168,7 @@ pub struct AccelerometerState {
 impl AccelerometerState {
     /// Returns the next time of a sample or an output.
     pub fn due(&self) -> Instant {
-        self.waiting.front().map_or(self.exposes, |(told, _)| self.exposes.min(*told))
+        self.waiting.front().map_or(self.exposes, |(available, _)| self.exposes.min(*available))
     }
 
     /// Returns true if the accelerometer samples at `now`.
@@ -197,19 +197,19 @@ impl AccelerometerState {
             Some(SensorFailure::Silent(_)) => return,
             Some(SensorFailure::Stuck(_)) => {
                 let held = self.last.iter().flatten();
-                sensed.iter_mut().zip(held).for_each(|(felt, held)| felt.measured = *held);
+                sensed.iter_mut().zip(held).for_each(|(sample, held)| sample.measured = *held);
             }
             None => {}
         }
-        self.last = Some(sensed.iter().map(|felt| felt.measured).collect());
+        self.last = Some(sensed.iter().map(|sample| sample.measured).collect());
         let reported = now + Span::from_seconds(spec.latency.get());
         self.waiting.push_back((reported, sensed));
     }
 
     /// Returns the sample whose latency has elapsed, if any.
     pub fn take_due(&mut self, now: Instant) -> Option<Vec<MeasuredAcceleration>> {
-        self.waiting.front().filter(|(told, _)| *told <= now)?;
-        self.waiting.pop_front().map(|(_, felt)| felt)
+        self.waiting.front().filter(|(available, _)| *available <= now)?;
+        self.waiting.pop_front().map(|(_, sample)| sample)
     }
 }
 
@@ -225,17 +225,17 @@ mod tests {
     }
 
     fn run(
-        at_work: &mut AccelerometerState,
+        state: &mut AccelerometerState,
         samples: usize,
         force: Vector,
     ) -> Vec<(f64, Vec<MeasuredAcceleration>)> {
         let mut reported = Vec::new();
         for _ in 0..samples {
-            let now = at_work.due();
-            if at_work.samples_now(now) {
-                at_work.sample(now, &force);
+            let now = state.due();
+            if state.samples_now(now) {
+                state.sample(now, &force);
             }
-            reported.extend(at_work.take_due(now).map(|felt| (now.seconds(), felt)));
+            reported.extend(state.take_due(now).map(|samples| (now.seconds(), samples)));
         }
         reported
     }
@@ -244,7 +244,7 @@ mod tests {
     fn errors_are_those_that_are_asked_for() {
         let keys = "along = [[0, 0, 2], [3, 0, 4]]\nscale = 0.1\nbias = [0.5, -0.5, 0]\nresolution = 0.25";
         let reported = run(&mut start(keys), 1, Vector::new(1.0, 2.0, 3.0));
-        let measured: Vec<f64> = reported[0].1.iter().map(|felt| felt.measured).collect();
+        let measured: Vec<f64> = reported[0].1.iter().map(|sample| sample.measured).collect();
         // 3.3 + 0.5 and 3 * 1.1 - 0.5, in quarters.
         assert_eq!(measured, [3.75, 2.75]);
         assert!((reported[0].1[1].exact - 3.0).abs() < 1e-15);
@@ -253,8 +253,8 @@ mod tests {
     #[test]
     fn the_bias_walks_and_noise_is_white() {
         let reported = run(&mut start("noise = 0.3\nbias_random_walk = 0.2"), 40_000, Vector::zeros());
-        let mean = |of: &dyn Fn(usize) -> f64| {
-            (1..reported.len()).map(of).sum::<f64>() / (reported.len() - 1) as f64
+        let mean = |value_of: &dyn Fn(usize) -> f64| {
+            (1..reported.len()).map(value_of).sum::<f64>() / (reported.len() - 1) as f64
         };
         let step = mean(&|k| libm::pow(reported[k].1[0].bias - reported[k - 1].1[0].bias, 2.0));
         assert!((step / (0.04 * 0.5) - 1.0).abs() < 0.022, "{step}");
@@ -268,8 +268,8 @@ mod tests {
         let reported = run(&mut start(keys), 20, Vector::zeros());
         let times: Vec<f64> = reported.iter().map(|(t, _)| *t).collect();
         assert_eq!(times[..7], [0.2, 0.7, 1.2, 1.7, 2.2, 2.7, 4.2]);
-        let of = |k: usize| reported[k].1[0].measured;
-        assert!(of(2) == of(1) && of(3) == of(1) && of(4) != of(1));
+        let measured = |k: usize| reported[k].1[0].measured;
+        assert!(measured(2) == measured(1) && measured(3) == measured(1) && measured(4) != measured(1));
         let loud: Accelerometer = toml::from_str("period = 0.5").unwrap();
         assert!(loud.inconsistency().unwrap().to_string().contains("`watch_only` must be true"));
     }

@@ -13,8 +13,8 @@ pub struct ExposureMean(Vec<(f64, Quaternion<f64>)>);
 
 impl ExposureMean {
     /// Adds an attitude with the time `lasts` (s) that it represents.
-    pub fn add(&mut self, attitude: Quaternion<f64>, lasts: f64) {
-        self.0.push((lasts, attitude));
+    pub fn add(&mut self, attitude: Quaternion<f64>, duration: f64) {
+        self.0.push((duration, attitude));
     }
 
     /// Removes all attitudes.
@@ -27,9 +27,9 @@ impl ExposureMean {
     /// angles.
     pub fn mean(&self, middle: &Quaternion<f64>) -> Quaternion<f64> {
         let (mut whole, mut sum) = (0.0, Vector::zeros());
-        for (lasts, attitude) in &self.0 {
-            whole += lasts;
-            sum += rotation_vector(middle, attitude) * *lasts;
+        for (duration, attitude) in &self.0 {
+            whole += duration;
+            sum += rotation_vector(middle, attitude) * *duration;
         }
         if whole > 0.0 { middle * rotation(&(sum / whole)) } else { *middle }
     }
@@ -62,15 +62,15 @@ mod tests {
 
     /// Returns the mean over pieces between these instants, relative to the attitude at 0, for rotations up to 40
     /// rad/s.
-    fn mean(breaks: &[f64], turned: impl Fn(f64) -> Vector) -> Quaternion<f64> {
-        let at = |t: f64| rotation(&Vector::new(0.4, -1.1, 0.3)) * rotation(&turned(t));
+    fn mean(breaks: &[f64], angle_at: impl Fn(f64) -> Vector) -> Quaternion<f64> {
+        let attitude_at = |t: f64| rotation(&Vector::new(0.4, -1.1, 0.3)) * rotation(&angle_at(t));
         let mut exposure = ExposureMean::default();
         for ends in breaks.windows(2) {
-            for (t, lasts) in nodes(ends[1] - ends[0], 40.0) {
-                exposure.add(at(ends[0] + t), lasts);
+            for (t, duration) in nodes(ends[1] - ends[0], 40.0) {
+                exposure.add(attitude_at(ends[0] + t), duration);
             }
         }
-        at(0.0).conjugate() * exposure.mean(&at(0.0))
+        attitude_at(0.0).conjugate() * exposure.mean(&attitude_at(0.0))
     }
 
     fn off(found: &Quaternion<f64>, exact: Vector) -> f64 {
@@ -95,10 +95,10 @@ mod tests {
         assert!(off(&found, along * (0.1 * e * e / 24.0)) < 3e-16);
         for w in [0.3, 5.0, 12.566, 40.0] {
             let (amplitude, phase) = (1e-3, 0.7);
-            let swing = |t: f64| amplitude * libm::cos(w * t + phase);
-            let left = libm::sin(0.5 * w * e) / (0.5 * w * e);
-            let found = mean(&ends, |t| along * (swing(t) - swing(0.0)));
-            assert!(off(&found, along * (swing(0.0) * (left - 1.0))) < 3e-16, "{w}");
+            let vibration = |t: f64| amplitude * libm::cos(w * t + phase);
+            let factor = libm::sin(0.5 * w * e) / (0.5 * w * e);
+            let found = mean(&ends, |t| along * (vibration(t) - vibration(0.0)));
+            assert!(off(&found, along * (vibration(0.0) * (factor - 1.0))) < 3e-16, "{w}");
         }
         // Acceleration that starts d after the middle: alpha (e/2 - d)³/6 of e.
         let (alpha, d) = (0.02, 0.07);
@@ -114,11 +114,11 @@ mod tests {
     #[test]
     fn the_mean_is_that_of_the_chords() {
         for size in [0.01, 0.04] {
-            let turned = |t: f64| Vector::new(t, 1.5 * t * t, libm::sin(3.0 * t) - t) * (size / 0.25);
-            let found = mean(&[-0.25, 0.25], turned);
-            let sum = nodes(0.5, 40.0)
-                .into_iter()
-                .fold(Quaternion::default(), |sum, (t, lasts)| sum + rotation(&turned(t - 0.25)) * lasts);
+            let angle_at = |t: f64| Vector::new(t, 1.5 * t * t, libm::sin(3.0 * t) - t) * (size / 0.25);
+            let found = mean(&[-0.25, 0.25], angle_at);
+            let sum = nodes(0.5, 40.0).into_iter().fold(Quaternion::default(), |sum, (t, duration)| {
+                sum + rotation(&angle_at(t - 0.25)) * duration
+            });
             let apart = rotation_vector(&(sum / sum.norm()), &found).norm();
             assert!(apart < 0.05 * size * size * size && apart > 0.0, "{size} {apart:e}");
         }

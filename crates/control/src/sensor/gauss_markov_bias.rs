@@ -28,9 +28,9 @@ impl GaussMarkovBias {
     #[inline(never)]
     pub fn value(&mut self, gyro: &Gyro, axis: usize, seconds: f64, noise: &mut Stream) -> f64 {
         if let Some((deviation, time)) = gyro.bias_instability(axis).filter(|_| seconds > 0.0) {
-            let kept = libm::exp(-seconds / time);
+            let decay_factor = libm::exp(-seconds / time);
             let spread = f64::sqrt(-libm::expm1(-2.0 * seconds / time));
-            self.bias[axis] = kept * self.bias[axis] + deviation * spread * noise.normal();
+            self.bias[axis] = decay_factor * self.bias[axis] + deviation * spread * noise.normal();
         }
         self.bias[axis]
     }
@@ -45,8 +45,8 @@ impl GaussMarkovBias {
         let before = self.bias[axis];
         let sum = before + self.value(gyro, axis, seconds, noise);
         let z = 0.5 * seconds / time;
-        let (tanh, left) = (libm::tanh(z), beyond_tanh(z));
-        0.5 * sum * tanh / z + deviation * f64::sqrt(left) / z * noise.normal()
+        let (tanh, decay_factor) = (libm::tanh(z), beyond_tanh(z));
+        0.5 * sum * tanh / z + deviation * f64::sqrt(decay_factor) / z * noise.normal()
     }
 }
 

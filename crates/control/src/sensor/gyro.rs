@@ -94,7 +94,7 @@ pub struct GyroState {
     counter: Option<RateIntegrator>,
     wander: GaussMarkovBias,
     /// Rates of the last reading, and later ones in the latency queue (rad/s).
-    told: Option<[f64; 3]>,
+    last_rates: Option<[f64; 3]>,
     waiting: VecDeque<[f64; 3]>,
 }
 
@@ -111,7 +111,7 @@ impl Gyro {
             noise: (0..axes).map(draws).collect(),
             counter,
             wander: GaussMarkovBias::default(),
-            told: None,
+            last_rates: None,
             waiting: VecDeque::new(),
         }
     }
@@ -250,8 +250,8 @@ impl Sensor for GyroState {
         // on it.
         let rate = self.rates(now, truth);
         let rate = self.queued(rate);
-        let seen = Reading { at: truth.orientation, rate: Some(rate), sight: None };
-        let reported = with_failures(&self.gyro.faults, now, Some(seen), last)?;
+        let reading = Reading { at: truth.orientation, rate: Some(rate), sight: None };
+        let reported = with_failures(&self.gyro.faults, now, Some(reading), last)?;
         Some(Reading { at: truth.orientation, ..reported })
     }
 
@@ -270,12 +270,12 @@ impl GyroState {
     /// Queues the measured rates; returns those measured one latency earlier, or the first ones until then.
     fn queued(&mut self, rate: [f64; 3]) -> [f64; 3] {
         let late = self.gyro.late();
-        let Some(told) = &mut self.told else { return *self.told.insert(rate) };
+        let Some(reported) = &mut self.last_rates else { return *self.last_rates.insert(rate) };
         self.waiting.push_back(rate);
         if self.waiting.len() as u64 > late {
-            *told = self.waiting.pop_front().unwrap_or(rate);
+            *reported = self.waiting.pop_front().unwrap_or(rate);
         }
-        *told
+        *reported
     }
 
     /// Returns the rates measured now (rad/s).

@@ -29,23 +29,23 @@ impl LatencyQueue {
     }
 
     /// Queues the reading of an exposure. A reading at the start is available at once, as if exposed before.
-    pub fn push(&mut self, now: Instant, seen: Option<Reading>) {
+    pub fn push(&mut self, now: Instant, reading: Option<Reading>) {
         let reported = if now == Instant::START { now } else { now + self.latency };
         self.exposes = now + self.period;
-        self.waiting.extend(seen.map(|reading| (reported, reading)));
+        self.waiting.extend(reading.map(|reading| (reported, reading)));
     }
 
     /// Replaces the orientation of the last queued reading.
-    pub fn replace_last(&mut self, at: Orientation) {
+    pub fn replace_last(&mut self, orientation: Orientation) {
         if let Some((_, reading)) = self.waiting.back_mut() {
-            reading.at = at;
+            reading.at = orientation;
         }
     }
 
     /// Returns the reading whose latency has elapsed, if any.
     pub fn take_due(&mut self, now: Instant) -> Option<Reading> {
-        let (told, reading) = *self.waiting.front()?;
-        (told <= now).then(|| {
+        let (available, reading) = *self.waiting.front()?;
+        (available <= now).then(|| {
             self.waiting.pop_front();
             reading
         })
@@ -53,7 +53,7 @@ impl LatencyQueue {
 
     /// Returns the next time of an exposure or a reading.
     pub fn next_due(&self) -> Instant {
-        self.waiting.front().map_or(self.exposes, |(told, _)| self.exposes.min(*told))
+        self.waiting.front().map_or(self.exposes, |(available, _)| self.exposes.min(*available))
     }
 }
 
@@ -62,12 +62,12 @@ impl LatencyQueue {
 pub(super) fn with_failures(
     faults: &[SensorFailure],
     now: Instant,
-    seen: Option<Reading>,
+    reading: Option<Reading>,
     last: Option<&Reading>,
 ) -> Option<Reading> {
     match faults.iter().find(|fault| fault.interval().contains(now)) {
-        None => seen,
-        Some(SensorFailure::Stuck(_)) => last.copied().or(seen),
+        None => reading,
+        Some(SensorFailure::Stuck(_)) => last.copied().or(reading),
         Some(SensorFailure::Silent(_)) => None,
     }
 }

@@ -60,8 +60,8 @@ impl RateIntegrator {
             self.deviations = [0, 1, 2].map(|axis| deviations(gyro, axis, period));
         }
         match before {
-            Some((_, turned)) if self.period > 0.0 => {
-                std::array::from_fn(|axis| (truth.turned[axis] - turned[axis]) / self.period)
+            Some((_, angle)) if self.period > 0.0 => {
+                std::array::from_fn(|axis| (truth.turned[axis] - angle[axis]) / self.period)
             }
             _ => truth.rate,
         }
@@ -121,7 +121,7 @@ mod tests {
         let gyro: Gyro = flexsc_formats::document::from_text(&format!("period = {PERIOD}\n{keys}")).unwrap();
         assert_eq!(gyro.inconsistency(), None);
         let mut gyro = gyro.start(3, Seed { scenario: 5, run: 0 }, 0);
-        let (mut told, mut biases) = (Vec::new(), Vec::new());
+        let (mut reported, mut biases) = (Vec::new(), Vec::new());
         for k in 0..=count {
             let t = PERIOD * k as f64;
             let truth = Truth {
@@ -133,10 +133,10 @@ mod tests {
                 sky: flexsc_spacecraft::environment::EnvironmentObservation::default(),
             };
             let now = Instant::START + Span::from_seconds(t);
-            told.push(gyro.read(now, &truth, None).unwrap().rate.unwrap());
+            reported.push(gyro.read(now, &truth, None).unwrap().rate.unwrap());
             biases.push(gyro.true_bias().unwrap());
         }
-        (told, biases)
+        (reported, biases)
     }
 
     #[test]
@@ -144,14 +144,14 @@ mod tests {
         let (white, walk) = (2e-4, 3e-5);
         let keys = format!("angle_random_walk = {white}\nrate_random_walk = {walk}\nbias = 1e-3");
         let count = 40_000;
-        let (told, biases) = readings(&keys, count, [0.01, 0.0, -0.02]);
-        let mean = |of: &dyn Fn(usize) -> f64| (1..=count).map(of).sum::<f64>() / count as f64;
+        let (reported, biases) = readings(&keys, count, [0.01, 0.0, -0.02]);
+        let mean = |value_of: &dyn Fn(usize) -> f64| (1..=count).map(value_of).sum::<f64>() / count as f64;
         for axis in 0..3 {
             let step = mean(&|k| libm::pow(biases[k][axis] - biases[k - 1][axis], 2.0));
             // Three standard errors of a variance are 3 sqrt(2/n) of it: 2.1 %.
             assert!((step / (walk * walk * PERIOD) - 1.0).abs() < 0.022, "{step}");
             let rate = [0.01, 0.0, -0.02][axis];
-            let noise = |k: usize| told[k][axis] - rate - 0.5 * (biases[k][axis] + biases[k - 1][axis]);
+            let noise = |k: usize| reported[k][axis] - rate - 0.5 * (biases[k][axis] + biases[k - 1][axis]);
             let variance = mean(&|k| noise(k) * noise(k));
             let exact = white * white / PERIOD + walk * walk * PERIOD / 12.0;
             assert!((variance / exact - 1.0).abs() < 0.022, "{variance} {exact}");
@@ -163,12 +163,12 @@ mod tests {
     fn nothing_is_lost_of_a_quantum() {
         let quantum = 1e-6;
         let rate = [1.234_567e-5, -3.3e-7, 0.0];
-        let (told, _) = readings(&format!("quantum = {quantum}"), 1000, rate);
+        let (reported, _) = readings(&format!("quantum = {quantum}"), 1000, rate);
         for axis in 0..3 {
-            let sum: f64 = told[1..].iter().map(|told| told[axis] * PERIOD).sum();
+            let sum: f64 = reported[1..].iter().map(|rate| rate[axis] * PERIOD).sum();
             assert!((sum - 250.0 * rate[axis]).abs() <= 0.5 * quantum + 1e-12, "{sum}");
-            assert!(told[1..].iter().all(|told| {
-                let counts = told[axis] * PERIOD / quantum;
+            assert!(reported[1..].iter().all(|reported| {
+                let counts = reported[axis] * PERIOD / quantum;
                 (counts - libm::round(counts)).abs() < 1e-9
             }));
         }
@@ -178,8 +178,8 @@ mod tests {
     fn scale_and_misalignment_mix_the_rates() {
         let keys =
             "quantum = 1e-12\nscale = [1e-3, 0, 0]\nmisalignment = [[0, 2e-3, 0], [0, 0, 0], [-1e-3, 0, 0]]";
-        let (told, _) = readings(keys, 4, [0.1, 0.2, 0.3]);
-        for (found, exact) in told[4].into_iter().zip([0.1 + 1e-4 + 4e-4, 0.2, 0.3 - 1e-4]) {
+        let (reported, _) = readings(keys, 4, [0.1, 0.2, 0.3]);
+        for (found, exact) in reported[4].into_iter().zip([0.1 + 1e-4 + 4e-4, 0.2, 0.3 - 1e-4]) {
             assert!((found - exact).abs() < 1e-11, "{found} {exact}");
         }
         let refused = |keys: &str| {

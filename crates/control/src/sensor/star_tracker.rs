@@ -138,14 +138,14 @@ impl StarTrackerState {
             return None;
         };
         let error = self.tracker.to_body_axes(&draws.into());
-        let seen =
+        let reading =
             Reading { at: Orientation::Attitude(attitude * rotation(&error)), rate: None, sight: None };
         let rate = Vector::from(truth.rate).norm();
         if self.tracker.blackout_rate.is_some_and(|limit| rate >= limit.get()) {
             return None;
         }
         let faults = &self.tracker.faults;
-        let reported = with_failures(faults, now, Some(seen), last);
+        let reported = with_failures(faults, now, Some(reading), last);
         // A repeated reading, and the reading at the start, already have their exposure.
         let again = with_failures(faults, now, None, last).is_some() || now == Instant::START;
         self.gathers =
@@ -161,8 +161,8 @@ impl Sensor for StarTrackerState {
     /// before.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         if self.late.samples_now(now) {
-            let seen = self.expose(now, truth, last);
-            self.late.push(now, seen);
+            let reading = self.expose(now, truth, last);
+            self.late.push(now, reading);
         }
         self.late.take_due(now)
     }
@@ -206,49 +206,49 @@ mod tests {
     #[test]
     fn an_exposure_is_available_after_its_latency() {
         let mut tracker = start("latency = 2.5");
-        let turned = |t: f64| rotation(&Vector::new(0.0, 0.01 * t, 0.0));
+        let attitude_at = |t: f64| rotation(&Vector::new(0.0, 0.01 * t, 0.0));
         let mut now = Instant::START;
         let mut reported = Vec::new();
         while now.seconds() < 6.0 {
             let t = now.seconds();
-            if let Some(reading) = tracker.read(now, &truth(turned(t), [0.0; 3], [0.0; 3]), None) {
+            if let Some(reading) = tracker.read(now, &truth(attitude_at(t), [0.0; 3], [0.0; 3]), None) {
                 reported.push((t, attitude(reading)));
             }
             now = tracker.next_due(now, Span::from_seconds(1.0));
         }
         let exposed = [(0.0, 0.0), (3.5, 1.0), (4.5, 2.0), (5.5, 3.0)];
         assert_eq!(reported.len(), exposed.len(), "{reported:?}");
-        for ((at, seen), (exact, exposed)) in reported.into_iter().zip(exposed) {
-            assert!(at == exact && (seen - turned(exposed)).norm() < 1e-15, "{at}");
+        for ((time, attitude), (exact, exposed)) in reported.into_iter().zip(exposed) {
+            assert!(time == exact && (attitude - attitude_at(exposed)).norm() < 1e-15, "{time}");
         }
     }
 
     /// Checks an exposure that ends before its reading is available, and one that ends at that time.
     #[test]
     fn a_reading_is_the_mean_over_its_exposure() {
-        let turned = |t: f64| rotation(&Vector::new(0.0, 0.01 * t, 0.0));
+        let attitude_at = |t: f64| rotation(&Vector::new(0.0, 0.01 * t, 0.0));
         let smear = Vector::new(2e-4, 0.0, -1e-4);
         for (latency, exposure) in [(1.8, 0.5), (0.25, 0.5)] {
             let keys = format!("latency = {latency}\nexposure = {exposure}\nnoise = [1e-5, 1e-5, 1e-5]");
             let (mut tracker, mut plain) =
                 (start(&keys), start(&format!("latency = {latency}\nnoise = [1e-5, 1e-5, 1e-5]")));
-            let (mut now, mut gathered, mut told) = (Instant::START, Instant::START, 0);
+            let (mut now, mut gathered, mut reported) = (Instant::START, Instant::START, 0);
             while now.seconds() < 6.0 {
                 if gathered > Instant::START && gathered <= now {
-                    let mut seen = ExposureMean::default();
+                    let mut mean = ExposureMean::default();
                     let middle = gathered.before(tracker.tracker.half_exposure()).seconds();
-                    for lasts in [0.2, 0.3] {
-                        seen.add(turned(middle) * rotation(&smear), lasts);
+                    for duration in [0.2, 0.3] {
+                        mean.add(attitude_at(middle) * rotation(&smear), duration);
                     }
-                    tracker.close_exposure(&seen);
+                    tracker.close_exposure(&mean);
                     // The mean is already set: further attitudes have no effect.
-                    seen.add(turned(9.0), 100.0);
-                    tracker.close_exposure(&seen);
+                    mean.add(attitude_at(9.0), 100.0);
+                    tracker.close_exposure(&mean);
                     gathered = Instant::START;
                 }
-                let seen = truth(turned(now.seconds()), [0.0; 3], [0.0; 3]);
+                let reading = truth(attitude_at(now.seconds()), [0.0; 3], [0.0; 3]);
                 let exposes = tracker.late.samples_now(now) && now > Instant::START;
-                let (one, other) = (tracker.read(now, &seen, None), plain.read(now, &seen, None));
+                let (one, other) = (tracker.read(now, &reading, None), plain.read(now, &reading, None));
                 if exposes {
                     gathered = now + tracker.tracker.half_exposure();
                 }
@@ -258,13 +258,13 @@ mod tests {
                     let by = flexsc_numerics::attitude::rotation_vector(&attitude(other), &attitude(one));
                     let exact = if now == Instant::START { Vector::zeros() } else { smear };
                     assert!((by - exact).norm() < 1e-8, "{by}");
-                    told += 1;
+                    reported += 1;
                 }
                 let next = tracker.next_due(now, Span::from_seconds(1.0));
                 assert_eq!(next, plain.next_due(now, Span::from_seconds(1.0)));
                 now = if gathered > now { next.min(gathered) } else { next };
             }
-            assert_eq!(told, if latency > 1.0 { 5 } else { 6 });
+            assert_eq!(reported, if latency > 1.0 { 5 } else { 6 });
         }
     }
 
@@ -289,14 +289,17 @@ mod tests {
         let half = std::f64::consts::FRAC_1_SQRT_2;
         let keys = format!("noise = [1e-5, 2e-5, 1e-3]\naxes = [{half}, 0.0, {half}, 0.0]");
         let mut tracker = start(&keys);
-        let at = rotation(&Vector::new(0.4, 0.1, -0.3));
+        let orientation = rotation(&Vector::new(0.4, 0.1, -0.3));
         let elastic = [0.0, 1e-2, 0.0];
         let count = 20_000;
         let mut sums = Matrix3::zeros();
         for k in 0..count {
             let now = Instant::START + Span::from_seconds(f64::from(k));
-            let seen = attitude(tracker.read(now, &truth(at, elastic, [0.0; 3]), None).unwrap());
-            let error = flexsc_numerics::attitude::rotation_vector(&(at * rotation(&elastic.into())), &seen);
+            let attitude = attitude(tracker.read(now, &truth(orientation, elastic, [0.0; 3]), None).unwrap());
+            let error = flexsc_numerics::attitude::rotation_vector(
+                &(orientation * rotation(&elastic.into())),
+                &attitude,
+            );
             sums += error * error.transpose() / f64::from(count);
         }
         let exact = tracker.tracker.covariance([1e-5, 2e-5, 1e-3]);
@@ -311,12 +314,12 @@ mod tests {
     fn it_sees_nothing_at_a_high_rate_or_in_a_failure() {
         let mut tracker = start("blackout_rate = 0.02\nfaults = [{ silent = { from = 2.0, to = 3.0 } }]");
         let still = Quaternion::new(1.0, 0.0, 0.0, 0.0);
-        let mut seen = |t: f64, rate: f64| {
+        let mut mean_error = |t: f64, rate: f64| {
             let now = Instant::START + Span::from_seconds(t);
             tracker.read(now, &truth(still, [0.0; 3], [0.0, rate, 0.0]), None).is_some()
         };
         assert_eq!(
-            [seen(0.0, 0.0), seen(1.0, 0.02), seen(2.0, 0.0), seen(3.0, 0.019)],
+            [mean_error(0.0, 0.0), mean_error(1.0, 0.02), mean_error(2.0, 0.0), mean_error(3.0, 0.019)],
             [true, false, false, true]
         );
     }

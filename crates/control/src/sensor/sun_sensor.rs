@@ -152,36 +152,36 @@ mod tests {
         let sensor: SunSensor =
             flexsc_formats::document::from_text("period = 1.0\nboresight = [2, 0, 0]\nfield_of_view = 0.5")
                 .unwrap();
-        let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
-        let mut seen = |t: f64, turned: f64, sun: Option<Vector>| {
+        let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut measure = |t: f64, rotation_angle: f64, sun: Option<Vector>| {
             let now = Instant::START + Span::from_seconds(t);
-            let attitude = rotation(&Vector::new(0.0, 0.0, turned));
-            at_work.read(now, &truth(attitude, sun), None).and_then(|reading| reading.sight)
+            let attitude = rotation(&Vector::new(0.0, 0.0, rotation_angle));
+            state.read(now, &truth(attitude, sun), None).and_then(|reading| reading.sight)
         };
         let sun = Some(Vector::x());
-        let measurement = seen(0.0, 0.499, sun).unwrap();
+        let measurement = measure(0.0, 0.499, sun).unwrap();
         assert!((measurement.vector - Vector::new(libm::cos(0.499), -libm::sin(0.499), 0.0)).norm() < 1e-15);
         assert!(measurement.is_direction && measurement.inertial == Vector::x());
         assert!(
-            seen(1.0, 0.501, sun).is_none()
-                && seen(2.0, 3.0, sun).is_none()
-                && seen(3.0, 0.0, None).is_none()
+            measure(1.0, 0.501, sun).is_none()
+                && measure(2.0, 3.0, sun).is_none()
+                && measure(3.0, 0.0, None).is_none()
         );
-        assert!(seen(4.0, -0.499, sun).is_some());
+        assert!(measure(4.0, -0.499, sun).is_some());
     }
 
     #[test]
     fn noise_is_across_and_errors_are_those_that_are_asked_for() {
         let sensor: SunSensor = flexsc_formats::document::from_text("period = 1.0\nnoise = 1e-3").unwrap();
-        let mut at_work = sensor.start(Seed { scenario: 1, run: 0 }, 0);
+        let mut state = sensor.start(Seed { scenario: 1, run: 0 }, 0);
         let count = 20_000;
         let mut squares = Vector::zeros();
         for k in 0..count {
             let now = Instant::START + Span::from_seconds(f64::from(k));
             let truth = truth(rotation(&Vector::zeros()), Some(Vector::z()));
-            let seen = at_work.read(now, &truth, None).unwrap().sight.unwrap().vector;
-            assert!((seen.norm() - 1.0).abs() < 1e-15);
-            squares += seen.component_mul(&seen) / f64::from(count);
+            let direction = state.read(now, &truth, None).unwrap().sight.unwrap().vector;
+            assert!((direction.norm() - 1.0).abs() < 1e-15);
+            squares += direction.component_mul(&direction) / f64::from(count);
         }
         // Three standard errors: 3 sqrt(2/n).
         assert!((squares.x / 1e-6 - 1.0).abs() < 0.03 && (squares.y / 1e-6 - 1.0).abs() < 0.03, "{squares}");
@@ -191,20 +191,20 @@ mod tests {
         )
         .unwrap();
         assert_eq!(magnetometer.inconsistency(), None);
-        let mut at_work = magnetometer.start(Seed { scenario: 1, run: 0 }, 0);
-        let (mut now, mut told, mut last) = (Instant::START, Vec::new(), None);
+        let mut state = magnetometer.start(Seed { scenario: 1, run: 0 }, 0);
+        let (mut now, mut readings, mut last) = (Instant::START, Vec::new(), None);
         while now.seconds() < 5.0 {
-            let turned = rotation(&Vector::new(0.0, 0.0, 0.1 * now.seconds()));
-            if let Some(reading) = at_work.read(now, &truth(turned, None), last.as_ref()) {
-                told.push((now.seconds(), reading.sight.unwrap().vector));
+            let attitude = rotation(&Vector::new(0.0, 0.0, 0.1 * now.seconds()));
+            if let Some(reading) = state.read(now, &truth(attitude, None), last.as_ref()) {
+                readings.push((now.seconds(), reading.sight.unwrap().vector));
                 last = Some(reading);
             }
-            now = at_work.next_due(now, Span::TICK);
+            now = state.next_due(now, Span::TICK);
         }
-        let times: Vec<f64> = told.iter().map(|(t, _)| *t).collect();
+        let times: Vec<f64> = readings.iter().map(|(t, _)| *t).collect();
         assert_eq!(times, [0.0, 1.5, 2.5]);
         let exact = Vector::new(2.02e-5 + 1e-6, -1.01e-5 + 2e-6, 2.8e-5);
-        assert!((told[0].1 - exact).norm() < 1e-19, "{}", told[0].1);
-        assert!(told[1].1 != told[0].1 && told[2].1 == told[1].1);
+        assert!((readings[0].1 - exact).norm() < 1e-19, "{}", readings[0].1);
+        assert!(readings[1].1 != readings[0].1 && readings[2].1 == readings[1].1);
     }
 }

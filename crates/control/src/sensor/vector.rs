@@ -110,14 +110,14 @@ impl<S: VectorSensor> VectorSensorState<S> {
         let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) else {
             return None;
         };
-        let seen = self.sensor.reference(&truth.sky).and_then(|inertial| {
+        let reading = self.sensor.reference(&truth.sky).and_then(|inertial| {
             let exact = to_body(&attitude, &inertial);
             let vector = self.sensor.reading(&exact, self.errors.measured(&exact, &draws))?;
             let vector_measurement =
                 VectorMeasurement { vector, inertial, is_direction: self.sensor.is_direction() };
             Some(Reading { at: truth.orientation, rate: None, sight: Some(vector_measurement) })
         });
-        with_failures(self.sensor.faults(), now, seen, last)
+        with_failures(self.sensor.faults(), now, reading, last)
     }
 }
 
@@ -126,8 +126,8 @@ impl<S: VectorSensor> Part for VectorSensorState<S> {}
 impl<S: VectorSensor> Sensor for VectorSensorState<S> {
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
         if self.late.samples_now(now) {
-            let seen = self.measure(now, truth, last);
-            self.late.push(now, seen);
+            let reading = self.measure(now, truth, last);
+            self.late.push(now, reading);
         }
         self.late.take_due(now)
     }

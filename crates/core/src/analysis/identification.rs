@@ -216,10 +216,10 @@ impl SimulatedChannel {
     }
 
     fn advance(&mut self, pulse: Option<Pulse>, cycle: f64) {
-        for (phase, (of, influence)) in self.phases.iter_mut().zip(&self.modes) {
-            *phase = of.propagate(&of.transition(cycle), cycle, *phase).0;
+        for (phase, (oscillator, influence)) in self.phases.iter_mut().zip(&self.modes) {
+            *phase = oscillator.propagate(&oscillator.transition(cycle), cycle, *phase).0;
             if let Some(Pulse { acceleration, start, duration, .. }) = pulse {
-                let push = of.pulse_response(cycle - start, cycle - start - duration).0;
+                let push = oscillator.pulse_response(cycle - start, cycle - start - duration).0;
                 *phase = [0, 1].map(|part| phase[part] + influence * acceleration * push[part]);
             }
         }
@@ -230,27 +230,27 @@ impl SimulatedChannel {
 /// Random thruster bursts of one to ten cycles, with a random sign and random pauses.
 struct ThrusterBursts {
     draws: Stream,
-    left: usize,
+    remaining: usize,
     wait: usize,
     sign: f64,
 }
 
 impl ThrusterBursts {
     fn new(seed: Seed) -> Self {
-        Self { draws: seed.stream("bursts"), left: 0, wait: 0, sign: 1.0 }
+        Self { draws: seed.stream("bursts"), remaining: 0, wait: 0, sign: 1.0 }
     }
 
     /// Returns the pulse of the next cycle; `None` within a pause.
     fn next(&mut self, acceleration: f64, cycle: f64) -> Option<Pulse> {
-        if self.left == 0 && self.wait > 0 {
+        if self.remaining == 0 && self.wait > 0 {
             self.wait -= 1;
-        } else if self.left == 0 {
-            self.left = 1 + self.draws.index(BURST);
+        } else if self.remaining == 0 {
+            self.remaining = 1 + self.draws.index(BURST);
             self.sign = if self.draws.uniform() < 0.5 { -1.0 } else { 1.0 };
             self.wait = self.draws.index(PAUSE);
         }
-        (self.left > 0).then(|| {
-            self.left -= 1;
+        (self.remaining > 0).then(|| {
+            self.remaining -= 1;
             Pulse { input: 0, acceleration: self.sign * acceleration, start: 0.0, duration: cycle }
         })
     }

@@ -71,7 +71,7 @@ pub struct LimitCycleDetector {
     excitations: usize,
     smooth: bool,
     /// Ring of the last switchings, with their states in `states`; the oldest is overwritten next.
-    kept: Vec<CompactSwitching>,
+    switchings: Vec<CompactSwitching>,
     states: Vec<f64>,
     next: usize,
 }
@@ -79,7 +79,7 @@ pub struct LimitCycleDetector {
 /// Switching without the state of the motion.
 #[derive(Copy, Clone, Debug)]
 struct CompactSwitching {
-    at: Instant,
+    time: Instant,
     phase: Phase,
     trigger: Trigger,
     torque: f64,
@@ -88,7 +88,7 @@ struct CompactSwitching {
 
 #[derive(Clone, Debug)]
 struct Switching {
-    of: CompactSwitching,
+    switching: CompactSwitching,
     state: AxisState,
 }
 
@@ -100,7 +100,7 @@ impl LimitCycleDetector {
             segment: UncoupledSegment::new(body),
             excitations,
             smooth,
-            kept: Vec::with_capacity(KEPT),
+            switchings: Vec::with_capacity(KEPT),
             states: Vec::with_capacity(KEPT * (2 + 2 * excitations)),
             next: 0,
         }
@@ -110,30 +110,30 @@ impl LimitCycleDetector {
     fn keep(&mut self, switching: CompactSwitching, state: &AxisState) {
         let modes = state.modes.iter().flat_map(|mode| [mode.displacement, mode.quadrature]);
         let numbers = [state.rigid_angle, state.rigid_rate].into_iter().chain(modes);
-        if self.kept.len() < KEPT {
-            self.kept.push(switching);
+        if self.switchings.len() < KEPT {
+            self.switchings.push(switching);
             self.states.extend(numbers);
             return;
         }
         let size = self.states.len() / KEPT;
-        self.kept[self.next] = switching;
+        self.switchings[self.next] = switching;
         let place = &mut self.states[size * self.next..][..size];
         place.iter_mut().zip(numbers).for_each(|(old, new)| *old = new);
         self.next = (self.next + 1) % KEPT;
     }
 
-    /// Returns the place of a switching in `kept`; `index` counts from the oldest one.
+    /// Returns the place of a switching in `switchings`; `index` counts from the oldest one.
     fn place(&self, index: usize) -> usize {
-        (self.next + index) % self.kept.len()
+        (self.next + index) % self.switchings.len()
     }
 
     /// Returns a switching with its state; `index` counts from the oldest one.
     fn switching(&self, index: usize) -> Switching {
-        let (place, size) = (self.place(index), self.states.len() / self.kept.len());
+        let (place, size) = (self.place(index), self.states.len() / self.switchings.len());
         let numbers = &self.states[size * place..][..size];
         let mode = |pair: &[f64]| flexsc_dynamics::ModeState { displacement: pair[0], quadrature: pair[1] };
         Switching {
-            of: self.kept[place],
+            switching: self.switchings[place],
             state: AxisState {
                 rigid_angle: numbers[0],
                 rigid_rate: numbers[1],
@@ -145,10 +145,12 @@ impl LimitCycleDetector {
     /// Returns the limit cycle in which the run ended; `None` if it ended in no cycle.
     pub fn cycle(mut self) -> Option<LimitCycle> {
         let sections_of = |phase: Phase| -> Vec<usize> {
-            (0..self.kept.len()).filter(|&index| self.kept[self.place(index)].phase == phase).collect()
+            (0..self.switchings.len())
+                .filter(|&index| self.switchings[self.place(index)].phase == phase)
+                .collect()
         };
-        let right = sections_of(Phase::RightPush);
-        let sections = if right.len() > 1 { right } else { sections_of(Phase::LeftPush) };
+        let right_pushes = sections_of(Phase::RightPush);
+        let sections = if right_pushes.len() > 1 { right_pushes } else { sections_of(Phase::LeftPush) };
         let last = *sections.last()?;
         let end = self.switching(last).state;
         let order = (1..=LONGEST.min(sections.len() - 1)).find(|order| {
@@ -158,9 +160,9 @@ impl LimitCycleDetector {
         let first = sections[sections.len() - 1 - order];
         let one: Vec<Switching> = (first..=last).map(|index| self.switching(index)).collect();
         let one = &one[..];
-        let span = |pair: &[Switching]| pair[1].of.at.since(pair[0].of.at).seconds();
-        let period = one[one.len() - 1].of.at.since(one[0].of.at).seconds();
-        let count = |phase| one[1..].iter().filter(|s| s.of.phase == phase).count();
+        let span = |pair: &[Switching]| pair[1].switching.time.since(pair[0].switching.time).seconds();
+        let period = one[one.len() - 1].switching.time.since(one[0].switching.time).seconds();
+        let count = |phase| one[1..].iter().filter(|s| s.switching.phase == phase).count();
         let kind = match (count(Phase::RightPush), count(Phase::LeftPush)) {
             (0, _) | (_, 0) => CycleKind::OneSided,
             (right, left) if right == left => CycleKind::TwoSided,
@@ -172,8 +174,8 @@ impl LimitCycleDetector {
             period,
             order,
             symmetric: symmetric(one),
-            duty: pairs().filter(|pair| pair[0].of.phase.is_strong()).map(span).sum::<f64>() / period,
-            impulse: pairs().map(|pair| pair[0].of.torque.abs() * span(pair)).sum(),
+            duty: pairs().filter(|pair| pair[0].switching.phase.is_strong()).map(span).sum::<f64>() / period,
+            impulse: pairs().map(|pair| pair[0].switching.torque.abs() * span(pair)).sum(),
             multipliers: if self.smooth && self.excitations <= MOST_MODES {
                 multipliers(&mut self.segment, one)
             } else {
@@ -187,7 +189,7 @@ impl Record for LimitCycleDetector {
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
         if let Sample::Switching(command, state) = sample {
             let Command { state: phase, cause: trigger, torque_nm: torque, gain, .. } = *command;
-            self.keep(CompactSwitching { at: now, phase, trigger, torque, gain }, state);
+            self.keep(CompactSwitching { time: now, phase, trigger, torque, gain }, state);
         }
         Ok(())
     }
@@ -208,7 +210,7 @@ fn same(a: &AxisState, b: &AxisState) -> bool {
 fn symmetric(one: &[Switching]) -> bool {
     let middle = (one.len() - 1) / 2;
     let (first, half) = (&one[0], &one[middle]);
-    if first.of.torque != -half.of.torque {
+    if first.switching.torque != -half.switching.torque {
         return false;
     }
     let mirrored = AxisState {
@@ -234,14 +236,14 @@ fn multipliers(segment: &mut UncoupledSegment, one: &[Switching]) -> Vec<(f64, f
     let mut end = one[0].state.clone();
     for pair in one.windows(2) {
         let (from, to) = (&pair[0], &pair[1]);
-        let h = to.of.at.since(from.of.at).seconds();
-        segment.depart(&from.state, &SegmentInput::constant(from.of.torque));
+        let h = to.switching.time.since(from.switching.time).seconds();
+        segment.depart(&from.state, &SegmentInput::constant(from.switching.torque));
         let sensed = segment.at(h, &mut end);
         for mut column in fundamental.column_iter_mut() {
             segment.propagate_deviation(h, column.as_mut_slice());
         }
-        let duration = match to.of.trigger {
-            Trigger::Timeout => &push * from.of.gain,
+        let duration = match to.switching.trigger {
+            Trigger::Timeout => &push * from.switching.gain,
             // The angle is the sum of the rigid angle and all displacements: every second component.
             Trigger::Guard => {
                 let mut angle = RowDVector::<f64>::zeros(size);

@@ -42,15 +42,18 @@ impl LinearAttitudeFilter {
         if filter.elastic.is_some() {
             return Err(ConfigError::new("elastic", "is not supported in linear loops: leave it out"));
         }
-        let study = &scenario.study;
-        let (Some(setting), Some(body)) = (&study.attitude, scenario.model.spatial()) else {
+        let settings = &scenario.study;
+        let (Some(setting), Some(body)) = (&settings.attitude, scenario.model.spatial()) else {
             return Err(ConfigError::new("", "needs a body with three axes"));
         };
         let mounted = |index: usize, latency: f64| {
             let sensor = &scenario.sensor[index];
-            let shapes = body.shapes(study.sensor_points.get(index).map_or("", String::as_str));
+            let shapes = body.shapes(settings.sensor_points.get(index).map_or("", String::as_str));
             MountedSensor {
-                period: sensor.period(study.law_period).or(study.sample_period).map_or(0.0, Span::seconds),
+                period: sensor
+                    .period(settings.law_period)
+                    .or(settings.sample_period)
+                    .map_or(0.0, Span::seconds),
                 latency,
                 integrates: sensor.integrates(),
                 turned: shapes.iter().map(|(_, rotation)| (*rotation).into()).collect(),

@@ -45,8 +45,8 @@ fn signal(name: impl Into<String>, unit: &str) -> Signal {
     Signal { name: name.into(), unit: unit.to_owned() }
 }
 
-fn rows(of: &DMatrix<f64>) -> Vec<Vec<f64>> {
-    of.row_iter().map(|row| row.iter().copied().collect()).collect()
+fn rows(matrix: &DMatrix<f64>) -> Vec<Vec<f64>> {
+    matrix.row_iter().map(|row| row.iter().copied().collect()).collect()
 }
 
 impl LinearModel {
@@ -54,19 +54,19 @@ impl LinearModel {
     ///
     /// # Errors
     /// A body that is no linear system: its key, and the reason.
-    pub fn from_scenario(scenario: &Scenario, at: f64) -> Result<Self, ConfigError> {
+    pub fn from_scenario(scenario: &Scenario, time: f64) -> Result<Self, ConfigError> {
         if scenario.study.articulation().is_some() {
             let why = "turn appendages, so the body changes with time and is not a linear system";
             return Err(ConfigError::new("appendage", format!("has drives that {why}")));
         }
         Ok(match scenario.model.axes() {
-            BodyAxes::One(body) => Self::for_one_axis(scenario, body, at),
+            BodyAxes::One(body) => Self::for_one_axis(scenario, body, time),
             BodyAxes::Three(body) => Self::for_three_axes(scenario, body),
         })
     }
 
-    fn for_one_axis(scenario: &Scenario, body: &Planar, at: f64) -> Self {
-        let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, at));
+    fn for_one_axis(scenario: &Scenario, body: &Planar, time: f64) -> Self {
+        let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, time));
         let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
         let (back_emf, total) = scenario.back_emf(body);
         let coupled = CoupledMatrices::new(body, back_emf, total, &ratios);
@@ -76,7 +76,7 @@ impl LinearModel {
             let is_seen = j == first || j % 2 == first && body.drive == CommandedQuantity::Torque;
             if is_seen { 1.0 } else { 0.0 }
         };
-        let mut seen: Vec<(Signal, Vec<f64>)> = vec![
+        let mut outputs: Vec<(Signal, Vec<f64>)> = vec![
             (signal("angle", "rad"), (0..order).map(|j| shown(0, j)).collect()),
             (signal("rate", "rad/s"), (0..order).map(|j| shown(1, j)).collect()),
         ];
@@ -84,7 +84,7 @@ impl LinearModel {
             let mut row = vec![0.0; order];
             row[0] = output.rigid.get();
             output.modes.iter().enumerate().for_each(|(mode, weight)| row[2 + 2 * mode] = weight.get());
-            seen.push((signal(output.name.clone(), &output.unit), row));
+            outputs.push((signal(output.name.clone(), &output.unit), row));
         }
         let mut states = vec![signal("rigid_angle", "rad"), signal("rigid_rate", "rad/s")];
         for mode in 0..body.modes.len() {
@@ -93,19 +93,19 @@ impl LinearModel {
         }
         let input = coupled.input / body.commanded_inertia();
         let b = DMatrix::from_column_slice(order, 1, input.as_slice());
-        Self::new(&coupled.system, &b, states, vec![signal("torque", body.torque_unit())], seen)
+        Self::new(&coupled.system, &b, states, vec![signal("torque", body.torque_unit())], outputs)
     }
 
     fn for_three_axes(scenario: &Scenario, body: &Spatial) -> Self {
-        let (study, modes) = (&scenario.study, body.modes.len());
+        let (settings, modes) = (&scenario.study, body.modes.len());
         let flexible = scenario.model.flexible();
         let inertia = flexible.map_or_else(|| body.inertia_tensor(), |flexible| flexible.inertia);
         // The tensor was checked, so it has an inverse.
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         let seed = Seed { scenario: scenario.seed, run: 0 };
         let stored =
-            Vector::from(study.actuator(scenario, seed).capabilities().stored_momentum(Instant::START));
-        let measured = study.measured_rates(body);
+            Vector::from(settings.actuator(scenario, seed).capabilities().stored_momentum(Instant::START));
+        let measured = settings.measured_rates(body);
         let hub = |mode: usize| flexible.map_or_else(Vector::zeros, |body| body.modes[mode].rotation);
         let order = 6 + 2 * modes;
         let (mut a, mut b) = (DMatrix::zeros(order, order), DMatrix::zeros(order, 3));
@@ -148,25 +148,25 @@ impl LinearModel {
                 None => a[(q + 1, q + 1)] -= 2.0 * mode.damping.get() * w,
             }
         }
-        let mut seen = Vec::new();
-        for (first, what, unit) in [(0, "", "rad"), (1, "_rate", "rad/s")] {
+        let mut outputs = Vec::new();
+        for (first, suffix, unit) in [(0, "", "rad"), (1, "_rate", "rad/s")] {
             for (axis, name) in AXES.iter().enumerate() {
                 let mut row = vec![0.0; order];
                 row[3 * first + axis] = 1.0;
                 for mode in 0..modes {
-                    row[6 + first + 2 * mode] = measured.seen[axis][mode];
+                    row[6 + first + 2 * mode] = measured.visibilities[axis][mode];
                 }
-                seen.push((signal(format!("{name}{what}"), unit), row));
+                outputs.push((signal(format!("{name}{suffix}"), unit), row));
             }
         }
-        let rigid = |what: &str, unit: &str| AXES.map(|axis| signal(format!("rigid_{axis}{what}"), unit));
+        let rigid = |suffix: &str, unit: &str| AXES.map(|axis| signal(format!("rigid_{axis}{suffix}"), unit));
         let mut states: Vec<Signal> = rigid("", "rad").into_iter().chain(rigid("_rate", "rad/s")).collect();
         for mode in 0..modes {
             states.push(signal(format!("mode{mode}_displacement"), "m sqrt(kg)"));
             states.push(signal(format!("mode{mode}_rate"), "m sqrt(kg)/s"));
         }
         let inputs = AXES.map(|axis| signal(format!("torque_{axis}"), "N m"));
-        Self::new(&a, &b, states, inputs.into(), seen)
+        Self::new(&a, &b, states, inputs.into(), outputs)
     }
 
     /// Creates a system whose outputs are the measured coordinates and all its states.
@@ -175,9 +175,9 @@ impl LinearModel {
         b: &DMatrix<f64>,
         states: Vec<Signal>,
         inputs: Vec<Signal>,
-        seen: Vec<(Signal, Vec<f64>)>,
+        outputs: Vec<(Signal, Vec<f64>)>,
     ) -> Self {
-        let (mut outputs, mut c): (Vec<Signal>, Vec<Vec<f64>>) = seen.into_iter().unzip();
+        let (mut outputs, mut c): (Vec<Signal>, Vec<Vec<f64>>) = outputs.into_iter().unzip();
         for (index, state) in states.iter().enumerate() {
             outputs.push(state.clone());
             c.push((0..states.len()).map(|j| f64::from(u8::from(j == index))).collect());

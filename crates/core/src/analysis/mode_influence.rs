@@ -27,12 +27,12 @@ pub struct ModeInfluences {
 impl ModeInfluences {
     /// Returns the modes of a scenario's three-axis body. Actuators other than jets count as a torque of 1 N m.
     pub fn from_scenario(scenario: &Scenario, body: &Spatial) -> Self {
-        let study = &scenario.study;
-        let measured = study.measured_rates(body);
-        let per_axis = |of: &dyn Fn(usize, usize, f64) -> f64| {
+        let settings = &scenario.study;
+        let measured = settings.measured_rates(body);
+        let per_axis = |value_of: &dyn Fn(usize, usize, f64) -> f64| {
             [0, 1, 2].map(|axis| {
                 let forces = measured.inputs[axis].forces.iter().enumerate();
-                forces.map(|(mode, force)| of(axis, mode, *force)).collect()
+                forces.map(|(mode, force)| value_of(axis, mode, *force)).collect()
             })
         };
         let frequencies: Vec<f64> = measured.frequencies.iter().map(|frequency| frequency.get()).collect();
@@ -41,13 +41,13 @@ impl ModeInfluences {
             periods_s: frequencies.iter().map(|frequency| 2.0 * std::f64::consts::PI / frequency).collect(),
             frequencies_rad_s: frequencies,
             dampings: body.modes.iter().map(|mode| mode.damping.get()).collect(),
-            influences: per_axis(&|axis, mode, force| measured.seen[axis][mode] * force / own(axis)),
+            influences: per_axis(&|axis, mode, force| measured.visibilities[axis][mode] * force / own(axis)),
             energies_j_s2: per_axis(&|_, _, force| 0.5 * force * force),
             accelerations_rad_s2: [0, 1, 2].map(|axis| {
-                study
+                settings
                     .groups
                     .as_ref()
-                    .filter(|_| study.jet_only_axes[axis])
+                    .filter(|_| settings.jet_only_axes[axis])
                     .map_or([own(axis); 2], |groups| [0, 1].map(|sign| groups[axis][sign].acceleration))
             }),
         }

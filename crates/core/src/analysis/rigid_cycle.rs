@@ -59,7 +59,7 @@ struct RigidRelay {
     gamma: f64,
     inertia: f64,
     /// Angle of the left boundary (rad); minus infinity if it does not push back.
-    left: f64,
+    left_boundary: f64,
 }
 
 impl RigidRelay {
@@ -70,7 +70,7 @@ impl RigidRelay {
             eps: law.dead_zone.get(),
             gamma: law.hysteresis.get(),
             inertia,
-            left: match law.sides {
+            left_boundary: match law.sides {
                 RelaySides::Two => -law.dead_zone.get(),
                 RelaySides::One => f64::NEG_INFINITY,
             },
@@ -78,7 +78,7 @@ impl RigidRelay {
     }
 
     fn cycle(&self, sides: RelaySides, k_t: f64) -> Option<RigidCycle> {
-        let Self { strong, weak, eps, gamma, inertia, left } = *self;
+        let Self { strong, weak, eps, gamma, inertia, left_boundary } = *self;
         if weak <= 0.0 {
             return None;
         }
@@ -104,7 +104,7 @@ impl RigidRelay {
             RelaySides::One => ((entry - exit) / weak, 1.0, eps - entry * entry / (2.0 * weak)),
         };
         // A two-sided coast that would reverse, or a one-sided one that reaches the left boundary, is no cycle.
-        if coast <= 0.0 || (sides == RelaySides::One && angle_min <= left) {
+        if coast <= 0.0 || (sides == RelaySides::One && angle_min <= left_boundary) {
             return None;
         }
         let multiplier = 1.0 - 4.0 * beta * z2 * z2 / (z2 * z2 - 1.0);

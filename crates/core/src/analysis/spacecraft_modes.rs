@@ -99,17 +99,17 @@ impl SpacecraftModes {
         };
         let points = craft.spatial.points.iter().map(|point| {
             let shapes = craft.spatial.shapes(&point.name);
-            let about = |axis: usize| {
+            let participation_about = |axis: usize| {
                 let modes = shapes.iter().zip(&craft.flexible.modes);
                 modes
-                    .map(|((_, seen), mode)| seen[axis] * mode.rotation[axis] * inertia[(axis, axis)])
+                    .map(|((_, rotation), mode)| rotation[axis] * mode.rotation[axis] * inertia[(axis, axis)])
                     .collect()
             };
             PointResponse {
                 point: point.name.clone(),
                 appendage: on(&point.name).map(|appendage| appendage.name.clone()),
                 position_m: three(&vector(&point.position)),
-                influences: [0, 1, 2].map(about),
+                influences: [0, 1, 2].map(participation_about),
             }
         });
         Self {
@@ -120,21 +120,28 @@ impl SpacecraftModes {
             damping_coupling: craft.damping_coupling,
             clamped: clamped.collect(),
             points: points.collect(),
-            turned: scenario.study.articulation().map(|drives| turned(drives, scenario)).unwrap_or_default(),
+            turned: scenario
+                .study
+                .articulation()
+                .map(|drives| modes_at_angles(drives, scenario))
+                .unwrap_or_default(),
         }
     }
 }
 
 /// Returns the frequencies of the free modes at equidistant instants of the run.
-fn turned(AppendageDrives { driven, courses }: &AppendageDrives, scenario: &Scenario) -> Vec<ModesAtAngles> {
-    let at = |step: u32| {
+fn modes_at_angles(
+    AppendageDrives { driven, courses }: &AppendageDrives,
+    scenario: &Scenario,
+) -> Vec<ModesAtAngles> {
+    let modes_at = |step: u32| {
         let time_s = scenario.duration.seconds() * f64::from(step) / f64::from(PARTS);
         let angles_rad: Vec<f64> = (0..courses.count()).map(|drive| courses.at(drive, time_s)[0]).collect();
         ModesAtAngles { time_s, frequencies_rad_s: driven.frequencies(&angles_rad), angles_rad }
     };
-    (0..=PARTS).map(at).collect()
+    (0..=PARTS).map(modes_at).collect()
 }
 
-fn three(of: &Vector) -> [f64; 3] {
-    [of.x, of.y, of.z]
+fn three(vector: &Vector) -> [f64; 3] {
+    [vector.x, vector.y, vector.z]
 }

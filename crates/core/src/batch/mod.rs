@@ -52,14 +52,15 @@ pub fn simulate(jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>> {
 pub fn simulate_on(processor: Processor, jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>> {
     let mut all = vec![None; jobs.len()];
     for batch in ALL {
-        let open: Vec<usize> =
-            (0..jobs.len()).filter(|at| all[*at].is_none() && batch.accepts(jobs[*at].scenario)).collect();
+        let open: Vec<usize> = (0..jobs.len())
+            .filter(|index| all[*index].is_none() && batch.accepts(jobs[*index].scenario))
+            .collect();
         for some in open.chunks(batch.lanes(processor)) {
             // A single run gains nothing from a batch.
             if some.len() > 1 {
-                let taken: Vec<BatchJob<'_>> = some.iter().map(|at| jobs[*at]).collect();
-                for (at, metrics) in some.iter().zip(batch.simulate(processor, &taken)) {
-                    all[*at] = metrics;
+                let batch_jobs: Vec<BatchJob<'_>> = some.iter().map(|index| jobs[*index]).collect();
+                for (index, metrics) in some.iter().zip(batch.simulate(processor, &batch_jobs)) {
+                    all[*index] = metrics;
                 }
             }
         }

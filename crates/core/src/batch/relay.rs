@@ -18,7 +18,7 @@ use super::{BatchJob, BatchKernel};
 use crate::metrics::{Metrics, MetricsCollector};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHost, LaneShape, LaneState, MOST, RunSetup, apply_crossing, apply_state,
-    fly_beside, guards, instant, is_supported, lane_setup, lane_shape, law_state,
+    guards, instant, is_supported, lane_setup, lane_shape, law_state, run_lanes,
 };
 use crate::scenario::Scenario;
 
@@ -42,7 +42,7 @@ impl BatchKernel for RelayBatch {
     fn simulate(&self, processor: Processor, jobs: &[BatchJob<'_>]) -> Vec<Option<Metrics>> {
         let Some(first) = jobs.first() else { return Vec::new() };
         let mut runs = LaneRuns::new(lane_shape(first.scenario), jobs);
-        fly_beside(processor, runs.structure, &mut runs);
+        run_lanes(processor, runs.structure, &mut runs);
         runs.found
     }
 }
@@ -55,9 +55,9 @@ struct LaneRuns<'a> {
     lanes: Vec<Option<LaneRun<'a>>>,
     found: Vec<Option<Metrics>>,
     /// True if any of the runs needs its switchings (`wants_switchings`), or the instants at which the angle leaves the band
-    /// (`looks`).
-    listens: bool,
-    looks: bool,
+    /// (`wants_band_exits`).
+    wants_switchings: bool,
+    wants_band_exits: bool,
 }
 
 /// Run in a lane.
@@ -71,38 +71,38 @@ struct LaneRun<'a> {
     segment: UncoupledSegment,
     state: AxisState,
     /// True if the run has to be simulated alone.
-    is_alone: bool,
+    is_single: bool,
 }
 
 impl<'a> LaneRuns<'a> {
     fn new(structure: LaneShape, jobs: &'a [BatchJob<'a>]) -> Self {
         let lanes = (0..MOST).map(|_| None).collect();
         let found = vec![None; jobs.len()];
-        Self { structure, jobs, next: 0, lanes, found, listens: false, looks: false }
+        Self { structure, jobs, next: 0, lanes, found, wants_switchings: false, wants_band_exits: false }
     }
 }
 
 impl LaneRun<'_> {
-    /// Begins a segment at the state of the lane, with the torque of `place`.
-    fn depart(&mut self, place: CyclePhase, from: &LaneState) {
+    /// Begins a segment at the state of the lane, with the torque of `phase`.
+    fn begin(&mut self, phase: CyclePhase, from: &LaneState) {
         apply_state(&mut self.state, from);
-        let constant = self.setup.torque(place, from.side);
+        let constant = self.setup.torque(phase, from.side);
         self.segment.depart(&self.state, &SegmentInput { constant, waveform: None });
     }
 }
 
 impl LaneHost for LaneRuns<'_> {
     fn wants_switchings(&self) -> bool {
-        self.listens
+        self.wants_switchings
     }
 
     fn wants_band_exits(&self) -> bool {
-        self.looks
+        self.wants_band_exits
     }
 
     fn next_run(&mut self, lane: usize) -> Option<&RunSetup> {
         if let Some(ended) = self.lanes[lane].take() {
-            let is_whole = !ended.is_alone && ended.state.is_bounded();
+            let is_whole = !ended.is_single && ended.state.is_bounded();
             self.found[ended.index] = is_whole.then(|| ended.gather.finish(ended.scenario));
         }
         while let Some(job) = self.jobs.get(self.next) {
@@ -114,13 +114,13 @@ impl LaneHost for LaneRuns<'_> {
             let mut gather = MetricsCollector::for_selection(job.scenario, job.selection);
             let row =
                 flexsc_record::Law { state: Phase::Start, torque_nm: law.weak.get(), gain: law.k_t.get() };
-            self.listens |= gather.wants_switchings();
-            self.looks |= gather.piece_demand() != PieceDemand::None;
+            self.wants_switchings |= gather.wants_switchings();
+            self.wants_band_exits |= gather.piece_demand() != PieceDemand::None;
             if gather.record(Instant::START, Sample::Begin(&row)).is_err() {
                 continue;
             }
             let setup = lane_setup(job.scenario, model, law);
-            let begun = self.lanes[lane].insert(LaneRun {
+            let started = self.lanes[lane].insert(LaneRun {
                 index: self.next - 1,
                 scenario: job.scenario,
                 setup,
@@ -128,9 +128,9 @@ impl LaneHost for LaneRuns<'_> {
                 monitor: job.scenario.monitor(Seed { scenario: job.scenario.seed, run: job.number }),
                 segment: UncoupledSegment::new(model),
                 state: model.initial_state(),
-                is_alone: false,
+                is_single: false,
             });
-            return Some(&begun.setup);
+            return Some(&started.setup);
         }
         None
     }
@@ -138,16 +138,16 @@ impl LaneHost for LaneRuns<'_> {
     fn find_crossing(
         &mut self,
         lane: usize,
-        place: CyclePhase,
+        phase: CyclePhase,
         from: &LaneState,
         found: &mut FoundCrossing,
     ) -> bool {
         let Some(lane) = self.lanes[lane].as_mut() else { return false };
-        lane.depart(place, from);
-        let guards = guards(&lane.setup, place, from.side);
-        let horizon = (Instant::START + lane.scenario.duration).since(instant(from.at));
+        lane.begin(phase, from);
+        let guards = guards(&lane.setup, phase, from.side);
+        let horizon = (Instant::START + lane.scenario.duration).since(instant(from.time));
         let trip = first_crossing(&lane.segment, &guards, horizon, &mut lane.state, || Ok::<(), ()>(()));
-        lane.is_alone |= !lane.state.is_bounded();
+        lane.is_single |= !lane.state.is_bounded();
         let Ok(Some(trip)) = trip else { return false };
         apply_crossing(found, trip.after, trip.guard == 0, &lane.state);
         true
@@ -155,7 +155,7 @@ impl LaneHost for LaneRuns<'_> {
 
     fn reject(&mut self, lane: usize) {
         if let Some(lane) = &mut self.lanes[lane] {
-            lane.is_alone = true;
+            lane.is_single = true;
         }
     }
 
@@ -164,52 +164,52 @@ impl LaneHost for LaneRuns<'_> {
         self.reject(lane);
     }
 
-    fn on_switching(&mut self, lane: usize, to: CyclePhase, now: &LaneState) {
+    fn on_switching(&mut self, lane: usize, next: CyclePhase, now: &LaneState) {
         let Some(lane) = &mut self.lanes[lane] else { return };
-        let state = law_state(to, now.side);
+        let state = law_state(next, now.side);
         apply_state(&mut lane.state, now);
-        let at = instant(now.at);
-        let (time_s, time_whole_s, time_fs) = Command::times(at);
+        let time = instant(now.time);
+        let (time_s, time_whole_s, time_fs) = Command::times(time);
         let command = Command {
             time_s,
             time_whole_s,
             time_fs,
             state,
-            cause: if to == CyclePhase::Coast { Trigger::Timeout } else { Trigger::Guard },
-            torque_nm: lane.setup.torque(to, now.side),
+            cause: if next == CyclePhase::Coast { Trigger::Timeout } else { Trigger::Guard },
+            torque_nm: lane.setup.torque(next, now.side),
             angle_rad: lane.state.angle(),
             rate_rad_s: now.rate,
             gain: now.gain,
         };
-        lane.is_alone |= lane.gather.record(at, Sample::Switching(&command, &lane.state)).is_err();
+        lane.is_single |= lane.gather.record(time, Sample::Switching(&command, &lane.state)).is_err();
     }
 
-    fn on_window(&mut self, lane: usize, at: (u64, u64), integral: f64, gain: f64) -> f64 {
+    fn on_window(&mut self, lane: usize, time: (u64, u64), integral: f64, gain: f64) -> f64 {
         let Some(lane) = &mut self.lanes[lane] else { return gain };
         let Some(monitor) = &mut lane.monitor else { return gain };
-        let now = instant(at);
+        let now = instant(time);
         let closed = monitor.close_with(now, integral, gain);
-        lane.is_alone |= lane.gather.record(now, Sample::Row(&closed.mean)).is_err();
+        lane.is_single |= lane.gather.record(now, Sample::Row(&closed.mean)).is_err();
         let Some((row, _)) = &closed.step else { return gain };
-        lane.is_alone |= lane.gather.record(now, Sample::Row(row)).is_err();
+        lane.is_single |= lane.gather.record(now, Sample::Row(row)).is_err();
         row.gain
     }
 
-    fn on_possible_band_exit(&mut self, lane: usize, place: CyclePhase, from: &LaneState, until: (u64, u64)) {
+    fn on_possible_band_exit(&mut self, lane: usize, phase: CyclePhase, from: &LaneState, until: (u64, u64)) {
         let Some(lane) =
             self.lanes[lane].as_mut().filter(|lane| lane.gather.piece_demand() != PieceDemand::None)
         else {
             return;
         };
-        lane.depart(place, from);
+        lane.begin(phase, from);
         let band = lane.setup.band;
-        let span: Span = instant(until).since(instant(from.at));
+        let span: Span = instant(until).since(instant(from.time));
         let guards = [Guard::at_least(band), Guard::at_most(-band)];
         let stays = lane.segment.stays_within(band, span.seconds())
             || matches!(
                 first_crossing(&lane.segment, &guards, span, &mut lane.state.clone(), || Ok::<(), ()>(())),
                 Ok(None)
             );
-        lane.is_alone |= !stays;
+        lane.is_single |= !stays;
     }
 }

@@ -62,11 +62,11 @@ struct BatchedRun {
     simulation: Simulation,
     motion: ExternalMotion,
     /// Start of the current segment, its reduced moment (rad/s²), and its torques.
-    departed: Instant,
+    segment_start: Instant,
     moment: f64,
-    exerted: AppliedTorque,
-    /// True while the simulation continues (`goes_on`), and true if it has ended within the batch (`is_whole`).
-    goes_on: bool,
+    applied: AppliedTorque,
+    /// True while the simulation continues (`continues`), and true if it has ended within the batch (`is_whole`).
+    continues: bool,
     is_whole: bool,
 }
 
@@ -77,24 +77,24 @@ impl BatchedRun {
         Some(Self {
             simulation,
             motion,
-            departed: Instant::START,
+            segment_start: Instant::START,
             moment: 0.0,
-            exerted: AppliedTorque::default(),
-            goes_on: true,
+            applied: AppliedTorque::default(),
+            continues: true,
             is_whole: false,
         })
     }
 
     /// Begins the run and its first segment.
     fn begin(&mut self, gather: &mut MetricsCollector) {
-        self.goes_on = self.simulation.begin_external(gather).is_ok();
+        self.continues = self.simulation.begin_external(gather).is_ok();
         self.begin_segments();
     }
 
     /// Adopts a new segment of the simulation; returns true if there is one.
     fn begin_segments(&mut self) -> bool {
-        let Some((at, moment, exerted)) = self.simulation.take_segment_start() else { return false };
-        (self.departed, self.moment, self.exerted) = (at, moment, exerted);
+        let Some((start, moment, applied)) = self.simulation.take_segment_start() else { return false };
+        (self.segment_start, self.moment, self.applied) = (start, moment, applied);
         true
     }
 }
@@ -123,11 +123,11 @@ impl SimdTask for BatchLoop<'_> {
         let mut courses = LaneManoeuvreMetrics::new(kind);
         let wants_course = gathers.iter().any(|gather| gather.piece_demand() != PieceDemand::None);
         // State of the bodies: angles and rates of all coordinates.
-        let mut here = vec![zero; 2 * count];
+        let mut states = vec![zero; 2 * count];
         let mut rows = vec![[0.0; 16]; 2 * count];
         let mut fresh = true;
         let (mut spans, mut froms, mut counts) = ([0.0; 16], [0.0; 16], [false; 16]);
-        while runs.iter().any(|run| run.goes_on) {
+        while runs.iter().any(|run| run.continues) {
             if fresh {
                 motions.expand(runs, kind);
             }
@@ -135,27 +135,27 @@ impl SimdTask for BatchLoop<'_> {
             let mut due = [false; 16];
             for (lane, run) in runs.iter().enumerate() {
                 (next[lane], due[lane]) = run.simulation.next_event();
-                if run.goes_on {
-                    spans[lane] = next[lane].since(run.departed).seconds();
+                if run.continues {
+                    spans[lane] = next[lane].since(run.segment_start).seconds();
                 }
             }
             let h = kind.load(&spans);
             let sure = motions.radius(h);
             let reached = R::select(sure, zero.splat(1.0), zero);
-            motions.evaluate(&spans, h, &mut here);
+            motions.evaluate(&spans, h, &mut states);
             for index in 0..2 * count {
-                here[index].store(&mut rows[index]);
+                states[index].store(&mut rows[index]);
             }
-            let mut departs = [false; 16];
+            let mut begins_segment = [false; 16];
             let mut before = [(Instant::START, AppliedTorque::default()); 16];
             for (before, run) in before.iter_mut().zip(runs.iter()) {
-                *before = (run.departed, run.exerted);
+                *before = (run.segment_start, run.applied);
             }
             for (lane, run) in runs.iter_mut().enumerate() {
                 if !sure.all() && reached.lane(lane) == 0.0 {
-                    run.goes_on = false;
+                    run.continues = false;
                 }
-                if run.goes_on {
+                if run.continues {
                     let motion = (0..count).map(|index| [rows[index][lane], rows[count + index][lane]]);
                     run.simulation.set_motion(next[lane], motion);
                 }
@@ -165,7 +165,7 @@ impl SimdTask for BatchLoop<'_> {
             }
             for (lane, run) in runs.iter_mut().enumerate() {
                 counts[lane] = false;
-                if !run.goes_on {
+                if !run.continues {
                     continue;
                 }
                 let gather = &mut gathers[lane];
@@ -175,16 +175,16 @@ impl SimdTask for BatchLoop<'_> {
                     run.simulation.finish_external(gather)
                 };
                 run.is_whole = done.is_ok() && !due[lane];
-                run.goes_on = done.is_ok() && due[lane];
-                departs[lane] = run.begin_segments();
-                counts[lane] = (departs[lane] || run.is_whole) && spans[lane] > 0.0;
+                run.continues = done.is_ok() && due[lane];
+                begins_segment[lane] = run.begin_segments();
+                counts[lane] = (begins_segment[lane] || run.is_whole) && spans[lane] > 0.0;
                 froms[lane] = before[lane].0.seconds();
             }
             if wants_course {
-                let load = |of: &dyn Fn(usize) -> f64| -> R {
+                let load = |value_of: &dyn Fn(usize) -> f64| -> R {
                     let mut each = [0.0; 16];
                     for lane in 0..runs.len() {
-                        each[lane] = of(lane);
+                        each[lane] = value_of(lane);
                     }
                     kind.load(&each)
                 };
@@ -203,11 +203,12 @@ impl SimdTask for BatchLoop<'_> {
                 );
             }
             // New segments begin at the current state of the bodies.
-            fresh = departs.iter().any(|departs| *departs);
+            fresh = begins_segment.iter().any(|begins_segment| *begins_segment);
             if fresh {
-                let departs = zero.lt(kind.load(&departs.map(|departs| f64::from(u8::from(departs)))));
+                let begins_segment = zero
+                    .lt(kind.load(&begins_segment.map(|begins_segment| f64::from(u8::from(begins_segment)))));
                 for index in 0..2 * count {
-                    motions.series[index] = R::select(departs, here[index], motions.series[index]);
+                    motions.series[index] = R::select(begins_segment, states[index], motions.series[index]);
                 }
             }
         }

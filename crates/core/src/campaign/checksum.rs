@@ -23,7 +23,7 @@ fn compute(bytes: &[u8], digits: &Range<usize>) -> String {
     format!("{:016x}", fnv1a_of(&[&bytes[..digits.start], &bytes[digits.end..]]))
 }
 
-/// Writes the checksum of a file over the blank one. Returns whether there is one.
+/// Writes the checksum of a file over the blank one; returns true if there is a blank one.
 pub fn fill(bytes: &mut [u8]) -> bool {
     let Some(digits) = digits(bytes) else { return false };
     let sum = compute(bytes, &digits);
@@ -31,7 +31,7 @@ pub fn fill(bytes: &mut [u8]) -> bool {
     true
 }
 
-/// Whether a file is what was written: it has a checksum, and that is its own.
+/// Returns true if a file is intact: it has a checksum, which matches its content.
 pub fn is_right(bytes: &[u8]) -> bool {
     digits(bytes).is_some_and(|digits| bytes[digits.clone()] == *compute(bytes, &digits).as_bytes())
 }

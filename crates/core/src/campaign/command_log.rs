@@ -20,7 +20,7 @@ impl CommandLog {
     /// Appends a command given at `now`; it replaces one of the same instant, which was never executed.
     pub fn push(&mut self, now: Instant, values: [f64; 3]) {
         match self.0.last_mut() {
-            Some((at, last)) if *at == now => *last = values,
+            Some((time, last)) if *time == now => *last = values,
             _ => self.0.push((now, values)),
         }
     }
@@ -40,8 +40,8 @@ impl CommandLog {
         until: Instant,
         record: &mut impl Record,
     ) -> Result<(), SimulationError> {
-        for (at, values) in self.0.iter().take_while(|(at, _)| *at <= until) {
-            simulation.run_up_to(*at, record)?;
+        for (time, values) in self.0.iter().take_while(|(time, _)| *time <= until) {
+            simulation.run_up_to(*time, record)?;
             simulation.set_external_command(values.map(Command::Torque));
         }
         simulation.run_until(until, record)
@@ -60,12 +60,12 @@ impl CommandLog {
     ) -> Result<Metrics, SimulationError> {
         // A partial run has the metrics of a run that ends there.
         let end = Instant::START + run.scenario.duration;
-        let left = (until < end).then(|| {
-            let mut left = run.scenario.clone();
-            left.written.duration = until.since(Instant::START);
-            left
+        let remaining = (until < end).then(|| {
+            let mut rest = run.scenario.clone();
+            rest.written.duration = until.since(Instant::START);
+            rest
         });
-        let judged = left.as_ref().unwrap_or(&run.scenario);
+        let judged = remaining.as_ref().unwrap_or(&run.scenario);
         let mut both = (MetricsCollector::new(judged), record);
         let mut simulation = Simulation::new(&run.scenario, run.number);
         self.run_until(&mut simulation, until, &mut both)?;
@@ -82,17 +82,19 @@ impl CommandLog {
         run: &CampaignRun,
         times: &[f64],
         stop: &mut impl Record,
-        seen: &mut impl Record,
+        record: &mut impl Record,
     ) -> Result<(), SimulationError> {
         let mut simulation = Simulation::new(&run.scenario, run.number);
-        let mut given = self.0.iter().peekable();
+        let mut commands = self.0.iter().peekable();
         for time in times {
-            while let Some((at, values)) = given.next_if(|(at, _)| at.seconds() <= *time) {
-                simulation.run_up_to(*at, stop)?;
+            while let Some((changed_at, values)) =
+                commands.next_if(|(changed_at, _)| changed_at.seconds() <= *time)
+            {
+                simulation.run_up_to(*changed_at, stop)?;
                 simulation.set_external_command(values.map(Command::Torque));
             }
             simulation.run_to(*time, stop)?;
-            simulation.record_now(seen)?;
+            simulation.record_now(record)?;
         }
         Ok(())
     }
@@ -110,8 +112,8 @@ impl CommandLog {
     /// Returns the commands as text: whole seconds, femtoseconds past them, and the values about x, y and z.
     pub fn to_csv(&self) -> String {
         let mut text = format!("{HEADER}\n");
-        for (at, [x, y, z]) in &self.0 {
-            let (whole, part) = at.parts();
+        for (time, [x, y, z]) in &self.0 {
+            let (whole, part) = time.parts();
             // Writing to a string cannot fail.
             let _ = writeln!(text, "{whole},{part},{x:?},{y:?},{z:?}");
         }
@@ -133,13 +135,13 @@ impl CommandLog {
             for value in &mut values {
                 *value = cells.next()?.parse().ok().filter(|value: &f64| value.is_finite())?;
             }
-            let at = Instant::from_parts(seconds, part);
+            let time = Instant::from_parts(seconds, part);
             let is_instant = seconds < 1 << 60 && part < 1_000_000_000_000_000;
-            let is_later = all.0.last().is_none_or(|(last, _)| *last < at);
+            let is_later = all.0.last().is_none_or(|(last, _)| *last < time);
             if !is_instant || !is_later || cells.next().is_some() {
                 return None;
             }
-            all.0.push((at, values));
+            all.0.push((time, values));
         }
         Some(all)
     }
@@ -157,18 +159,18 @@ mod tests {
         Instant::START + Span::from_seconds(seconds)
     }
 
-    fn given() -> CommandLog {
-        let mut given = CommandLog::default();
-        given.push(at(1.0), [9.0, 0.0, 0.0]);
+    fn example_log() -> CommandLog {
+        let mut log = CommandLog::default();
+        log.push(at(1.0), [9.0, 0.0, 0.0]);
         // A command that was never executed is not kept.
-        given.push(at(1.0), [0.5, 0.0, 0.0]);
-        given.push(at(3.0), [-0.1, 0.0, 0.0]);
-        given
+        log.push(at(1.0), [0.5, 0.0, 0.0]);
+        log.push(at(3.0), [-0.1, 0.0, 0.0]);
+        log
     }
 
     #[test]
     fn what_is_written_is_read_back() {
-        assert_eq!(CommandLog::parse(&given().to_csv()), Some(given()));
+        assert_eq!(CommandLog::parse(&example_log().to_csv()), Some(example_log()));
         assert_eq!(CommandLog::parse(&CommandLog::default().to_csv()), Some(CommandLog::default()));
         for wrong in ["", "1,0,0,0", "1,0,0,0,inf", "2,0,0,0,0\n1,0,0,0,0", "0,1000000000000000,0,0,0"] {
             assert_eq!(CommandLog::parse(&format!("{HEADER}\n{wrong}x")), None, "{wrong}");
@@ -184,7 +186,7 @@ mod tests {
     fn a_repeated_run_moves_as_it_was_commanded() {
         let scenario = Scenario::parse("steered.toml", TEXT).expect("a scenario");
         let mut simulation = Simulation::new(&scenario, 0);
-        given().run_until(&mut simulation, at(5.0), &mut ()).expect("a run");
+        example_log().run_until(&mut simulation, at(5.0), &mut ()).expect("a run");
         // The torque is 0.5 N m on 2 kg m² for 2 s, then -0.1 N m for 2 s.
         let rate = simulation.state().map(|state| state.rigid_rate);
         assert!((rate.expect("one angle") - 0.4).abs() < 1e-15);

@@ -1,15 +1,15 @@
-//! Work of a library on bytes from elsewhere: it checks most of what it reads, and where it panics on the rest, that is an error.
+//! Library calls on untrusted bytes: a panic of the library becomes an error.
 
 use std::cell::Cell;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook, take_hook};
 use std::sync::Once;
 
 thread_local! {
-    /// Whether a panic of this thread is awaited.
+    /// True while a panic of this thread is expected.
     static CONTAINED: Cell<bool> = const { Cell::new(false) };
 }
 
-/// Does such work; none where it panics, of which nothing is printed.
+/// Calls a closure; returns `None` if it panics, without printing the panic.
 pub fn contained<T>(work: impl FnOnce() -> T) -> Option<T> {
     static QUIET: Once = Once::new();
     QUIET.call_once(|| {

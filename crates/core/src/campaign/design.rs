@@ -153,9 +153,10 @@ impl DesignBlock {
                 let ends = points.first().into_iter().chain(points.last());
                 ends.flat_map(|point| keys.iter().map(String::as_str).zip(point.iter().copied())).collect()
             }
-            Self::Sample { ranges, .. } => {
-                ranges.iter().flat_map(|of| [(of.key.as_str(), of.from), (of.key.as_str(), of.to)]).collect()
-            }
+            Self::Sample { ranges, .. } => ranges
+                .iter()
+                .flat_map(|range| [(range.key.as_str(), range.from), (range.key.as_str(), range.to)])
+                .collect(),
         }
     }
 
@@ -171,9 +172,9 @@ impl DesignBlock {
             Self::Table { points, .. } => {
                 points.iter().all(|p| p.len() == keys.len() && p.iter().all(|v| v.is_finite()))
             }
-            Self::Sample { ranges, .. } => {
-                ranges.iter().all(|of| of.from < of.to && of.from.is_finite() && of.to.is_finite())
-            }
+            Self::Sample { ranges, .. } => ranges
+                .iter()
+                .all(|range| range.from < range.to && range.from.is_finite() && range.to.is_finite()),
         };
         if !finite {
             return Some(match self {
@@ -213,7 +214,9 @@ impl DesignBlock {
                 writeln!(text, "# {} = a table of {} points, hash {hash:016x}", keys.join(", "), points.len())
             }
             Self::Sample { sampling, count, ranges } => {
-                let range = |of: &KeyRange| format!("{} = {} to {}", of.key, of.from, of.to);
+                let range = |key_range: &KeyRange| {
+                    format!("{} = {} to {}", key_range.key, key_range.from, key_range.to)
+                };
                 let ranges: Vec<String> = ranges.iter().map(range).collect();
                 writeln!(text, "# {}: {count} points, {}", ranges.join(", "), sampling.name())
             }
@@ -302,9 +305,9 @@ impl Design {
         let mut text = String::new();
         self.blocks.iter().for_each(|block| block.describe(&mut text));
         if self.draws != Sampling::Random {
-            let of =
+            let design_of =
                 if self.hypercube > 0 { format!(" of {} points", self.hypercube) } else { String::new() };
-            let _ = writeln!(text, "# drawn by {}{of}", self.draws.name());
+            let _ = writeln!(text, "# drawn by {}{design_of}", self.draws.name());
         }
         if self.replicas > 1 {
             let _ = writeln!(text, "# {} runs of each point", self.replicas);

@@ -85,7 +85,7 @@ impl Directory {
 
     /// Returns true if a directory is that of a campaign.
     pub fn is_campaign_directory(path: &Path) -> bool {
-        fs::symlink_metadata(path.join(MANIFEST)).is_ok_and(|there| there.is_file())
+        fs::symlink_metadata(path.join(MANIFEST)).is_ok_and(|metadata| metadata.is_file())
     }
 
     /// Creates a directory, or continues an existing one of the same campaign with these runs too, or with `force`
@@ -100,17 +100,17 @@ impl Directory {
         fitting(path, &place, &manifest, force)?;
         fs::create_dir_all(&runs).map_err(io_error(&runs))?;
         let lock = lock(path)?;
-        let there = fitting(path, &place, &manifest, force)?;
-        let fits = there.as_ref().is_some_and(|there| there.first_difference(&manifest).is_none());
+        let existing = fitting(path, &place, &manifest, force)?;
+        let fits = existing.as_ref().is_some_and(|previous| previous.first_difference(&manifest).is_none());
         if !fits {
             for file in parts(path)?.iter().map(|runs| path.join(RUNS).join(part::file_name(runs))) {
                 fs::remove_file(&file).map_err(io_error(&file))?;
             }
         }
-        if let Some(there) = there.filter(|_| fits) {
-            manifest.part = there.part;
-            manifest.from = manifest.from.min(there.from);
-            manifest.to = manifest.to.max(there.to);
+        if let Some(existing) = existing.filter(|_| fits) {
+            manifest.part = existing.part;
+            manifest.from = manifest.from.min(existing.from);
+            manifest.to = manifest.to.max(existing.to);
         }
         let work = RowMaker::from_manifest(manifest, &place)?;
         let directory = Self { path: path.to_owned(), work, _lock: Some(lock), whole: Mutex::default() };
@@ -242,11 +242,11 @@ impl Directory {
     pub(super) fn open_part(&self, runs: &Range<u64>) -> Result<ParquetFile, DirectoryError> {
         let path = self.file(runs);
         let file = fs::symlink_metadata(&path).map_err(unreadable(&path))?;
-        let (part, seen) = ((runs.start, runs.end), (file.len(), file.modified().ok()));
+        let (part, file_state) = ((runs.start, runs.end), (file.len(), file.modified().ok()));
         let known = || self.whole.lock().unwrap_or_else(PoisonError::into_inner);
-        let is_whole = known().get(&part) == Some(&seen);
+        let is_whole = known().get(&part) == Some(&file_state);
         let reading = ParquetFile::open(&path, is_whole).map_err(damaged(&path))?;
-        known().insert(part, seen);
+        known().insert(part, file_state);
         if reading.metadata(NOTE).as_deref() != Some(self.work.manifest.hash.as_str()) {
             return Err(invalid_file(&path, format!("is not a part of the campaign of {MANIFEST}")));
         }
@@ -278,7 +278,7 @@ fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
     match fs::symlink_metadata(place) {
         Err(error) if is_none(&error) => return Ok(None),
         Err(error) => return Err(unreadable(place)(error)),
-        Ok(there) if !there.is_file() || there.len() > LARGEST => {
+        Ok(metadata) if !metadata.is_file() || metadata.len() > LARGEST => {
             return Err(invalid_file(place, "is not the manifest of a campaign"));
         }
         Ok(_) => {}
@@ -291,14 +291,14 @@ fn read(place: &Path) -> Result<Option<Manifest>, DirectoryError> {
 fn fitting(
     path: &Path,
     place: &Path,
-    here: &Manifest,
+    current: &Manifest,
     force: bool,
 ) -> Result<Option<Manifest>, DirectoryError> {
-    let there = read(place)?;
+    let text = read(place)?;
     if !force {
-        statistics_fit(path, there.is_some())?;
+        statistics_fit(path, text.is_some())?;
     }
-    let Some(there) = there else {
+    let Some(existing) = text else {
         return match parts(path)?.first().filter(|_| !force) {
             Some(runs) => Err(invalid_file(
                 &path.join(RUNS).join(part::file_name(runs)),
@@ -308,11 +308,11 @@ fn fitting(
         };
     };
     if force {
-        return Ok(Some(there));
+        return Ok(Some(existing));
     }
-    match there.first_difference(here) {
+    match existing.first_difference(current) {
         Some(difference) => Err(DirectoryError::Other { path: place.to_owned(), difference }),
-        None => Ok(Some(there)),
+        None => Ok(Some(existing)),
     }
 }
 
@@ -340,7 +340,9 @@ fn statistics_fit(path: &Path, is_campaign: bool) -> Result<(), DirectoryError> 
 fn within(path: &Path) -> Result<PathBuf, DirectoryError> {
     let runs = path.join(RUNS);
     match fs::symlink_metadata(&runs) {
-        Ok(there) if !there.is_dir() => Err(invalid_file(&runs, "is in the way: it is not a directory")),
+        Ok(metadata) if !metadata.is_dir() => {
+            Err(invalid_file(&runs, "is in the way: it is not a directory"))
+        }
         _ => Ok(runs),
     }
 }

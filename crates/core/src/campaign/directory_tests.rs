@@ -89,8 +89,8 @@ fn parts_in_any_order_are_the_same_rows() {
 
 #[test]
 fn the_columns_are_known_before_any_run() {
-    let here = Here::new("columns");
-    let directory = Directory::create(&here.0, manifest(0..3), false).expect("made");
+    let directory = Here::new("columns");
+    let directory = Directory::create(&directory.0, manifest(0..3), false).expect("made");
     // The first run whose gain is accepted.
     let run = (0..9).find_map(|number| directory.work().campaign.run(number).ok()).expect("a run");
     let reported = Campaign::simulate(&run, ()).expect("metrics");
@@ -104,29 +104,29 @@ fn the_columns_are_known_before_any_run() {
 
 #[test]
 fn directories_are_merged_if_they_agree() {
-    let here = ["m0", "m1", "m2", "m3"].map(Here::new);
-    let make = |here: &Here, runs: Range<u64>| {
-        let directory = Directory::create(&here.0, manifest(runs), false).expect("made");
+    let directories = ["m0", "m1", "m2", "m3"].map(Here::new);
+    let make = |directory: &Here, runs: Range<u64>| {
+        let directory = Directory::create(&directory.0, manifest(runs), false).expect("made");
         for runs in directory.missing().expect("read") {
             directory.write_part(runs, 1, ()).expect("written");
         }
         directory
     };
     let [whole, low, high, shifted] =
-        [(0, 0..30), (1, 0..16), (2, 8..30), (3, 4..12)].map(|(i, r)| make(&here[i], r));
+        [(0, 0..30), (1, 0..16), (2, 8..30), (3, 4..12)].map(|(i, r)| make(&directories[i], r));
     let into = Here::new("merged");
     let merged = Directory::create(&into.0, manifest(0..30), false).expect("made");
     // Parts that begin elsewhere, runs that several have, and parts that another one has whole.
     let all = [shifted, low, high];
     let merge = Merge::new(&all).expect("one campaign");
-    assert_eq!((merge.taken(), merge.missing()), (vec![8, 8, 14], vec![]));
+    assert_eq!((merge.used_counts(), merge.missing()), (vec![8, 8, 14], vec![]));
     merge.write(&merged, false).expect("written");
     assert!(merged.missing().expect("read").is_empty());
     assert_eq!(columns(&merged), columns(&whole));
     let rows = merge.rows().expect("read");
     assert_eq!(rows.columns[0].numbers(), (0..30).map(f64::from).collect::<Vec<_>>());
     // A run that is another one elsewhere.
-    let tampered = Directory::open(&here[1].0).expect("there");
+    let tampered = Directory::open(&directories[1].0).expect("there");
     let mut other = tampered.work().make_rows(0..8, 1, ()).expect("made");
     if let Some(ColumnCells::Numbers(rates)) = other.columns.get_mut(2) {
         rates[5] *= 2.0;
@@ -140,8 +140,8 @@ fn directories_are_merged_if_they_agree() {
 /// Single bits at 500 places of a part.
 #[test]
 fn no_flipped_bit_changes_a_number() {
-    let here = Here::new("bits");
-    let directory = Directory::create(&here.0, manifest(0..8), false).expect("made");
+    let workspace = Here::new("bits");
+    let directory = Directory::create(&workspace.0, manifest(0..8), false).expect("made");
     let path = directory.write_part(0..8, 1, ()).expect("written");
     let (before, bytes) = (columns(&directory), fs::read(&path).expect("there"));
     let mut rng = flexsc_numerics::random::Seed { scenario: 5, run: 0 }.stream("bits");
@@ -150,31 +150,31 @@ fn no_flipped_bit_changes_a_number() {
         let mut flipped = bytes.clone();
         flipped[place] ^= 1 << bit;
         fs::write(&path, flipped).expect("written");
-        let other = Directory::open(&here.0).expect("there");
+        let other = Directory::open(&workspace.0).expect("there");
         let refused = other.column("duty").expect_err("damaged").to_string();
         assert!(refused.contains("is damaged") && refused.contains("delete this file"), "{refused}");
     }
     fs::write(&path, &bytes).expect("written");
-    assert_eq!(columns(&Directory::open(&here.0).expect("there")), before);
+    assert_eq!(columns(&Directory::open(&workspace.0).expect("there")), before);
 }
 
 #[test]
 fn what_does_not_fit_is_refused() {
-    let here = Here::new("fits");
-    let directory = Directory::create(&here.0, manifest(0..16), false).expect("made");
-    let busy = Directory::create(&here.0, manifest(0..16), false).expect_err("locked");
+    let workspace = Here::new("fits");
+    let directory = Directory::create(&workspace.0, manifest(0..16), false).expect("made");
+    let busy = Directory::create(&workspace.0, manifest(0..16), false).expect_err("locked");
     assert!(matches!(busy, DirectoryError::Busy { .. }), "{busy}");
     directory.write_part(0..8, 1, ()).expect("written");
     drop(directory);
     // More runs of the same campaign.
-    let more = Directory::create(&here.0, manifest(8..40), false).expect("continued");
+    let more = Directory::create(&workspace.0, manifest(8..40), false).expect("continued");
     assert_eq!(more.work().manifest.runs(), 0..40);
     assert_eq!(more.missing().expect("read").len(), 4);
     drop(more);
     let grid = DesignBlock::List { key: "duration".to_owned(), values: vec![100.0, 200.0] };
     let other = campaign(Design::from_blocks([grid]));
     let other = Manifest::new(&other, 0..2, &Selection::ALL).expect("a manifest");
-    let refused = Directory::create(&here.0, other.clone(), false).expect_err("another").to_string();
+    let refused = Directory::create(&workspace.0, other.clone(), false).expect_err("another").to_string();
     assert!(
         refused.contains("another campaign (nothing before, duration = [100.0, 200.0] now)"),
         "{refused}"
@@ -183,11 +183,12 @@ fn what_does_not_fit_is_refused() {
     seeded.scenario = seeded.scenario.replace("seed = 7", "seed = 8");
     assert!(Manifest::parse(&seeded.to_toml()).expect_err("changed").contains("its hash does not match"));
     // A part of another campaign under the name of a part.
-    let part = fs::read(here.0.join("runs/part-0000000000-0000000008.parquet")).expect("there");
-    drop(Directory::create(&here.0, other, true).expect("replaced"));
-    assert!(!here.0.join("runs/part-0000000000-0000000008.parquet").exists());
-    fs::write(here.0.join("runs/part-0000000000-0000000002.parquet"), part).expect("written");
-    let refused = Directory::open(&here.0).expect("there").column("run").expect_err("foreign").to_string();
+    let part = fs::read(workspace.0.join("runs/part-0000000000-0000000008.parquet")).expect("there");
+    drop(Directory::create(&workspace.0, other, true).expect("replaced"));
+    assert!(!workspace.0.join("runs/part-0000000000-0000000008.parquet").exists());
+    fs::write(workspace.0.join("runs/part-0000000000-0000000002.parquet"), part).expect("written");
+    let refused =
+        Directory::open(&workspace.0).expect("there").column("run").expect_err("foreign").to_string();
     assert!(refused.contains("is not a part of the campaign"), "{refused}");
 }
 
@@ -202,9 +203,9 @@ fn a_run_is_the_same_whichever_are_made_beside_it() {
         let block = DesignBlock::Sample { sampling, count: 20, ranges };
         let list = DesignBlock::List { key: "law.relay.strong".to_owned(), values: vec![3e-5, 4e-5] };
         let design = Design { draws: sampling, hypercube: 20, replicas: 3, blocks: vec![block, list] };
-        let study = campaign(design);
-        assert_eq!(study.design().runs(), Some(120));
-        let drawn: Vec<_> = (0..120).map(|number| study.draw(number)).collect();
+        let plan = campaign(design);
+        assert_eq!(plan.design().runs(), Some(120));
+        let drawn: Vec<_> = (0..120).map(|number| plan.draw(number)).collect();
         for (number, values) in drawn.iter().enumerate() {
             // Replicas are one point, and the list changes from point to point.
             assert_eq!(*values, drawn[number / 3 * 3], "{sampling:?}");
@@ -212,6 +213,6 @@ fn a_run_is_the_same_whichever_are_made_beside_it() {
             assert_eq!(values[2], toml::Value::Float(strong));
             assert_eq!(values[..2], drawn[number / 6 * 6][..2]);
         }
-        assert_eq!(drawn[57], study.draw(57));
+        assert_eq!(drawn[57], plan.draw(57));
     }
 }

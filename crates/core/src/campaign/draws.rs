@@ -42,8 +42,8 @@ impl Campaign {
                 distribution.draw(&nominal, &mut Seed { scenario: seed, run: point }.stream(&name))
             }
             draws => {
-                let of = Dimension { seed, name: &name, place };
-                distribution.quantile(&nominal, draws.number(of, point, self.design.hypercube))
+                let dimension = Dimension { seed, name: &name, place };
+                distribution.quantile(&nominal, draws.number(dimension, point, self.design.hypercube))
             }
         }
     }

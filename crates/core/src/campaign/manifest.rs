@@ -143,34 +143,35 @@ impl Manifest {
     /// Returns the missing runs part by part, given the names of the existing files. Files that are no parts are
     /// ignored.
     pub fn missing<'a>(&self, files: impl IntoIterator<Item = &'a str>) -> Vec<Range<u64>> {
-        let mut there: Vec<_> = files.into_iter().filter_map(part::runs_of).collect();
-        there.sort_by_key(|runs| (runs.start, runs.end));
-        let gaps = part::remove_present(self.runs(), &there);
+        let mut present: Vec<_> = files.into_iter().filter_map(part::runs_of).collect();
+        present.sort_by_key(|runs| (runs.start, runs.end));
+        let gaps = part::remove_present(self.runs(), &present);
         gaps.into_iter().flat_map(|gap| part::split(gap, self.part)).collect()
     }
 
     /// Returns the first difference from the manifest of another campaign; `None` if they differ in their runs alone.
-    pub fn first_difference(&self, here: &Self) -> Option<String> {
-        if self.hash == here.hash {
+    pub fn first_difference(&self, other: &Self) -> Option<String> {
+        if self.hash == other.hash {
             return None;
         }
-        if self.flexsc != here.flexsc {
-            return Some(format!("flexsc {} before, {} now", self.flexsc, here.flexsc));
+        if self.flexsc != other.flexsc {
+            return Some(format!("flexsc {} before, {} now", self.flexsc, other.flexsc));
         }
-        let scenario = difference(&self.scenario, &here.scenario);
+        let scenario = difference(&self.scenario, &other.scenario);
         if !scenario.is_empty() {
             return Some(scenario.trim_start_matches(" (").trim_end_matches(')').to_owned());
         }
-        if self.metrics != here.metrics {
-            let names = |of: &Self| of.metrics.as_ref().map_or("all".to_owned(), |names| names.join(","));
-            return Some(format!("metrics {} before, {} now", names(self), names(here)));
+        if self.metrics != other.metrics {
+            let names =
+                |manifest: &Self| manifest.metrics.as_ref().map_or("all".to_owned(), |names| names.join(","));
+            return Some(format!("metrics {} before, {} now", names(self), names(other)));
         }
-        let reported = |of: &Self, other: &Self| {
-            let (of, other) = (of.design.describe(), other.design.describe());
-            let line = of.lines().find(|line| !other.lines().any(|there| there == *line));
+        let reported = |manifest: &Self, other: &Self| {
+            let (design, other) = (manifest.design.describe(), other.design.describe());
+            let line = design.lines().find(|line| !other.lines().any(|present| present == *line));
             line.map_or("nothing".to_owned(), |line| line.trim_start_matches("# ").to_owned())
         };
-        Some(format!("{} before, {} now", reported(self, here), reported(here, self)))
+        Some(format!("{} before, {} now", reported(self, other), reported(other, self)))
     }
 
     /// Returns the metrics of the rows.

@@ -38,12 +38,12 @@ impl<'a> Merge<'a> {
         let Some(first) = all.first() else { return Err(invalid_file("".as_ref(), "no directory to merge")) };
         let mut manifest = first.work().manifest.clone();
         for other in all {
-            let there = &other.work().manifest;
-            if let Some(difference) = there.first_difference(&manifest) {
+            let other_manifest = &other.work().manifest;
+            if let Some(difference) = other_manifest.first_difference(&manifest) {
                 return Err(DirectoryError::Other { path: other.path().join(MANIFEST), difference });
             }
-            manifest.from = manifest.from.min(there.from);
-            manifest.to = manifest.to.max(there.to);
+            manifest.from = manifest.from.min(other_manifest.from);
+            manifest.to = manifest.to.max(other_manifest.to);
         }
         let mut merge = Self { all, manifest, pieces: Vec::new() };
         for (from, directory) in all.iter().enumerate() {
@@ -63,12 +63,12 @@ impl<'a> Merge<'a> {
         }
         let first = self.pieces.partition_point(|piece| piece.runs.end <= part.start);
         let last = self.pieces.partition_point(|piece| piece.runs.start < part.end);
-        let there: Vec<Range<u64>> =
+        let present: Vec<Range<u64>> =
             self.pieces[first..last].iter().map(|piece| piece.runs.clone()).collect();
         for piece in &self.pieces[first..last] {
             self.compare(piece, from, &part)?;
         }
-        let gaps = part::remove_present(part.clone(), &there);
+        let gaps = part::remove_present(part.clone(), &present);
         let new = gaps.into_iter().map(|runs| Piece { from, part: part.clone(), runs });
         self.pieces.extend(new);
         self.pieces.sort_by_key(|piece| piece.runs.start);
@@ -79,10 +79,10 @@ impl<'a> Merge<'a> {
     fn compare(&self, piece: &Piece, from: usize, part: &Range<u64>) -> Result<(), DirectoryError> {
         let (one, other) = (&self.all[piece.from], &self.all[from]);
         let runs = piece.runs.start.max(part.start)..piece.runs.end.min(part.end);
-        let (of_one, of_other) = (one.open_part(&piece.part)?, other.open_part(part)?);
+        let (one_file, other_file) = (one.open_part(&piece.part)?, other.open_part(part)?);
         for field in self.work().fields().iter().filter(|field| field.name != SECONDS) {
-            let left = cells(one, &of_one, &piece.part, (&field.name, &runs))?;
-            if left != cells(other, &of_other, part, (&field.name, &runs))? {
+            let cells_of_one = cells(one, &one_file, &piece.part, (&field.name, &runs))?;
+            if cells_of_one != cells(other, &other_file, part, (&field.name, &runs))? {
                 let why = format!("has other values of `{}` than {}", field.name, one.path().display());
                 return Err(invalid_file(&other.file(part), why));
             }
@@ -101,18 +101,18 @@ impl<'a> Merge<'a> {
     }
 
     /// How many runs are taken from each directory.
-    pub fn taken(&self) -> Vec<u64> {
-        let mut taken = vec![0; self.all.len()];
+    pub fn used_counts(&self) -> Vec<u64> {
+        let mut used = vec![0; self.all.len()];
         for piece in &self.pieces {
-            taken[piece.from] += piece.runs.end - piece.runs.start;
+            used[piece.from] += piece.runs.end - piece.runs.start;
         }
-        taken
+        used
     }
 
     /// The runs that no directory has.
     pub fn missing(&self) -> Vec<Range<u64>> {
-        let there: Vec<Range<u64>> = self.pieces.iter().map(|piece| piece.runs.clone()).collect();
-        part::remove_present(self.manifest.runs(), &there)
+        let present: Vec<Range<u64>> = self.pieces.iter().map(|piece| piece.runs.clone()).collect();
+        part::remove_present(self.manifest.runs(), &present)
     }
 
     /// The rows of all runs, in order.

@@ -129,28 +129,28 @@ fn write_column<W: io::Write + Send>(
     column: &ColumnCells,
 ) -> Result<(), ParquetError> {
     let Some(mut writer) = group.next_column()? else { return Ok(()) };
-    let there = |there: bool| i16::from(there);
+    let is_present = |is_present: bool| i16::from(is_present);
     match column {
         ColumnCells::Integers(cells) => {
             let values: Vec<i64> = cells.iter().flatten().copied().collect();
-            let levels: Vec<i16> = cells.iter().map(|cell| there(cell.is_some())).collect();
+            let levels: Vec<i16> = cells.iter().map(|cell| is_present(cell.is_some())).collect();
             writer.typed::<Int64Type>().write_batch(&values, Some(&levels), None)?;
         }
         ColumnCells::Numbers(cells) => {
             let values: Vec<f64> = cells.iter().copied().filter(|cell| !cell.is_nan()).collect();
-            let levels: Vec<i16> = cells.iter().map(|cell| there(!cell.is_nan())).collect();
+            let levels: Vec<i16> = cells.iter().map(|cell| is_present(!cell.is_nan())).collect();
             writer.typed::<DoubleType>().write_batch(&values, Some(&levels), None)?;
         }
         ColumnCells::Words(cells) => {
             let values: Vec<ByteArray> = cells.iter().flatten().map(|word| word.as_str().into()).collect();
-            let levels: Vec<i16> = cells.iter().map(|cell| there(cell.is_some())).collect();
+            let levels: Vec<i16> = cells.iter().map(|cell| is_present(cell.is_some())).collect();
             writer.typed::<ByteArrayType>().write_batch(&values, Some(&levels), None)?;
         }
         ColumnCells::Lists(cells) => {
             let (mut values, mut levels, mut again) = (Vec::new(), Vec::new(), Vec::new());
             for cell in cells {
                 let Some(list) = cell.as_ref().filter(|list| !list.is_empty()) else {
-                    levels.push(there(cell.is_some()));
+                    levels.push(is_present(cell.is_some()));
                     again.push(0);
                     continue;
                 };
@@ -178,10 +178,10 @@ fn parsed<T>(read: impl FnOnce() -> Result<T, ParquetError>) -> io::Result<T> {
 pub struct ParquetFile(SerializedFileReader<File>);
 
 impl ParquetFile {
-    /// Opens a file, and reads what it holds about itself; unless it is known to be whole, its checksum is compared.
+    /// Opens a file, and reads its metadata; the checksum is compared unless the file is known to be intact.
     ///
     /// # Errors
-    /// [`io::ErrorKind::InvalidData`] of a damaged file; what the file system reports.
+    /// [`io::ErrorKind::InvalidData`] of a damaged file; errors of the file system.
     pub fn open(path: &Path, is_whole: bool) -> io::Result<Self> {
         let mut file = atomic_file::open(path)?;
         let length = file.metadata()?.len();
@@ -238,7 +238,8 @@ impl ParquetFile {
                 _ => ColumnKind::Words,
             }
         };
-        let field = |of: &TypePtr| ColumnHeading { name: of.name().to_owned(), unit: "", kind: kind(of) };
+        let field =
+            |column: &TypePtr| ColumnHeading { name: column.name().to_owned(), unit: "", kind: kind(column) };
         schema.get_fields().iter().map(field).collect()
     }
 
@@ -294,13 +295,14 @@ fn read_all<D: DataType>(
     rows: usize,
 ) -> Result<NullableValues<D::T>, ParquetError> {
     let (mut values, mut levels, mut again) = (Vec::new(), Vec::new(), Vec::new());
-    let mut left = rows;
-    while left > 0 {
-        let (read, _, _) = reader.read_records(left, Some(&mut levels), Some(&mut again), &mut values)?;
+    let mut remaining = rows;
+    while remaining > 0 {
+        let (read, _, _) =
+            reader.read_records(remaining, Some(&mut levels), Some(&mut again), &mut values)?;
         if read == 0 {
             return Err(ParquetError::EOF("has fewer rows than it declares".to_owned()));
         }
-        left -= read;
+        remaining -= read;
     }
     Ok((values, levels, again))
 }
@@ -369,10 +371,10 @@ mod tests {
         let rows = RunRows { fields: Arc::new(fields), columns };
         let whole = encode(&rows, &[]).expect("encoded");
         let place = std::env::temp_dir().join(format!("flexsc-forged-{}.parquet", std::process::id()));
-        for at in 4..whole.len() - 4 {
-            for other in [whole[at] ^ 1, whole[at] ^ 0x40, 0x00, 0x7f, 0xff] {
+        for position in 4..whole.len() - 4 {
+            for other in [whole[position] ^ 1, whole[position] ^ 0x40, 0x00, 0x7f, 0xff] {
                 let mut bytes = whole.clone();
-                bytes[at] = other;
+                bytes[position] = other;
                 checksum::fill(&mut bytes);
                 std::fs::write(&place, bytes).expect("written");
                 // What it says, it says without a panic.

@@ -15,9 +15,9 @@ const FEW_PARTS: u64 = 16;
 /// multiples, whichever other runs are wanted.
 /// beside them.
 pub fn part_size(runs: u64, run_s: f64) -> u64 {
-    let wanted = (WORK_S / run_s.max(1e-6)).clamp(1.0, 65_536.0) as u64;
+    let preferred = (WORK_S / run_s.max(1e-6)).clamp(1.0, 65_536.0) as u64;
     // Rounded down to a power of two; full lanes matter more than equal durations.
-    let by_time = 1 << wanted.max(1).ilog2();
+    let by_time = 1 << preferred.max(1).ilog2();
     let by_time = if (LANES / 4..LANES).contains(&by_time) { LANES } else { by_time };
     let for_all = (runs / FEW_PARTS).next_power_of_two().max(LANES);
     by_time.min(for_all).max(runs.div_ceil(MOST_PARTS).next_power_of_two())
@@ -49,18 +49,18 @@ pub fn split(runs: Range<u64>, size: u64) -> impl Iterator<Item = Range<u64>> {
 }
 
 /// Returns the runs without those that are present, which must be sorted.
-pub fn remove_present(runs: Range<u64>, there: &[Range<u64>]) -> Vec<Range<u64>> {
-    let mut left = Vec::new();
+pub fn remove_present(runs: Range<u64>, present: &[Range<u64>]) -> Vec<Range<u64>> {
+    let mut missing = Vec::new();
     let mut next = runs.start;
-    for part in there {
+    for part in present {
         if part.start > next {
-            left.push(next..part.start.min(runs.end));
+            missing.push(next..part.start.min(runs.end));
         }
         next = next.max(part.end);
     }
-    left.push(next..runs.end);
-    left.retain(|range| !range.is_empty());
-    left
+    missing.push(next..runs.end);
+    missing.retain(|range| !range.is_empty());
+    missing
 }
 
 #[cfg(test)]

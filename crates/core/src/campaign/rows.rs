@@ -81,9 +81,9 @@ pub struct RunRows {
 impl Campaign {
     /// Returns the headings of the campaign's table, which are fixed before any run.
     pub fn fields(&self, selection: &Selection) -> Arc<[ColumnHeading]> {
-        let about = |name: &str, kind, unit| ColumnHeading { name: name.to_owned(), unit, kind };
+        let heading = |name: &str, kind, unit| ColumnHeading { name: name.to_owned(), unit, kind };
         let key = |name: &str| {
-            about(name, if self.is_integer(name) { ColumnKind::Integers } else { ColumnKind::Numbers }, "")
+            heading(name, if self.is_integer(name) { ColumnKind::Integers } else { ColumnKind::Numbers }, "")
         };
         let reported = selection.select(MetricsCollector::new(self.scenario()).finish(self.scenario()));
         let metric = |(meaning, value): &(&'static crate::metrics::MetricDescription, MetricValue)| {
@@ -93,15 +93,15 @@ impl Campaign {
                 MetricValue::Word(_) => ColumnKind::Words,
                 MetricValue::Numbers(_) | MetricValue::Quantities(_) => ColumnKind::Lists,
             };
-            about(meaning.name, kind, meaning.unit)
+            heading(meaning.name, kind, meaning.unit)
         };
-        let mut fields = vec![about(RUN, ColumnKind::Integers, "")];
+        let mut fields = vec![heading(RUN, ColumnKind::Integers, "")];
         if self.keys().all(|key| key != SEED) {
-            fields.push(about(SEED, ColumnKind::Integers, ""));
+            fields.push(heading(SEED, ColumnKind::Integers, ""));
         }
         fields.extend(self.keys().map(key));
         fields.extend(reported.0.iter().map(metric));
-        fields.extend([about(SECONDS, ColumnKind::Numbers, "s"), about(ERROR, ColumnKind::Words, "")]);
+        fields.extend([heading(SECONDS, ColumnKind::Numbers, "s"), heading(ERROR, ColumnKind::Words, "")]);
         fields.into()
     }
 }

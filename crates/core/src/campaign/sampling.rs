@@ -43,24 +43,26 @@ impl Sampling {
         [("random", Self::Random), ("latin-hypercube", Self::LatinHypercube), ("sobol", Self::Sobol)];
 
     /// Returns the number in (0, 1) of a point out of `count`.
-    pub fn number(self, of: Dimension<'_>, point: u64, count: u64) -> f64 {
-        let random = || Seed { scenario: of.seed, run: point }.stream(of.name).uniform();
+    pub fn number(self, dimension: Dimension<'_>, point: u64, count: u64) -> f64 {
+        let random = || Seed { scenario: dimension.seed, run: point }.stream(dimension.name).uniform();
         let number = match self {
             Self::Random => random(),
             Self::LatinHypercube => {
-                let cell = permuted(point.min(count.max(1) - 1), count.max(1), key(of));
+                let cell = permuted(point.min(count.max(1) - 1), count.max(1), key(dimension));
                 (cell as f64 + random()) / count.max(1) as f64
             }
             // Half a step is added: this centres the lattice of 2^-53.
-            Self::Sobol => (scrambled(sobol(point, of.place), key(of)) >> 11) as f64 * (f64::EPSILON / 2.0),
+            Self::Sobol => {
+                (scrambled(sobol(point, dimension.place), key(dimension)) >> 11) as f64 * (f64::EPSILON / 2.0)
+            }
         };
         number.clamp(f64::EPSILON / 4.0, BELOW_ONE)
     }
 }
 
 /// Returns the key that makes the numbers of a dimension differ from those of others.
-fn key(of: Dimension<'_>) -> u64 {
-    mixed(of.seed ^ fnv1a(of.name))
+fn key(dimension: Dimension<'_>) -> u64 {
+    mixed(dimension.seed ^ fnv1a(dimension.name))
 }
 
 /// Mixes all bits of a number (the finaliser of SplitMix64).
@@ -77,12 +79,12 @@ fn permuted(index: u64, count: u64, key: u64) -> u64 {
     let mask = (1_u64 << bits) - 1;
     let mut index = index;
     loop {
-        let (mut left, mut right) = (index >> bits, index & mask);
+        let (mut high_half, mut low_half) = (index >> bits, index & mask);
         for round in 0..6_u64 {
-            let turned = mixed(key ^ mixed(right.wrapping_add(round << 56))) & mask;
-            (left, right) = (right, left ^ turned);
+            let mixed_half = mixed(key ^ mixed(low_half.wrapping_add(round << 56))) & mask;
+            (high_half, low_half) = (low_half, high_half ^ mixed_half);
         }
-        index = left << bits | right;
+        index = high_half << bits | low_half;
         if index < count {
             return index;
         }
@@ -129,9 +131,9 @@ mod tests {
     fn a_latin_hypercube_has_a_point_in_each_interval() {
         let count = 100;
         for place in 0..3 {
-            let of = Dimension { place, name: ["a", "b", "c"][place], ..KEY };
+            let dimension = Dimension { place, name: ["a", "b", "c"][place], ..KEY };
             let mut cells: Vec<u64> = (0..count)
-                .map(|point| (Sampling::LatinHypercube.number(of, point, count) * 100.0) as u64)
+                .map(|point| (Sampling::LatinHypercube.number(dimension, point, count) * 100.0) as u64)
                 .collect();
             cells.sort_unstable();
             assert_eq!(cells, (0..count).collect::<Vec<_>>());
@@ -163,8 +165,8 @@ mod tests {
     #[test]
     fn scrambled_points_are_a_net() {
         let number = |point, place| {
-            let of = Dimension { place, name: ["a", "b"][place], ..KEY };
-            Sampling::Sobol.number(of, point, 0)
+            let dimension = Dimension { place, name: ["a", "b"][place], ..KEY };
+            Sampling::Sobol.number(dimension, point, 0)
         };
         for wide in [1_u64, 2, 4, 8, 16, 32, 64] {
             let high = 64 / wide;
@@ -185,10 +187,11 @@ mod tests {
         // The integral of (x + y)^2 over the unit square is 7/6.
         let error = |sampling: Sampling| {
             let count = 1024;
-            let of = |place| Dimension { place, name: ["a", "b"][place], ..KEY };
+            let dimension_at = |place| Dimension { place, name: ["a", "b"][place], ..KEY };
             let sum: f64 = (0..count)
                 .map(|point| {
-                    let x = sampling.number(of(0), point, count) + sampling.number(of(1), point, count);
+                    let x = sampling.number(dimension_at(0), point, count)
+                        + sampling.number(dimension_at(1), point, count);
                     x * x
                 })
                 .sum();

@@ -25,8 +25,8 @@ impl Directory {
     /// Returns the summary of the existing rows.
     pub fn summary(&self) -> Result<CampaignSummary, DirectoryError> {
         let (mut runs, mut failed) = (0, None);
-        let about = (self.column(RUN)?, self.column(ERROR)?);
-        if let (Some(ColumnCells::Integers(numbers)), Some(ColumnCells::Words(errors))) = about {
+        let columns = (self.column(RUN)?, self.column(ERROR)?);
+        if let (Some(ColumnCells::Integers(numbers)), Some(ColumnCells::Words(errors))) = columns {
             runs = numbers.len();
             for (number, error) in numbers.into_iter().zip(errors) {
                 let (Some(number), Some(error)) = (number, error) else { continue };

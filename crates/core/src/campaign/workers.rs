@@ -14,16 +14,16 @@ use crate::metrics::{Metrics, Selection};
 /// Largest number of runs by which a run may be ahead of the one reported next: the runs between wait in memory.
 const AHEAD: u64 = 4096;
 /// Longest time without a report.
-const LOOK: Duration = Duration::from_millis(20);
+const REPORT_INTERVAL: Duration = Duration::from_millis(20);
 /// Number of runs that a thread begins at once if they are simulated in a batch.
-const BESIDE: u64 = 64;
+const BATCH_SIZE: u64 = 64;
 /// Time for which a stopped campaign waits for the current runs, which are stopped too.
-const PATIENCE: Duration = Duration::from_millis(500);
+const STOP_TIMEOUT: Duration = Duration::from_millis(500);
 
 /// State shared by the threads: the run that begins next, and the run that is reported next.
 struct WorkerPool {
     state: Mutex<PoolState>,
-    told: Condvar,
+    progressed: Condvar,
 }
 
 struct PoolState {
@@ -42,7 +42,7 @@ impl WorkerPool {
     fn merge_from(&self, most: u64) -> Range<u64> {
         let mut state = self.state();
         while state.next < state.end && state.next - state.due >= AHEAD {
-            state = self.told.wait(state).unwrap_or_else(PoisonError::into_inner);
+            state = self.progressed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
         let first = state.next.min(state.end);
         state.next = state.end.min(first + most);
@@ -51,13 +51,13 @@ impl WorkerPool {
 
     fn report(&self, due: u64) {
         self.state().due = due;
-        self.told.notify_all();
+        self.progressed.notify_all();
     }
 
     /// Prevents any further run from beginning.
     fn close(&self) {
         self.state().end = 0;
-        self.told.notify_all();
+        self.progressed.notify_all();
     }
 }
 
@@ -76,7 +76,7 @@ impl Campaign {
     /// Simulates runs on `threads` threads, or with 0 on one for each core, and reports each, in the order of their
     /// numbers.
     ///
-    /// `work` simulates one run, on any thread. `tell` may stop the campaign with an error; it is called regularly
+    /// `work` simulates one run, on any thread. `report` may stop the campaign with an error; it is called regularly
     /// without an outcome while no run ends. A run that does not stop then is abandoned.
     ///
     /// # Panics
@@ -86,9 +86,9 @@ impl Campaign {
         runs: Range<u64>,
         threads: usize,
         work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
-        tell: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
+        report: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
     ) -> Result<(), E> {
-        self.go(runs, threads, (1, Selection::ALL), work, tell)
+        self.run_pool(runs, threads, (1, Selection::ALL), work, report)
     }
 
     /// Simulates runs like [`Campaign::for_each_run`], for the selected metrics, if `work` only simulates: runs of one
@@ -99,22 +99,22 @@ impl Campaign {
         threads: usize,
         selection: &Selection,
         work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
-        tell: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
+        report: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
     ) -> Result<(), E> {
-        let most = if batch::accepts(self.scenario()) { BESIDE } else { 1 };
-        self.go(runs, threads, (most, selection.clone()), work, tell)
+        let most = if batch::accepts(self.scenario()) { BATCH_SIZE } else { 1 };
+        self.run_pool(runs, threads, (most, selection.clone()), work, report)
     }
 
-    fn go<E>(
+    fn run_pool<E>(
         self: &Arc<Self>,
         runs: Range<u64>,
         threads: usize,
         (most, selection): (u64, Selection),
         work: impl Fn(&CampaignRun) -> Result<Metrics, RunError> + Send + Sync + 'static,
-        mut tell: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
+        mut report: impl FnMut(Option<RunOutcome>) -> Result<(), E>,
     ) -> Result<(), E> {
         let state = PoolState { next: runs.start, due: runs.start, end: runs.end };
-        let pool = Arc::new(WorkerPool { state: Mutex::new(state), told: Condvar::new() });
+        let pool = Arc::new(WorkerPool { state: Mutex::new(state), progressed: Condvar::new() });
         let (outcomes, ended) = channel();
         let work = Arc::new(work);
         let count = runs.end.saturating_sub(runs.start);
@@ -123,17 +123,17 @@ impl Campaign {
         // Batches are small enough to leave work for every thread.
         let most = most.min(count / threads as u64).max(1);
         for _ in 0..threads.min(usize::try_from(count).unwrap_or(usize::MAX)) {
-            let (study, worker, outcomes) = (self.clone(), Worker(pool.clone()), outcomes.clone());
+            let (campaign, worker, outcomes) = (self.clone(), Worker(pool.clone()), outcomes.clone());
             let (work, selection) = (work.clone(), selection.clone());
-            thread::spawn(move || study.work_through(&worker, (most, &selection), &outcomes, &*work));
+            thread::spawn(move || campaign.work_through(&worker, (most, &selection), &outcomes, &*work));
         }
         drop(outcomes);
-        let described = report_in_order(&pool, runs, &ended, &mut tell);
+        let described = report_in_order(&pool, runs, &ended, &mut report);
         if described.is_err() {
             pool.close();
             let began = Instant::now();
-            while let Some(left) = PATIENCE.checked_sub(began.elapsed()) {
-                if ended.recv_timeout(left).is_err() {
+            while let Some(remaining) = STOP_TIMEOUT.checked_sub(began.elapsed()) {
+                if ended.recv_timeout(remaining).is_err() {
                     break;
                 }
             }
@@ -154,25 +154,25 @@ impl Campaign {
                 return;
             }
             let mut notify = |some| outcomes.send(some).is_ok();
-            let goes_on = if numbers.end - numbers.start > 1 {
-                self.beside(numbers, selection, work, &mut notify)
+            let continues = if numbers.end - numbers.start > 1 {
+                self.run_batch(numbers, selection, work, &mut notify)
             } else {
                 notify(vec![self.run_outcome(numbers.start, selection, work)])
             };
-            if !goes_on {
+            if !continues {
                 return;
             }
         }
     }
 
     /// Simulates runs in a batch where possible, and reports them as soon as they end; `work` simulates the others.
-    /// Returns true if `tell` accepts more.
-    fn beside(
+    /// Returns true if `report` accepts more.
+    fn run_batch(
         &self,
         numbers: Range<u64>,
         selection: &Selection,
         work: &impl Fn(&CampaignRun) -> Result<Metrics, RunError>,
-        tell: &mut impl FnMut(Vec<RunOutcome>) -> bool,
+        report: &mut impl FnMut(Vec<RunOutcome>) -> bool,
     ) -> bool {
         let began = Instant::now();
         let runs: Vec<_> = numbers.map(|number| (number, self.run_for(number, selection))).collect();
@@ -182,12 +182,12 @@ impl Campaign {
         let mut found = batch::simulate(&jobs).into_iter();
         // The time of the batch is divided equally among its runs.
         let seconds = began.elapsed().as_secs_f64() / runs.len().max(1) as f64;
-        let (mut known, mut alone) = (Vec::with_capacity(runs.len()), Vec::new());
+        let (mut known, mut single) = (Vec::with_capacity(runs.len()), Vec::new());
         for (number, run) in runs {
             let (drawn, metrics) = match run {
                 Ok(run) => {
                     let Some(metrics) = found.next().flatten() else {
-                        alone.push(run);
+                        single.push(run);
                         continue;
                     };
                     (run.drawn, Ok(selection.select(metrics)))
@@ -196,12 +196,12 @@ impl Campaign {
             };
             known.push(RunOutcome { number, drawn, metrics, seconds });
         }
-        tell(known)
-            && alone.into_iter().all(|run| {
+        report(known)
+            && single.into_iter().all(|run| {
                 let began = Instant::now();
                 let metrics = work(&run);
                 let seconds = began.elapsed().as_secs_f64();
-                tell(vec![RunOutcome { number: run.number, metrics, drawn: run.drawn, seconds }])
+                report(vec![RunOutcome { number: run.number, metrics, drawn: run.drawn, seconds }])
             })
     }
 }
@@ -210,22 +210,22 @@ fn report_in_order<E>(
     pool: &WorkerPool,
     runs: Range<u64>,
     ended: &Receiver<Vec<RunOutcome>>,
-    tell: &mut impl FnMut(Option<RunOutcome>) -> Result<(), E>,
+    report: &mut impl FnMut(Option<RunOutcome>) -> Result<(), E>,
 ) -> Result<(), E> {
     let mut early = BTreeMap::new();
     let mut due = runs.start;
     while due < runs.end {
-        match ended.recv_timeout(LOOK) {
+        match ended.recv_timeout(REPORT_INTERVAL) {
             Ok(some) => early.extend(some.into_iter().map(|outcome| (outcome.number, outcome))),
             Err(RecvTimeoutError::Timeout) => {}
             Err(RecvTimeoutError::Disconnected) => panic!("run {due} panicked"),
         }
         if !early.contains_key(&due) {
-            tell(None)?;
+            report(None)?;
             continue;
         }
         while let Some(outcome) = early.remove(&due) {
-            tell(Some(outcome))?;
+            report(Some(outcome))?;
             due += 1;
         }
         pool.report(due);

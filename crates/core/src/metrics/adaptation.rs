@@ -60,7 +60,7 @@ impl AdaptationMetrics {
     }
 
     /// Records an objective's window or a step of the adaptation.
-    pub fn see(&mut self, now: Instant, sample: Sample<'_>) {
+    pub fn observe(&mut self, now: Instant, sample: Sample<'_>) {
         if let Some(row) = sample.get::<flexsc_record::Objective>() {
             self.windows.push((row.from_s, row.value));
         }
@@ -77,12 +77,16 @@ impl AdaptationMetrics {
         let Self { windows, frozen_at, gain: [first, last], .. } = self;
         let mut metrics: Vec<NamedMetric> = Vec::new();
         if let Some([all, initial, late, end]) = self.meanings {
-            let begun_late: Vec<f64> =
-                windows.iter().filter(|(from, _)| *from >= 0.5 * self.duration).map(|(_, of)| *of).collect();
-            let value =
-                |window: Option<&(f64, f64)>| MetricValue::Number(window.map_or(f64::NAN, |(_, of)| *of));
+            let begun_late: Vec<f64> = windows
+                .iter()
+                .filter(|(from, _)| *from >= 0.5 * self.duration)
+                .map(|(_, value)| *value)
+                .collect();
+            let value = |window: Option<&(f64, f64)>| {
+                MetricValue::Number(window.map_or(f64::NAN, |(_, value)| *value))
+            };
             metrics.extend([
-                (all, MetricValue::Numbers(windows.iter().map(|(_, of)| *of).collect())),
+                (all, MetricValue::Numbers(windows.iter().map(|(_, value)| *value).collect())),
                 (initial, value(windows.first())),
                 (late, MetricValue::Number(begun_late.iter().sum::<f64>() / begun_late.len() as f64)),
                 (end, value(windows.last())),

@@ -104,11 +104,17 @@ impl AttitudeMetrics {
             (&BIAS_ERROR, bias),
         ];
         if let Some(last) = self.identified {
-            let list =
-                |of: &dyn Fn(&ElasticEstimate) -> f64| MetricValue::Numbers(last.iter().map(of).collect());
-            reported.push((&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)));
-            reported
-                .push((&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)));
+            let list = |value_of: &dyn Fn(&ElasticEstimate) -> f64| {
+                MetricValue::Numbers(last.iter().map(value_of).collect())
+            };
+            reported.push((
+                &FREQUENCY_ESTIMATES,
+                list(&|estimate| estimate.frequency_rad_s / std::f64::consts::TAU),
+            ));
+            reported.push((
+                &FREQUENCY_ERRORS,
+                list(&|estimate| estimate.frequency_rad_s / estimate.true_frequency_rad_s - 1.0),
+            ));
         }
         reported
     }

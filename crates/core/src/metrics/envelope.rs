@@ -40,7 +40,7 @@ impl EnvelopeMetrics {
     }
 
     /// Records a window.
-    pub fn see(&mut self, window: &WindowMean) {
+    pub fn observe(&mut self, window: &WindowMean) {
         self.means.push(window.mean_rad);
         self.from.push(window.from_s);
     }

@@ -74,14 +74,14 @@ impl GoalMetrics {
             return;
         }
         let time = |s: f64| from + length * s;
-        let mut edges = vec![0.0];
+        let mut times = vec![0.0];
         if low <= band && high >= -band {
-            distance.roots(band, &mut edges);
-            distance.roots(-band, &mut edges);
-            edges.sort_by(f64::total_cmp);
+            distance.roots(band, &mut times);
+            distance.roots(-band, &mut times);
+            times.sort_by(f64::total_cmp);
         }
-        edges.push(1.0);
-        for ends in edges.windows(2) {
+        times.push(1.0);
+        for ends in times.windows(2) {
             if distance.at(0.5 * (ends[0] + ends[1])).abs() > band {
                 self.add_outside(time(ends[0]), time(ends[1]));
             }
@@ -98,8 +98,8 @@ impl GoalMetrics {
     pub fn finish(self, end: f64) -> [NamedMetric; 3] {
         // Comparisons with NaN are false.
         let (word, band, outside) = if self.band > 0.0 && self.from < end {
-            let met = end - self.last >= LAST * (end - self.from);
-            (if met { MET } else { MISSED }, self.band, self.outside.0)
+            let is_met = end - self.last >= LAST * (end - self.from);
+            (if is_met { MET } else { MISSED }, self.band, self.outside.0)
         } else {
             (NONE, f64::NAN, f64::NAN)
         };

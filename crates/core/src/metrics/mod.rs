@@ -220,12 +220,13 @@ pub fn meaning(name: &str, scenario: Option<&Scenario>) -> Option<&'static Metri
     const ACCELERATIONS: &[MetricDescription] =
         &[PEAK_ACCELERATION, PEAK_FEEDBACK_ACCELERATION, REDUCED_IMPULSE, CYCLE_REDUCED_IMPULSE];
     const UNIT_INERTIA: &[MetricDescription] = &[RESIDUAL_ENERGY_UNIT_INERTIA];
-    let of = |some: &'static [MetricDescription]| some.iter().find(|meaning| meaning.name == name);
+    let find_in = |some: &'static [MetricDescription]| some.iter().find(|meaning| meaning.name == name);
     let model = scenario.map(|scenario| &scenario.model);
-    let accelerations = model.filter(|model| model.commands_acceleration()).and_then(|_| of(ACCELERATIONS));
-    let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| of(UNIT_INERTIA));
-    let objectives = scenario.and_then(adaptation::descriptions).and_then(|some| of(some));
-    accelerations.or(unit_inertia).or(objectives).or_else(|| of(ALL))
+    let accelerations =
+        model.filter(|model| model.commands_acceleration()).and_then(|_| find_in(ACCELERATIONS));
+    let unit_inertia = model.filter(|model| model.has_unit_inertia()).and_then(|_| find_in(UNIT_INERTIA));
+    let objectives = scenario.and_then(adaptation::descriptions).and_then(|some| find_in(some));
+    accelerations.or(unit_inertia).or(objectives).or_else(|| find_in(ALL))
 }
 
 /// Collector of the metrics of a run.
@@ -327,10 +328,10 @@ impl Record for MetricsCollector {
         }
     }
 
-    fn piece(&mut self, now: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
+    fn piece(&mut self, now: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
         match &mut self.kind {
-            RunKind::Switchings(switchings) => switchings.piece(now, stretch),
-            RunKind::Rotation(rotation) => rotation.piece(now, stretch),
+            RunKind::Switchings(switchings) => switchings.piece(now, piece),
+            RunKind::Rotation(rotation) => rotation.piece(now, piece),
             RunKind::Spatial(_) => Ok(()),
         }
     }
@@ -348,10 +349,10 @@ impl Record for MetricsCollector {
             sample.get().into_iter().for_each(|estimates| known.observe_modes(estimates));
         }
         if let Some(windows) = &mut self.windows {
-            sample.get().into_iter().for_each(|window| windows.see(window));
+            sample.get().into_iter().for_each(|window| windows.observe(window));
         }
         if let Some(adapted) = &mut self.adapted {
-            adapted.see(now, sample);
+            adapted.observe(now, sample);
         }
         match &mut self.kind {
             RunKind::Switchings(switchings) => switchings.record(now, sample),
@@ -362,7 +363,7 @@ impl Record for MetricsCollector {
                 }
                 sample.get().into_iter().for_each(|event| spatial.observe_bearing_event(event));
                 sample.get().into_iter().for_each(|row| spatial.observe_acceleration(row));
-                sample.get().into_iter().for_each(|tracking| self.tracked.see(tracking));
+                sample.get().into_iter().for_each(|tracking| self.tracked.observe(tracking));
                 Ok(())
             }
         }

@@ -111,18 +111,18 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
         drift.kinks().into_iter().filter(move |kink| *kink < end).chain(even)
     });
     let all: Vec<Vec<f64>> = drifting.chain([end]).map(ratios).collect();
-    let of = |(held, ratios): (DiscretePlant<'_>, &Vec<f64>)| {
+    let arrival_of = |(held, ratios): (DiscretePlant<'_>, &Vec<f64>)| {
         let gain = law.extra_gain(sampled.frequency() * ratios[sampled.dominant]);
         held.closed(gain).spectral_radius()
     };
-    DiscretePlant::for_ratios(&sampled, &all).into_iter().zip(&all).map(of).fold(f64::NAN, f64::max)
+    DiscretePlant::for_ratios(&sampled, &all).into_iter().zip(&all).map(arrival_of).fold(f64::NAN, f64::max)
 }
 
 impl ManoeuvreMetrics {
     /// Creates an empty collector for runs of a scenario.
     pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
         let end = scenario.duration.seconds();
-        let seen = |unit: &String| CoordinateRange {
+        let range_of = |unit: &String| CoordinateRange {
             unit: unit.clone(),
             peak: 0.0,
             after: Range::EMPTY,
@@ -143,7 +143,7 @@ impl ManoeuvreMetrics {
             radius: scenario.law.pd().is_some().then(|| {
                 if selection.wants_any(&[SPECTRAL_RADIUS]) { spectral_radius(scenario) } else { f64::NAN }
             }),
-            outputs: body.outputs.iter().map(|output| seen(&output.unit)).collect(),
+            outputs: body.outputs.iter().map(|output| range_of(&output.unit)).collect(),
             wants_course: selection.wants_any(OF_COURSE) || selection.wants_any(goal::ONE_AXIS_METRICS),
         }
     }
@@ -153,29 +153,29 @@ impl ManoeuvreMetrics {
         let mut metrics = Vec::new();
         let (acceleration, unit_inertia) = self.reduced;
         if self.planned {
-            let of = |value: fn(&Arrival) -> f64| {
+            let arrival_value = |value: fn(&Arrival) -> f64| {
                 MetricValue::Number(self.arrival.as_ref().map_or(f64::NAN, value))
             };
             let residuals = self.arrival.iter().flat_map(|arrival| &arrival.outputs);
-            let residual = |(output, seen): (&flexsc_record::Residual, &CoordinateRange)| NumberWithUnit {
+            let residual = |(output, range): (&flexsc_record::Residual, &CoordinateRange)| NumberWithUnit {
                 value: output.amplitude,
-                unit: seen.unit.clone(),
+                unit: range.unit.clone(),
             };
             let energy = if unit_inertia { &RESIDUAL_ENERGY_UNIT_INERTIA } else { &RESIDUAL_ENERGY };
             metrics.extend([
-                (&ARRIVAL_ANGLE, of(|arrival| arrival.angle_error_rad)),
-                (&ARRIVAL_RATE, of(|arrival| arrival.rate_error_rad_s)),
-                (&ANGLE_RESIDUAL, of(|arrival| arrival.angle_residual_rad)),
+                (&ARRIVAL_ANGLE, arrival_value(|arrival| arrival.angle_error_rad)),
+                (&ARRIVAL_RATE, arrival_value(|arrival| arrival.rate_error_rad_s)),
+                (&ANGLE_RESIDUAL, arrival_value(|arrival| arrival.angle_residual_rad)),
                 (
                     &OUTPUT_RESIDUALS,
                     MetricValue::Quantities(residuals.zip(&self.outputs).map(residual).collect()),
                 ),
-                (energy, of(|arrival| arrival.elastic_energy_j)),
+                (energy, arrival_value(|arrival| arrival.elastic_energy_j)),
             ]);
         }
         let outputs = |value: fn(&CoordinateRange) -> f64| {
             let quantity =
-                |seen: &CoordinateRange| NumberWithUnit { value: value(seen), unit: seen.unit.clone() };
+                |range: &CoordinateRange| NumberWithUnit { value: value(range), unit: range.unit.clone() };
             MetricValue::Quantities(self.outputs.iter().map(quantity).collect())
         };
         let (peak, feedback) = if acceleration {
@@ -201,28 +201,28 @@ impl ManoeuvreMetrics {
         metrics
     }
 
-    fn see(&mut self, stretch: &MotionPiece) {
-        self.torque.0 = stretch.applied.magnitude(self.torque.0);
-        self.torque.1 = self.torque.1.max(stretch.feedback.abs());
-        for (seen, output) in self.outputs.iter_mut().zip(&stretch.outputs) {
-            seen.peak = output.magnitude(seen.peak);
+    fn observe(&mut self, piece: &MotionPiece) {
+        self.torque.0 = piece.applied.magnitude(self.torque.0);
+        self.torque.1 = self.torque.1.max(piece.feedback.abs());
+        for (range, output) in self.outputs.iter_mut().zip(&piece.outputs) {
+            range.peak = output.magnitude(range.peak);
         }
         // If the goal or the late part starts within the stretch, only the rest of the stretch counts.
-        let part = |from: f64| (from - stretch.from) / stretch.length;
+        let part = |from: f64| (from - piece.from) / piece.length;
         let (goal, late) = (part(self.goal.from.seconds()), part(self.late));
         if goal < 1.0 {
-            self.observe_after_end(stretch, goal.max(0.0));
+            self.observe_after_end(piece, goal.max(0.0));
         }
         if goal < 1.0 && late < 1.0 {
-            self.observe_late(stretch, goal.max(late).max(0.0));
+            self.observe_late(piece, goal.max(late).max(0.0));
         }
     }
 
     /// Returns the distance from the goal (rad) over the last part of a stretch, from the fraction `from` of it on.
-    fn error(&self, stretch: &MotionPiece, from: f64) -> Polynomial {
-        let since = stretch.from - self.goal.from.seconds();
-        let (start, slope) = (self.goal.angle + self.goal.rate * since, self.goal.rate * stretch.length);
-        let error = stretch.angle.minus_line(start, slope);
+    fn error(&self, piece: &MotionPiece, from: f64) -> Polynomial {
+        let since = piece.from - self.goal.from.seconds();
+        let (start, slope) = (self.goal.angle + self.goal.rate * since, self.goal.rate * piece.length);
+        let error = piece.angle.minus_line(start, slope);
         if from > 0.0 { error.restrict(from, 1.0) } else { error }
     }
 
@@ -233,9 +233,9 @@ impl ManoeuvreMetrics {
             .get_or_insert_with(|| GoalMetrics::new(goal.from.seconds(), promise.band(distance.abs())))
     }
 
-    fn observe_after_end(&mut self, stretch: &MotionPiece, from: f64) {
-        let error = self.error(stretch, from);
-        let (begins, length) = (stretch.from + from * stretch.length, (1.0 - from) * stretch.length);
+    fn observe_after_end(&mut self, piece: &MotionPiece, from: f64) {
+        let error = self.error(piece, from);
+        let (begins, length) = (piece.from + from * piece.length, (1.0 - from) * piece.length);
         let goal = self.goal.from.seconds();
         self.judge(error.at(0.0)).observe(begins, length, &error);
         // The larger one; NaN is ignored.
@@ -243,22 +243,22 @@ impl ManoeuvreMetrics {
         let integral = integral(&error, begins - goal, length) - self.itae.1;
         let total = self.itae.0 + integral;
         self.itae = (total, (total - self.itae.0) - integral);
-        for (seen, output) in self.outputs.iter_mut().zip(&stretch.outputs) {
+        for (range, output) in self.outputs.iter_mut().zip(&piece.outputs) {
             if from > 0.0 {
-                seen.after.widen(&output.restrict(from, 1.0));
+                range.after.widen(&output.restrict(from, 1.0));
             } else {
-                seen.after.widen(output);
+                range.after.widen(output);
             }
         }
     }
 
-    fn observe_late(&mut self, stretch: &MotionPiece, from: f64) {
-        self.error.1 = self.error(stretch, from).magnitude(self.error.1.max(0.0));
-        for (seen, output) in self.outputs.iter_mut().zip(&stretch.outputs) {
+    fn observe_late(&mut self, piece: &MotionPiece, from: f64) {
+        self.error.1 = self.error(piece, from).magnitude(self.error.1.max(0.0));
+        for (range, output) in self.outputs.iter_mut().zip(&piece.outputs) {
             if from > 0.0 {
-                seen.late.widen(&output.restrict(from, 1.0));
+                range.late.widen(&output.restrict(from, 1.0));
             } else {
-                seen.late.widen(output);
+                range.late.widen(output);
             }
         }
     }
@@ -274,10 +274,10 @@ fn integral(value: &Polynomial, begins: f64, length: f64) -> f64 {
     if !(low < 0.0 && high > 0.0) {
         return piece(&[0.0, 1.0]);
     }
-    let mut edges = vec![0.0];
-    value.roots(0.0, &mut edges);
-    edges.push(1.0);
-    edges.windows(2).map(piece).sum()
+    let mut times = vec![0.0];
+    value.roots(0.0, &mut times);
+    times.push(1.0);
+    times.windows(2).map(piece).sum()
 }
 
 impl Record for ManoeuvreMetrics {
@@ -292,8 +292,8 @@ impl Record for ManoeuvreMetrics {
         Ok(())
     }
 
-    fn piece(&mut self, _: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
-        self.see(stretch);
+    fn piece(&mut self, _: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
+        self.observe(piece);
         Ok(())
     }
 }

@@ -17,7 +17,7 @@ impl Selection {
     /// # Errors
     /// A name that is not a metric's.
     pub fn from_names<S: AsRef<str>>(names: impl IntoIterator<Item = S>) -> Result<Self, String> {
-        let mut wanted = Vec::new();
+        let mut selected = Vec::new();
         for name in names {
             let name = name.as_ref().trim();
             let Some(meaning) = ALL.iter().find(|meaning| meaning.name == name) else {
@@ -29,11 +29,11 @@ impl Selection {
                 );
                 return Err(format!("there is no metric `{name}`\n\nhint: {hint}"));
             };
-            if !wanted.contains(&meaning.name) {
-                wanted.push(meaning.name);
+            if !selected.contains(&meaning.name) {
+                selected.push(meaning.name);
             }
         }
-        Ok(Self(Some(wanted)))
+        Ok(Self(Some(selected)))
     }
 
     /// Returns true if a metric is wanted.

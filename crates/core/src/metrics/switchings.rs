@@ -197,11 +197,11 @@ impl Record for RelayMetrics {
         }
     }
 
-    fn piece(&mut self, _: Instant, stretch: &MotionPiece) -> Result<(), RecordError> {
-        let since = stretch.from - self.goal.from.seconds();
+    fn piece(&mut self, _: Instant, piece: &MotionPiece) -> Result<(), RecordError> {
+        let since = piece.from - self.goal.from.seconds();
         let start = self.goal.angle + self.goal.rate * since;
-        let distance = stretch.angle.minus_line(start, self.goal.rate * stretch.length);
-        self.verdict.observe(stretch.from, stretch.length, &distance);
+        let distance = piece.angle.minus_line(start, self.goal.rate * piece.length);
+        self.verdict.observe(piece.from, piece.length, &distance);
         Ok(())
     }
 
@@ -221,7 +221,7 @@ impl Record for RelayMetrics {
             }
             Sample::Row(_) | Sample::Report(_) => {
                 if let Some(window) = sample.get() {
-                    self.windows.see(window);
+                    self.windows.observe(window);
                 }
                 if let Some(step) = sample.get::<Adaptation>() {
                     self.gain.1 = step.gain;

@@ -31,11 +31,11 @@ pub struct ThreeAxisMetrics {
     jets: bool,
     /// True if wheels have friction; numbers of zero crossings and stictions, last sliding direction of each wheel, and
     /// heat (J).
-    rubs: bool,
-    slips: (u64, u64),
+    has_friction: bool,
+    friction_events: (u64, u64),
     /// For each accelerometer its index among the sensors, the sum of the squares of its samples, and their number.
-    shaken: Vec<(u64, f64, u64)>,
-    ways: Vec<Option<Sliding>>,
+    accelerations: Vec<(u64, f64, u64)>,
+    sliding_directions: Vec<Option<Sliding>>,
     heat: f64,
     fuel: f64,
     /// Propellant used (kg) by axis or by thruster, and true if by thruster.
@@ -63,7 +63,7 @@ pub struct ThreeAxisMetrics {
     slews: (f64, f64, u64),
     has_slews: bool,
     /// Pointing requirement, sum of the squared errors that count (rad²), and their number.
-    asked: Option<Pointing>,
+    pointing_requirement: Option<Pointing>,
     pointing: (f64, u64),
     verdict: GoalMetrics,
     /// Half width of the band about the target on each axis (rad), and the start of the current time outside (s).
@@ -88,10 +88,18 @@ impl ThreeAxisMetrics {
             end: end.seconds(),
             late: scenario.duration.seconds() - LATE,
             jets: scenario.study.fires(),
-            rubs: scenario.study.bearings.iter().any(|bearing| bearing.viscous + bearing.breakaway > 0.0),
-            slips: (0, 0),
-            shaken: scenario.sensor.accelerometers().map(|(index, _)| (index as u64, 0.0, 0)).collect(),
-            ways: vec![None; scenario.study.bearings.len()],
+            has_friction: scenario
+                .study
+                .bearings
+                .iter()
+                .any(|bearing| bearing.viscous + bearing.breakaway > 0.0),
+            friction_events: (0, 0),
+            accelerations: scenario
+                .sensor
+                .accelerometers()
+                .map(|(index, _)| (index as u64, 0.0, 0))
+                .collect(),
+            sliding_directions: vec![None; scenario.study.bearings.len()],
             heat: 0.0,
             fuel: 0.0,
             fuels: (Vec::new(), scenario.actuator.jets().is_some_and(|(jets, _)| jets.is_by_thruster())),
@@ -108,7 +116,7 @@ impl ThreeAxisMetrics {
             rate: f64::NAN,
             stored: [0.0, f64::NAN],
             steered: (!scenario.study.gimbals.is_empty()).then(SteeringRecord::unknown),
-            asked: scenario.reference.pointing.clone(),
+            pointing_requirement: scenario.reference.pointing.clone(),
             pointing: (0.0, 0),
         }
     }
@@ -117,7 +125,7 @@ impl ThreeAxisMetrics {
     pub fn observe_cycle(&mut self, now: Instant, report: &Report) {
         let Some(cycle) = report.get::<ThreeAxisCycle>() else { return };
         let (t, energy) = (now.seconds(), cycle.elastic_energy_j);
-        let norm = |of: [f64; 3]| of.iter().map(|value| value * value).sum::<f64>();
+        let norm = |vector: [f64; 3]| vector.iter().map(|value| value * value).sum::<f64>();
         if let Some(jets) = report.get::<JetCycle>() {
             self.observe_jets(jets);
         }
@@ -147,7 +155,7 @@ impl ThreeAxisMetrics {
         let stored = f64::sqrt(norm(stored.0));
         self.stored = [self.stored[0].max(stored), stored];
         self.steered = report.get().copied();
-        if self.asked.as_ref().is_some_and(|asked| asked.includes(t)) {
+        if self.pointing_requirement.as_ref().is_some_and(|pointing| pointing.includes(t)) {
             self.pointing.0 += norm(cycle.error_rad);
             self.pointing.1 += 1;
         }
@@ -168,7 +176,9 @@ impl ThreeAxisMetrics {
 
     /// Records a sample of an accelerometer.
     pub fn observe_acceleration(&mut self, row: &Accelerations) {
-        if let Some((_, square, count)) = self.shaken.iter_mut().find(|(sensor, ..)| *sensor == row.sensor) {
+        if let Some((_, square, count)) =
+            self.accelerations.iter_mut().find(|(sensor, ..)| *sensor == row.sensor)
+        {
             *square += row.axes.iter().map(|axis| axis.measured_m_s2 * axis.measured_m_s2).sum::<f64>();
             *count += 1;
         }
@@ -176,13 +186,13 @@ impl ThreeAxisMetrics {
 
     /// Records a wheel's transition between sliding and sticking.
     pub fn observe_bearing_event(&mut self, event: &WheelEvent) {
-        let Some(way) = self.ways.get_mut(event.wheel as usize) else { return };
+        let Some(direction) = self.sliding_directions.get_mut(event.wheel as usize) else { return };
         if event.after == Sliding::Stuck {
-            self.slips.1 += 1;
-            *way = Some(event.before);
+            self.friction_events.1 += 1;
+            *direction = Some(event.before);
         } else {
-            let came = if event.before == Sliding::Stuck { way.take() } else { Some(event.before) };
-            self.slips.0 += u64::from(came.is_some_and(|came| came != event.after));
+            let previous = if event.before == Sliding::Stuck { direction.take() } else { Some(event.before) };
+            self.friction_events.0 += u64::from(previous.is_some_and(|previous| previous != event.after));
         }
     }
 
@@ -198,8 +208,8 @@ impl ThreeAxisMetrics {
             (&FIRING_CYCLES, MetricValue::Count(self.firings.1)),
         ];
         let friction = [
-            (&ZERO_CROSSINGS, MetricValue::Count(self.slips.0)),
-            (&WHEEL_STOPS, MetricValue::Count(self.slips.1)),
+            (&ZERO_CROSSINGS, MetricValue::Count(self.friction_events.0)),
+            (&WHEEL_STOPS, MetricValue::Count(self.friction_events.1)),
             (&FRICTION_HEAT, MetricValue::Number(self.heat)),
         ];
         let metrics = [
@@ -215,7 +225,7 @@ impl ThreeAxisMetrics {
         let fuels = if self.fuels.1 { &FUEL_THRUSTERS } else { &FUEL_AXES };
         let fuels = (fuels, MetricValue::Numbers(self.fuels.0));
         let jets = jets.into_iter().chain([fuels]).filter(|_| self.jets);
-        let friction = friction.into_iter().filter(|_| self.rubs);
+        let friction = friction.into_iter().filter(|_| self.has_friction);
         let rate = [(&RATE_END, MetricValue::Number(self.rate))].into_iter().filter(|_| self.magnetic);
         let stored = [
             (&MOMENTUM_PEAK, MetricValue::Number(self.stored[0])),
@@ -238,19 +248,20 @@ impl ThreeAxisMetrics {
             ]
         });
         let mut pointing: Vec<NamedMetric> = Vec::new();
-        if let Some(asked) = &self.asked {
+        if let Some(requirement) = &self.pointing_requirement {
             // Without cycles the mean is 0/0: NaN.
             let rms = f64::sqrt(self.pointing.0 / self.pointing.1 as f64);
             pointing.push((&POINTING_RMS, MetricValue::Number(rms)));
-            let met = asked.rms.map(|most| goal::meets(rms, most.get()));
-            pointing.extend(met.map(|word| (&REQUIREMENT, MetricValue::Word(word))));
+            let is_met = requirement.rms.map(|most| goal::meets(rms, most.get()));
+            pointing.extend(is_met.map(|word| (&REQUIREMENT, MetricValue::Word(word))));
         }
-        let shaken = self.shaken.iter().map(|(_, square, count)| f64::sqrt(square / *count as f64));
-        let shaken =
-            (!self.shaken.is_empty()).then(|| (&ACCELERATION, MetricValue::Numbers(shaken.collect())));
+        let displacement =
+            self.accelerations.iter().map(|(_, square, count)| f64::sqrt(square / *count as f64));
+        let mean_displacement = (!self.accelerations.is_empty())
+            .then(|| (&ACCELERATION, MetricValue::Numbers(displacement.collect())));
         jets.chain(friction)
             .chain(metrics)
-            .chain(shaken)
+            .chain(mean_displacement)
             .chain(rate)
             .chain(stored)
             .chain(limits(&self.saturation))

@@ -27,11 +27,12 @@ impl ObserverMetrics {
     }
 
     /// Records a cycle.
-    pub fn see(&mut self, tracking: &Tracking) {
-        let error = |of: &flexsc_record::ChannelState| of.elastic_rad_s - of.true_elastic_rad_s;
-        self.square.0 += tracking.channels.iter().map(|of| error(of) * error(of)).sum::<f64>();
+    pub fn observe(&mut self, tracking: &Tracking) {
+        let error =
+            |channel: &flexsc_record::ChannelState| channel.elastic_rad_s - channel.true_elastic_rad_s;
+        self.square.0 += tracking.channels.iter().map(|channel| error(channel) * error(channel)).sum::<f64>();
         self.square.1 += 1;
-        self.cycles += u64::from(tracking.channels.iter().any(|of| of.damping_on_s != 0.0));
+        self.cycles += u64::from(tracking.channels.iter().any(|channel| channel.damping_on_s != 0.0));
         for (resting, channel) in self.resting.iter_mut().zip(&tracking.channels) {
             let rests = channel.resting == Watch::Resting;
             self.pauses += u64::from(rests && !*resting);
@@ -43,7 +44,9 @@ impl ObserverMetrics {
     /// Returns the metrics of the run that has ended; empty without an adaptive observer.
     pub fn finish(self) -> Vec<NamedMetric> {
         let Some(last) = self.last else { return Vec::new() };
-        let list = |of: &dyn Fn(&TrackedMode) -> f64| MetricValue::Numbers(last.iter().map(of).collect());
+        let list = |value_of: &dyn Fn(&TrackedMode) -> f64| {
+            MetricValue::Numbers(last.iter().map(value_of).collect())
+        };
         vec![
             (&FREQUENCY_ESTIMATES, list(&|of| of.frequency_rad_s / std::f64::consts::TAU)),
             (&FREQUENCY_ERRORS, list(&|of| of.frequency_rad_s / of.true_frequency_rad_s - 1.0)),

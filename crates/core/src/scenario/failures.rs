@@ -35,7 +35,7 @@ impl ScenarioSpec {
         }
         for member in self.actuator.members() {
             all.extend(member.kind.failures().iter().map(|failure| {
-                let FailureScope { interval, about, wheel, gimbal, thruster } = failure.scope();
+                let FailureScope { interval, axis: about, wheel, gimbal, thruster } = failure.scope();
                 let about = about.map(|about| AXES[about.index()].to_owned());
                 let of = about
                     .or(wheel.map(|wheel| format!("wheel {wheel}")))

@@ -202,7 +202,7 @@ impl ResolvedScenario {
         self.translation = craft.map(|craft| Translation::new(body, craft.mass));
         let measured = self.measured_rates(body);
         let angles = rotation_vector(&self.profile.target(Instant::START), &body.attitude.get());
-        for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.seen).enumerate() {
+        for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.visibilities).enumerate() {
             let mode = |(index, mode): (usize, &flexsc_spacecraft::body::spatial::ThreeAxisMode)| {
                 let shape = seen[index];
                 let scaled = |value: Finite| Finite::new(shape * value.get()).unwrap_or_default();
@@ -244,7 +244,7 @@ impl ResolvedScenario {
         };
         adaptive::RateMeasurement {
             frequencies: body.modes.iter().map(|mode| mode.frequency).collect(),
-            seen: (0..3).map(|axis| seen.iter().map(|rotation| rotation[axis]).collect()).collect(),
+            visibilities: (0..3).map(|axis| seen.iter().map(|rotation| rotation[axis]).collect()).collect(),
             inputs: (0..3).map(input).collect(),
         }
     }
@@ -339,7 +339,7 @@ fn one_axis_measurement(model: &Planar) -> adaptive::RateMeasurement {
     let visible = if model.drive == CommandedQuantity::Torque { 1.0 } else { 0.0 };
     adaptive::RateMeasurement {
         frequencies: model.modes.iter().map(|mode| mode.frequency).collect(),
-        seen: vec![vec![visible; model.modes.len()]],
+        visibilities: vec![vec![visible; model.modes.len()]],
         inputs: vec![adaptive::ActuatorInput {
             forces: model.modes.iter().map(|mode| mode.gain.get()).collect(),
             acceleration: 1.0,

@@ -11,7 +11,7 @@ use super::plant::{AppliedTorque, Flow};
 use super::{Simulation, SimulationError};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneState, RunSetup, SWITCHINGS, apply_crossing,
-    apply_state, fly_alone, guards, instant, law_state, shortest_window,
+    apply_state, guards, instant, law_state, run_single, shortest_window,
 };
 
 /// Adapter that runs a single simulation through the relay kernel.
@@ -57,7 +57,7 @@ impl Simulation {
             failed,
             rest,
         };
-        fly_alone(host.setup.structure, &mut host);
+        run_single(host.setup.structure, &mut host);
         let SingleRunHost { failed, rest, .. } = host;
         self.take_over(&rest, record)?;
         failed.map_or(Ok(()), Err)
@@ -78,12 +78,12 @@ impl Simulation {
 
     /// Continues the run in the loop from the segment start at which the kernel stopped.
     fn take_over(&mut self, rest: &LaneHandover, record: &mut dyn Record) -> Result<(), SimulationError> {
-        let (Some(place), now) = (rest.place, instant(rest.from.at)) else { return Ok(()) };
+        let (Some(place), now) = (rest.phase, instant(rest.from.time)) else { return Ok(()) };
         if now == Instant::START {
             return Ok(());
         }
         self.clock.take_over(now, rest.switched.0, instant(rest.switched.1));
-        self.laws.begin(law_state(place, rest.from.side), now, instant(rest.pushed));
+        self.laws.begin(law_state(place, rest.from.side), now, instant(rest.push_start));
         let Command::Torque(torque) = self.laws.outputs()[0] else { return Ok(()) };
         self.begin_relay_segment(&rest.from, torque);
         let Some(flow) = self.plant.one_axis() else { return Ok(()) };
@@ -93,7 +93,7 @@ impl Simulation {
         }
         self.loads.command(now, self.laws.outputs(), &self.estimation.estimates, [rigid, 0.0, 0.0]);
         if let Some(monitor) = &mut self.estimation.monitor {
-            monitor.take_over(instant(rest.seen), rest.integral, &rest.tracks);
+            monitor.take_over(instant(rest.integrated_to), rest.integral, &rest.tracks);
         }
         self.find_crossing(record)
     }
@@ -102,7 +102,7 @@ impl Simulation {
     fn begin_relay_segment(&mut self, from: &LaneState, torque: f64) {
         self.loads.applied = AppliedTorque { constant: torque, feedback: torque, back_emf: (0.0, false) };
         if let Some(flow) = self.plant.one_axis() {
-            flow.set_state(instant(from.at), |state| apply_state(state, from));
+            flow.set_state(instant(from.time), |state| apply_state(state, from));
             flow.begin_under_torque(0.0 + torque);
         }
     }
@@ -118,7 +118,7 @@ impl SingleRunHost<'_> {
 
     fn record_state(&mut self, to: CyclePhase, now: &LaneState) -> Result<(), RecordError> {
         self.record.poll()?;
-        let at = instant(now.at);
+        let at = instant(now.time);
         let Some(flow) = self.run.plant.one_axis() else { return Ok(()) };
         flow.set_state(at, |state| apply_state(state, now));
         let sensed = flow.view(at);
@@ -159,13 +159,13 @@ impl LaneHost for SingleRunHost<'_> {
         found: &mut FoundCrossing,
     ) -> bool {
         self.run.begin_relay_segment(from, self.setup.torque(place, from.side));
-        let horizon = instant(self.setup.end).since(instant(from.at));
+        let horizon = instant(self.setup.end).since(instant(from.time));
         let guards = guards(&self.setup, place, from.side);
         let Some(flow) = self.run.plant.one_axis() else { return false };
         match flow.crossing(&guards, horizon, &mut self.record) {
             Ok(Some((at, guard))) => {
                 flow.view(at);
-                apply_crossing(found, at.since(instant(from.at)), guard == 0, flow.state());
+                apply_crossing(found, at.since(instant(from.time)), guard == 0, flow.state());
                 true
             }
             Ok(None) => false,

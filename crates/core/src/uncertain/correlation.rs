@@ -35,18 +35,22 @@ impl Correlated {
         if self.matrix.len() != order || self.matrix.iter().any(|row| row.len() != order) {
             return fault("matrix", format!("must have {order} rows of {order} numbers, as many as keys"));
         }
-        let at = |row: usize, column: usize| self.matrix[row][column].get();
+        let correlation_at = |row: usize, column: usize| self.matrix[row][column].get();
         for row in 0..order {
-            if at(row, row) != 1.0 {
-                return fault("matrix", format!("must have ones on its diagonal, got {}", at(row, row)));
+            if correlation_at(row, row) != 1.0 {
+                return fault(
+                    "matrix",
+                    format!("must have ones on its diagonal, got {}", correlation_at(row, row)),
+                );
             }
             for column in 0..row {
-                if at(row, column) != at(column, row) {
-                    let (one, other) = (at(row, column), at(column, row));
+                if correlation_at(row, column) != correlation_at(column, row) {
+                    let (one, other) = (correlation_at(row, column), correlation_at(column, row));
                     return fault("matrix", format!("must be symmetric, got {one} and {other}"));
                 }
-                if at(row, column).abs() > 1.0 {
-                    let why = format!("must have correlations from -1 to 1, got {}", at(row, column));
+                if correlation_at(row, column).abs() > 1.0 {
+                    let why =
+                        format!("must have correlations from -1 to 1, got {}", correlation_at(row, column));
                     return fault("matrix", why);
                 }
             }

@@ -9,14 +9,14 @@ use super::segment::{LinearOutput, LinearSegment};
 impl LinearFlow {
     /// Updates the bounds from the decay e^(sigma h) of each pole and the residues of the segment. They are valid for
     /// `seen.window` (s).
-    pub(super) fn bound(&self, segment: &LinearSegment, seen: &mut LinearOutput) {
+    pub(super) fn bound(&self, segment: &LinearSegment, output: &mut LinearOutput) {
         let count = self.poles.len();
-        seen.window = self.window;
+        output.window = self.window;
         let mut beaten = f64::INFINITY;
-        for (j, (curvature, jerk)) in seen.curvature.iter_mut().zip(&mut seen.jerk).enumerate() {
+        for (j, (curvature, jerk)) in output.curvature.iter_mut().zip(&mut output.jerk).enumerate() {
             (*curvature, *jerk) = (0.0, 0.0);
             let sizes = &segment.sizes[j * count..(j + 1) * count];
-            for ((simple, size), moved) in self.poles.iter().zip(sizes).zip(&seen.exponentials) {
+            for ((simple, size), moved) in self.poles.iter().zip(sizes).zip(&output.exponentials) {
                 let bound = size * moved.1 * simple.growth;
                 *curvature += bound;
                 *jerk += bound * simple.pole.size;
@@ -24,7 +24,7 @@ impl LinearFlow {
             for (a, b, apart, window) in &self.beats {
                 let term = |k: usize| {
                     let weight = self.poles[k].weight;
-                    segment.residues[j * count + k] * seen.exponentials[k].0 * weight
+                    segment.residues[j * count + k] * output.exponentials[k].0 * weight
                 };
                 let (s, t) = (term(*a), term(*b));
                 let (x, y) = (abs(s), abs(t));
@@ -42,10 +42,10 @@ impl LinearFlow {
             *curvature *= 1.0 + 1e-12;
             *jerk *= 1.0 + 1e-12;
         }
-        seen.window = seen.window.min(beaten);
-        for (cluster, rates) in self.clusters.iter().zip(&seen.rates) {
-            seen.window = seen.window.min(cluster.window);
-            for (j, (curvature, jerk)) in seen.curvature.iter_mut().zip(&mut seen.jerk).enumerate() {
+        output.window = output.window.min(beaten);
+        for (cluster, rates) in self.clusters.iter().zip(&output.rates) {
+            output.window = output.window.min(cluster.window);
+            for (j, (curvature, jerk)) in output.curvature.iter_mut().zip(&mut output.jerk).enumerate() {
                 let [c, d] = cluster.bounds(j, rates);
                 *curvature += c;
                 *jerk += d;

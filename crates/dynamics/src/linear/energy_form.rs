@@ -47,8 +47,8 @@ impl SecondOrderPlant {
         let (order, stiff) = (self.mass.nrows(), elastic.len());
         let identity = DMatrix::<f64>::identity(order, order);
         // Cholesky factors of positive definite matrices have no zero on their diagonals.
-        let inverse = |l: &DMatrix<f64>, of: &DMatrix<f64>| {
-            l.solve_lower_triangular(of).unwrap_or_else(|| of.clone()).transpose()
+        let inverse = |l: &DMatrix<f64>, matrix: &DMatrix<f64>| {
+            l.solve_lower_triangular(matrix).unwrap_or_else(|| matrix.clone()).transpose()
         };
         let r = mass.transpose();
         let back = inverse(mass, &identity);
@@ -66,8 +66,8 @@ impl SecondOrderPlant {
         carried.columns_mut(stiff, order).copy_from(&back.select_rows(rigid));
         let mut input = DMatrix::zeros(stiff + order, self.input.ncols());
         input.rows_mut(stiff, order).copy_from(&(back.transpose() * &self.input));
-        let mut seen = wide(self.output.nrows());
-        seen.columns_mut(0, stiff).copy_from(&(self.output.select_columns(elastic) * &unbent));
+        let mut output = wide(self.output.nrows());
+        output.columns_mut(0, stiff).copy_from(&(self.output.select_columns(elastic) * &unbent));
         let place = |rows: &[usize]| {
             DMatrix::from_fn(rows.len(), 2 * order, |i, j| f64::from(u8::from(rows[i] == j)))
         };
@@ -81,7 +81,7 @@ impl SecondOrderPlant {
             carried,
             matrix,
             input,
-            output: [self.output.select_columns(rigid), seen],
+            output: [self.output.select_columns(rigid), output],
             split: [place(rigid), split],
             joined: [place(rigid).transpose(), joined],
         }

@@ -81,12 +81,12 @@ impl LinearFlow {
     /// Creates the flow of a plant; `None` if its numbers leave the range of doubles, or if an input changes the rate
     /// of an output instantaneously.
     pub fn new(form: SplitPlant) -> Option<Self> {
-        let [rigid, seen] = form.output.clone();
-        if (&seen * &form.input).iter().any(|jump| *jump != 0.0) {
+        let [rigid, elastic_output] = form.output.clone();
+        if (&elastic_output * &form.input).iter().any(|jump| *jump != 0.0) {
             return None;
         }
         let carried = &rigid * &form.carried;
-        let blocks = blocks(&form.matrix, &seen, &carried)?;
+        let blocks = blocks(&form.matrix, &elastic_output, &carried)?;
         let fastest =
             blocks.iter().flat_map(|b| b.triangle.diagonal().iter().map(|z| z.re).collect::<Vec<_>>());
         let fastest = fastest.fold(0.0, f64::max);
@@ -95,9 +95,9 @@ impl LinearFlow {
         let (mut poles, mut clusters) = (Vec::new(), Vec::new());
         for block in blocks {
             if block.triangle.nrows() == 1 {
-                poles.push(SimplePole::new(&block, &form, (&seen, &carried), window));
+                poles.push(SimplePole::new(&block, &form, (&elastic_output, &carried), window));
             } else {
-                clusters.push(Cluster::new(block, &form, (&seen, &carried)));
+                clusters.push(Cluster::new(block, &form, (&elastic_output, &carried)));
             }
         }
         let finite =
@@ -122,8 +122,8 @@ impl LinearFlow {
 
     /// Returns the largest condition number of a pole or a cluster: the amplification of rounding errors.
     pub fn condition(&self) -> f64 {
-        let of = |v: &DVector<Phasor>| f64::sqrt(v.iter().map(Phasor::norm_sqr).sum());
-        let simple = self.poles.iter().map(|simple| of(&simple.left) * of(&simple.right));
+        let norm = |v: &DVector<Phasor>| f64::sqrt(v.iter().map(Phasor::norm_sqr).sum());
+        let simple = self.poles.iter().map(|simple| norm(&simple.left) * norm(&simple.right));
         simple.chain(self.clusters.iter().map(|cluster| cluster.block.condition())).fold(1.0, f64::max)
     }
 
@@ -131,8 +131,8 @@ impl LinearFlow {
     pub fn to_modal(&self, x: &DVector<f64>) -> ModalState {
         let [cyclic, rest] = &self.form.split;
         let w = (rest * x).map(|re| Phasor { re, im: 0.0 });
-        let dot = |left: &DVector<Phasor>| {
-            left.iter().zip(w.iter()).fold(Phasor::default(), |sum, (l, w)| sum + l * w)
+        let dot = |row: &DVector<Phasor>| {
+            row.iter().zip(w.iter()).fold(Phasor::default(), |sum, (l, w)| sum + l * w)
         };
         ModalState {
             cyclic: (cyclic * x).as_slice().to_vec(),
@@ -145,8 +145,8 @@ impl LinearFlow {
     pub fn to_state(&self, modal: &ModalState) -> DVector<f64> {
         let mut w = DVector::zeros(self.form.matrix.nrows());
         for (simple, z) in self.poles.iter().zip(&modal.simple) {
-            for (w, right) in w.iter_mut().zip(simple.right.iter()) {
-                *w += simple.weight * (right.re * z.re - right.im * z.im);
+            for (w, entry) in w.iter_mut().zip(simple.right.iter()) {
+                *w += simple.weight * (entry.re * z.re - entry.im * z.im);
             }
         }
         for (cluster, z) in self.clusters.iter().zip(&modal.clusters) {
@@ -166,11 +166,11 @@ impl SimplePole {
     fn new(
         block: &PoleBlock,
         form: &SplitPlant,
-        (seen, carried): (&DMatrix<f64>, &DMatrix<f64>),
+        (output, carried): (&DMatrix<f64>, &DMatrix<f64>),
         window: f64,
     ) -> Self {
         let lambda = block.triangle[(0, 0)];
-        let (left, right) = (
+        let (left_factor, right_factor) = (
             DVector::from_iterator(block.left.ncols(), block.left.iter().copied()),
             block.right.column(0).into_owned(),
         );
@@ -178,30 +178,30 @@ impl SimplePole {
             row.fold(Phasor::default(), |sum, (m, v)| sum + v * *m)
         };
         let rows = |m: &DMatrix<f64>| -> Vec<Phasor> {
-            (0..m.nrows()).map(|j| sum(&mut m.row(j).iter().zip(right.iter()))).collect()
+            (0..m.nrows()).map(|j| sum(&mut m.row(j).iter().zip(right_factor.iter()))).collect()
         };
-        let (angles, rates, carry) = (rows(seen), rows(carried), rows(&form.carried));
-        let see =
+        let (angles, rates, carry) = (rows(output), rows(carried), rows(&form.carried));
+        let observe =
             |(angle, rate): (Phasor, Phasor)| PoleOutput { angle, rate, residue: rate + lambda * angle };
-        let push = form.input.column_iter().map(|b| sum(&mut b.iter().zip(left.iter()))).collect();
+        let push = form.input.column_iter().map(|b| sum(&mut b.iter().zip(left_factor.iter()))).collect();
         Self {
             pole: Pole::new(lambda),
             weight: block.weight,
             growth: if lambda.re > 0.0 { libm::exp(lambda.re * window) } else { 1.0 },
             push,
             carry,
-            outputs: angles.into_iter().zip(rates).map(see).collect(),
-            left,
-            right,
+            outputs: angles.into_iter().zip(rates).map(observe).collect(),
+            left: left_factor,
+            right: right_factor,
         }
     }
 }
 
 impl Cluster {
-    fn new(block: PoleBlock, form: &SplitPlant, (seen, carried): (&DMatrix<f64>, &DMatrix<f64>)) -> Self {
+    fn new(block: PoleBlock, form: &SplitPlant, (output, carried): (&DMatrix<f64>, &DMatrix<f64>)) -> Self {
         let complex = |m: &DMatrix<f64>| m.map(|re| Phasor { re, im: 0.0 });
         let t = &block.triangle;
-        let angle = complex(seen) * &block.right;
+        let angle = complex(output) * &block.right;
         let rate = complex(carried) * &block.right;
         let residue = &rate + &angle * t;
         let size = t.diagonal().iter().map(|z| abs(*z)).fold(0.0, f64::max);
@@ -235,15 +235,16 @@ impl Cluster {
 fn beats(poles: &[SimplePole]) -> Vec<(usize, usize, f64, f64)> {
     let mut beats: Vec<(usize, usize, f64, f64)> = Vec::new();
     for (i, one) in poles.iter().enumerate() {
-        let taken =
+        let accepted =
             |k: usize, beats: &[(usize, usize, f64, f64)]| beats.iter().any(|(a, b, ..)| *a == k || *b == k);
-        if taken(i, &beats) || one.pole.lambda.re > 1e-12 * one.pole.size {
+        if accepted(i, &beats) || one.pole.lambda.re > 1e-12 * one.pole.size {
             continue;
         }
         let near = |(j, other): (usize, &SimplePole)| {
             let apart = abs(one.pole.lambda - other.pole.lambda);
             let beat = j > i && apart < 0.02 * one.pole.size && other.weight == one.weight;
-            (beat && other.pole.lambda.re <= 1e-12 * one.pole.size && !taken(j, &beats)).then_some((j, apart))
+            (beat && other.pole.lambda.re <= 1e-12 * one.pole.size && !accepted(j, &beats))
+                .then_some((j, apart))
         };
         let nearest = poles.iter().enumerate().filter_map(near).min_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((j, apart)) = nearest {

@@ -43,7 +43,11 @@ impl PoleBlock {
 
 /// Computes the blocks of a matrix. The rows of `seen` and `carried` are each output's weights of w and of the
 /// integral of w, which determine the phase of each pole's vector. Returns `None` if there is no Schur form.
-pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>) -> Option<Vec<PoleBlock>> {
+pub fn blocks(
+    matrix: &DMatrix<f64>,
+    output: &DMatrix<f64>,
+    carried: &DMatrix<f64>,
+) -> Option<Vec<PoleBlock>> {
     let order = matrix.nrows();
     let schur = Schur::new(matrix)?;
     let norm = matrix.norm();
@@ -65,15 +69,15 @@ pub fn blocks(matrix: &DMatrix<f64>, seen: &DMatrix<f64>, carried: &DMatrix<f64>
     }
     if blocks.iter().any(|(block, _)| block.condition() > LOST) {
         let unit = schur.basis.clone();
-        let left = unit.adjoint();
-        return Some(vec![PoleBlock { triangle: schur.triangle, right: unit, left, weight: 1.0 }]);
+        let adjoint = unit.adjoint();
+        return Some(vec![PoleBlock { triangle: schur.triangle, right: unit, left: adjoint, weight: 1.0 }]);
     }
     let mut blocks: Vec<PoleBlock> = blocks.into_iter().map(|(block, _)| block).collect();
     for _ in 0..2 {
         polish(&mut blocks, matrix, norm);
     }
     for block in blocks.iter_mut().filter(|block| block.triangle.nrows() == 1) {
-        turn(block, seen, carried, norm);
+        turn(block, output, carried, norm);
     }
     invert(&mut blocks, order)?;
     blocks.sort_by(|a, b| {
@@ -161,19 +165,20 @@ fn gather(schur: &Schur, poles: &Spectrum, groups: &[usize], norm: f64) -> Optio
             done[*member] = true;
         }
         let weight = if own { 1.0 } else { 2.0 };
-        let (right, triangle) = schur.subspace(&members);
+        let (basis, triangle) = schur.subspace(&members);
         let count = members.len();
-        let coupling = (0..count).flat_map(|j| (0..j).map(move |i| (i, j))).map(|at| abs(triangle[at]));
+        let coupling =
+            (0..count).flat_map(|j| (0..j).map(move |i| (i, j))).map(|element| abs(triangle[element]));
         let coupled = coupling.fold(0.0, f64::max) > 64.0 * f64::EPSILON * norm;
         if count > 1 && coupled {
-            let left = right.adjoint();
-            blocks.push((PoleBlock { triangle, right, left, weight }, first));
+            let adjoint = basis.adjoint();
+            blocks.push((PoleBlock { triangle, right: basis, left: adjoint, weight }, first));
             continue;
         }
         // A multiple pole with independent vectors is split into several poles.
         for (j, member) in members.iter().enumerate() {
             let mut pole = triangle[(j, j)];
-            let mut vector = right.columns(j, 1).into_owned();
+            let mut vector = basis.columns(j, 1).into_owned();
             if poles.poles[*member].im == 0.0 && count == 1 {
                 pole.im = 0.0;
                 make_real(&mut vector);
@@ -194,7 +199,7 @@ fn make_real(vector: &mut DMatrix<Phasor>) {
 }
 
 /// Multiplies a vector by the phase factor that makes its largest output contribution a real number.
-fn turn(block: &mut PoleBlock, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f64) {
+fn turn(block: &mut PoleBlock, output: &DMatrix<f64>, carried: &DMatrix<f64>, norm: f64) {
     let pole = block.pole();
     if pole.im == 0.0 || abs(pole) < 1e-13 * norm {
         return;
@@ -203,8 +208,8 @@ fn turn(block: &mut PoleBlock, seen: &DMatrix<f64>, carried: &DMatrix<f64>, norm
         let row = rows.row(j);
         row.iter().zip(block.right.iter()).fold(Phasor::default(), |sum, (c, v)| sum + v * *c)
     };
-    let sights = (0..seen.nrows()).map(|j| measurement(seen, j) + measurement(carried, j) / pole);
-    let largest = sights.fold(Phasor::default(), |a, b| if abs(b) > abs(a) { b } else { a });
+    let observations = (0..output.nrows()).map(|j| measurement(output, j) + measurement(carried, j) / pole);
+    let largest = observations.fold(Phasor::default(), |a, b| if abs(b) > abs(a) { b } else { a });
     if abs(largest) > 1e-14 * size(&block.right) {
         block.right.apply(|v| *v /= largest);
         block.left.apply(|w| *w *= largest);
@@ -224,8 +229,9 @@ fn polish(blocks: &mut [PoleBlock], matrix: &DMatrix<f64>, norm: f64) {
     };
     for (index, block) in blocks.iter_mut().enumerate().filter(|(_, block)| block.triangle.nrows() == 1) {
         let pole = block.pole();
-        let alone = |(i, other): (usize, &PoleBlock)| i == index || spread(pole, other) > UNPOLISHED * norm;
-        if !old.iter().enumerate().all(alone) {
+        let is_isolated =
+            |(i, other): (usize, &PoleBlock)| i == index || spread(pole, other) > UNPOLISHED * norm;
+        if !old.iter().enumerate().all(is_isolated) {
             continue;
         }
         let wrong = residual(matrix, block.right.column(0), pole);
@@ -235,15 +241,15 @@ fn polish(blocks: &mut [PoleBlock], matrix: &DMatrix<f64>, norm: f64) {
                 if mirrored && other.weight < 2.0 {
                     continue;
                 }
-                let of = |m: &DMatrix<Phasor>| if mirrored { m.conjugate() } else { m.clone() };
-                let part = of(&other.left) * &wrong;
+                let conjugated = |m: &DMatrix<Phasor>| if mirrored { m.conjugate() } else { m.clone() };
+                let part = conjugated(&other.left) * &wrong;
                 if i == index && !mirrored {
                     block.triangle[(0, 0)] = pole + part[0];
                     continue;
                 }
                 let count = other.triangle.nrows();
-                let apart = DMatrix::from_diagonal_element(count, count, pole) - of(&other.triangle);
-                step += of(&other.right) * apart.solve_upper_triangular(&part).unwrap_or(part);
+                let apart = DMatrix::from_diagonal_element(count, count, pole) - conjugated(&other.triangle);
+                step += conjugated(&other.right) * apart.solve_upper_triangular(&part).unwrap_or(part);
             }
         }
         if block.weight < 2.0 {
@@ -257,14 +263,14 @@ fn polish(blocks: &mut [PoleBlock], matrix: &DMatrix<f64>, norm: f64) {
 /// Sets the left vectors to the inverse of the right ones, with one step of Newton's iteration.
 fn invert(blocks: &mut [PoleBlock], order: usize) -> Option<()> {
     let mut right = DMatrix::zeros(order, order);
-    let mut at = 0;
+    let mut offset = 0;
     for block in blocks.iter() {
         let count = block.right.ncols();
-        right.columns_mut(at, count).copy_from(&block.right);
-        at += count;
+        right.columns_mut(offset, count).copy_from(&block.right);
+        offset += count;
         if block.weight == 2.0 {
-            right.columns_mut(at, count).copy_from(&block.right.conjugate());
-            at += count;
+            right.columns_mut(offset, count).copy_from(&block.right.conjugate());
+            offset += count;
         }
     }
     // Vectors that are equal to the last bit have no inverse; a huge one marks them as ill-conditioned.
@@ -272,15 +278,15 @@ fn invert(blocks: &mut [PoleBlock], order: usize) -> Option<()> {
         right.clone().lu().try_inverse().unwrap_or_else(|| DMatrix::from_element(order, order, HUGE));
     let rest = DMatrix::identity(order, order) - &left * &right;
     left += rest * left.clone();
-    let mut at = 0;
+    let mut offset = 0;
     for block in blocks.iter_mut() {
         let count = block.right.ncols();
-        block.left = left.rows(at, count).into_owned();
+        block.left = left.rows(offset, count).into_owned();
         let real = block.weight < 2.0 && count == 1 && block.right.iter().all(|v| v.im == 0.0);
         block.left.apply(|w| w.im = if real { 0.0 } else { w.im });
-        at += if block.weight == 2.0 { 2 * count } else { count };
+        offset += if block.weight == 2.0 { 2 * count } else { count };
     }
-    (at == order).then_some(())
+    (offset == order).then_some(())
 }
 
 const HUGE: Phasor = Phasor { re: 1e150, im: 0.0 };

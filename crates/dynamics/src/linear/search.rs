@@ -23,24 +23,24 @@ impl BoundedMotion for LinearSegment {
     type State = LinearOutput;
     type Observation = ();
 
-    fn initial(&self, seen: &mut LinearOutput) {
-        self.initial_output(seen);
+    fn initial(&self, state: &mut LinearOutput) {
+        self.initial_output(state);
     }
 
-    fn evaluate(&self, h: f64, seen: &mut LinearOutput) {
-        self.at(h, seen);
+    fn evaluate(&self, h: f64, state: &mut LinearOutput) {
+        self.at(h, state);
     }
 
-    fn is_finite(seen: &LinearOutput, (): ()) -> bool {
-        seen.outputs.iter().all(|sensed| sensed.angle.is_finite())
+    fn is_finite(state: &LinearOutput, (): ()) -> bool {
+        state.outputs.iter().all(|sensed| sensed.angle.is_finite())
     }
 
-    fn holds(level: OutputGuard, seen: &LinearOutput, (): ()) -> bool {
-        level.guard.holds(seen.outputs[level.output].angle)
+    fn holds(level: OutputGuard, state: &LinearOutput, (): ()) -> bool {
+        level.guard.holds(state.outputs[level.output].angle)
     }
 
-    fn bounds_valid_for(seen: &LinearOutput) -> f64 {
-        seen.window
+    fn bounds_valid_for(state: &LinearOutput) -> f64 {
+        state.window
     }
 
     /// Returns the earliest trip by a bound: fast non-growing poles stay within their residues of a line; slow ones
@@ -49,10 +49,10 @@ impl BoundedMotion for LinearSegment {
         &self,
         OutputGuard { output, guard }: OutputGuard,
         horizon: Span,
-        seen: &LinearOutput,
+        state: &LinearOutput,
     ) -> f64 {
         let (flow, towards) = (&*self.flow, guard.side.sign());
-        let horizon = horizon.seconds().min(LONG).min(seen.window);
+        let horizon = horizon.seconds().min(LONG).min(state.window);
         let (mut angle, mut rate) = self.origins[output];
         let (mut reach, mut acceleration) = (0.0, 0.0);
         let count = flow.poles.len();
@@ -74,7 +74,7 @@ impl BoundedMotion for LinearSegment {
                 (size * growth).min(now + size * pole.size * growth * horizon)
             };
         }
-        for (cluster, rates) in flow.clusters.iter().zip(&seen.rates) {
+        for (cluster, rates) in flow.clusters.iter().zip(&state.rates) {
             acceleration += cluster.bounds(output, rates)[0];
         }
         let gap = towards * (guard.level - angle) - reach;
@@ -84,23 +84,23 @@ impl BoundedMotion for LinearSegment {
         first_root(gap, towards * rate, acceleration).min(horizon)
     }
 
-    fn safe_stride(&self, OutputGuard { output, guard }: OutputGuard, seen: &LinearOutput, (): ()) -> f64 {
-        let (now, towards) = (seen.outputs[output], guard.side.sign());
+    fn safe_stride(&self, OutputGuard { output, guard }: OutputGuard, state: &LinearOutput, (): ()) -> f64 {
+        let (now, towards) = (state.outputs[output], guard.side.sign());
         let (gap, speed, acceleration) =
             (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
         let q = first_root(gap, speed, acceleration);
-        let steepest = seen.curvature[output].min(acceleration + seen.jerk[output] * q / 3.0);
-        first_root(gap, speed, steepest).min(seen.window)
+        let steepest = state.curvature[output].min(acceleration + state.jerk[output] * q / 3.0);
+        first_root(gap, speed, steepest).min(state.window)
     }
 
     fn has_no_crossing(
         &self,
         OutputGuard { output, guard }: OutputGuard,
-        seen: &LinearOutput,
+        state: &LinearOutput,
         (): (),
         time: f64,
     ) -> bool {
-        let (now, towards) = (seen.outputs[output], guard.side.sign());
-        guard.gap(now.angle) > time * (towards * now.rate + 0.5 * seen.curvature[output] * time)
+        let (now, towards) = (state.outputs[output], guard.side.sign());
+        guard.gap(now.angle) > time * (towards * now.rate + 0.5 * state.curvature[output] * time)
     }
 }

@@ -92,17 +92,17 @@ impl LinearSegment {
     }
 
     /// Evaluates the outputs at `h` (s) since the start of the segment.
-    pub fn at(&self, h: f64, seen: &mut LinearOutput) {
+    pub fn at(&self, h: f64, output: &mut LinearOutput) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
-        seen.fit(self);
-        for (sensed, (y, v)) in seen.outputs.iter_mut().zip(&self.origins) {
+        output.fit(self);
+        for (sensed, (y, v)) in output.outputs.iter_mut().zip(&self.origins) {
             *sensed = AngleObservation { angle: y + v * h, rate: *v, acceleration: 0.0 };
         }
         for (k, simple) in flow.poles.iter().enumerate() {
             let phi = simple.pole.phi(h);
             let shrunk = if simple.pole.lambda.re == 0.0 { 1.0 } else { abs(phi.exp) };
-            seen.exponentials[k] = (phi.exp, shrunk);
-            for (j, sensed) in seen.outputs.iter_mut().enumerate() {
+            output.exponentials[k] = (phi.exp, shrunk);
+            for (j, sensed) in output.outputs.iter_mut().enumerate() {
                 let residue = self.residues[j * count + k];
                 sensed.acceleration += simple.weight * real(residue, phi.exp);
                 sensed.rate += simple.weight * real(residue, phi.first);
@@ -113,22 +113,22 @@ impl LinearSegment {
             let moved = moved(&cluster.block.triangle, rates, h);
             let [acceleration, rate, angle] =
                 [&moved.exp, &moved.first, &moved.second].map(|vector| &cluster.residue * vector);
-            for (j, sensed) in seen.outputs.iter_mut().enumerate() {
+            for (j, sensed) in output.outputs.iter_mut().enumerate() {
                 sensed.acceleration += cluster.block.weight * acceleration[j].re;
                 sensed.rate += cluster.block.weight * rate[j].re;
                 sensed.angle += cluster.block.weight * angle[j].re;
             }
-            seen.rates[k] = moved.exp;
+            output.rates[k] = moved.exp;
         }
-        flow.bound(self, seen);
+        flow.bound(self, output);
     }
 
     /// Evaluates the outputs at the start of the segment, which needs no exponential.
-    pub fn initial_output(&self, seen: &mut LinearOutput) {
+    pub fn initial_output(&self, output: &mut LinearOutput) {
         let (flow, count) = (&*self.flow, self.flow.poles.len());
-        seen.fit(self);
-        seen.exponentials.fill((Phasor { re: 1.0, im: 0.0 }, 1.0));
-        for (j, (sensed, (angle, rate))) in seen.outputs.iter_mut().zip(&self.origins).enumerate() {
+        output.fit(self);
+        output.exponentials.fill((Phasor { re: 1.0, im: 0.0 }, 1.0));
+        for (j, (sensed, (angle, rate))) in output.outputs.iter_mut().zip(&self.origins).enumerate() {
             let residues = flow.poles.iter().zip(&self.residues[j * count..]);
             let mut acceleration: f64 = residues.map(|(simple, a)| simple.weight * a.re).sum();
             for (cluster, rates) in flow.clusters.iter().zip(&self.cluster_rates) {
@@ -136,8 +136,8 @@ impl LinearSegment {
             }
             *sensed = AngleObservation { angle: *angle, rate: *rate, acceleration };
         }
-        seen.rates.clone_from(&self.cluster_rates);
-        flow.bound(self, seen);
+        output.rates.clone_from(&self.cluster_rates);
+        flow.bound(self, output);
     }
 
     /// Evaluates the state at `h` (s) since the start of the segment.

@@ -54,8 +54,8 @@ impl LinearPlant {
                 let row = a.row(theta).into_owned();
                 a -= &standing * row;
                 a.column_mut(theta).fill(0.0);
-                let seen = &c * &standing;
-                c.column_mut(theta).zip_apply(&seen, |c, seen| *c += seen);
+                let standing_output = &c * &standing;
+                c.column_mut(theta).zip_apply(&standing_output, |c, offset| *c += offset);
                 let moved = &shift * &standing;
                 shift.column_mut(theta).zip_apply(&moved, |s, moved| *s += moved);
                 let back = unshift.row(theta).into_owned();

@@ -47,9 +47,9 @@ impl Mismatch {
         if let Some(kind) = unknown.filter(|kind| nearest_name(kind, known).is_some()) {
             return Self::unknown_variant(kind, known).at_key(kind);
         }
-        let given: Vec<_> = kinds.keys().map(|kind| format!("`{kind}`")).collect();
-        let given = given.join(", ");
-        Self::because(format!("exactly one kind is accepted here, and more than one is given: {given}"))
+        let accepted: Vec<_> = kinds.keys().map(|kind| format!("`{kind}`")).collect();
+        let accepted = accepted.join(", ");
+        Self::because(format!("exactly one kind is accepted here, and more than one is given: {accepted}"))
     }
 
     /// Returns the mismatch of a name whose kind needs a table.
@@ -58,10 +58,10 @@ impl Mismatch {
     }
 
     /// Returns the mismatch of a name that is not among the known ones.
-    fn unknown(name: &str, given: &str, known: &'static [&'static str], none: &str) -> Self {
-        let hint = hint(given, known).map_or_else(String::new, |hint| format!("; {hint}"));
+    fn unknown(name: &str, accepted: &str, known: &'static [&'static str], none: &str) -> Self {
+        let hint = hint(accepted, known).map_or_else(String::new, |hint| format!("; {hint}"));
         let why = format!("{name}, {}{hint}", accepted_names(known, none));
-        Self { meant: nearest_name(given, known), ..Self::because(why) }
+        Self { meant: nearest_name(accepted, known), ..Self::because(why) }
     }
 
     /// Sets the key that is itself wrong.

@@ -40,7 +40,7 @@ fn replace(table: &mut Table, wrong: &Mismatch) -> Option<String> {
     if let Some(key) = wrong.key() {
         let mut inner = if path.is_empty() { table.clone() } else { get(table, &path)?.as_table()?.clone() };
         let value = inner.remove(key)?;
-        // A kind by another word may have other keys: what stands in it says nothing of what is wrong with it.
+        // A synonym of a kind may have other keys: they do not help to explain the error.
         let other_kind = wrong.meant().filter(|_| value.is_table() && is_other_word(key)).map(bare_or_quoted);
         match wrong.meant() {
             Some(meant) if !inner.contains_key(meant) => {

@@ -80,7 +80,7 @@ impl ScenarioError {
 
 impl Diagnostic {
     /// Returns the scenario error that consists of this error alone.
-    fn alone(self) -> ScenarioError {
+    fn single_error(self) -> ScenarioError {
         ScenarioError::Invalid(vec![self])
     }
 }
@@ -126,7 +126,8 @@ impl Document {
 
     /// Parses a text that messages call `origin`.
     pub fn parse(origin: &str, text: String) -> Result<Self, ScenarioError> {
-        let mut table = text.parse::<Table>().map_err(|error| parse_error(origin, &text, &error).alone())?;
+        let mut table =
+            text.parse::<Table>().map_err(|error| parse_error(origin, &text, &error).single_error())?;
         key::respell(&mut table);
         Ok(Self { origin: origin.to_owned(), text: Some(text), table, changed: Vec::new() })
     }
@@ -165,8 +166,8 @@ impl Document {
         let message = format!("missing key `{key}`");
         let mistake = Diagnostic::new(&self.origin, message).about(key);
         match &self.text {
-            Some(text) => mistake.at(text, &(0..0)).alone(),
-            None => mistake.alone(),
+            Some(text) => mistake.at(text, &(0..0)).single_error(),
+            None => mistake.single_error(),
         }
     }
 
@@ -237,7 +238,7 @@ impl Document {
     /// Returns an error at the first value that was not read completely; `understood` is the part that was read.
     pub fn unread(&self, understood: &Table) -> Option<ScenarioError> {
         let mut pairs = self.table.iter().filter_map(|(key, value)| Some((key, value, understood.get(key)?)));
-        let fault = pairs.find_map(|(key, given, read)| unread(&bare_or_quoted(key), given, read))?;
+        let fault = pairs.find_map(|(key, written, read)| unread(&bare_or_quoted(key), written, read))?;
         Some(self.at_key(&fault))
     }
 
@@ -248,10 +249,10 @@ impl Document {
         if let Some(text) = self.text.as_ref().filter(|_| !self.changed.iter().any(|k| k == key)) {
             let table = DeTable::parse(text).ok();
             if let Some(span) = table.and_then(|table| span_of(table.get_ref(), key)) {
-                return mistake.at(text, &span).alone();
+                return mistake.at(text, &span).single_error();
             }
         }
-        mistake.alone()
+        mistake.single_error()
     }
 
     fn key_error(&self, key: &str, why: String) -> ScenarioError {
@@ -259,7 +260,7 @@ impl Document {
     }
 }
 
-/// A key that was set within a table of a wrong name, and what was probably meant by it.
+/// Key that was set within a table of a wrong name, and the name that was probably meant.
 fn meant_of(wrong: &Mismatch, changed: &[String]) -> Option<(String, String)> {
     let (path, name, meant) = (wrong.path(), bare_or_quoted(wrong.key()?), wrong.meant()?);
     let within = |name: &str| if path.is_empty() { name.to_owned() } else { format!("{path}.{name}") };
@@ -274,25 +275,25 @@ fn too_long(length: u64) -> String {
 
 /// Reads a part of a scenario, such as one law, from a TOML text of its own, for unit tests.
 pub fn from_text<T: serde::de::DeserializeOwned>(text: &str) -> Result<T, ScenarioError> {
-    let table = text.parse().map_err(|error| parse_error("text", text, &error).alone())?;
-    read_value(&Value::Table(table)).map_err(|wrong| mismatch("text", text, &wrong).alone())
+    let table = text.parse().map_err(|error| parse_error("text", text, &error).single_error())?;
+    read_value(&Value::Table(table)).map_err(|wrong| mismatch("text", text, &wrong).single_error())
 }
 
 /// Returns a fault at the first part of a value that is not in `read`.
-fn unread(key: &str, given: &Value, read: &Value) -> Option<ConfigError> {
-    match (given, read) {
-        (Value::Table(given), Value::Table(read)) => given.iter().find_map(|(name, value)| {
+fn unread(key: &str, written: &Value, read: &Value) -> Option<ConfigError> {
+    match (written, read) {
+        (Value::Table(written), Value::Table(read)) => written.iter().find_map(|(name, value)| {
             unread(&format!("{key}.{}", bare_or_quoted(name)), value, read.get(name)?)
         }),
-        (Value::Array(given), Value::Array(read)) if given.len() > read.len() => {
-            let why = format!("has {} values, expected {}", given.len(), read.len());
+        (Value::Array(written), Value::Array(read)) if written.len() > read.len() => {
+            let why = format!("has {} values, expected {}", written.len(), read.len());
             Some(ConfigError::new(key, why))
         }
-        (Value::Array(given), Value::Array(read)) => given
+        (Value::Array(written), Value::Array(read)) => written
             .iter()
             .zip(read)
             .enumerate()
-            .find_map(|(index, (given, read))| unread(&format!("{key}[{index}]"), given, read)),
+            .find_map(|(index, (written, read))| unread(&format!("{key}[{index}]"), written, read)),
         (Value::Array(_), Value::Table(_)) => Some(ConfigError::new(key, "is an array, expected a table")),
         _ => None,
     }

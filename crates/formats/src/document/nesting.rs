@@ -22,8 +22,8 @@ pub fn place(text: &str, error: &toml::de::Error) -> Option<Range<usize>> {
     if !is_limit(error.message()) {
         return None;
     }
-    let at = error.span().map_or_else(|| first_deep(text), |span| span.start.min(text.len()));
-    let start = text[..at].rfind('\n').map_or(0, |newline| newline + 1);
+    let position = error.span().map_or_else(|| first_deep(text), |span| span.start.min(text.len()));
+    let start = text[..position].rfind('\n').map_or(0, |newline| newline + 1);
     let line = text[start..].lines().next().unwrap_or_default();
     let blank = line.len() - line.trim_start().len();
     let key = line.find('=').unwrap_or(line.len());
@@ -45,8 +45,11 @@ pub fn why(text: &str, place: &Range<usize>) -> String {
 
 /// Returns the start of the first line with which the text is nested too deep, because the parser does not report it.
 fn first_deep(text: &str) -> usize {
-    let ends: Vec<usize> =
-        text.match_indices('\n').map(|(at, _)| at + 1).chain(std::iter::once(text.len())).collect();
+    let ends: Vec<usize> = text
+        .match_indices('\n')
+        .map(|(position, _)| position + 1)
+        .chain(std::iter::once(text.len()))
+        .collect();
     let is_deep = |end: &usize| text[..*end].parse::<Table>().is_err_and(|error| is_limit(error.message()));
     let line = ends.partition_point(|end| !is_deep(end));
     line.checked_sub(1).and_then(|before| ends.get(before)).copied().unwrap_or(0).min(text.len())

@@ -153,7 +153,7 @@ fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
         }
         return Err(format!("has the unit `{unit}`, but takes a number without a unit"));
     };
-    let Some(given) = Unit::parse(unit) else {
+    let Some(found) = Unit::parse(unit) else {
         let hint = match meant(unit) {
             Some(meant) => format!("; did you mean `{meant}`?"),
             None => format!("; known are {KNOWN}"),
@@ -162,7 +162,7 @@ fn in_si(number: f64, unit: &str, ends: &[Node<'_>]) -> Result<f64, String> {
             "has the unit `{unit}`, which is not known; expected a unit such as `{first}`{hint}"
         ));
     };
-    let factor = wanted.iter().find_map(|wanted| given.per(Unit::parse(wanted)?));
+    let factor = wanted.iter().find_map(|wanted| found.per(Unit::parse(wanted)?));
     factor
         .map(|factor| number * factor)
         .ok_or_else(|| format!("has the unit `{unit}`, expected a unit such as `{first}`"))
@@ -214,8 +214,9 @@ fn flat<'a>(schema: &'a Json, nodes: &[Node<'a>]) -> Vec<Node<'a>> {
         all.push(node);
         let target = node.schema.get("$ref").and_then(Json::as_str);
         let target = target.and_then(|path| schema.pointer(path.strip_prefix('#')?));
-        let choices =
-            ["anyOf", "oneOf", "allOf"].into_iter().filter_map(|of| node.schema.get(of)?.as_array());
+        let choices = ["anyOf", "oneOf", "allOf"]
+            .into_iter()
+            .filter_map(|keyword| node.schema.get(keyword)?.as_array());
         for inner in target.into_iter().chain(choices.flatten()) {
             follow(schema, Node { schema: inner, unit: node.unit }, depth + 1, all);
         }
@@ -247,8 +248,8 @@ fn unit_of(schema: &Json) -> Option<&str> {
 
 fn has_type(schema: &Json, name: &str) -> bool {
     match schema.get("type") {
-        Some(Json::String(of)) => of == name,
-        Some(Json::Array(of)) => of.iter().any(|of| of == name),
+        Some(Json::String(type_name)) => type_name == name,
+        Some(Json::Array(types)) => types.iter().any(|types| types == name),
         _ => false,
     }
 }

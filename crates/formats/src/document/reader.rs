@@ -166,8 +166,8 @@ impl<'de> Deserializer<'de> for Reader<'de> {
         match self.0 {
             Value::String(name) => visitor.visit_enum(VariantReader { name, value: None }),
             Value::Table(kinds) => {
-                let mut given = kinds.iter();
-                match (given.next(), given.next()) {
+                let mut entries = kinds.iter();
+                match (entries.next(), entries.next()) {
                     (Some((name, value)), None) => {
                         visitor.visit_enum(VariantReader { name, value: Some(value) })
                     }
@@ -317,29 +317,29 @@ mod tests {
             let wrong = read::<Part>(&text.parse().expect("TOML")).expect_err("wrong");
             (wrong.path(), wrong.key().map(str::to_owned), wrong.to_string())
         };
-        let at = |path: &str, key: Option<&str>, why: &str| {
+        let error_at = |path: &str, key: Option<&str>, why: &str| {
             (path.to_owned(), key.map(str::to_owned), why.to_owned())
         };
-        assert_eq!(reported("list = []"), at("", None, "missing key `kind`"));
+        assert_eq!(reported("list = []"), error_at("", None, "missing key `kind`"));
         assert_eq!(
             reported("kind.full.value = 'x'"),
-            at("kind.full.value", None, "found string \"x\", expected a number")
+            error_at("kind.full.value", None, "found string \"x\", expected a number")
         );
-        assert_eq!(reported("kind.full = {}"), at("kind.full", None, "missing key `value`"));
+        assert_eq!(reported("kind.full = {}"), error_at("kind.full", None, "missing key `value`"));
         assert_eq!(
             reported("kind.simple.x = 1"),
-            at("kind.simple", Some("x"), "unknown key `x`, there are no keys here")
+            error_at("kind.simple", Some("x"), "unknown key `x`, there are no keys here")
         );
         let unknown = "`ful` is not known here, expected `simple` or `full`; did you mean `full`?";
-        assert_eq!(reported("kind.ful = 1"), at("kind", Some("ful"), unknown));
-        assert_eq!(reported("kind = 'ful'"), at("kind", None, unknown));
+        assert_eq!(reported("kind.ful = 1"), error_at("kind", Some("ful"), unknown));
+        assert_eq!(reported("kind = 'ful'"), error_at("kind", None, unknown));
         assert_eq!(
             reported("kind = 'simple'\nlist = [[1, 2], [1]]"),
-            at("list[1]", None, "found an array of length 1, expected an array of length 2")
+            error_at("list[1]", None, "found an array of length 1, expected an array of length 2")
         );
         assert_eq!(
             reported("knd = 1"),
-            at("", Some("knd"), "unknown key `knd`, expected `kind` or `list`; did you mean `kind`?")
+            error_at("", Some("knd"), "unknown key `knd`, expected `kind` or `list`; did you mean `kind`?")
         );
     }
 }

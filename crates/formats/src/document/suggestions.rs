@@ -77,11 +77,11 @@ const SPELLINGS: &[(&str, &str)] = &[("maneuver", "manoeuvre"), ("center", "cent
 
 /// Returns a hint for a name that is not among the known ones, if there is one.
 pub fn hint(name: &str, known: &[&str]) -> Option<String> {
-    let given = plain(name);
-    if let Some(nearest) = nearest(&given, known) {
+    let written = plain(name);
+    if let Some(nearest) = nearest(&written, known) {
         return Some(format!("did you mean `{nearest}`?"));
     }
-    ABSENT.iter().find(|(absent, _)| *absent == given).map(|(_, instead)| (*instead).to_owned())
+    ABSENT.iter().find(|(absent, _)| *absent == written).map(|(_, instead)| (*instead).to_owned())
 }
 
 /// Returns the known name that an unknown one was probably meant to be.
@@ -89,26 +89,26 @@ pub fn nearest_name<'a>(name: &str, known: &[&'a str]) -> Option<&'a str> {
     nearest(&plain(name), known)
 }
 
-/// Whether a wrong name is another word for what there is, not a misspelling of it.
+/// Returns true if a wrong name is a synonym of a known name, not a misspelling.
 pub fn is_other_word(name: &str) -> bool {
-    let given = plain(name);
-    ALIASES.iter().any(|(alias, _)| *alias == given)
+    let written = plain(name);
+    ALIASES.iter().any(|(alias, _)| *alias == written)
 }
 
-fn nearest<'a>(given: &str, known: &[&'a str]) -> Option<&'a str> {
-    if given.is_empty() {
+fn nearest<'a>(written: &str, known: &[&'a str]) -> Option<&'a str> {
+    if written.is_empty() {
         return None;
     }
-    let aliases = ALIASES.iter().find(|(alias, _)| *alias == given).map_or(&[][..], |(_, names)| names);
+    let aliases = ALIASES.iter().find(|(alias, _)| *alias == written).map_or(&[][..], |(_, names)| names);
     if let Some(name) = aliases.iter().find_map(|name| known.iter().find(|known| *known == name)) {
         return Some(name);
     }
     // A third of the letters may be wrong; the first of the nearest names counts.
-    let most = given.chars().count().div_ceil(3);
-    let distance = |name: &&&str| damerau_levenshtein(given, &plain(name));
-    let near = known.iter().min_by_key(distance).filter(|name| distance(name) <= most && given.len() > 1);
+    let most = written.chars().count().div_ceil(3);
+    let distance = |name: &&&str| damerau_levenshtein(written, &plain(name));
+    let near = known.iter().min_by_key(distance).filter(|name| distance(name) <= most && written.len() > 1);
     let begins = |name: &&&str| {
-        given.len() >= 3 && (plain(name).starts_with(given) || given.starts_with(&plain(name)))
+        written.len() >= 3 && (plain(name).starts_with(written) || written.starts_with(&plain(name)))
     };
     near.or_else(|| known.iter().find(begins)).copied()
 }

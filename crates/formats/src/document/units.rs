@@ -50,7 +50,7 @@ const PREFIXES: &[(&str, f64)] = &[
     ("G", 1e9),
 ];
 
-/// Units as others write them, in lower case without points: singular, what is meant.
+/// Common spellings of units, in lower case without points: singular, and the unit that is meant.
 const ALIASES: &[(&str, &str)] = &[
     ("amp", "A"),
     ("ampere", "A"),
@@ -101,7 +101,7 @@ pub fn meant(text: &str) -> Option<String> {
         rest = after;
         match word.strip_prefix("rt").map(word_meant) {
             // rtHz, rthr
-            Some(Some(of)) => meant.extend(["sqrt(", of.as_str(), ")"]),
+            Some(Some(radicand)) => meant.extend(["sqrt(", radicand.as_str(), ")"]),
             _ => meant.push_str(&word_meant(word)?),
         }
         // m2, s2
@@ -109,19 +109,19 @@ pub fn meant(text: &str) -> Option<String> {
             meant.push('^');
         }
     }
-    for (written, here) in [("sqrt-", "sqrt "), ("rpm/min", "rpm"), ("rpm/s", "Hz")] {
-        meant = meant.replace(written, here);
+    for (written, accepted) in [("sqrt-", "sqrt "), ("rpm/min", "rpm"), ("rpm/s", "Hz")] {
+        meant = meant.replace(written, accepted);
     }
-    if let Some((before, of)) = meant.split_once("sqrt ").or_else(|| split_root(&meant)) {
-        meant = format!("{before}sqrt({of})");
+    if let Some((before, radicand)) = meant.split_once("sqrt ").or_else(|| split_root(&meant)) {
+        meant = format!("{before}sqrt({radicand})");
     }
     (meant != text.trim() && Unit::parse(&meant).is_some()).then_some(meant)
 }
 
 /// A root whose radicand stands behind it without brackets.
 fn split_root(text: &str) -> Option<(&str, &str)> {
-    let (before, of) = text.split_once("sqrt")?;
-    (!of.starts_with('(')).then_some((before, of))
+    let (before, radicand) = text.split_once("sqrt")?;
+    (!radicand.starts_with('(')).then_some((before, radicand))
 }
 
 fn word_meant(word: &str) -> Option<String> {
@@ -154,9 +154,9 @@ impl Unit {
         if self.twice == other.twice {
             return Some(self.factor / other.factor);
         }
-        let mut turned = other.twice;
-        turned[4] -= 2;
-        (self.cycles && self.twice == turned).then(|| TAU * self.factor / other.factor)
+        let mut doubled = other.twice;
+        doubled[4] -= 2;
+        (self.cycles && self.twice == doubled).then(|| TAU * self.factor / other.factor)
     }
 
     fn times(self, other: Self) -> Self {
@@ -184,17 +184,17 @@ impl Unit {
         if word == "1" {
             return Some(ONE);
         }
-        let of = |(symbol, factor, exponents, _): &(&str, f64, [i16; 5], bool), prefix: f64| {
+        let dimension = |(symbol, factor, exponents, _): &(&str, f64, [i16; 5], bool), prefix: f64| {
             let twice = exponents.map(|exponent| 2 * exponent);
             Self { factor: prefix * factor, twice, cycles: *symbol == "Hz" }
         };
         if let Some(known) = SYMBOLS.iter().find(|known| known.0 == word) {
-            return Some(of(known, 1.0));
+            return Some(dimension(known, 1.0));
         }
         PREFIXES.iter().find_map(|(prefix, factor)| {
             let word = word.strip_prefix(prefix)?;
             // The base symbol is `g`, so that `kg` takes no further prefix.
-            SYMBOLS.iter().find(|known| known.3 && known.0 == word).map(|known| of(known, *factor))
+            SYMBOLS.iter().find(|known| known.3 && known.0 == word).map(|known| dimension(known, *factor))
         })
     }
 }
@@ -268,7 +268,7 @@ mod tests {
 
     #[test]
     fn units_that_others_write_are_recognised() {
-        for (written, here) in [
+        for (written, accepted) in [
             ("degrees", "deg"),
             ("hz", "Hz"),
             ("RPM", "rpm"),
@@ -283,7 +283,7 @@ mod tests {
             ("seconds", "s"),
             ("Newton meters", "N m"),
         ] {
-            assert_eq!(meant(written).as_deref(), Some(here), "{written}");
+            assert_eq!(meant(written).as_deref(), Some(accepted), "{written}");
         }
         for none in ["fortnights", "", "deg", "foo/s"] {
             assert_eq!(meant(none), None, "{none}");

@@ -83,11 +83,11 @@ fn parse(text: impl BufRead) -> Result<DMatrix<f64>, String> {
     }
 }
 
-fn numbers<T: FromStr>(number: usize, line: &str, count: usize, what: &str) -> Result<Vec<T>, String> {
+fn numbers<T: FromStr>(number: usize, line: &str, count: usize, expected: &str) -> Result<Vec<T>, String> {
     let parsed: Option<Vec<T>> = line.split_whitespace().map(|word| word.parse().ok()).collect();
     parsed.filter(|parsed| parsed.len() == count).ok_or_else(|| {
         let shown: String = line.chars().take(40).collect();
-        format!("line {number}: must have {what}, got `{shown}`")
+        format!("line {number}: must have {expected}, got `{shown}`")
     })
 }
 

@@ -100,21 +100,21 @@ impl Structure {
         if let Some(i) = (0..order).find(|i| mass[(*i, *i)] <= 0.0) {
             return fault(&format!("mass[{i}][{i}]"), format!("must be positive, got {}", mass[(i, i)]));
         }
-        let turned = match rotation {
+        let hub_rotation = match rotation {
             None => DVector::from_fn(order, |i, _| if i == hub { 1.0 } else { 0.0 }),
-            Some(turned) if turned.len() == order => DVector::from_column_slice(turned),
-            Some(turned) => {
+            Some(rotation) if rotation.len() == order => DVector::from_column_slice(rotation),
+            Some(rotation) => {
                 let why =
-                    format!("must have one number for each of {order} coordinates, got {}", turned.len());
+                    format!("must have one number for each of {order} coordinates, got {}", rotation.len());
                 return fault("rotation", why);
             }
         };
-        if turned[hub] != 1.0 {
-            let why = format!("must be 1, as the angle of the hub itself, got {}", turned[hub]);
+        if hub_rotation[hub] != 1.0 {
+            let why = format!("must be 1, as the angle of the hub itself, got {}", hub_rotation[hub]);
             return fault(&format!("rotation[{hub}]"), why);
         }
-        let strain = &stiffness * &turned;
-        let bound = ROUNDING * stiffness.amax() * turned.amax();
+        let strain = &stiffness * &hub_rotation;
+        let bound = ROUNDING * stiffness.amax() * hub_rotation.amax();
         if let Some(i) = (0..order).find(|i| strain[*i].abs() > bound) {
             let why = if rotation.is_some() {
                 format!("must strain nothing, but the stiffness gives {} for coordinate {i}", strain[i])
@@ -128,7 +128,7 @@ impl Structure {
             let key = rotation.map_or_else(|| format!("stiffness[{i}][{hub}]"), |_| "rotation".to_owned());
             return Err(ConfigError::new(key, why));
         }
-        Ok(Self { mass, stiffness, hub, rotation: turned })
+        Ok(Self { mass, stiffness, hub, rotation: hub_rotation })
     }
 
     /// Returns the mass matrix, of the order of the coordinates.
@@ -190,7 +190,7 @@ impl Structure {
             0 => coupling[i],
             _ => observed[column - 1][elastic[i]],
         });
-        let solved = eigen::modes(block(&self.stiffness), mass, &functionals).map_err(|which| match which {
+        let solved = eigen::modes(block(&self.stiffness), mass, &functionals).map_err(|error| match error {
             EigenError::Range => ConfigError::new("mass", TOO_FAR_APART),
             #[cfg(not(feature = "matrices"))]
             EigenError::LeftOut => {

@@ -58,7 +58,7 @@ pub trait LaneFloat:
 
     /// Returns `yes` in the lanes where the mask is set, and `no` in the others.
     #[must_use]
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self;
+    fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self;
 
     /// Returns the nearest integer (ties to even), whether it is odd, and whether its second binary digit is 1; these
     /// distinguish quarter turns. Valid below 2^51 in absolute value.
@@ -182,8 +182,8 @@ impl LaneFloat for f64 {
     }
 
     #[inline(always)]
-    fn select(mask: bool, yes: Self, no: Self) -> Self {
-        if mask { yes } else { no }
+    fn select(mask: bool, chosen: Self, otherwise: Self) -> Self {
+        if mask { chosen } else { otherwise }
     }
 
     #[inline(always)]

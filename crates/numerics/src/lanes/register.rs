@@ -133,8 +133,8 @@ impl<S: Simd, const N: usize> LaneFloat for Lanes<S, N> {
     #[inline(always)]
     fn with_lane(self, lane: usize, value: f64) -> Self {
         // Selected in the registers: a number written to memory would stall the load of the whole register.
-        let (at, half) = (self.load(&PLACES) - self.splat(lane as f64), self.splat(0.5));
-        Self::select(at.abs().lt(half), self.splat(value), self)
+        let (offset, half) = (self.load(&PLACES) - self.splat(lane as f64), self.splat(0.5));
+        Self::select(offset.abs().lt(half), self.splat(value), self)
     }
 
     #[inline(always)]
@@ -165,9 +165,9 @@ impl<S: Simd, const N: usize> LaneFloat for Lanes<S, N> {
     }
 
     #[inline(always)]
-    fn select(mask: Self::Mask, yes: Self, no: Self) -> Self {
-        let simd = yes.simd;
-        each!(yes, is = mask, a = yes, b = no => {
+    fn select(mask: Self::Mask, chosen: Self, otherwise: Self) -> Self {
+        let simd = chosen.simd;
+        each!(chosen, is = mask, a = chosen, b = otherwise => {
             let (a, b) = (simd.transmute_u64s_f64s(a), simd.transmute_u64s_f64s(b));
             simd.transmute_f64s_u64s(simd.select_u64s(is, a, b))
         })

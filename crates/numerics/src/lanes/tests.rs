@@ -84,9 +84,9 @@ impl SimdTask for Pairs {
                 let b: Vec<f64> = (0..lanes).map(|lane| ODD[(with + 3 * lane) % ODD.len()]).collect();
                 for (index, all) in results(kind.load(&a), kind.load(&b)).into_iter().enumerate() {
                     for lane in 0..lanes {
-                        let (got, alone) = (all.lane(lane), results(a[lane], b[lane])[index]);
-                        let same = got.to_bits() == alone.to_bits() || got.is_nan() && alone.is_nan();
-                        assert!(same, "operation {index} of {} and {}: {got} for {alone}", a[lane], b[lane]);
+                        let (got, single) = (all.lane(lane), results(a[lane], b[lane])[index]);
+                        let same = got.to_bits() == single.to_bits() || got.is_nan() && single.is_nan();
+                        assert!(same, "operation {index} of {} and {}: {got} for {single}", a[lane], b[lane]);
                     }
                 }
             }

@@ -167,10 +167,10 @@ impl ActuatorSpec for PythonActuator {
                 period: setting.cycle.map(Span::seconds),
             })
             .collect();
-        let method = Python::attach(|py| Method::new(self.object.begun(py, (reported,)), "command"));
+        let method = Python::attach(|py| Method::new(self.object.started_copy(py, (reported,)), "command"));
         Box::new(Acting {
             method,
-            asked: [0.0; 3],
+            demanded: [0.0; 3],
             torques: [0.0; 3],
             inertias: settings.iter().map(|setting| setting.inertia).collect(),
             demands: vec![Demand::Torque(0.0); settings.len()],
@@ -192,7 +192,7 @@ impl ActuatorSpec for PythonActuator {
 #[derive(Debug)]
 struct Acting {
     method: Method,
-    asked: [f64; 3],
+    demanded: [f64; 3],
     torques: [f64; 3],
     inertias: Vec<f64>,
     demands: Vec<Demand>,
@@ -208,10 +208,10 @@ impl Acting {
             (Demanded { now, demands: demands.clone(), rigid, field: *field }, demands.len());
         let reported = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, demanded)?.into_any());
-            method.call(py, argument, |told| {
-                let effort = match told.cast::<Effort>() {
+            method.call(py, argument, |returned| {
+                let effort = match returned.cast::<Effort>() {
                     Ok(effort) => effort.get().clone(),
-                    Err(_) => Effort { torques: numbers(told)?, after: None },
+                    Err(_) => Effort { torques: numbers(returned)?, after: None },
                 };
                 let count = effort.torques.len();
                 if count != axes || effort.torques.iter().any(|torque| !torque.is_finite()) {
@@ -243,8 +243,8 @@ impl Part for Acting {
 impl Actuator for Acting {
     fn command(&mut self, now: Exact, demands: &[Demand], rigid: [f64; 3]) {
         self.demands = demands.iter().take(self.inertias.len()).copied().collect();
-        for (asked, demand) in self.asked.iter_mut().zip(&self.demands) {
-            *asked = if let Demand::Torque(torque) = *demand { torque } else { 0.0 };
+        for (value, demand) in self.demanded.iter_mut().zip(&self.demands) {
+            *value = if let Demand::Torque(torque) = *demand { torque } else { 0.0 };
         }
         self.act(now, rigid);
     }
@@ -263,7 +263,7 @@ impl Actuator for Acting {
 
     fn effort(&self, axis: usize) -> AxisEffort {
         AxisEffort {
-            demanded: self.asked[axis],
+            demanded: self.demanded[axis],
             held: self.torques[axis],
             firing: 0.0,
             reduced_moment: self.torques[axis] / self.inertias[axis],

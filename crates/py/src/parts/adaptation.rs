@@ -56,8 +56,9 @@ impl AdaptationSpec for PythonAdaptation {
 
     fn start(&self, value: f64, seed: Seed) -> Box<dyn Adaptation> {
         let method = Python::attach(|py| {
-            let begun = Py::new(py, Draws(seed)).and_then(|draws| self.object.begun(py, (value, draws)));
-            Method::new(begun, "learn")
+            let started =
+                Py::new(py, Draws(seed)).and_then(|draws| self.object.started_copy(py, (value, draws)));
+            Method::new(started, "learn")
         });
         Box::new(Learning { method, value, last: f64::NAN })
     }

@@ -25,8 +25,8 @@ pub struct Innovation {
 }
 
 /// An innovation and its covariance: three angles, or the two numbers of a direction.
-fn innovation(of: &Bound<'_, PyAny>) -> PyResult<Innovation> {
-    let (values, covariance): (Bound<'_, PyAny>, Bound<'_, PyAny>) = of.extract()?;
+fn innovation(object: &Bound<'_, PyAny>) -> PyResult<Innovation> {
+    let (values, covariance): (Bound<'_, PyAny>, Bound<'_, PyAny>) = object.extract()?;
     let values = numbers(&values)?;
     let rows = covariance.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>()?;
     let count = values.len();
@@ -43,12 +43,12 @@ fn innovation(of: &Bound<'_, PyAny>) -> PyResult<Innovation> {
 
 /// Reads the filter state that a part returns: attitude, bias and covariance, and the innovation of a sample that
 /// measured the attitude; `None` before there is one.
-pub fn from_python(of: &Bound<'_, PyAny>) -> PyResult<Option<FilterUpdate>> {
-    if of.is_none() {
+pub fn from_python(object: &Bound<'_, PyAny>) -> PyResult<Option<FilterUpdate>> {
+    if object.is_none() {
         return Ok(None);
     }
-    let of = of.try_iter()?.collect::<PyResult<Vec<_>>>()?;
-    let (q, bias, covariance, learnt) = match &of[..] {
+    let items = object.try_iter()?.collect::<PyResult<Vec<_>>>()?;
+    let (q, bias, covariance, learnt) = match &items[..] {
         [q, bias, covariance] => (q, bias, covariance, None),
         [q, bias, covariance, learnt] => (q, bias, covariance, Some(learnt)),
         _ => {
@@ -65,7 +65,7 @@ pub fn from_python(of: &Bound<'_, PyAny>) -> PyResult<Option<FilterUpdate>> {
     }
     let covariance = Matrix6::from_fn(|row, column| rows[row][column]);
     let learnt = learnt.filter(|learnt| !learnt.is_none()).map(innovation).transpose()?;
-    Ok(Some((AttitudeFilterState { attitude: q / q.norm(), bias, covariance, swinging: None }, learnt)))
+    Ok(Some((AttitudeFilterState { attitude: q / q.norm(), bias, covariance, elastic: None }, learnt)))
 }
 
 /// Returns the filter's row of the log, for this true orientation and true bias of the gyro (rad/s).

@@ -113,7 +113,7 @@ impl Law for Deciding {
         now: Instant,
         cause: DecisionCause,
         goal: &Setpoint,
-        belief: &StateEstimate,
+        estimate: &StateEstimate,
     ) -> ControlOutput {
         let cause = match cause {
             DecisionCause::Start => 0.0,
@@ -132,8 +132,8 @@ impl Law for Deciding {
                 now.seconds(),
                 since,
                 cause,
-                belief.angle,
-                belief.rate,
+                estimate.angle,
+                estimate.rate,
                 angle,
                 rate,
                 states,

@@ -205,7 +205,10 @@ impl EstimatorSpec for PythonEstimator {
             seed,
         };
         let method = Python::attach(|py| {
-            Method::new(Py::new(py, reported).and_then(|told| self.object.begun(py, (told,))), "take")
+            Method::new(
+                Py::new(py, reported).and_then(|context| self.object.started_copy(py, (context,))),
+                "take",
+            )
         });
         Box::new(Observing { method, also: self.also })
     }
@@ -223,28 +226,28 @@ struct Observing {
 }
 
 /// Writes an estimator's state estimate about each axis.
-fn write(told: &Bound<'_, PyAny>, beliefs: &mut [StateEstimate]) -> PyResult<()> {
-    if told.is_none() {
+fn write(returned: &Bound<'_, PyAny>, estimates: &mut [StateEstimate]) -> PyResult<()> {
+    if returned.is_none() {
         return Ok(());
     }
     let wrong = |found: String| {
-        let axes = beliefs.len();
+        let axes = estimates.len();
         PyValueError::new_err(format!(
             "an estimator must return angle and rate about each of {axes} axes, or with them displacement, rate and frequency of \
              the dominant mode, or None, got {found}"
         ))
     };
-    let rows = told.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>()?;
-    if rows.len() != beliefs.len() {
+    let rows = returned.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>()?;
+    if rows.len() != estimates.len() {
         return Err(wrong(format!("{} rows", rows.len())));
     }
     if let Some(row) = rows.iter().find(|row| ![2, 5].contains(&row.len())) {
         return Err(wrong(format!("a row of {} numbers", row.len())));
     }
-    for (belief, row) in beliefs.iter_mut().zip(rows) {
-        [belief.angle, belief.rate] = [row[0], row[1]];
+    for (estimate, row) in estimates.iter_mut().zip(rows) {
+        [estimate.angle, estimate.rate] = [row[0], row[1]];
         if let [_, _, displacement, rate, frequency] = row[..] {
-            belief.dominant = DominantMode { displacement, rate, frequency };
+            estimate.dominant = DominantMode { displacement, rate, frequency };
         }
     }
     Ok(())
@@ -286,27 +289,27 @@ impl Estimator for Observing {
         }
     }
 
-    fn update(&mut self, taken: &EngineTaken<'_>, beliefs: &mut [StateEstimate]) {
-        let axes = 0..beliefs.len();
+    fn update(&mut self, context: &EngineTaken<'_>, estimates: &mut [StateEstimate]) {
+        let axes = 0..estimates.len();
         let truth = |axis| {
-            let state = (taken.truth)(axis);
+            let state = (context.truth)(axis);
             (state.rigid_angle, state.rigid_rate)
         };
         let reported = Taken {
-            now: taken.now,
-            measured: taken.measured.map(|all| all.iter().map(|pair| (*pair).into()).collect()),
-            readings: taken
+            now: context.now,
+            measured: context.measured.map(|all| all.iter().map(|pair| (*pair).into()).collect()),
+            readings: context
                 .readings
                 .iter()
                 .map(|reading| reading.as_ref().map(Reading::from_engine))
                 .collect(),
-            origin: *taken.origin,
+            origin: *context.origin,
             truth: axes.clone().map(truth).collect(),
-            torque: axes.map(taken.held_torque).collect(),
+            torque: axes.map(context.held_torque).collect(),
         };
         Python::attach(|py| {
             let argument = || Ok(Bound::new(py, reported)?.into_any());
-            self.method.call(py, argument, |told| write(told, beliefs))
+            self.method.call(py, argument, |returned| write(returned, estimates))
         });
     }
 

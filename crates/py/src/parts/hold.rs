@@ -53,11 +53,11 @@ fn phase(label: &str) -> PyResult<Phase> {
     })
 }
 
-fn finite(what: &str, value: f64) -> PyResult<f64> {
+fn finite(name: &str, value: f64) -> PyResult<f64> {
     if value.is_finite() {
         Ok(value)
     } else {
-        Err(PyValueError::new_err(format!("{what} must be a finite number, got {value}")))
+        Err(PyValueError::new_err(format!("{name} must be a finite number, got {value}")))
     }
 }
 

@@ -15,11 +15,11 @@ use pyo3::types::PyAny;
 pub struct Instant(pub Exact);
 
 /// Returns a span of `seconds` seconds, which must not be negative.
-pub fn span(seconds: f64, what: &str) -> PyResult<Span> {
+pub fn span(seconds: f64, name: &str) -> PyResult<Span> {
     if seconds >= 0.0 && seconds.is_finite() {
         Ok(Span::from_seconds(seconds))
     } else {
-        Err(PyValueError::new_err(format!("{what} must be a time of 0 s or more, got {seconds}")))
+        Err(PyValueError::new_err(format!("{name} must be a time of 0 s or more, got {seconds}")))
     }
 }
 

@@ -56,7 +56,7 @@ pub struct Event {
     now: Exact,
     cause: &'static str,
     goal: Setpoint,
-    belief: StateEstimate,
+    estimate: StateEstimate,
 }
 
 #[pymethods]
@@ -82,13 +82,13 @@ impl Event {
     /// Angle (rad).
     #[getter]
     fn angle(&self) -> f64 {
-        self.belief.angle
+        self.estimate.angle
     }
 
     /// Rate (rad/s).
     #[getter]
     fn rate(&self) -> f64 {
-        self.belief.rate
+        self.estimate.rate
     }
 
     /// Angle of the target now (rad).
@@ -118,42 +118,42 @@ impl Event {
     /// Length of the rotation vector from the target, of which `angle` is a component (rad); 0 of a body with one angle.
     #[getter]
     fn whole(&self) -> f64 {
-        self.belief.total_angle
+        self.estimate.total_angle
     }
 
     /// How fast the magnetic field along the axis changes (T/s).
     #[getter]
     fn field_rate(&self) -> f64 {
-        self.belief.field_rate
+        self.estimate.field_rate
     }
 
     /// Change of the rate that is commanded, and not yet executed (rad/s).
     #[getter]
     fn queued(&self) -> f64 {
-        self.belief.queued_rate
+        self.estimate.queued_rate
     }
 
     /// The dominant mode: displacement (rad), its rate (rad/s) and frequency (rad/s).
     #[getter]
     fn dominant(&self) -> (f64, f64, f64) {
-        let dominant = self.belief.dominant;
+        let dominant = self.estimate.dominant;
         (dominant.displacement, dominant.rate, dominant.frequency)
     }
 
     /// The elastic modes: rate (rad/s), frequency (rad/s), and its jump for each jump of the rigid rate.
     #[getter]
     fn elastic(&self) -> Vec<(f64, f64, f64)> {
-        self.belief.elastic.iter().map(|mode| (mode.rate, mode.frequency, mode.influence)).collect()
+        self.estimate.elastic.iter().map(|mode| (mode.rate, mode.frequency, mode.influence)).collect()
     }
 
     /// Whether the elastic modes may be acted on.
     #[getter]
     fn trusted(&self) -> bool {
-        self.belief.elastic_is_trusted
+        self.estimate.elastic_is_trusted
     }
 
     fn __repr__(&self) -> String {
-        let StateEstimate { angle, rate, .. } = self.belief;
+        let StateEstimate { angle, rate, .. } = self.estimate;
         format!("<flexsc.parts.Event {} at {} s: angle {angle}, rate {rate}>", self.cause, self.now)
     }
 }
@@ -215,9 +215,9 @@ impl PythonLaw {
 }
 
 /// A period, which is longer than nothing.
-pub fn positive(seconds: f64, what: &str) -> PyResult<Span> {
-    match span(seconds, what)? {
-        Span::ZERO => Err(PyValueError::new_err(format!("{what} must be longer than 0 s"))),
+pub fn positive(seconds: f64, name: &str) -> PyResult<Span> {
+    match span(seconds, name)? {
+        Span::ZERO => Err(PyValueError::new_err(format!("{name} must be longer than 0 s"))),
         period => Ok(period),
     }
 }
@@ -225,8 +225,9 @@ pub fn positive(seconds: f64, what: &str) -> PyResult<Span> {
 impl LawSpec for PythonLaw {
     fn start(&self, authority: &EngineAuthority) -> Box<dyn Law> {
         let method = Python::attach(|py| {
-            let begun = Py::new(py, Authority(*authority)).and_then(|with| self.object.begun(py, (with,)));
-            Method::new(begun, "decide")
+            let started =
+                Py::new(py, Authority(*authority)).and_then(|with| self.object.started_copy(py, (with,)));
+            Method::new(started, "decide")
         });
         Box::new(Deciding {
             method,
@@ -283,21 +284,27 @@ impl Part for Deciding {
 }
 
 impl Law for Deciding {
-    fn decide(&mut self, now: Exact, cause: DecisionCause, goal: &Setpoint, belief: &StateEstimate) -> Held {
+    fn decide(
+        &mut self,
+        now: Exact,
+        cause: DecisionCause,
+        goal: &Setpoint,
+        estimate: &StateEstimate,
+    ) -> Held {
         let cause = match cause {
             DecisionCause::Start => "start",
             DecisionCause::Timeout => "timeout",
             DecisionCause::Guard(0) if self.above => "at_least",
             DecisionCause::Guard(_) => "at_most",
         };
-        let event = Event { now, cause, goal: *goal, belief: belief.clone() };
+        let event = Event { now, cause, goal: *goal, estimate: estimate.clone() };
         let reported = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, event)?.into_any());
-            self.method.call(py, argument, |told| {
-                if let Ok(hold) = told.cast::<Hold>() {
+            self.method.call(py, argument, |returned| {
+                if let Ok(hold) = returned.cast::<Hold>() {
                     return Ok(*hold.get());
                 }
-                let kind = told.get_type().name()?;
+                let kind = returned.get_type().name()?;
                 Err(PyTypeError::new_err(format!("decide must return a flexsc.Hold, got {kind}")))
             })
         });

@@ -31,7 +31,7 @@ impl Object {
     }
 
     /// A copy of it, begun with an argument.
-    pub fn begun<'py, A>(&self, py: Python<'py>, with: A) -> PyResult<Bound<'py, PyAny>>
+    pub fn started_copy<'py, A>(&self, py: Python<'py>, with: A) -> PyResult<Bound<'py, PyAny>>
     where
         A: IntoPyObject<'py, Target = PyTuple, Output = Bound<'py, PyTuple>, Error = PyErr>
             + pyo3::call::PyCallArgs<'py>,
@@ -55,7 +55,7 @@ impl Method {
     pub fn new(part: PyResult<Bound<'_, PyAny>>, name: &str) -> Self {
         let both = part.and_then(|part| Ok((Object::new(&part), part.getattr(name)?.unbind())));
         let method = Self { at_work: None, halted: OnceLock::new() };
-        match method.kept(both) {
+        match method.ok_or_halt(both) {
             Some(both) => Self { at_work: Some(both), ..method },
             None => method,
         }
@@ -75,7 +75,7 @@ impl Method {
     ) -> Option<T> {
         let (_, method) = self.at_work()?;
         let reported = argument().and_then(|argument| method.bind(py).call1((argument,)));
-        self.kept(reported.and_then(|told| read(&told)))
+        self.ok_or_halt(reported.and_then(|returned| read(&returned)))
     }
 
     /// Calls another of the part's methods.
@@ -84,12 +84,12 @@ impl Method {
         py: Python<'py>,
         call: impl FnOnce(&Bound<'py, PyAny>) -> PyResult<T>,
     ) -> Option<T> {
-        self.kept(call(self.at_work()?.0.0.bind(py)))
+        self.ok_or_halt(call(self.at_work()?.0.0.bind(py)))
     }
 
     /// Returns the value of a call; an error is kept.
-    fn kept<T>(&self, told: PyResult<T>) -> Option<T> {
-        told.map_err(|error| self.halted.set(PartError::new(error))).ok()
+    fn ok_or_halt<T>(&self, returned: PyResult<T>) -> Option<T> {
+        returned.map_err(|error| self.halted.set(PartError::new(error))).ok()
     }
 
     pub fn halted(&self) -> Option<PartError> {
@@ -112,14 +112,14 @@ pub fn overrides(part: &Bound<'_, PyAny>, role: &str, method: &str) -> PyResult<
 }
 
 /// Numbers of anything that can be iterated over.
-pub fn numbers(of: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
-    of.try_iter()?.map(|number| number?.extract()).collect()
+pub fn numbers(object: &Bound<'_, PyAny>) -> PyResult<Vec<f64>> {
+    object.try_iter()?.map(|number| number?.extract()).collect()
 }
 
 /// Returns the numbers of a sequence, which must be exactly `N`.
-pub fn exactly<const N: usize>(of: &Bound<'_, PyAny>, what: &str) -> PyResult<[f64; N]> {
-    let all = numbers(of)?;
+pub fn exactly<const N: usize>(object: &Bound<'_, PyAny>, name: &str) -> PyResult<[f64; N]> {
+    let all = numbers(object)?;
     let count = all.len();
-    let wrong = || format!("{what} must be {N} numbers, got {count}");
+    let wrong = || format!("{name} must be {N} numbers, got {count}");
     all.try_into().map_err(|_| pyo3::exceptions::PyValueError::new_err(wrong()))
 }

@@ -20,13 +20,13 @@ pub fn four(q: &Quaternion<f64>) -> Four {
 }
 
 /// An angle, of a body with one.
-pub fn angle(at: &Orientation) -> Option<f64> {
-    if let Orientation::Angle(angle) = at { Some(*angle) } else { None }
+pub fn angle(orientation: &Orientation) -> Option<f64> {
+    if let Orientation::Angle(angle) = orientation { Some(*angle) } else { None }
 }
 
 /// An attitude, of a body with three axes.
-pub fn attitude(at: &Orientation) -> Option<Four> {
-    if let Orientation::Attitude(q) = at { Some(four(q)) } else { None }
+pub fn attitude(orientation: &Orientation) -> Option<Four> {
+    if let Orientation::Attitude(q) = orientation { Some(four(q)) } else { None }
 }
 
 /// Reading of a sensor: the `angle` (rad) or the `attitude` (w, x, y, z), the true one if the sensor measures neither;
@@ -51,9 +51,9 @@ impl Reading {
 
     /// The engine's reading, of a body that points there.
     pub fn within(&self, truth: &Orientation) -> PyResult<Engine> {
-        let at = self.at.unwrap_or(*truth);
+        let orientation = self.at.unwrap_or(*truth);
         let same = matches!(
-            (&at, truth),
+            (&orientation, truth),
             (Orientation::Angle(_), Orientation::Angle(_))
                 | (Orientation::Attitude(_), Orientation::Attitude(_))
         );
@@ -62,7 +62,7 @@ impl Reading {
                 "a reading has an angle of a body with one angle, an attitude of a body with three axes";
             return Err(PyValueError::new_err(why));
         }
-        Ok(Engine { at, rate: self.rate, sight: self.sight })
+        Ok(Engine { at: orientation, rate: self.rate, sight: self.sight })
     }
 }
 
@@ -78,8 +78,8 @@ impl Reading {
         inertial: Option<&Bound<'_, PyAny>>,
         is_direction: bool,
     ) -> PyResult<Self> {
-        let attitude = attitude.map(|of| exactly::<4>(of, "attitude")).transpose()?;
-        let at = match (angle, attitude) {
+        let attitude = attitude.map(|object| exactly::<4>(object, "attitude")).transpose()?;
+        let orientation = match (angle, attitude) {
             (Some(_), Some(_)) => {
                 return Err(PyValueError::new_err("a reading has either an angle or an attitude"));
             }
@@ -97,10 +97,10 @@ impl Reading {
             }
             (None, None) => None,
         };
-        let of = |vector: Option<&Bound<'_, PyAny>>, what: &str| {
-            vector.map(|of| exactly::<3>(of, what)).transpose()
+        let vector_of = |vector: Option<&Bound<'_, PyAny>>, name: &str| {
+            vector.map(|object| exactly::<3>(object, name)).transpose()
         };
-        let measurement = match (of(vector, "vector")?, of(inertial, "inertial")?) {
+        let measurement = match (vector_of(vector, "vector")?, vector_of(inertial, "inertial")?) {
             (Some(vector), Some(inertial)) => Some(VectorMeasurement {
                 vector: Vector::from(vector),
                 inertial: Vector::from(inertial),
@@ -116,7 +116,7 @@ impl Reading {
                 Err(_) => Some(exactly::<3>(rate, "rate")?),
             },
         };
-        Ok(Self { at, rate, sight: measurement })
+        Ok(Self { at: orientation, rate, sight: measurement })
     }
 
     #[getter]
@@ -136,17 +136,17 @@ impl Reading {
 
     #[getter]
     fn vector(&self) -> Option<Three> {
-        self.sight.map(|sight| sight.vector.into()).map(<[f64; 3]>::into)
+        self.sight.map(|measurement| measurement.vector.into()).map(<[f64; 3]>::into)
     }
 
     #[getter]
     fn inertial(&self) -> Option<Three> {
-        self.sight.map(|sight| sight.inertial.into()).map(<[f64; 3]>::into)
+        self.sight.map(|measurement| measurement.inertial.into()).map(<[f64; 3]>::into)
     }
 
     #[getter]
     fn is_direction(&self) -> bool {
-        self.sight.is_some_and(|sight| sight.is_direction)
+        self.sight.is_some_and(|measurement| measurement.is_direction)
     }
 
     fn __deepcopy__(&self, _memo: &Bound<'_, PyAny>) -> Self {

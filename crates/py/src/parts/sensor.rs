@@ -39,8 +39,9 @@ impl PythonSensor {
 impl SensorSpec for PythonSensor {
     fn start(&self, axes: usize, seed: Seed) -> Box<dyn Sensor> {
         let method = Python::attach(|py| {
-            let begun = Py::new(py, Draws(seed)).and_then(|draws| self.object.begun(py, (axes, draws)));
-            Method::new(begun, "read")
+            let started =
+                Py::new(py, Draws(seed)).and_then(|draws| self.object.started_copy(py, (axes, draws)));
+            Method::new(started, "read")
         });
         Box::new(Reads(method))
     }
@@ -81,12 +82,12 @@ impl Sensor for Reads {
     ) -> Option<EngineReading> {
         Python::attach(|py| {
             let argument = || Ok(Bound::new(py, Truth { now, truth: *truth })?.into_any());
-            self.0.call(py, argument, |told| {
-                if told.is_none() {
+            self.0.call(py, argument, |returned| {
+                if returned.is_none() {
                     return Ok(None);
                 }
-                let Ok(reading) = told.cast::<Reading>() else {
-                    let kind = told.get_type().name()?;
+                let Ok(reading) = returned.cast::<Reading>() else {
+                    let kind = returned.get_type().name()?;
                     let why = format!("read must return a flexsc.Reading or None, got {kind}");
                     return Err(PyTypeError::new_err(why));
                 };

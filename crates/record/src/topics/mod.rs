@@ -22,15 +22,15 @@ const COUNT: usize = PARTS[0].len() + PARTS[1].len() + PARTS[2].len() + PARTS[3]
 pub const TOPICS: &[Topic] = {
     const ALL: [Topic; COUNT] = {
         let mut all = [Plumes::TOPIC; COUNT];
-        let (mut part, mut of_part, mut index) = (0, 0, 0);
+        let (mut part, mut in_part, mut index) = (0, 0, 0);
         while part < PARTS.len() {
-            if of_part < PARTS[part].len() {
-                all[index] = PARTS[part][of_part];
-                of_part += 1;
+            if in_part < PARTS[part].len() {
+                all[index] = PARTS[part][in_part];
+                in_part += 1;
                 index += 1;
             } else {
                 part += 1;
-                of_part = 0;
+                in_part = 0;
             }
         }
         all
@@ -115,7 +115,7 @@ pub(crate) fn label_of(identifier: &str) -> String {
         &Light::LABELS,
     ];
     let others = [&Phase::LABELS, &Trigger::LABELS, &Sliding::LABELS, &Decision::LABELS, &LogLevel::LABELS];
-    let mut labels = others.iter().chain(&states).flat_map(|of| of.values);
+    let mut labels = others.iter().chain(&states).flat_map(|field| field.values);
     let label = labels.find(|label| LoggedEnum::identifier(label) == identifier);
     label.map_or_else(|| identifier.to_owned(), |&label| label.to_owned())
 }

@@ -22,8 +22,8 @@ labels! {
 label_cells!(Sliding);
 
 impl From<SlipDirection> for Sliding {
-    fn from(slip: SlipDirection) -> Self {
-        match slip {
+    fn from(direction: SlipDirection) -> Self {
+        match direction {
             SlipDirection::Backward => Self::Backward,
             SlipDirection::Stuck => Self::Stuck,
             SlipDirection::Forward => Self::Forward,

@@ -10,20 +10,20 @@ use crate::chatter::{CYCLES, shortest_window};
 use crate::host::LaneHost;
 
 impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
-    /// Begins a cycle of all lanes, and ends the runs of those that chatter. Returns true if the flight goes on.
+    /// Begins a cycle of all lanes, and ends the runs that chatter. Returns true if any run continues.
     #[inline(always)]
     pub(super) fn cycle(&mut self, host: &mut dyn LaneHost) -> bool {
-        if self.cycles >= self.looked_at {
+        if self.cycles >= self.next_chatter_check {
             self.end_windows(host);
         }
         self.cycles += 1;
-        !Self::IS_ALONE || self.active[0]
+        !Self::IS_SINGLE || self.active[0]
     }
 
     /// Ends the windows of switchings that are full.
     #[inline(never)]
     fn end_windows(&mut self, host: &mut dyn LaneHost) {
-        self.looked_at = u64::MAX;
+        self.next_chatter_check = u64::MAX;
         for lane in 0..R::LANES {
             if !self.active[lane] {
                 continue;
@@ -38,7 +38,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
                 self.marked = self.marked.with_lane(lane, self.now.lane(lane));
                 self.marks[lane] = self.cycles;
             }
-            self.looked_at = self.looked_at.min(self.marks[lane] + CYCLES);
+            self.next_chatter_check = self.next_chatter_check.min(self.marks[lane] + CYCLES);
         }
     }
 }

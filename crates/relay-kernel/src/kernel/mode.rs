@@ -17,27 +17,27 @@ pub struct LaneMode<R, D> {
     pub excitability: R,
     pub damping: D,
     /// Displacement from 0 and quadrature (rad), at the start and at the end of the motion.
-    pub at: [R; 2],
+    pub start: [R; 2],
     pub end: [R; 2],
 }
 
 impl<R: LaneFloat, D: DampingRule<R>> LaneMode<R, D> {
     /// Returns the mode about its equilibrium under an angular acceleration (rad/s²).
     #[inline(always)]
-    pub fn depart(&self, moment: R) -> PredictedMode<R, D> {
+    pub fn from_equilibrium(&self, moment: R) -> PredictedMode<R, D> {
         let equilibrium = self.excitability * moment;
         PredictedMode {
             frequency: self.frequency,
             equilibrium,
-            displacement: self.at[0] - equilibrium,
-            quadrature: self.at[1],
+            displacement: self.start[0] - equilibrium,
+            quadrature: self.start[1],
             damping: self.damping,
         }
     }
 
     /// Stores the state at the end of the motion.
     #[inline(always)]
-    pub fn store_end(&mut self, moved: &PredictedMode<R, D>) {
-        self.end = [moved.equilibrium + moved.displacement, moved.quadrature];
+    pub fn store_end(&mut self, motion: &PredictedMode<R, D>) {
+        self.end = [motion.equilibrium + motion.displacement, motion.quadrature];
     }
 }

@@ -17,7 +17,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     pub(super) fn check_band(
         &mut self,
         host: &mut dyn LaneHost,
-        place: CyclePhase,
+        phase: CyclePhase,
         moment: R,
         span: R,
         until: LaneTime<R>,
@@ -25,7 +25,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let zero = span.splat(0.0);
         let (mut centre, mut reach) = (zero, zero);
         for mode in &self.modes {
-            let mode = mode.depart(moment);
+            let mode = mode.from_equilibrium(moment);
             centre = centre + mode.equilibrium;
             reach = reach + mode.amplitude_bound();
         }
@@ -33,40 +33,40 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let (mut low, mut high) = (self.angle.min(end), self.angle.max(end));
         // Vertex of the parabola, if it lies within the motion.
         let crest = self.angle - span.splat(0.5) * self.rate * (self.rate / moment);
-        let turns = (self.rate * (self.rate + moment * span)).le(zero);
-        low = R::select(turns, low.min(crest), low);
-        high = R::select(turns, high.max(crest), high);
+        let has_vertex = (self.rate * (self.rate + moment * span)).le(zero);
+        low = R::select(has_vertex, low.min(crest), low);
+        high = R::select(has_vertex, high.max(crest), high);
         let within = (high + centre + reach).le(self.band) & (-self.band).le(low + centre - reach);
         if within.all() {
             return;
         }
-        let strays = R::select(within, zero, span.splat(1.0));
+        let may_leave = R::select(within, zero, span.splat(1.0));
         self.write_snapshot();
         for lane in 0..R::LANES {
-            if self.active[lane] && strays.lane(lane) > 0.0 {
+            if self.active[lane] && may_leave.lane(lane) > 0.0 {
                 self.lane_state(lane);
-                host.on_possible_band_exit(lane, place, &self.sight, until.lane(lane));
+                host.on_possible_band_exit(lane, phase, &self.lane_state, until.lane(lane));
             }
         }
     }
 
     /// Notifies the host of a switching in each lane.
     #[inline(always)]
-    pub(super) fn report_switchings(&mut self, host: &mut dyn LaneHost, to: CyclePhase) {
-        if !self.listens {
+    pub(super) fn report_switchings(&mut self, host: &mut dyn LaneHost, next: CyclePhase) {
+        if !self.wants_switchings {
             return;
         }
         self.write_snapshot();
         for lane in 0..R::LANES {
             if self.active[lane] {
                 self.lane_state(lane);
-                host.on_switching(lane, to, &self.sight);
+                host.on_switching(lane, next, &self.lane_state);
             }
         }
     }
 
-    /// Hands the run of the first lane back to the host, at the start of the motion at `place`.
-    pub(super) fn hand_over(&mut self, host: &mut dyn LaneHost, place: CyclePhase) {
+    /// Hands the run of the first lane back to the host, at the start of the motion of `phase`.
+    pub(super) fn hand_over(&mut self, host: &mut dyn LaneHost, phase: CyclePhase) {
         self.active[0] = false;
         self.write_snapshot();
         self.lane_state(0);
@@ -79,12 +79,12 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             tracks.push([re, im, axis[0].lane(0), axis[1].lane(0), equilibrium, x, y]);
         }
         host.hand_over(LaneHandover {
-            place: Some(place),
-            from: self.sight.clone(),
-            pushed: self.pushed.lane(0),
-            // The cycle that this place is of has been counted.
-            switched: (3 * (self.cycles - 1 - self.marks[0]) + place as u64, self.marked.lane(0)),
-            seen: self.seen.lane(0),
+            phase: Some(phase),
+            from: self.lane_state.clone(),
+            push_start: self.push_start.lane(0),
+            // The current cycle has been counted already.
+            switched: (3 * (self.cycles - 1 - self.marks[0]) + phase as u64, self.marked.lane(0)),
+            integrated_to: self.integrated_to.lane(0),
             integral: self.integral.lane(0),
             tracks,
         });
@@ -102,7 +102,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         (self.side * self.rate).store(rate);
         for index in 0..self.modes.len() {
             for part in 0..2 {
-                (self.side * self.modes[index].at[part]).store(&mut rest[2 * index + part]);
+                (self.side * self.modes[index].start[part]).store(&mut rest[2 * index + part]);
             }
         }
     }
@@ -110,13 +110,13 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
     /// Copies the state of one lane from the rows.
     pub(super) fn lane_state(&mut self, lane: usize) {
         let [whole, part, side, k_t, angle, rate, rest @ ..] = &self.rows[..] else { return };
-        let measurement = &mut self.sight;
-        measurement.at = (whole[lane] as u64, part[lane] as u64);
-        (measurement.side, measurement.gain) = (side[lane], k_t[lane]);
-        (measurement.angle, measurement.rate) = (angle[lane], rate[lane]);
-        measurement.modes.clear();
+        let state = &mut self.lane_state;
+        state.time = (whole[lane] as u64, part[lane] as u64);
+        (state.side, state.gain) = (side[lane], k_t[lane]);
+        (state.angle, state.rate) = (angle[lane], rate[lane]);
+        state.modes.clear();
         for pair in rest.chunks_exact(2) {
-            measurement.modes.push([pair[0][lane], pair[1][lane]]);
+            state.modes.push([pair[0][lane], pair[1][lane]]);
         }
     }
 }

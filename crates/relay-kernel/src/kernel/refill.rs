@@ -36,15 +36,15 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             damping,
             now: PhasorState { frame: [zero; 2], axis: [one, zero], deviation: [zero; 2] },
         };
-        let mode = LaneMode { frequency: one, excitability: zero, damping, at: [zero; 2], end: [zero; 2] };
-        let mut flight = Self {
+        let mode = LaneMode { frequency: one, excitability: zero, damping, start: [zero; 2], end: [zero; 2] };
+        let mut kernel = Self {
             now: start,
             end: start,
             side: one,
             angle: zero,
             rate: zero,
             modes: Vec::with_capacity(modes),
-            moved: Vec::with_capacity(modes),
+            predicted_modes: Vec::with_capacity(modes),
             fastest: one,
             longest: one,
             edge: one,
@@ -53,34 +53,34 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             weak: one,
             k_t: zero,
             band: one,
-            pushed: start,
-            lasted: zero,
+            push_start: start,
+            push_duration: zero,
             tracks: Vec::with_capacity(tracks),
-            four: SimdWidth4::best(),
+            simd: SimdWidth4::best(),
             cycles: 0,
-            looked_at: u64::MAX,
+            next_chatter_check: u64::MAX,
             marks: [0; MOST],
             marked: start,
-            watches: false,
-            listens: false,
-            looks: false,
-            seen: start,
+            has_windows: false,
+            wants_switchings: false,
+            wants_band_exits: false,
+            integrated_to: start,
             integral: zero,
             closes: never,
             window: never,
             active: [false; MOST],
             rows: vec![[0.0; MOST]; ROWS + 2 * modes],
-            sight: LaneState::default(),
+            lane_state: LaneState::default(),
             found: FoundCrossing::default(),
         };
         for _ in 0..modes {
-            flight.modes.push(mode);
-            flight.moved.push(still);
+            kernel.modes.push(mode);
+            kernel.predicted_modes.push(still);
         }
         for _ in 0..tracks {
-            flight.tracks.push(track);
+            kernel.tracks.push(track);
         }
-        flight
+        kernel
     }
 
     /// Assigns the next runs to idle lanes; returns true if any lane is active.
@@ -96,57 +96,57 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             any |= self.active[lane];
         }
         // The host's requests may change with the runs.
-        (self.listens, self.looks) = (host.wants_switchings(), host.wants_band_exits());
+        (self.wants_switchings, self.wants_band_exits) = (host.wants_switchings(), host.wants_band_exits());
         any
     }
 
     /// Initialises a lane with a run.
     #[inline(always)]
     fn begin(&mut self, lane: usize, setup: &RunSetup) {
-        let put = |of: &mut R, value: f64| *of = of.with_lane(lane, value);
+        let set = |lanes: &mut R, value: f64| *lanes = lanes.with_lane(lane, value);
         self.active[lane] = true;
         self.marks[lane] = self.cycles;
         self.marked = self.marked.with_lane(lane, (0, 0));
-        self.looked_at = self.looked_at.min(self.cycles + CYCLES);
+        self.next_chatter_check = self.next_chatter_check.min(self.cycles + CYCLES);
         self.now = self.now.with_lane(lane, (0, 0));
-        self.seen = self.seen.with_lane(lane, (0, 0));
+        self.integrated_to = self.integrated_to.with_lane(lane, (0, 0));
         self.end = self.end.with_lane(lane, setup.end);
-        self.watches |= setup.window.is_some();
+        self.has_windows |= setup.window.is_some();
         let window = setup.window.unwrap_or((NEVER as u64, 0));
         self.window = self.window.with_lane(lane, window);
         self.closes = self.closes.with_lane(lane, window);
-        put(&mut self.side, 1.0);
-        put(&mut self.angle, setup.angle);
-        put(&mut self.rate, setup.rate);
-        put(&mut self.edge, setup.edge);
-        put(&mut self.back, setup.back);
-        put(&mut self.strong, setup.strong);
-        put(&mut self.weak, setup.weak);
-        put(&mut self.k_t, setup.k_t);
-        put(&mut self.band, setup.band);
-        put(&mut self.integral, 0.0);
+        set(&mut self.side, 1.0);
+        set(&mut self.angle, setup.angle);
+        set(&mut self.rate, setup.rate);
+        set(&mut self.edge, setup.edge);
+        set(&mut self.back, setup.back);
+        set(&mut self.strong, setup.strong);
+        set(&mut self.weak, setup.weak);
+        set(&mut self.k_t, setup.k_t);
+        set(&mut self.band, setup.band);
+        set(&mut self.integral, 0.0);
         let mut fastest = 0.0_f64;
         for (index, [frequency, k, x, y, ratio]) in setup.modes.iter().copied().enumerate() {
             fastest = fastest.max(frequency);
             let mode = &mut self.modes[index];
-            put(&mut mode.frequency, frequency);
-            put(&mut mode.excitability, k);
-            put(&mut mode.at[0], x);
-            put(&mut mode.at[1], y);
+            set(&mut mode.frequency, frequency);
+            set(&mut mode.excitability, k);
+            set(&mut mode.start[0], x);
+            set(&mut mode.start[1], y);
             mode.damping = mode.damping.with_lane(lane, frequency, ratio);
         }
-        put(&mut self.fastest, fastest);
-        put(&mut self.longest, FARTHEST_TURN / fastest);
-        for (track, of) in self.tracks.iter_mut().zip(&setup.tracks) {
-            let [frequency, k, x, y, ratio] = *of;
+        set(&mut self.fastest, fastest);
+        set(&mut self.longest, FARTHEST_TURN / fastest);
+        for (track, values) in self.tracks.iter_mut().zip(&setup.tracks) {
+            let [frequency, k, x, y, ratio] = *values;
             track.damping = track.damping.with_lane(lane, frequency, ratio);
-            put(&mut track.frequency, frequency);
-            put(&mut track.excitability, k);
-            put(&mut track.equilibrium, 0.0);
+            set(&mut track.frequency, frequency);
+            set(&mut track.excitability, k);
+            set(&mut track.equilibrium, 0.0);
             for (part, value) in [x, y].into_iter().enumerate() {
-                put(&mut track.now.frame[part], value);
-                put(&mut track.now.deviation[part], value);
-                put(&mut track.now.axis[part], [1.0, 0.0][part]);
+                set(&mut track.now.frame[part], value);
+                set(&mut track.now.deviation[part], value);
+                set(&mut track.now.axis[part], [1.0, 0.0][part]);
             }
         }
     }

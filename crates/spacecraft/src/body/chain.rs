@@ -82,8 +82,10 @@ fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &Planar) -> DMatrix<f64> {
         })
     };
     let rigid = mass.row(0) / inertia;
-    let of = |(index, mode): (usize, &Mode)| (shape(index).transpose() * mass) * (mode.gain.get() / inertia);
-    let rows: Vec<_> =
-        std::iter::once(rigid.into_owned()).chain(model.modes.iter().enumerate().map(of)).collect();
+    let effective_shape =
+        |(index, mode): (usize, &Mode)| (shape(index).transpose() * mass) * (mode.gain.get() / inertia);
+    let rows: Vec<_> = std::iter::once(rigid.into_owned())
+        .chain(model.modes.iter().enumerate().map(effective_shape))
+        .collect();
     DMatrix::from_rows(&rows)
 }

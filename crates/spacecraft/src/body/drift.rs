@@ -66,8 +66,9 @@ impl DriftProfile {
                 1.0 + (ramp.to.get() - 1.0) * part
             }
             Self::Sinusoid(s) => {
-                let at = |t: f64| libm::cos(std::f64::consts::TAU * (t + s.phase.get()) / s.period.get());
-                1.0 + s.amplitude.get() * (at(t) - at(0.0))
+                let cosine_at =
+                    |t: f64| libm::cos(std::f64::consts::TAU * (t + s.phase.get()) / s.period.get());
+                1.0 + s.amplitude.get() * (cosine_at(t) - cosine_at(0.0))
             }
             Self::Table(points) => {
                 let after = points.iter().position(|point| point.time.get() > t);

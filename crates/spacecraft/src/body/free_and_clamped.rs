@@ -39,10 +39,11 @@ impl Planar {
             return None;
         }
         let inverse: Vec<f64> = self.modes.iter().map(|mode| 1.0 / mode.frequency.get()).collect();
-        let swing: Vec<f64> = gains.zip(&inverse).map(|(gain, inverse)| f64::sqrt(gain) * inverse).collect();
-        let matrix = DMatrix::from_fn(swing.len(), swing.len(), |i, j| {
+        let scaled_gains: Vec<f64> =
+            gains.zip(&inverse).map(|(gain, inverse)| f64::sqrt(gain) * inverse).collect();
+        let matrix = DMatrix::from_fn(scaled_gains.len(), scaled_gains.len(), |i, j| {
             let own = if i == j { inverse[i] * inverse[i] } else { 0.0 };
-            own + sign * swing[i] * swing[j]
+            own + sign * scaled_gains[i] * scaled_gains[j]
         });
         let squares = eigenvalues(&matrix)?;
         squares.iter().rev().map(|square| (*square > 0.0).then(|| 1.0 / f64::sqrt(*square))).collect()

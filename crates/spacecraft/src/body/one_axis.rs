@@ -81,18 +81,18 @@ impl Planar {
         let modes = self.modes.len();
         self.damping_inconsistency().or_else(|| {
             self.outputs.iter().enumerate().find_map(|(index, output)| {
-                let at =
+                let position =
                     |key: &str, why: String| Some(ConfigError::new(format!("outputs[{index}].{key}"), why));
                 if output.modes.len() != modes {
                     let found = output.modes.len();
-                    return at(
+                    return position(
                         "modes",
                         format!("must have one number for each of {}, got {found}", counted(modes, "mode")),
                     );
                 }
                 let before = self.outputs[..index].iter();
                 if before.map(|other| &other.name).any(|name| *name == output.name) {
-                    return at(
+                    return position(
                         "name",
                         format!("must differ from the other names, got `{}` again", output.name),
                     );

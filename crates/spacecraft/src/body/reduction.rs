@@ -50,22 +50,22 @@ impl ModalReduction<'_> {
         let solved = structure.modes(hub, &weights)?;
         let within = |w: &&f64| **w <= Frequency::LARGEST;
         let resolved = solved.frequencies.iter().take_while(within).count();
-        let kept = self.keep.map_or(resolved, |keep| keep as usize);
-        if kept > resolved {
+        let count = self.keep.map_or(resolved, |keep| keep as usize);
+        if count > resolved {
             let why = format!(
-                "must be at most {resolved}, the number of modes up to {:e} rad/s, got {kept}",
+                "must be at most {resolved}, the number of modes up to {:e} rad/s, got {count}",
                 Frequency::LARGEST
             );
             return Err(ConfigError::new("keep", why));
         }
-        let damping = self.damping.for_modes(kept).map_err(|why| ConfigError::new("damping", why))?;
+        let damping = self.damping.for_modes(count).map_err(|why| ConfigError::new("damping", why))?;
         let inertia = solved.inertia;
         // Ratio of the body's modal displacement x_n to the structure's f_n.
         let scale = |n: usize| match self.drive {
             CommandedQuantity::Torque => solved.participations[n],
             CommandedQuantity::Motion => -solved.participations[n] / inertia,
         };
-        let mut modes = Vec::with_capacity(kept);
+        let mut modes = Vec::with_capacity(count);
         for (n, damping) in damping.into_iter().enumerate() {
             let w = solved.frequencies[n];
             let frequency = Frequency::new(w).ok_or_else(|| {
@@ -84,13 +84,14 @@ impl ModalReduction<'_> {
                 name: observed.name.clone(),
                 unit: observed.unit.clone(),
                 rigid: finite(*rigid)?,
-                modes: (0..kept).map(weight).collect::<Result<_, ConfigError>>()?,
+                modes: (0..count).map(weight).collect::<Result<_, ConfigError>>()?,
             })
         };
-        let seen = solved.rigid.iter().zip(&solved.shapes);
-        let outputs = self.outputs.iter().zip(seen).map(output).collect::<Result<_, ConfigError>>()?;
+        let observations = solved.rigid.iter().zip(&solved.shapes);
+        let outputs =
+            self.outputs.iter().zip(observations).map(output).collect::<Result<_, ConfigError>>()?;
         let damping_matrix = match &self.damping_matrix {
-            Some(matrix) => coupled(matrix, &solved.shapes[self.outputs.len()..], kept, &scale)?,
+            Some(matrix) => coupled(matrix, &solved.shapes[self.outputs.len()..], count, &scale)?,
             None => Vec::new(),
         };
         let inertia = Positive::new(inertia).ok_or_else(too_large)?;
@@ -111,17 +112,17 @@ impl ModalReduction<'_> {
 fn coupled(
     matrix: &DMatrix<f64>,
     shapes: &[Vec<f64>],
-    kept: usize,
+    count: usize,
     scale: &dyn Fn(usize) -> f64,
 ) -> Result<Vec<Vec<Finite>>, ConfigError> {
-    let at = |why: String| ConfigError::new("damping_matrix", why);
-    let modes = DMatrix::from_fn(shapes.len(), kept, |i, n| shapes[i][n]);
+    let error_with = |why: String| ConfigError::new("damping_matrix", why);
+    let modes = DMatrix::from_fn(shapes.len(), count, |i, n| shapes[i][n]);
     let damping = modes.tr_mul(&(matrix * &modes));
     let largest = damping.amax();
     let symmetric = (&damping + damping.transpose()) * 0.5;
     let lowest = eigenvalues(&symmetric).ok_or_else(too_large)?.first().copied().unwrap_or(0.0);
     if lowest < -1e-9 * largest {
-        return Err(at(format!("must be positive semidefinite, but excites a mode at {lowest} 1/s")));
+        return Err(error_with(format!("must be positive semidefinite, but excites a mode at {lowest} 1/s")));
     }
     let element = |n: usize, m: usize| {
         if n == m || damping[(n, m)] == 0.0 {
@@ -132,13 +133,13 @@ fn coupled(
         }
         if damping[(n, m)].abs() > 1e-9 * largest {
             let still = if scale(n) == 0.0 { n } else { m };
-            return Err(at(format!(
+            return Err(error_with(format!(
                 "couples mode {still} to the others, but that mode does not act on the hub"
             )));
         }
         Ok(Finite::default())
     };
-    (0..kept).map(|n| (0..kept).map(|m| element(n, m)).collect()).collect()
+    (0..count).map(|n| (0..count).map(|m| element(n, m)).collect()).collect()
 }
 
 fn finite(value: f64) -> Result<Finite, ConfigError> {

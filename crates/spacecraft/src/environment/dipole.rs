@@ -78,21 +78,21 @@ impl Dipole {
 
     /// Returns the key and the reason, if the field is given twice or is missing.
     pub(super) fn validate(&self, on_orbit: bool, in_field: bool) -> Option<ConfigError> {
-        let given = [
+        let keys = [
             ("strength", self.strength.is_some()),
             ("inclination", self.inclination.is_some()),
             ("orbit_rate", self.orbit_rate.is_some()),
         ];
         if on_orbit {
-            let beside =
+            let other_keys =
                 [("from_node", self.from_node != Finite::ZERO), ("local", !self.local.is_identity())];
-            if let Some((key, _)) = given.into_iter().chain(beside).find(|(_, given)| *given) {
+            if let Some((key, _)) = keys.into_iter().chain(other_keys).find(|(_, is_given)| *is_given) {
                 return Some(ConfigError::new(key, "follows from the environment's `orbit`: leave it out"));
             }
             let why = "needs a field: give the environment a `magnetic_field`";
             return (!in_field).then(|| ConfigError::new("moment", why));
         }
-        let (key, _) = given.into_iter().find(|(_, given)| !given)?;
+        let (key, _) = keys.into_iter().find(|(_, is_given)| !is_given)?;
         Some(ConfigError::new(key, "must be given where the environment has no `orbit`"))
     }
 

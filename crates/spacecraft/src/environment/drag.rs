@@ -83,8 +83,8 @@ impl Drag {
         let flow = to_body(attitude, &(place.velocity - carried));
         let factor = -0.5 * self.coefficient.get() * self.density_at(place.position.norm(), orbit);
         self.plates.iter().fold(Vector::zeros(), |sum, plate| {
-            let met = vector(&plate.normal).normalize().dot(&flow).max(0.0) * plate.area.get();
-            sum + (vector(&plate.at) - centre).cross(&flow) * (factor * met)
+            let projected_area = vector(&plate.normal).normalize().dot(&flow).max(0.0) * plate.area.get();
+            sum + (vector(&plate.at) - centre).cross(&flow) * (factor * projected_area)
         })
     }
 

@@ -35,7 +35,7 @@ impl GravityGradient {
             return self.orbit_rate.is_none().then(|| ConfigError::new("orbit_rate", why));
         }
         let twice = [("orbit_rate", self.orbit_rate.is_some()), ("local", !self.local.is_identity())];
-        let key = twice.into_iter().find(|(_, given)| *given)?.0;
+        let key = twice.into_iter().find(|(_, is_given)| *is_given)?.0;
         Some(ConfigError::new(key, "follows from the environment's `orbit`: leave it out"))
     }
 

@@ -122,14 +122,14 @@ impl Kepler {
         let anomaly_rate = f64::sqrt(gravity * a) / radius;
         let velocity = (q * (minor * cos) - p * sin) * anomaly_rate;
         let nadir = -position / radius;
-        let turning = f64::sqrt(gravity * a) * minor / (radius * radius);
+        let orbit_rate = f64::sqrt(gravity * a) * minor / (radius * radius);
         // r r' = sqrt(mu a) e sin E.
         let climb = anomaly_rate * e * sin;
         OrbitPosition {
             position,
             velocity,
             local: [(-normal).cross(&nadir), -normal, nadir],
-            turning: [turning, -2.0 * turning * climb / radius],
+            turning: [orbit_rate, -2.0 * orbit_rate * climb / radius],
             tide: gravity / (radius * radius * radius),
         }
     }
@@ -137,7 +137,7 @@ impl Kepler {
     /// Returns the times (s) at which the planet's shadow, a cylinder opposite to the direction `sun`, begins and ends,
     /// for those shadows that begin before `duration` (s).
     pub(super) fn shadows(&self, sun: &Vector, duration: f64) -> Vec<[f64; 2]> {
-        let edges = self.shadow_edges(sun);
+        let crossings = self.shadow_edges(sun);
         let e = self.eccentricity.get();
         let (rate, period) = (self.mean_motion(), TAU / self.mean_motion());
         let since_start = |anomaly: f64| {
@@ -145,11 +145,11 @@ impl Kepler {
             (mean - TAU * libm::floor(mean / TAU)) / rate
         };
         let mut shadows = Vec::new();
-        for (index, (begins, enters)) in edges.iter().enumerate() {
+        for (index, (begins, enters)) in crossings.iter().enumerate() {
             if !enters {
                 continue;
             }
-            let (ends, _) = edges[(index + 1) % edges.len()];
+            let (ends, _) = crossings[(index + 1) % crossings.len()];
             let (from, to) = (since_start(*begins), since_start(ends));
             let length = if to > from { to - from } else { to - from + period };
             // The run may begin within a shadow.
@@ -194,22 +194,22 @@ impl Kepler {
 /// Finds the zeros of a function, given with its derivative, within an interval, in order, each with true if the
 /// function decreases there. `bend` bounds the second derivative: no zero is missed.
 fn crossings_within(
-    of: &dyn Fn(f64) -> [f64; 2],
+    motion: &dyn Fn(f64) -> [f64; 2],
     [from, to]: [f64; 2],
     bend: f64,
     found: &mut Vec<(f64, bool)>,
 ) {
     let (middle, half) = (0.5 * (from + to), 0.5 * (to - from));
-    let [value, slope] = of(middle);
+    let [value, slope] = motion(middle);
     if value.abs() > slope.abs() * half + 0.5 * bend * half * half || half < 1e-9 {
         return;
     }
     if slope.abs() <= bend * half {
-        crossings_within(of, [from, middle], bend, found);
-        return crossings_within(of, [middle, to], bend, found);
+        crossings_within(motion, [from, middle], bend, found);
+        return crossings_within(motion, [middle, to], bend, found);
     }
     let falls = slope < 0.0;
-    let above = |at: f64| of(at)[0] >= 0.0;
+    let above = |time: f64| motion(time)[0] >= 0.0;
     if above(from) != falls || above(to) == falls {
         return;
     }

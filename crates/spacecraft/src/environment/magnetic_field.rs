@@ -115,8 +115,8 @@ mod tests {
         assert!((libm::acos(-axis.z) - 0.164).abs() < 1e-3);
         let position = Vector::new(7e6, -1e6, 2e6);
         let quarter = std::f64::consts::FRAC_PI_2 / 7.292_115e-5;
-        let turned = Vector::new(1e6, 7e6, 2e6);
-        let [before, after] = [field.at(&position, 0.0), field.at(&turned, quarter)];
+        let rotated = Vector::new(1e6, 7e6, 2e6);
+        let [before, after] = [field.at(&position, 0.0), field.at(&rotated, quarter)];
         assert!((Vector::new(-before.y, before.x, before.z) - after).norm() < 1e-18);
     }
 }

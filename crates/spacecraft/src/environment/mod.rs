@@ -81,7 +81,7 @@ impl Environment {
         if let Some(fault) = self.drag.as_ref().and_then(|drag| drag.fault(self.orbit.is_some())) {
             return Some(fault.within("drag"));
         }
-        let pressed = self.solar_pressure.as_ref().and_then(|of| of.fault(self.sun.is_some()));
+        let pressed = self.solar_pressure.as_ref().and_then(|pressure| pressure.fault(self.sun.is_some()));
         pressed.map(|fault| fault.within("solar_pressure")).or_else(|| self.orbit_fault())
     }
 

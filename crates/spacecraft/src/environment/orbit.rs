@@ -37,6 +37,6 @@ impl Orbit {
 
 /// Transforms an inertial vector to the body's axes; the attitude quaternion need not have length 1.
 pub fn to_body(attitude: &Quaternion<f64>, v: &Vector) -> Vector {
-    let turned = attitude.conjugate() * Quaternion::from_imag(*v) * attitude;
-    turned.vector() / attitude.norm_squared()
+    let rotated = attitude.conjugate() * Quaternion::from_imag(*v) * attitude;
+    rotated.vector() / attitude.norm_squared()
 }

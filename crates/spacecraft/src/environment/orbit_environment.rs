@@ -35,12 +35,12 @@ impl OrbitEnvironment {
             (Some(orbit), Some(sun)) => orbit.shadows(sun, duration.seconds()),
             _ => Vec::new(),
         };
-        let at = |seconds: f64| Instant::START + Span::from_seconds(seconds);
+        let instant = |seconds: f64| Instant::START + Span::from_seconds(seconds);
         Self {
             orbit: environment.orbit,
             field: environment.magnetic_field.map(dated),
             sun,
-            shadows: shadows.into_iter().map(|shadow| shadow.map(at)).collect(),
+            shadows: shadows.into_iter().map(|shadow| shadow.map(instant)).collect(),
         }
     }
 

@@ -60,7 +60,7 @@ const AT_EARTH: f64 = 1361.0 / 299_792_458.0;
 
 impl SolarPressure {
     /// Returns the instants at which the intervals without sunlight begin and end.
-    pub(super) fn edges(&self) -> impl Iterator<Item = Instant> {
+    pub(super) fn shadow_times(&self) -> impl Iterator<Item = Instant> {
         self.shadow.iter().flatten().map(|time| at(*time))
     }
 
@@ -71,22 +71,22 @@ impl SolarPressure {
 
     /// Returns an inconsistency between values, with or without a Sun: a key within the pressure, and the reason.
     pub(super) fn fault(&self, has_sun: bool) -> Option<ConfigError> {
-        let alone = self.plates.is_empty();
-        for (key, given) in [("force", self.force.is_some()), ("at", self.at.is_some())] {
-            if alone && !given {
+        let is_single = self.plates.is_empty();
+        for (key, is_given) in [("force", self.force.is_some()), ("at", self.at.is_some())] {
+            if is_single && !is_given {
                 return Some(ConfigError::new(key, "must be given where there are no `plates`"));
             }
-            if !alone && given {
+            if !is_single && is_given {
                 return Some(ConfigError::new(
                     key,
                     "is for sunlight without `plates`: leave one of them out",
                 ));
             }
         }
-        if alone && self.pressure.is_some() {
+        if is_single && self.pressure.is_some() {
             return Some(ConfigError::new("pressure", "is that on `plates`, and there are none"));
         }
-        if !alone && !has_sun {
+        if !is_single && !has_sun {
             return Some(ConfigError::new(
                 "plates",
                 "need `environment.sun`, the direction that they face or not",
@@ -104,8 +104,8 @@ impl SolarPressure {
     /// Returns the torque in sunlight about the centre of mass `centre` (m) on a body of the given attitude, in its
     /// axes (N m); `sun` is the direction to the Sun in inertial axes.
     pub(super) fn torque(&self, attitude: &Quaternion<f64>, sun: Option<&Vector>, centre: &Vector) -> Vector {
-        if let (Some(force), Some(at)) = (&self.force, &self.at) {
-            return (vector(at) - centre).cross(&to_body(attitude, &vector(force)));
+        if let (Some(force), Some(position)) = (&self.force, &self.at) {
+            return (vector(position) - centre).cross(&to_body(attitude, &vector(force)));
         }
         let Some(sun) = sun.map(|sun| to_body(attitude, sun)) else { return Vector::zeros() };
         let pressure = self.pressure();
@@ -116,8 +116,8 @@ impl SolarPressure {
 
     /// Returns an upper bound of the torque (N m).
     pub(super) fn bound(&self, centre: &Vector) -> f64 {
-        if let (Some(force), Some(at)) = (&self.force, &self.at) {
-            return vector(force).norm() * (vector(at) - centre).norm();
+        if let (Some(force), Some(position)) = (&self.force, &self.at) {
+            return vector(force).norm() * (vector(position) - centre).norm();
         }
         let most = |plate: &SolarPlate| {
             let part = 1.0 + plate.specular.get() + 2.0 / 3.0 * plate.diffuse.get();

@@ -29,7 +29,7 @@ impl Sun {
     pub fn direction(&self, epoch_ns: u64) -> Vector {
         match self {
             Self::Towards(direction) => vector(direction).normalize(),
-            Self::Epoch => seen(epoch_ns as f64 / 1e9),
+            Self::Epoch => direction_at(epoch_ns as f64 / 1e9),
         }
     }
 
@@ -41,7 +41,7 @@ impl Sun {
 
 /// Returns the direction to the Sun at `seconds` after 1970, within 0.01 degrees from 1950 to 2050: the low-precision
 /// formulas of \[AstronomicalAlmanac\].
-fn seen(seconds: f64) -> Vector {
+fn direction_at(seconds: f64) -> Vector {
     let days = (seconds - J2000) / DAY;
     let anomaly = (357.528 + 0.985_600_3 * days).to_radians();
     let longitude =
@@ -108,7 +108,7 @@ mod tests {
             (1_774_017_960.0, 0.0, 0.0),
             (1_718_916_660.0, 90.0, 23.436),
         ] {
-            let sun = seen(seconds);
+            let sun = direction_at(seconds);
             let found = libm::atan2(sun.y, sun.x).to_degrees().rem_euclid(360.0);
             let apart = libm::remainder(found - ascension, 360.0);
             assert!(apart.abs() < 0.02, "{seconds}: {found}");

@@ -41,7 +41,7 @@ impl SurroundingsState {
         [inertia, spinning]: [Matrix3<f64>; 2],
         centre: &Vector,
     ) -> Self {
-        let pressed = environment.solar_pressure.as_ref().map_or(0.0, |of| of.bound(centre));
+        let pressed = environment.solar_pressure.as_ref().map_or(0.0, |pressure| pressure.bound(centre));
         let torque = vector(&environment.torque);
         let (gradient, dipole) = (environment.gravity_gradient.as_ref(), environment.dipole.as_ref());
         let pull = gradient.map_or(0.0, |gradient| gradient.bound(&(inertia + spinning), &sky));
@@ -49,10 +49,11 @@ impl SurroundingsState {
         let drag = environment.drag.as_ref().zip(sky.orbit());
         let braked = drag.map_or(0.0, |(drag, orbit)| drag.bound(orbit, centre));
         let axial = dipole.and_then(super::Dipole::own_field);
-        let own = gradient.and_then(|of| of.orbit_rate).map(flexsc_numerics::quantity::Positive::get);
-        let turning = environment.magnetic_field.map(|field| field.rotation.get().abs());
-        let orbits = [own, axial.map(|of| of.rate), sky.orbit().map(Kepler::fastest)];
-        let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + turning.unwrap_or(0.0);
+        let own =
+            gradient.and_then(|gradient| gradient.orbit_rate).map(flexsc_numerics::quantity::Positive::get);
+        let rotation_rate = environment.magnetic_field.map(|field| field.rotation.get().abs());
+        let orbits = [own, axial.map(|orbit| orbit.rate), sky.orbit().map(Kepler::fastest)];
+        let fastest = orbits.into_iter().flatten().fold(0.0, f64::max) + rotation_rate.unwrap_or(0.0);
         Self {
             environment: environment.clone(),
             axial,
@@ -77,9 +78,10 @@ impl SurroundingsState {
             [t, if self.sky.is_lit(t) { 1.0 - start } else { -start }]
         };
         let aims = || self.sky.shadow_edges().map(level);
-        let heated = |of: &Bending| ThermalForces::new(of.forces.clone(), of.time_constant, aims());
+        let heated =
+            |bending: &Bending| ThermalForces::new(bending.forces.clone(), bending.time_constant, aims());
         let heated = bendings.iter().map(heated).collect();
-        let fastest = bendings.iter().map(|of| 1.0 / of.time_constant).fold(0.0, f64::max);
+        let fastest = bendings.iter().map(|bending| 1.0 / bending.time_constant).fold(0.0, f64::max);
         Self { heated, frequency: self.frequency + fastest, ..self }
     }
 
@@ -111,7 +113,7 @@ impl SurroundingsState {
 
     /// Returns the instants at which a torque or bending by sunlight begins or ends.
     pub fn change_times(&self) -> impl Iterator<Item = Instant> {
-        let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::edges);
+        let own = self.environment.solar_pressure.iter().flat_map(SolarPressure::shadow_times);
         let matters = self.environment.solar_pressure.is_some() || !self.heated.is_empty();
         own.chain(self.sky.shadow_edges().filter(move |_| matters))
     }
@@ -126,7 +128,9 @@ impl Surroundings for SurroundingsState {
             let pull = gradient.direction_and_strength(t, attitude, place.as_ref());
             torque += GravityGradient::torque(pull, &(inertia + self.spinning));
         }
-        if let Some(pressure) = solar_pressure.as_ref().filter(|of| of.is_lit(t) && self.sky.is_lit(t)) {
+        if let Some(pressure) =
+            solar_pressure.as_ref().filter(|pressure| pressure.is_lit(t) && self.sky.is_lit(t))
+        {
             torque += pressure.torque(attitude, self.sky.sun(), &self.centre);
         }
         if let (Some(drag), Some(orbit), Some(place)) = (drag, self.sky.orbit(), &place) {

@@ -24,7 +24,7 @@ fn upright() -> Matrix3<f64> {
     Matrix3::from_diagonal(&Vector::new(1100.0, 1400.0, 500.0))
 }
 
-fn around(text: &str, inertia: &Matrix3<f64>) -> SurroundingsState {
+fn surroundings_from(text: &str, inertia: &Matrix3<f64>) -> SurroundingsState {
     let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let sky = OrbitEnvironment::new(&environment, Span::from_seconds(1e5), None);
     SurroundingsState::new(&environment, sky, [*inertia, Matrix3::zeros()], &Vector::zeros())
@@ -34,14 +34,14 @@ fn around(text: &str, inertia: &Matrix3<f64>) -> SurroundingsState {
 struct One {
     rigid: RigidBody,
     turn: RigidState,
-    around: SurroundingsState,
+    surroundings: SurroundingsState,
     t: f64,
 }
 
 impl One {
     fn new(
         inertia: &Matrix3<f64>,
-        around: SurroundingsState,
+        surroundings: SurroundingsState,
         attitude: Quaternion<f64>,
         rate: Vector,
     ) -> Self {
@@ -49,15 +49,15 @@ impl One {
         let text = format!("inertia = [{}]", rows.collect::<Vec<_>>().join(", "));
         let body: Spatial = flexsc_formats::document::from_text(&text).expect("a body");
         let rigid = RigidBody::new(&body);
-        Self { turn: rigid.start(attitude, rate), rigid, around, t: 0.0 }
+        Self { turn: rigid.start(attitude, rate), rigid, surroundings, t: 0.0 }
     }
 
-    fn go(&mut self, until: f64) {
+    fn advance_to(&mut self, until: f64) {
         while self.t < until {
             let h = (until - self.t).min(20.0);
-            let around = Some(&self.around as &dyn Surroundings);
+            let surroundings = Some(&self.surroundings as &dyn Surroundings);
             let moved =
-                self.rigid.advance(&mut self.turn, &Vector::zeros(), None, around, (self.t, h), || {
+                self.rigid.advance(&mut self.turn, &Vector::zeros(), None, surroundings, (self.t, h), || {
                     Ok::<(), Never>(())
                 });
             moved.expect("nothing stops it");
@@ -80,16 +80,16 @@ fn libration(body: &One) -> (Vector, Vector) {
 
 /// Returns the instant near `guess` at which the pitch crosses 0.
 fn crossing(body: &mut One, guess: f64) -> f64 {
-    body.go(guess);
+    body.advance_to(guess);
     for _ in 0..6 {
         let (angles, rates) = libration(body);
         let step = -angles.y / rates.y;
-        let around = Some(&body.around as &dyn Surroundings);
+        let surroundings = Some(&body.surroundings as &dyn Surroundings);
         let moved = body.rigid.advance(
             &mut body.turn,
             &Vector::zeros(),
             None,
-            around,
+            surroundings,
             (body.t, step.max(0.0)),
             || Ok::<(), Never>(()),
         );
@@ -102,9 +102,9 @@ fn crossing(body: &mut One, guess: f64) -> f64 {
 #[test]
 fn the_pitch_swings_with_its_period() {
     let inertia = upright();
-    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
+    let surroundings = surroundings_from("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
     let start = rotation(&Vector::new(0.0, 1e-3, 0.0));
-    let mut body = One::new(&inertia, around, start, Vector::new(0.0, -RATE, 0.0));
+    let mut body = One::new(&inertia, surroundings, start, Vector::new(0.0, -RATE, 0.0));
     let first = crossing(&mut body, 1259.0);
     let second = crossing(&mut body, first + 5037.0);
     // The period is (4/w) K(sin² of 1e-3 rad), w = n sqrt(3 (Jx - Jz)/Jy).
@@ -118,16 +118,16 @@ fn the_pitch_swings_with_its_period() {
 #[test]
 fn a_sail_behind_the_body_swings_as_a_pendulum() {
     let inertia = Matrix3::from_diagonal_element(100.0);
-    let around = around(
+    let surroundings = surroundings_from(
         "sun = [0, 0, 3]\nsolar_pressure = { pressure = 1e-3, plates = [{ area = 1000, normal = [0, 0, 1], at = [0, 0, -1] }] }",
         &inertia,
     );
     let start = rotation(&Vector::new(0.0, 0.6, 0.0));
-    let mut body = One::new(&inertia, around, start, Vector::zeros());
+    let mut body = One::new(&inertia, surroundings, start, Vector::zeros());
     // A quarter of the period is K(sin² 0.6)/sqrt(P A a/J), with K of SciPy.
     let quarter = 1.725_064_310_933_874_4 / 0.1;
     for (quarters, angle) in [(1.0, 0.0), (2.0, -0.6), (3.0, 0.0), (8.0, 0.6)] {
-        body.go(quarters * quarter);
+        body.advance_to(quarters * quarter);
         let off = rotation_vector(&rotation(&Vector::new(0.0, angle, 0.0)), &body.turn.attitude);
         assert!(off.norm() < 1e-9, "{quarters} {:e}", off.norm());
     }
@@ -136,26 +136,26 @@ fn a_sail_behind_the_body_swings_as_a_pendulum() {
 #[test]
 fn roll_and_yaw_swing_with_the_roots_of_the_quartic() {
     let inertia = upright();
-    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
+    let surroundings = surroundings_from("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
     let start = rotation(&Vector::new(1e-6, 0.0, -5e-7));
     let normal = super::orbit::to_body(&start, &Vector::new(0.0, -RATE, 0.0));
-    let mut body = One::new(&inertia, around, start, normal);
+    let mut body = One::new(&inertia, surroundings, start, normal);
     // Samples of two harmonics obey x[2] + x[-2] - a (x[1] + x[-1]) + b x[0] = 0 with a = 2 (c1 + c2), b = 2 + 4 c1 c2.
     let period = 900.0;
     let samples: Vec<Vector> = (0..40)
         .map(|k| {
-            body.go(period * f64::from(k));
+            body.advance_to(period * f64::from(k));
             libration(&body).0
         })
         .collect();
-    let (mut normal, mut right) = (nalgebra::Matrix2::zeros(), nalgebra::Vector2::zeros());
+    let (mut normal, mut right_hand_side) = (nalgebra::Matrix2::zeros(), nalgebra::Vector2::zeros());
     for row in samples.windows(5).flat_map(|x| [0, 2].map(|axis| [0, 1, 2, 3, 4].map(|k| x[k][axis]))) {
         let [e, d, c, b, a] = row;
         let unknown = nalgebra::Vector2::new(b + d, -c);
         normal += unknown * unknown.transpose();
-        right += unknown * (a + e);
+        right_hand_side += unknown * (a + e);
     }
-    let found = normal.try_inverse().expect("two harmonics") * right;
+    let found = normal.try_inverse().expect("two harmonics") * right_hand_side;
     let (sum, product) = (0.5 * found.x, 0.25 * (found.y - 2.0));
     let root = f64::sqrt(sum * sum - 4.0 * product);
     let frequencies = [0.5 * (sum + root), 0.5 * (sum - root)].map(|cos| libm::acos(cos) / period);
@@ -186,22 +186,30 @@ fn integral(
 #[test]
 fn a_rigid_body_keeps_its_energy_in_the_axes_of_the_orbit() {
     let inertia = Matrix3::new(1100.0, 20.0, -10.0, 20.0, 1400.0, 30.0, -10.0, 30.0, 500.0);
-    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
-    let mut body =
-        One::new(&inertia, around, rotation(&Vector::new(0.9, -0.4, 1.3)), Vector::new(4e-3, 1e-3, -2e-3));
-    let of = |body: &One| {
+    let surroundings = surroundings_from("gravity_gradient = { orbit_rate = 1.1e-3 }", &inertia);
+    let mut body = One::new(
+        &inertia,
+        surroundings,
+        rotation(&Vector::new(0.9, -0.4, 1.3)),
+        Vector::new(4e-3, 1e-3, -2e-3),
+    );
+    let energy_of = |body: &One| {
         let (energy, momentum) = (body.rigid.energy(&body.turn), RigidBody::momentum(&body.turn));
         integral(energy, &body.turn.attitude, &momentum, &inertia, body.t)
     };
-    let (before, momentum) = (of(&body), RigidBody::momentum(&body.turn));
+    let (before, momentum) = (energy_of(&body), RigidBody::momentum(&body.turn));
     for k in 1..=20 {
-        body.go(1000.0 * f64::from(k));
+        body.advance_to(1000.0 * f64::from(k));
         let scale = body.rigid.energy(&body.turn);
-        assert!((of(&body) - before).abs() < 1e-14 * scale, "{k} {:e}", (of(&body) - before) / scale);
+        assert!(
+            (energy_of(&body) - before).abs() < 1e-14 * scale,
+            "{k} {:e}",
+            (energy_of(&body) - before) / scale
+        );
     }
     // Check that gravity did turn the body.
-    let turned = RigidBody::momentum(&body.turn).norm() / momentum.norm() - 1.0;
-    assert!(turned.abs() > 1e-2, "{turned}");
+    let momentum_change = RigidBody::momentum(&body.turn).norm() / momentum.norm() - 1.0;
+    assert!(momentum_change.abs() > 1e-2, "{momentum_change}");
 }
 
 /// Returns two modes with first moments and rotations as of panels, and a weakly coupled one that makes steps short.
@@ -225,7 +233,7 @@ fn flexible() -> FlexibleBody {
 #[test]
 fn a_bent_body_keeps_its_energy_in_the_axes_of_the_orbit() {
     let body = flexible();
-    let around = around("gravity_gradient = { orbit_rate = 1.1e-3 }", &body.inertia);
+    let surroundings = surroundings_from("gravity_gradient = { orbit_rate = 1.1e-3 }", &body.inertia);
     let start = rotation(&Vector::new(0.9, -0.4, 1.3));
     let mut motion =
         ThreeAxisMotion::new(&body, start, Vector::new(4e-3, 1e-3, -2e-3), &[[0.5, 0.0], [0.0, 0.02]]);
@@ -234,17 +242,17 @@ fn a_bent_body_keeps_its_energy_in_the_axes_of_the_orbit() {
         rotors: vec![Rotor { axis: Vector::new(0.6, 0.0, 0.8), momentum, torque: 0.0 }],
         ..SegmentLoads::default()
     });
-    let of = |motion: &ThreeAxisMotion, t: f64| {
+    let energy_of = |motion: &ThreeAxisMotion, t: f64| {
         let view = motion.view();
         let energy = view.rotational_energy + motion.energies().sum::<f64>();
         let energy = integral(energy, &view.attitude, &view.momentum, &motion.inertia(), t);
         (energy, 0.5 * view.rate.dot(&view.momentum))
     };
-    let (before, _) = of(&motion, 0.0);
+    let (before, _) = energy_of(&motion, 0.0);
     for k in 1..=10 {
         let t = 200.0 * f64::from(k);
-        motion.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
-        let (now, scale) = of(&motion, t);
+        motion.advance(t, Some((&surroundings, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        let (now, scale) = energy_of(&motion, t);
         assert!((now - before).abs() < 1e-11 * scale.abs(), "{k} {:e} of {scale:e}", now - before);
     }
 }
@@ -255,23 +263,23 @@ fn a_torque_that_is_constant_in_inertial_axes_adds_to_the_momentum_as_time_does(
     let torque = Vector::new(2e-3, -1e-3, 3e-3);
     let (inertia, rate) = (upright(), Vector::new(0.01, -0.03, 0.02));
     let start = rotation(&Vector::new(0.3, 1.0, -0.5));
-    let mut body = One::new(&inertia, around(text, &inertia), start, rate);
+    let mut body = One::new(&inertia, surroundings_from(text, &inertia), start, rate);
     let in_space =
         |attitude: Quaternion<f64>, momentum: Vector| super::orbit::to_body(&attitude.conjugate(), &momentum);
     let before = in_space(start, inertia * rate);
     for t in [100.0, 1000.0, 3000.0] {
-        body.go(t);
+        body.advance_to(t);
         let now = in_space(body.turn.attitude, RigidBody::momentum(&body.turn));
         let off = (now - before - torque * t).norm() / now.norm();
         assert!(off < 1e-14, "{t} {off:e}");
     }
     let (body, start) = (flexible(), Quaternion::identity());
-    let around = around(text, &body.inertia);
+    let surroundings = surroundings_from(text, &body.inertia);
     let mut motion = ThreeAxisMotion::new(&body, start, rate, &[[0.5, 0.0], [0.0, 0.02]]);
     let view = motion.view();
     let before = in_space(view.attitude, view.momentum);
     for t in [100.0, 1000.0, 3000.0] {
-        motion.advance(t, Some((&around, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
+        motion.advance(t, Some((&surroundings, 0.0)), || Ok::<(), Never>(())).expect("nothing stops it");
         let view = motion.view();
         let now = in_space(view.attitude, view.momentum);
         let off = (now - before - torque * t).norm() / now.norm();
@@ -305,7 +313,7 @@ fn the_field_is_that_of_a_dipole_along_the_axis() {
         assert!((found - field).norm() < 1e-14 * strength, "{t} {found} {field}");
         let attitude = rotation(&Vector::new(0.2, 0.4, -1.0));
         let body = super::orbit::to_body(&attitude, &field_at);
-        let torque = around(&text, &upright()).torque(t, &attitude, &upright());
+        let torque = surroundings_from(&text, &upright()).torque(t, &attitude, &upright());
         assert!((torque - Vector::new(1.0, -2.0, 0.5).cross(&body)).norm() < 1e-20);
         assert!(torque.norm() <= dipole.bound(0.0));
     }
@@ -317,13 +325,13 @@ fn sunlight_pushes_at_the_centre_of_pressure_unless_in_shadow() {
     let environment: Environment = flexsc_formats::document::from_text(text).expect("an environment");
     let centre = Vector::new(0.1, 0.3, 0.0);
     let sky = OrbitEnvironment::new(&environment, Span::from_seconds(100.0), None);
-    let around = SurroundingsState::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);
-    let at = |t: f64| around.torque(t, &Quaternion::identity(), &upright());
+    let surroundings = SurroundingsState::new(&environment, sky, [upright(), Matrix3::zeros()], &centre);
+    let torque_at = |t: f64| surroundings.torque(t, &Quaternion::identity(), &upright());
     let pushed = Vector::new(0.0, 0.0, -0.2e-4);
-    assert!((at(0.0) - pushed).norm() < 1e-19 && (at(20.0) - pushed).norm() < 1e-19);
-    assert!(at(10.0) == Vector::zeros() && at(19.9) == Vector::zeros());
+    assert!((torque_at(0.0) - pushed).norm() < 1e-19 && (torque_at(20.0) - pushed).norm() < 1e-19);
+    assert!(torque_at(10.0) == Vector::zeros() && torque_at(19.9) == Vector::zeros());
     // On a body turned by a quarter about z the force acts along its -y axis, where it has no arm.
     let quarter = rotation(&Vector::new(0.0, 0.0, FRAC_PI_2));
-    assert!(around.torque(0.0, &quarter, &upright()).norm() < 1e-19);
-    assert!(around.change_times().map(Instant::seconds).eq([10.0, 20.0]));
+    assert!(surroundings.torque(0.0, &quarter, &upright()).norm() < 1e-19);
+    assert!(surroundings.change_times().map(Instant::seconds).eq([10.0, 20.0]));
 }

@@ -56,12 +56,12 @@ impl Seen {
                     .seconds()
                     .abs()
                     .min(found.after.remaining_after(guess.after).seconds().abs());
-                let (angle, rate) = (found.sight.angle, found.sight.rate);
+                let (angle, rate) = (found.observation.angle, found.observation.rate);
                 self.worst = self.worst.max(apart * rate.abs());
                 self.trips += 1;
-                let (a, b) = (guess.sight, found.sight);
+                let (a, b) = (guess.observation, found.observation);
                 assert!((a.rate - b.rate).abs() <= 1e-14 * a.rate.abs() + 1e-17);
-                assert!((guessed.angle() - guess.sight.angle).abs() <= 4e-16 * angle.abs());
+                assert!((guessed.angle() - guess.observation.angle).abs() <= 4e-16 * angle.abs());
                 state.clone_from(&guessed);
             }
         }

@@ -84,14 +84,14 @@ impl Adjoint {
         let scale = gram.diagonal().map(|d| 1.0 / f64::sqrt(d));
         let scaled = DMatrix::from_fn(self.len(), self.len(), |i, j| gram[(i, j)] * scale[i] * scale[j]);
         let factor = scaled.clone().cholesky()?;
-        let right = products.component_mul(&scale);
-        let mut weights = factor.solve(&right);
+        let right_hand_side = products.component_mul(&scale);
+        let mut weights = factor.solve(&right_hand_side);
         for _ in 0..2 {
-            weights += factor.solve(&(&right - &scaled * &weights));
+            weights += factor.solve(&(&right_hand_side - &scaled * &weights));
         }
-        let gap = (&right - &scaled * &weights).amax();
+        let gap = (&right_hand_side - &scaled * &weights).amax();
         // If the functions are dependent within rounding, the solution is not reliable.
-        (gap <= 1e-10 * right.amax()).then(|| weights.component_mul(&scale))
+        (gap <= 1e-10 * right_hand_side.amax()).then(|| weights.component_mul(&scale))
     }
 
     /// Returns the values of the functions at rho.

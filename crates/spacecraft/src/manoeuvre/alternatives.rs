@@ -62,8 +62,8 @@ pub enum ComparisonBasis {
 impl ComparisonBasis {
     /// Returns the peak torque `asked`, if any, else the manoeuvre's time, else the peak torque from which its time
     /// follows.
-    pub fn from_manoeuvre(manoeuvre: &Manoeuvre, asked: Option<Positive>, plan: &Plan) -> Self {
-        match (asked, manoeuvre.time, manoeuvre.peak_torque) {
+    pub fn from_manoeuvre(manoeuvre: &Manoeuvre, duration: Option<Positive>, plan: &Plan) -> Self {
+        match (duration, manoeuvre.time, manoeuvre.peak_torque) {
             (Some(peak), _, _) | (None, None, Some(peak)) => Self::PeakTorque(peak),
             (None, time, _) => Self::Time(time.unwrap_or_else(|| Span::from_seconds(plan.time))),
         }

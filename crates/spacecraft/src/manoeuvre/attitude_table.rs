@@ -105,12 +105,12 @@ impl AttitudeTable {
         let slope = (to - from) / h - (bend * 2.0 + next) * (h / 6.0);
         let jerk = (next - bend) / h;
         let angles = from + (slope + (bend * 0.5 + jerk * (s / 6.0)) * s) * s;
-        turning(&angles, &(slope + (bend + jerk * (0.5 * s)) * s), &(bend + jerk * s))
+        attitude_motion(&angles, &(slope + (bend + jerk * (0.5 * s)) * s), &(bend + jerk * s))
     }
 }
 
 /// Returns attitude, rate and acceleration from roll, pitch and yaw and their first and second derivatives.
-fn turning(angles: &Vector, rates: &Vector, seconds: &Vector) -> AttitudeMotion {
+fn attitude_motion(angles: &Vector, rates: &Vector, seconds: &Vector) -> AttitudeMotion {
     let ((sr, cr), (sp, cp)) = (libm::sincos(angles.x), libm::sincos(angles.y));
     let (roll, pitch, yaw) = (rates.x, rates.y, rates.z);
     AttitudeMotion {
@@ -136,21 +136,21 @@ fn clamped(times: &[f64], values: &[Vector]) -> Vec<Vector> {
         .map(|k| (times[k] - times[k - 1], (values[k] - values[k - 1]) / (times[k] - times[k - 1])))
         .unzip();
     // Elimination of a tridiagonal system with a dominant diagonal.
-    let (mut upper, mut right): (Vec<f64>, Vec<Vector>) = (Vec::new(), Vec::new());
+    let (mut upper, mut right_hand_side): (Vec<f64>, Vec<Vector>) = (Vec::new(), Vec::new());
     for k in 0..count {
         let (before, after) = (k.checked_sub(1).map_or(0.0, |k| h[k]), h.get(k).copied().unwrap_or(0.0));
-        let left = k.checked_sub(1).map_or_else(Vector::zeros, |k| slope[k]);
-        let change = (slope.get(k).copied().unwrap_or_default() - left) * 6.0;
-        let last = k.checked_sub(1).map_or((0.0, Vector::zeros()), |k| (upper[k], right[k]));
+        let previous = k.checked_sub(1).map_or_else(Vector::zeros, |k| slope[k]);
+        let change = (slope.get(k).copied().unwrap_or_default() - previous) * 6.0;
+        let last = k.checked_sub(1).map_or((0.0, Vector::zeros()), |k| (upper[k], right_hand_side[k]));
         let pivot = 2.0 * (before + after) - before * last.0;
         upper.push(after / pivot);
-        right.push((change - last.1 * before) / pivot);
+        right_hand_side.push((change - last.1 * before) / pivot);
     }
     for k in (0..count - 1).rev() {
-        let next = right[k + 1];
-        right[k] -= next * upper[k];
+        let next = right_hand_side[k + 1];
+        right_hand_side[k] -= next * upper[k];
     }
-    right
+    right_hand_side
 }
 
 #[cfg(test)]

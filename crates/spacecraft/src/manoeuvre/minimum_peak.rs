@@ -104,22 +104,22 @@ impl SwitchingSearch {
     /// Returns the bang-bang function of the weights, with S for its amplitude.
     fn bang(&self, weights: &DVector<f64>) -> SwitchingCommand {
         let f = self.samples.tr_mul(weights);
-        let at = |rho: f64| self.adjoint.at(rho).zip(weights.iter()).map(|(g, w)| g * w).sum::<f64>();
+        let value_at = |rho: f64| self.adjoint.at(rho).zip(weights.iter()).map(|(g, w)| g * w).sum::<f64>();
         let mut switchings = Vec::new();
         for i in 1..f.len() {
             let (a, b) = (self.grid[i - 1], self.grid[i]);
             if (f[i - 1] > 0.0) != (f[i] > 0.0) {
-                switchings.push(root(at, (a, f[i - 1]), (b, f[i])));
+                switchings.push(root(value_at, (a, f[i - 1]), (b, f[i])));
             } else if i + 1 < f.len() && f[i].abs() < f[i - 1].abs() && f[i].abs() <= f[i + 1].abs() {
                 // Between samples there may be two switchings near the sample closest to zero.
                 let (before, now, after) = (f[i - 1], f[i], f[i + 1]);
                 let bend = before - 2.0 * now + after;
                 let middle = b + 0.5 * (b - a) * (before - after) / bend;
-                let value = at(middle);
+                let value = value_at(middle);
                 if bend != 0.0 && (value > 0.0) != (now > 0.0) && (after > 0.0) == (now > 0.0) {
                     let (low, high) = ((a, before), (self.grid[i + 1], after));
-                    switchings.push(root(at, low, (middle, value)));
-                    switchings.push(root(at, (middle, value), high));
+                    switchings.push(root(value_at, low, (middle, value)));
+                    switchings.push(root(value_at, (middle, value), high));
                 }
             }
         }

@@ -104,12 +104,12 @@ impl Manoeuvre {
                 if peak <= limit * (1.0 + 1e-9) {
                     return Ok(plan);
                 }
-                let takes = match timing::shortest_plan(&planner, limit) {
+                let shortest = match timing::shortest_plan(&planner, limit) {
                     Ok(longer) => format!("with {limit} N m it takes {:.6} s", longer.time),
                     Err(_) => format!("with {limit} N m no time is enough"),
                 };
                 let why =
-                    format!("must be at least {peak:.6} N m for a time of {time} s, got {limit}; {takes}");
+                    format!("must be at least {peak:.6} N m for a time of {time} s, got {limit}; {shortest}");
                 Err(ConfigError::new("peak_torque", why))
             }
         }

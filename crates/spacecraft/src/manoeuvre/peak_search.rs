@@ -51,12 +51,12 @@ pub fn largest_of_each(
     let peak = |(index, candidates): (usize, Vec<PeakCandidate>)| {
         let coarse = candidates.iter().map(|candidate| candidate.4).fold(0.0, f64::max);
         let mut peak = PeakValue::default();
-        for (middle, from, at, to, value) in candidates {
+        for (middle, from, crest, to, value) in candidates {
             if value < 0.98 * coarse || coarse == 0.0 {
                 continue;
             }
             let found = refined(|t| f(middle, t)[index].abs(), from, to);
-            let found = if found.value > value { found } else { PeakValue { time: at, value } };
+            let found = if found.value > value { found } else { PeakValue { time: crest, value } };
             // Of peaks that are equal within rounding, the first counts.
             if found.value > peak.value * (1.0 + 1e-13) || peak.value == 0.0 {
                 peak = found;

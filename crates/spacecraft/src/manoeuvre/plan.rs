@@ -90,10 +90,10 @@ impl Plan {
         let history = ModalResponse::new(body, &self.waveform, 1.0);
         let breaks = self.waveform.breaks();
         let within = breaks.into_iter().filter(|time| 0.0 < *time && *time < end);
-        let edges: Vec<f64> = std::iter::once(0.0).chain(within).chain([end]).collect();
+        let bounds: Vec<f64> = std::iter::once(0.0).chain(within).chain([end]).collect();
         let small = CONTINUOUS * self.peak().value.abs();
         let mut samples: Vec<CommandSample> = Vec::new();
-        for piece in edges.windows(2) {
+        for piece in bounds.windows(2) {
             let (from, length) = (piece[0], piece[1] - piece[0]);
             let middle = from + 0.5 * length;
             let count = libm::ceil(length / step).max(1.0);

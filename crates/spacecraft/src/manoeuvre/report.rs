@@ -163,7 +163,7 @@ fn tuned_times(plan: &Plan, body: &Planar) -> Vec<RestTimes> {
     order.sort_by(|a, b| body.modes[*a].frequency.get().total_cmp(&body.modes[*b].frequency.get()));
     order.truncate(TUNED);
     let rest = plan.start_rate == plan.end_rate;
-    let of = |mode: usize| {
+    let residual_of = |mode: usize| {
         let w = body.modes[mode].frequency.get();
         RestTimes {
             mode,
@@ -171,5 +171,5 @@ fn tuned_times(plan: &Plan, body: &Planar) -> Vec<RestTimes> {
             cosine: rest.then(|| timing::tuned_times(SingleHarmonicTime::Cosine, w, plan.time)),
         }
     };
-    order.into_iter().map(of).collect()
+    order.into_iter().map(residual_of).collect()
 }

@@ -58,18 +58,18 @@ pub fn plan(family: SeriesFamily, task: &RestToRestTask, zeros: &[Zero]) -> (Wav
     let count = zeros.len();
     let (half, carry): (f64, Vec<Phasor>) = match family {
         SeriesFamily::Sine => {
-            let at = |k| {
+            let coefficient = |k| {
                 Phasor::new(0.0, -travel / task.time * k as f64 * sigma)
                     * gain(k, count + 1, 0.0, sigma, zeros)
             };
-            (0.0, (1..=count + 1).map(at).collect())
+            (0.0, (1..=count + 1).map(coefficient).collect())
         }
         SeriesFamily::Cosine => {
-            let at = |k| {
+            let coefficient = |k| {
                 let kappa = (k as f64 - 0.5) * sigma;
                 gain(k, count + 1, 0.5, sigma, zeros) * (0.5 * travel * kappa * kappa)
             };
-            (0.5, (1..=count + 1).map(at).collect())
+            (0.5, (1..=count + 1).map(coefficient).collect())
         }
     };
     let even: Vec<Phasor> = if constant == 0.0 {

@@ -40,7 +40,7 @@ impl AttitudeMotion {
     /// Composes this motion, which is relative to moving axes, with the motion of those axes.
     #[must_use]
     pub fn compose(&self, axes: &Self) -> Self {
-        let [carried, pushed] = [axes.rate, axes.acceleration].map(|of| to_body(&self.attitude, &of));
+        let [carried, pushed] = [axes.rate, axes.acceleration].map(|vector| to_body(&self.attitude, &vector));
         Self {
             attitude: axes.attitude * self.attitude,
             rate: carried + self.rate,
@@ -51,10 +51,10 @@ impl AttitudeMotion {
     /// Rate and acceleration in the axes of a body that is beyond it by this rotation vector (rad).
     pub fn in_body_axes(&self, beyond: &Vector) -> [Vector; 2] {
         let turn = rotation(beyond);
-        let turned = |vector: &Vector| -> Vector {
+        let rotate = |vector: &Vector| -> Vector {
             (turn.conjugate() * Quaternion::from_imag(*vector) * turn).vector().into_owned()
         };
-        [turned(&self.rate), turned(&self.acceleration)]
+        [rotate(&self.rate), rotate(&self.acceleration)]
     }
 }
 
@@ -197,13 +197,13 @@ mod tests {
 
     const SIXTY: f64 = std::f64::consts::FRAC_PI_3;
 
-    fn turned(by: f64) -> Quaternion<f64> {
+    fn rotation_by(by: f64) -> Quaternion<f64> {
         rotation(&(Vector::new(1.0, 2.0, 2.0) * (by / 3.0)))
     }
 
     fn slew(angle: f64, rate: f64, profile: SlewProfile) -> Slew {
         let from = rotation(&Vector::new(0.3, -0.2, 0.5));
-        Slew::new([from, from * turned(angle)], 2e-4, rate, profile)
+        Slew::new([from, from * rotation_by(angle)], 2e-4, rate, profile)
     }
 
     #[test]
@@ -213,12 +213,12 @@ mod tests {
         assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-12, "{}", slew.duration());
         // Expected angle: a t²/2 while the rate rises, and symmetric at the end.
         let from = rotation(&Vector::zeros());
-        let plain = Slew::new([from, turned(SIXTY)], 2e-4, 8e-3, SlewProfile::Trapezoid);
-        let at = |t: f64| plain.at(t).attitude;
-        assert!((at(10.0) - turned(0.01)).norm() < 1e-15);
-        assert!((at(60.0) - turned(0.16 + 8e-3 * 20.0)).norm() < 1e-15);
-        let left = plain.duration() - 140.0;
-        assert!((at(140.0) - turned(SIXTY - 1e-4 * left * left)).norm() < 1e-15);
+        let plain = Slew::new([from, rotation_by(SIXTY)], 2e-4, 8e-3, SlewProfile::Trapezoid);
+        let attitude_at = |t: f64| plain.at(t).attitude;
+        assert!((attitude_at(10.0) - rotation_by(0.01)).norm() < 1e-15);
+        assert!((attitude_at(60.0) - rotation_by(0.16 + 8e-3 * 20.0)).norm() < 1e-15);
+        let coast = plain.duration() - 140.0;
+        assert!((attitude_at(140.0) - rotation_by(SIXTY - 1e-4 * coast * coast)).norm() < 1e-15);
         assert_eq!(plain.at(60.0).acceleration, Vector::zeros());
     }
 
@@ -252,8 +252,8 @@ mod tests {
                     );
                 }
                 let end = slew.at(slew.duration() + 1.0);
-                let there = rotation(&Vector::new(0.3, -0.2, 0.5)) * turned(angle);
-                assert!((end.attitude - there).norm() < 1e-15 && end.rate.norm() == 0.0);
+                let target = rotation(&Vector::new(0.3, -0.2, 0.5)) * rotation_by(angle);
+                assert!((end.attitude - target).norm() < 1e-15 && end.rate.norm() == 0.0);
             }
         }
     }
@@ -265,8 +265,12 @@ mod tests {
         assert!(nowhere.at(0.0).attitude.norm().is_finite() && nowhere.at(0.0).acceleration.norm() == 0.0);
         // A rotation by 300 degrees is one by 60 the other way, whichever sign the quaternion has.
         for sign in [1.0, -1.0] {
-            let slew =
-                Slew::new([turned(0.0), turned(5.0 * SIXTY) * sign], 2e-4, 8e-3, SlewProfile::Trapezoid);
+            let slew = Slew::new(
+                [rotation_by(0.0), rotation_by(5.0 * SIXTY) * sign],
+                2e-4,
+                8e-3,
+                SlewProfile::Trapezoid,
+            );
             assert!((slew.duration() - 170.899_693_899_574_71).abs() < 1e-11, "{}", slew.duration());
             assert!(slew.at(1.0).rate.x < 0.0);
         }

@@ -68,11 +68,11 @@ impl Suppression {
     /// Returns the zeros, by frequency. `place` is the key of the table, for faults.
     pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, ConfigError> {
         let mut zeros = lowest(self.suppress, modes, place)?;
-        let beside: usize = self.zeros.iter().map(|target| target.times as usize).sum();
-        if zeros.len() + beside > MOST {
+        let extra_zeros: usize = self.zeros.iter().map(|target| target.times as usize).sum();
+        if zeros.len() + extra_zeros > MOST {
             let why = format!(
                 "must make at most {MOST} zeros together with `suppress`, got {}",
-                zeros.len() + beside
+                zeros.len() + extra_zeros
             );
             return Err(ConfigError::new(format!("{place}.zeros"), why));
         }

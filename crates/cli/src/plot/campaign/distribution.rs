@@ -44,9 +44,9 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
             Layer::new(&name("5 and 95 %"), colour::VERMILLION, LayerShape::Dashes, line(0.05)),
             Layer::new("", colour::VERMILLION, LayerShape::Dashes, line(0.95)),
         ];
-        marks.extend(required.as_ref().map(|(most, told)| {
+        marks.extend(required.as_ref().map(|(most, requirement)| {
             let line = vec![(*most, y.range.start), (*most, y.range.end)];
-            Layer::new(&name(told), colour::BLACK, LayerShape::Line(1.6), line)
+            Layer::new(&name(requirement), colour::BLACK, LayerShape::Line(1.6), line)
         }));
         marks
     };

@@ -71,7 +71,7 @@ pub fn figure(name: &str, paths: &[PathBuf]) -> Result<Figure, CliError> {
         bar.inc(1);
         Ok(signals
             .into_iter()
-            .map(|signal| (signal.name.clone(), signal.unit, signal.at(&instants)))
+            .map(|signal| (signal.name.clone(), signal.unit, signal.value_at(&instants)))
             .collect())
     };
     let runs = paths.par_iter().map(sampled).collect::<Result<Vec<_>, _>>()?;
@@ -152,7 +152,8 @@ fn adaptation_fans(story: &RunEvents) -> Vec<SignalFan> {
     let signal = |name: String, unit, line| SignalFan { name, unit, line, held: true };
     let mut signals = Vec::new();
     let Some(adaptation) = &story.scenario.adaptation else { return signals };
-    let windows = story.objective.iter().flat_map(|of| [(of.from, of.value), (of.to, of.value)]);
+    let windows =
+        story.objective.iter().flat_map(|window| [(window.from, window.value), (window.to, window.value)]);
     if !story.objective.is_empty() {
         let objective = adaptation.objective();
         let unit = objective.unit(story.scenario.torque_unit());
@@ -192,7 +193,7 @@ fn rotation_fans(story: &RunEvents, motion: &MotionData) -> Vec<SignalFan> {
 
 impl SignalFan {
     /// Returns the values at increasing instants; NaN outside the signal.
-    fn at(&self, instants: &[f64]) -> Vec<f64> {
+    fn value_at(&self, instants: &[f64]) -> Vec<f64> {
         let mut values = Vec::with_capacity(instants.len());
         for now in instants {
             // The times of a log are whole nanoseconds.
@@ -222,7 +223,7 @@ mod tests {
         let line = vec![(1.0, 10.0), (2.0, 20.0), (4.0, 0.0)];
         let signal = |held| SignalFan { name: String::new(), unit: "", line: line.clone(), held };
         let instants = [0.5, 1.0, 1.5, 2.0, 3.0, 4.0, 5.0];
-        let texts = |held| signal(held).at(&instants).iter().map(f64::to_string).collect::<Vec<_>>();
+        let texts = |held| signal(held).value_at(&instants).iter().map(f64::to_string).collect::<Vec<_>>();
         assert_eq!(texts(false), ["NaN", "10", "15", "20", "10", "0", "NaN"]);
         assert_eq!(texts(true), ["NaN", "10", "10", "20", "20", "0", "NaN"]);
     }

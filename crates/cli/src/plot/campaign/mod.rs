@@ -54,9 +54,9 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
             directory.display()
         )));
     }
-    let mut there: Vec<FigureKind> = tables.iter().flat_map(drawable).collect();
-    there.extend((!fans.is_empty()).then_some(FigureKind::Fan));
-    let all = select(&asked, &there).map_err(|(missing, there)| {
+    let mut available: Vec<FigureKind> = tables.iter().flat_map(drawable).collect();
+    available.extend((!fans.is_empty()).then_some(FigureKind::Fan));
+    let all = select(&asked, &available).map_err(|(missing, there)| {
         let path = directory.display();
         CliError::Arguments(format!("{path}: there is no figure `{missing}` for it\n\nhint: it has {there}"))
     })?;
@@ -64,9 +64,9 @@ pub fn run(args: &PlotArgs) -> Result<(), CliError> {
     for runs in &tables {
         let metrics = metrics(&args.metric, &args.path, runs)?;
         let natural = natural(runs);
-        let wanted = |what: &&FigureKind| !asked.is_empty() || natural.contains(what);
-        for what in drawable(runs).iter().filter(|what| all.contains(what)).filter(wanted) {
-            figures.extend(drawn(*what, runs, &metrics));
+        let wanted = |kind: &&FigureKind| !asked.is_empty() || natural.contains(kind);
+        for kind in drawable(runs).iter().filter(|kind| all.contains(kind)).filter(wanted) {
+            figures.extend(drawn(*kind, runs, &metrics));
         }
         let listed = if args.json { worst::lines } else { worst::table };
         let worst = args.worst.unwrap_or(WORST);
@@ -136,7 +136,7 @@ fn run_figures(
     let (metrics, natural, all) = (metrics(metric, path, runs)?, natural(runs), drawable(runs));
     let kinds = if kinds.is_empty() { &natural } else { kinds };
     if let Some(missing) = kinds.iter().find(|kind| !all.contains(kind)) {
-        let names: Vec<_> = all.iter().map(|what| what.name()).collect();
+        let names: Vec<_> = all.iter().map(|kind| kind.name()).collect();
         return Err(CliError::Arguments(format!(
             "{}: there is no figure `{}` for it\n\nhint: it has {}",
             path.display(),
@@ -144,7 +144,7 @@ fn run_figures(
             names.join(", ")
         )));
     }
-    Ok(all.iter().filter(|what| kinds.contains(what)).flat_map(|what| drawn(*what, runs, &metrics)).collect())
+    Ok(all.iter().filter(|kind| kinds.contains(kind)).flat_map(|kind| drawn(*kind, runs, &metrics)).collect())
 }
 
 /// Returns the sorted names of the files in a directory.
@@ -168,7 +168,7 @@ fn drawable(runs: &CampaignRuns) -> Vec<FigureKind> {
         (FigureKind::Scatter, !scatter::keys(runs).is_empty()),
     ]
     .into_iter()
-    .filter_map(|(what, is)| is.then_some(what))
+    .filter_map(|(kind, is)| is.then_some(kind))
     .collect()
 }
 
@@ -180,26 +180,27 @@ fn natural(runs: &CampaignRuns) -> Vec<FigureKind> {
         _ => vec![FigureKind::Distribution, FigureKind::Scatter],
     };
     let drawable = drawable(runs);
-    wanted.into_iter().filter(|what| drawable.contains(what)).collect()
+    wanted.into_iter().filter(|kind| drawable.contains(kind)).collect()
 }
 
 /// Returns the named metrics, or else the main ones that vary.
 fn metrics<'a>(
-    asked: &[String],
+    requested: &[String],
     path: &Path,
     runs: &'a CampaignRuns,
 ) -> Result<Vec<&'a MetricColumn>, CliError> {
     let named = |name: &str| runs.metrics.iter().find(|metric| metric.meaning.name == name);
-    if asked.is_empty() {
+    if requested.is_empty() {
         // A metric that only repeats a key is left out.
-        let tells = |metric: &&MetricColumn| {
+        let is_informative = |metric: &&MetricColumn| {
             metric.varies() && runs.keys.iter().all(|key| key.values != metric.values)
         };
         // A required metric comes first.
         let required = runs.requirement().map(|(name, _)| name);
         let others = MAIN.into_iter().filter(|name| Some(*name) != required);
-        let main: Vec<_> = required.into_iter().chain(others).filter_map(named).filter(tells).collect();
-        let any = runs.metrics.iter().filter(tells);
+        let main: Vec<_> =
+            required.into_iter().chain(others).filter_map(named).filter(is_informative).collect();
+        let any = runs.metrics.iter().filter(is_informative);
         let found: Vec<_> = if main.is_empty() { any.collect() } else { main };
         return Ok(found.into_iter().take(MOST).collect());
     }
@@ -212,23 +213,23 @@ fn metrics<'a>(
             ))
         })
     };
-    asked.iter().map(metric).collect()
+    requested.iter().map(metric).collect()
 }
 
 /// Returns the figures of a kind, with their names.
-fn drawn(what: FigureKind, runs: &CampaignRuns, metrics: &[&MetricColumn]) -> Vec<(String, Figure)> {
-    let name = |metric: &MetricColumn| format!("{}-{}-{}", runs.name, what.name(), metric.meaning.name);
+fn drawn(kind: FigureKind, runs: &CampaignRuns, metrics: &[&MetricColumn]) -> Vec<(String, Figure)> {
+    let name = |metric: &MetricColumn| format!("{}-{}-{}", runs.name, kind.name(), metric.meaning.name);
     let each = |figure: &dyn Fn(&MetricColumn) -> Option<Figure>| {
         metrics.iter().filter_map(|metric| Some((name(metric), figure(metric)?))).collect()
     };
-    match what {
+    match kind {
         FigureKind::Distribution => each(&|metric| Some(distribution::figure(runs, metric))),
         FigureKind::Scatter => each(&|metric| Some(scatter::figure(runs, metric))),
         FigureKind::Region => each(&|metric| region::figure(runs, metric)),
         FigureKind::Curve => {
             let key = runs.swept().into_iter().next().filter(|_| !metrics.is_empty());
             let curve = key.map(|key| curve::figure(runs, metrics, key));
-            curve.map(|figure| (format!("{}-{}", runs.name, what.name()), figure)).into_iter().collect()
+            curve.map(|figure| (format!("{}-{}", runs.name, kind.name()), figure)).into_iter().collect()
         }
         _ => Vec::new(),
     }

@@ -41,9 +41,9 @@ pub fn campaign_runs(
     named: &[String],
 ) -> Result<CampaignRuns, CliError> {
     let (campaign, scenario) = (&work.campaign, work.campaign.scenario());
-    let mut about = read(&[RUN, ERROR])?.into_iter();
+    let mut columns = read(&[RUN, ERROR])?.into_iter();
     let (Some(Some(ColumnCells::Integers(numbers))), Some(Some(ColumnCells::Words(errors)))) =
-        (about.next(), about.next())
+        (columns.next(), columns.next())
     else {
         return Err(CliError::Arguments(format!("{}: has no runs", path.display())));
     };
@@ -56,8 +56,8 @@ pub fn campaign_runs(
         ColumnKind::Words => goal::NAMES.contains(&field.name.as_str()),
         ColumnKind::Lists => false,
     };
-    let of_metrics = |field: &&ColumnHeading| !keys.contains(&field.name.as_str()) && is_number(field);
-    let all = work.fields().iter().filter(of_metrics).collect::<Vec<_>>();
+    let is_metric = |field: &&ColumnHeading| !keys.contains(&field.name.as_str()) && is_number(field);
+    let all = work.fields().iter().filter(is_metric).collect::<Vec<_>>();
     let few = all.len() * numbers.len() <= HELD;
     let wanted = |name: &str| few || MAIN.contains(&name) || named.iter().any(|named| named == name);
     let fields: Vec<(&ColumnHeading, _)> = all

@@ -37,9 +37,15 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Option<Figure> {
         for alike in column.chunk_by(|a, b| a.map(class) == b.map(class)) {
             let to = from + alike.len();
             if let Some(value) = alike[0] {
-                let (left, low) = (across[i], up[from]);
-                let (right, high) = (beyond(&across, i + 1), beyond(&up, to));
-                let corners = [(left, low), (right, low), (right, high), (left, high), (f64::NAN, f64::NAN)];
+                let (left_edge, low) = (across[i], up[from]);
+                let (right_edge, high) = (beyond(&across, i + 1), beyond(&up, to));
+                let corners = [
+                    (left_edge, low),
+                    (right_edge, low),
+                    (right_edge, high),
+                    (left_edge, high),
+                    (f64::NAN, f64::NAN),
+                ];
                 areas[class(value)].extend(corners);
             }
             from = to;

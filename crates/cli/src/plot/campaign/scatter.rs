@@ -25,15 +25,15 @@ pub fn figure(runs: &CampaignRuns, metric: &MetricColumn) -> Figure {
         let reported =
             if r.is_nan() { String::new() } else { format!("rank correlation {r:+.2}").replace('-', "−") };
         let mut layers = vec![Layer::new(&reported, colour::BLUE, LayerShape::Dot, points)];
-        layers.extend(required.as_ref().map(|(most, told)| {
+        layers.extend(required.as_ref().map(|(most, requirement)| {
             let line = vec![(x.range.start, *most), (x.range.end, *most)];
-            Layer::new(told, colour::BLACK, LayerShape::Line(1.6), line)
+            Layer::new(requirement, colour::BLACK, LayerShape::Line(1.6), line)
         }));
         Panel::new(x, y, layers)
     };
     let panels = keys.into_iter().take(PANELS).map(panel).collect();
-    let left = if more > 0 { format!(", keys left out: {more}") } else { String::new() };
-    let title = format!("{}: {name} against the keys that vary{left}", readable(&runs.name));
+    let omitted = if more > 0 { format!(", keys left out: {more}") } else { String::new() };
+    let title = format!("{}: {name} against the keys that vary{omitted}", readable(&runs.name));
     Figure { title, panels, panel_height: 180 }
 }
 

@@ -150,7 +150,7 @@ impl TextTable {
                 return Err(refused(path, &why));
             };
             match self.rows.get(&number) {
-                Some((there, other)) if *there != row => {
+                Some((existing, other)) if *existing != row => {
                     let why = format!("run {number} is another than in {}", other.display());
                     return Err(refused(path, &why));
                 }
@@ -238,9 +238,9 @@ impl CampaignRuns {
     pub fn required(&self, metric: &MetricColumn) -> Option<(f64, String)> {
         let (_, most) = self.requirement().filter(|(name, _)| *name == metric.meaning.name)?;
         let sorted = metric.sorted();
-        let met = sorted.iter().filter(|value| **value <= most).count();
-        let part = 100.0 * met as f64 / sorted.len().max(1) as f64;
-        Some((most, format!("requirement, met by {met} of {} runs ({part:.0} %)", sorted.len())))
+        let successes = sorted.iter().filter(|value| **value <= most).count();
+        let part = 100.0 * successes as f64 / sorted.len().max(1) as f64;
+        Some((most, format!("requirement, met by {successes} of {} runs ({part:.0} %)", sorted.len())))
     }
 
     /// Returns the label of an axis along a key: its name and its unit.

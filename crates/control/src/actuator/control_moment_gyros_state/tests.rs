@@ -23,7 +23,7 @@ fn at(seconds: f64) -> Instant {
     Instant::START + Span::from_seconds(seconds)
 }
 
-fn ask(gimbals: &mut ControlMomentGyrosState, now: Instant, torque: [f64; 3]) {
+fn demand(gimbals: &mut ControlMomentGyrosState, now: Instant, torque: [f64; 3]) {
     gimbals.command(now, &torque.map(Demand::Torque), [0.0; 3]);
 }
 
@@ -52,14 +52,14 @@ const TORQUE: [f64; 3] = [0.5, -0.25, 1.0];
 #[test]
 fn the_pseudo_inverse_is_that_of_numpy() {
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
-    ask(&mut gimbals, at(0.0), TORQUE);
+    demand(&mut gimbals, at(0.0), TORQUE);
     assert_near(&gimbals.rates, PINV);
     assert!((applied(&gimbals, at(0.0)) - Vector::from(TORQUE)).norm() < 1e-14);
     let row = gimbals.gyros(at(0.0)).unwrap();
     assert!((row.singularity - MEASURE).abs() < 1e-14, "{}", row.singularity);
     // Far from singular angles the robust rule gives nearly the same rates.
     let mut robust = start(ANGLES);
-    ask(&mut robust, at(0.0), TORQUE);
+    demand(&mut robust, at(0.0), TORQUE);
     for (robust, exact) in robust.rates.iter().zip(&gimbals.rates) {
         assert!((robust - exact).abs() < 1e-6 && robust != exact, "{robust} {exact}");
     }
@@ -70,19 +70,19 @@ fn the_pseudo_inverse_is_that_of_numpy() {
 fn near_singular_angles_the_robust_rates_are_those_of_numpy() {
     let angles = "angles = [-1.4, 0.1, 1.5, -0.05]";
     let mut gimbals = start(angles);
-    ask(&mut gimbals, at(0.0), [0.0; 3]);
+    demand(&mut gimbals, at(0.0), [0.0; 3]);
     assert_eq!(gimbals.rates, [0.0; 4]);
-    ask(&mut gimbals, at(0.3), TORQUE);
+    demand(&mut gimbals, at(0.3), TORQUE);
     assert_near(&gimbals.rates, ROBUST);
     let mut other = start(&format!("{angles}\nrobust = {{ dither = 0.0 }}"));
-    ask(&mut other, at(0.3), TORQUE);
+    demand(&mut other, at(0.3), TORQUE);
     assert!(other.rates.iter().zip(ROBUST).any(|(rate, with)| (rate - with).abs() > 1e-4));
 }
 
 #[test]
 fn the_torque_is_the_rate_of_the_momentum_while_gimbals_turn() {
     let mut gimbals = start(ANGLES);
-    ask(&mut gimbals, at(0.0), [5.0, -2.5, 10.0]);
+    demand(&mut gimbals, at(0.0), [5.0, -2.5, 10.0]);
     let stored = |t: f64| Vector::from(gimbals.stored_momentum(at(t)));
     for t in [0.3, 0.9] {
         // Difference quotient of order 4.
@@ -94,36 +94,41 @@ fn the_torque_is_the_rate_of_the_momentum_while_gimbals_turn() {
     assert!((applied(&gimbals, at(0.9)) - applied(&gimbals, at(0.0))).norm() > 1.0);
     let mut wrench = Wrench::default();
     gimbals.apply(at(0.9), &mut wrench);
-    let sum = wrench.gimbals.iter().map(|of| of.at(0.0)).fold(Vector::zeros(), |sum, of| sum + of.1);
+    let sum = wrench
+        .gimbals
+        .iter()
+        .map(|gimbal| gimbal.at(0.0))
+        .fold(Vector::zeros(), |sum, gimbal| sum + gimbal.1);
     assert!((applied(&gimbals, at(0.9)) + sum).norm() < 1e-13);
 }
 
 #[test]
 fn a_torque_that_is_too_large_keeps_its_axis() {
     let mut gimbals = start(&format!("rate_limit = 0.02\nsteering = \"pseudo_inverse\"\n{ANGLES}"));
-    ask(&mut gimbals, at(0.0), TORQUE);
+    demand(&mut gimbals, at(0.0), TORQUE);
     let largest = gimbals.rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
-    let given = applied(&gimbals, at(0.0));
+    let torque = applied(&gimbals, at(0.0));
     assert!((largest - 0.02).abs() < 1e-16);
     assert!(
-        given.cross(&Vector::from(TORQUE)).norm() < 1e-14 && given.norm() < 0.9 * Vector::from(TORQUE).norm()
+        torque.cross(&Vector::from(TORQUE)).norm() < 1e-14
+            && torque.norm() < 0.9 * Vector::from(TORQUE).norm()
     );
     let steered = gimbals.steered;
     assert!((steered.largest_rate_rad_s - 0.02).abs() < 1e-16);
-    assert!((steered.largest_error_nm - (given - Vector::from(TORQUE)).norm()).abs() < 1e-14);
+    assert!((steered.largest_error_nm - (torque - Vector::from(TORQUE)).norm()).abs() < 1e-14);
     // The torque they counteract is part of their torque.
     let mut gimbals = start(&format!("steering = \"pseudo_inverse\"\n{ANGLES}"));
     gimbals.update(Instant::START, ActuatorEvent::CounterTorque(Vector::new(0.1, 0.2, -0.3)));
-    ask(&mut gimbals, at(0.0), TORQUE);
-    let given = applied(&gimbals, at(0.0));
-    assert!((given - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
+    demand(&mut gimbals, at(0.0), TORQUE);
+    let torque = applied(&gimbals, at(0.0));
+    assert!((torque - Vector::from(TORQUE) + Vector::new(0.1, 0.2, -0.3)).norm() < 1e-14);
 }
 
 /// Drives gimbals by a constant torque along -x, so that their momentum along x grows, for `updates` of 0.05 s. Returns
 /// the largest momentum along x, in units of a rotor's, and the largest rate.
 fn driven(keys: &str, updates: u32) -> (f64, f64) {
     let mut gimbals = start(&format!("rate_limit = 2.0\nperiod = 0.05\n{keys}"));
-    ask(&mut gimbals, at(0.0), [-1.5, 0.0, 0.0]);
+    demand(&mut gimbals, at(0.0), [-1.5, 0.0, 0.0]);
     let mut most = 0.0_f64;
     for _ in 1..updates {
         let now = gimbals.due().expect("an update");
@@ -154,7 +159,7 @@ fn at_singular_angles_the_torques_that_can_be_are_given_without_null_motion() {
     let angles = "angles = [-1.5707963267948966, 0, 1.5707963267948966, 0]";
     let keys = format!("steering = \"pseudo_inverse\"\n{angles}");
     let mut gimbals = start(&keys);
-    ask(&mut gimbals, at(0.0), [30.0, -15.0, 45.0]);
+    demand(&mut gimbals, at(0.0), [30.0, -15.0, 45.0]);
     let (cos, sin) = ((1.0_f64 / 3.0).sqrt(), (2.0_f64 / 3.0).sqrt());
     let exact = [0.375, -0.375 * cos - 2.25 * sin, 0.375, 0.375 * cos - 2.25 * sin];
     for (rate, exact) in gimbals.rates.iter().zip(exact) {
@@ -162,7 +167,7 @@ fn at_singular_angles_the_torques_that_can_be_are_given_without_null_motion() {
     }
     assert!((applied(&gimbals, at(0.0)) - Vector::new(0.0, -15.0, 45.0)).norm() < 1e-5);
     let mut null = start(&format!("{keys}\nnull_motion = {{ angles = [0, 0, 0, 0], gain = 1.0 }}"));
-    ask(&mut null, at(0.0), [30.0, -15.0, 45.0]);
+    demand(&mut null, at(0.0), [30.0, -15.0, 45.0]);
     assert_eq!(null.rates, gimbals.rates);
 }
 
@@ -202,12 +207,12 @@ fn a_change_of_the_rate_takes_a_period_of_the_law() {
 fn null_motion_gives_no_torque_and_goes_where_it_shall() {
     let keys = "steering = \"pseudo_inverse\"\nnull_motion = { angles = [0.5, -0.6, 0.2, 1.1], gain = 1.0 }";
     let mut gimbals = start(&format!("{keys}\n{ANGLES}"));
-    ask(&mut gimbals, at(0.0), [0.0; 3]);
+    demand(&mut gimbals, at(0.0), [0.0; 3]);
     assert_near(&gimbals.rates, NULL);
     assert!(applied(&gimbals, at(0.0)).norm() < 1e-14);
     // The torque has priority: null motion uses what is left of the limit.
     let mut gimbals = start(&format!("{keys}\nrate_limit = 0.08\n{ANGLES}"));
-    ask(&mut gimbals, at(0.0), TORQUE);
+    demand(&mut gimbals, at(0.0), TORQUE);
     assert!((applied(&gimbals, at(0.0)) - Vector::from(TORQUE)).norm() < 1e-13);
     let largest = gimbals.rates.iter().map(|rate| rate.abs()).fold(0.0, f64::max);
     assert!((largest - 0.08).abs() < 1e-15, "{largest}");
@@ -217,14 +222,14 @@ fn null_motion_gives_no_torque_and_goes_where_it_shall() {
 fn a_gimbal_that_fails_stands_still_and_nobody_knows() {
     let faults = "faults = [{ dead = { gimbal = 2, from = 1.0, to = 2.0 } }]";
     let mut gimbals = start(&format!("{faults}\nsteering = \"pseudo_inverse\"\n{ANGLES}"));
-    ask(&mut gimbals, at(0.0), TORQUE);
+    demand(&mut gimbals, at(0.0), TORQUE);
     assert_eq!(gimbals.due(), Some(at(1.0)));
     gimbals.update(at(1.0), ActuatorEvent::Due([0.0; 3]));
     assert_eq!(gimbals.rates[1], 0.0);
     assert!(gimbals.rates[0] != 0.0);
     let believed = [0, 1, 2].map(|axis| gimbals.effort(axis).reduced_moment * 100.0);
-    let given = applied(&gimbals, at(1.0));
-    assert!((given - Vector::from(believed)).norm() > 0.1);
+    let torque = applied(&gimbals, at(1.0));
+    assert!((torque - Vector::from(believed)).norm() > 0.1);
     let held = gimbals.angles_at(at(1.9))[1];
     assert_eq!(held, gimbals.angles_at(at(1.0))[1]);
     gimbals.update(at(2.0), ActuatorEvent::Due([0.0; 3]));
@@ -238,11 +243,13 @@ fn axes_that_are_given_make_the_same_pyramid() {
         "momentum = 1.0\ngimbal_axes = [[{sin}, 0, {cos}], [0, {sin}, {cos}], [-{sin}, 0, {cos}], [0, -{sin}, {cos}]]\n\
          spin_axes = [[0, 2, 0], [-1, 0, 0], [0, -1, 0], [1, 0, 0]]"
     );
-    let given: ControlMomentGyros = flexsc_formats::document::from_text(&text).unwrap();
+    let from_axes: ControlMomentGyros = flexsc_formats::document::from_text(&text).unwrap();
     let named: ControlMomentGyros =
         flexsc_formats::document::from_text("momentum = 1.0\narrangement = \"pyramid\"\ncant = 0.9").unwrap();
-    for (given, named) in given.axes().unwrap().iter().zip(named.axes().unwrap()) {
-        assert!((given.spin - named.spin).norm() < 1e-15 && (given.across - named.across).norm() < 1e-15);
+    for (from_axes, named) in from_axes.axes().unwrap().iter().zip(named.axes().unwrap()) {
+        assert!(
+            (from_axes.spin - named.spin).norm() < 1e-15 && (from_axes.across - named.across).norm() < 1e-15
+        );
     }
 }
 

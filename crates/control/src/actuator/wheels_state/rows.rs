@@ -16,7 +16,7 @@ impl WheelsState {
     fn bearings(&self, rotors: &[RotorObservation]) -> Option<flexsc_record::Bearings> {
         let known: Vec<f64> = match &self.tachometer {
             Some(tachometer) => tachometer.speeds().to_vec(),
-            None => self.turned.iter().map(|wheel| wheel.speed).collect(),
+            None => self.observations.iter().map(|wheel| wheel.speed).collect(),
         };
         let motion = |(wheel, known_rad_s): (&RotorObservation, f64)| flexsc_record::BearingMotion {
             sliding: wheel.slip.into(),
@@ -62,7 +62,7 @@ impl MomentumStorage for WheelsState {
         let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
         let motion = |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| flexsc_record::Wheel {
             speed_rad_s: self
-                .turned
+                .observations
                 .get(index)
                 .map_or(wheel.momentum_at(seconds) / self.inertia - axis.dot(&rate), |turned| turned.speed),
             momentum_nm_s: wheel.momentum_at(seconds),

@@ -28,11 +28,11 @@ fn at(seconds: f64) -> Instant {
     Instant::START + Span::from_seconds(seconds)
 }
 
-fn ask(wheels: &mut WheelsState, now: Instant, torque: [f64; 3]) {
+fn demand(wheels: &mut WheelsState, now: Instant, torque: [f64; 3]) {
     wheels.command(now, &torque.map(Demand::Torque), [0.0; 3]);
 }
 
-fn given(wheels: &WheelsState) -> [f64; 3] {
+fn applied(wheels: &WheelsState) -> [f64; 3] {
     [0, 1, 2].map(|axis| wheels.effort(axis).held)
 }
 
@@ -42,8 +42,8 @@ fn wheels_take_the_momentum_that_the_body_gets() {
     let before = Vector::from(wheels.stored_momentum(at(0.0)));
     assert!(before.norm() < 1e-14, "two turn one way and two the other: {before}");
     let torque = [0.1, -0.05, 0.2];
-    ask(&mut wheels, at(0.0), torque);
-    for (found, exact) in given(&wheels).into_iter().zip(torque) {
+    demand(&mut wheels, at(0.0), torque);
+    for (found, exact) in applied(&wheels).into_iter().zip(torque) {
         assert!((found - exact).abs() < 1e-15);
     }
     let after = Vector::from(wheels.stored_momentum(at(2.0)));
@@ -51,17 +51,17 @@ fn wheels_take_the_momentum_that_the_body_gets() {
     let speed = wheels.wheels(at(2.0), [0.0; 3])[0].speed_rad_s;
     assert!((speed - (200.0 - 2.0 * 0.108_752_79 / 0.04)).abs() < 1e-5, "{speed}");
     // If the body rotates, a wheel of the same momentum is slower.
-    let turning = wheels.wheels(at(2.0), [0.0, 0.0, 1.0])[0].speed_rad_s;
-    assert!((speed - turning - 0.573_576_436_351_046).abs() < 1e-12);
+    let wheel_speed = wheels.wheels(at(2.0), [0.0, 0.0, 1.0])[0].speed_rad_s;
+    assert!((speed - wheel_speed - 0.573_576_436_351_046).abs() < 1e-12);
 }
 
 #[test]
 fn a_torque_that_is_too_large_keeps_its_axis() {
     let mut wheels = start("torque = 0.4");
-    ask(&mut wheels, at(0.0), [1.0, -0.5, 2.0]);
+    demand(&mut wheels, at(0.0), [1.0, -0.5, 2.0]);
     // Ten times the torque that requires 0.1519 N m of a wheel.
     let part = 0.4 / 1.519_136_9;
-    for (found, exact) in given(&wheels).into_iter().zip([1.0, -0.5, 2.0]) {
+    for (found, exact) in applied(&wheels).into_iter().zip([1.0, -0.5, 2.0]) {
         assert!((found - part * exact).abs() < 1e-7, "{found}");
     }
 }
@@ -70,18 +70,18 @@ fn a_torque_that_is_too_large_keeps_its_axis() {
 fn a_wheel_stops_at_its_limit_exactly() {
     // From 8 N m s at the start to 9 takes 2.5 s at |u| = 0.4 N m.
     let mut wheels = start("torque = 0.4\nmomentum = 9.0");
-    ask(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
+    demand(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
     assert_eq!(wheels.due(), Some(at(2.5)));
     wheels.update(at(2.5), ActuatorEvent::Due([0.0; 3]));
     let motion = wheels.wheels(at(9.0), [0.0; 3]);
     assert!((motion[0].momentum_nm_s - 9.0).abs() < 1e-14 && (motion[1].momentum_nm_s + 4.4).abs() < 1e-13);
     // The two wheels away from the limit continue; all do away from the limit.
-    ask(&mut wheels, at(9.0), [0.0, 0.0, -5.0]);
+    demand(&mut wheels, at(9.0), [0.0, 0.0, -5.0]);
     assert_eq!(wheels.wheels.iter().filter(|wheel| wheel.torque == 0.0).count(), 2);
-    ask(&mut wheels, at(9.0), [0.0, 0.0, 5.0]);
+    demand(&mut wheels, at(9.0), [0.0, 0.0, 5.0]);
     assert!(wheels.wheels.iter().all(|wheel| wheel.torque == -0.4));
     let mut wheels = start("torque = 0.4\nspeed_limit = 250.0");
-    ask(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
+    demand(&mut wheels, at(0.0), [0.0, 0.0, -5.0]);
     assert_eq!(wheels.due(), Some(at(5.0)), "50 rad/s at 10 rad/s²");
 }
 
@@ -90,9 +90,9 @@ fn a_speed_bias_gives_the_body_nothing() {
     let mut wheels = start("torque = 0.4\nspeed_bias = { speed = 100.0, gain = 0.02 }");
     let torque = [0.1, -0.05, 0.2];
     for k in 0..1600 {
-        ask(&mut wheels, at(PERIOD * f64::from(k)), if k < 8 { torque } else { [0.0; 3] });
-        let wanted = if k < 8 { torque } else { [0.0; 3] };
-        for (found, exact) in given(&wheels).into_iter().zip(wanted) {
+        demand(&mut wheels, at(PERIOD * f64::from(k)), if k < 8 { torque } else { [0.0; 3] });
+        let demand = if k < 8 { torque } else { [0.0; 3] };
+        for (found, exact) in applied(&wheels).into_iter().zip(demand) {
             assert!((found - exact).abs() < 1e-14);
         }
         assert!(wheels.wheels.iter().all(|wheel| wheel.torque.abs() <= 0.4 + 1e-15));

@@ -31,7 +31,7 @@ impl ObserverVariant {
         }
     }
 
-    fn seen(&self) -> &dyn AdaptiveObserver {
+    fn as_observer(&self) -> &dyn AdaptiveObserver {
         match self {
             Self::Gradient(observer) => observer,
             Self::Recurrence(observer) => observer,
@@ -45,15 +45,15 @@ impl ObserverDesign {
         let channel = |axis: usize| {
             let design: &AxisObserverDesign = &self.axes[axis];
             let observer = match (&self.form, design.start.first()) {
-                (ObserverForm::Recurrence(of), Some(tracker)) => {
-                    ObserverVariant::Recurrence(of.observer(tracker, self.period))
+                (ObserverForm::Recurrence(form), Some(tracker)) => {
+                    ObserverVariant::Recurrence(form.observer(tracker, self.period))
                 }
                 // Without a mode, the recurrence is a rigid rate observer, like the gradient form.
                 (ObserverForm::Recurrence(_), None) => ObserverVariant::Gradient(
                     super::Gradient::default().observer(&[], &design.rigid, self.period),
                 ),
-                (ObserverForm::Gradient(of), _) => {
-                    ObserverVariant::Gradient(of.observer(&design.start, &design.rigid, self.period))
+                (ObserverForm::Gradient(form), _) => {
+                    ObserverVariant::Gradient(form.observer(&design.start, &design.rigid, self.period))
                 }
             };
             AxisObserver { observer, inputs: design.inputs.clone(), own: design.own_axis_input(axis) }
@@ -70,24 +70,24 @@ impl AxisObserver {
 
     /// Propagates the estimates over a cycle under the pulses of all axes, whose inputs are axis indices.
     pub fn advance(&mut self, pulses: &[Pulse]) {
-        let pulses = self.mine(pulses);
+        let pulses = self.own_pulses(pulses);
         self.observer.observer().advance(&pulses);
     }
 
     /// Predicts the elastic rate of each mode (rad/s) at `ahead` (s) after the last sample, under the pulses until
     /// then.
     pub fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
-        self.observer.seen().predict(ahead, &self.mine(pulses))
+        self.observer.as_observer().predict(ahead, &self.own_pulses(pulses))
     }
 
     /// Returns the rigid rate (rad/s).
     pub fn rate(&self) -> f64 {
-        self.observer.seen().rate()
+        self.observer.as_observer().rate()
     }
 
     /// Writes the mode estimates into `modes`, replacing its contents.
     pub fn write_modes(&self, modes: &mut Vec<ModeEstimate>) {
-        self.observer.seen().put_modes(modes);
+        self.observer.as_observer().put_modes(modes);
     }
 
     /// Returns the influence of the axis' own actuator on a mode.
@@ -97,7 +97,7 @@ impl AxisObserver {
 
     /// Returns the moving mean squares of innovation and elastic rate.
     pub fn residual(&self) -> MovingResidual {
-        self.observer.seen().residual()
+        self.observer.as_observer().residual()
     }
 
     /// Returns true if the innovations are small enough for laws to act on the elastic rates.
@@ -106,11 +106,11 @@ impl AxisObserver {
     }
 
     /// Returns the pulses that are inputs of this observer, with their indices among its inputs.
-    fn mine(&self, pulses: &[Pulse]) -> Vec<Pulse> {
-        let of = |pulse: &Pulse| {
+    fn own_pulses(&self, pulses: &[Pulse]) -> Vec<Pulse> {
+        let pulse_on_axis = |pulse: &Pulse| {
             let input = self.inputs.iter().position(|input| *input == pulse.input)?;
             Some(Pulse { input, ..*pulse })
         };
-        pulses.iter().filter_map(of).collect()
+        pulses.iter().filter_map(pulse_on_axis).collect()
     }
 }

@@ -29,7 +29,7 @@ pub struct AxisObserverDesign {
     /// Change of the rigid rate of this axis by each input, per unit of its change of the rigid rate of its own axis.
     pub rigid: Vec<f64>,
     /// Rotations of the body's modes about this axis at the gyro (rad/(m sqrt(kg))).
-    pub seen: Vec<f64>,
+    pub visibilities: Vec<f64>,
 }
 
 /// Data of a body whose rates are measured: modes, measurement and actuation.
@@ -38,7 +38,7 @@ pub struct RateMeasurement {
     /// Natural frequencies of the modes.
     pub frequencies: Vec<Frequency>,
     /// Rotation per unit of each mode at the rate sensor, for each axis.
-    pub seen: Vec<Vec<f64>>,
+    pub visibilities: Vec<Vec<f64>>,
     /// Effect of the actuator of each axis.
     pub inputs: Vec<ActuatorInput>,
 }
@@ -87,11 +87,11 @@ impl AxisObserverDesign {
         measured: &RateMeasurement,
         period: f64,
     ) -> Result<Self, ConfigError> {
-        let RateMeasurement { frequencies, seen, inputs: sources } = measured;
+        let RateMeasurement { frequencies, visibilities, inputs: sources } = measured;
         let inputs = if spec.uses_cross_axis() { (0..sources.len()).collect() } else { vec![axis] };
         let influence = |input: usize, mode: usize| {
             let source = &sources[input];
-            seen[axis][mode] * source.forces[mode] / source.acceleration
+            visibilities[axis][mode] * source.forces[mode] / source.acceleration
         };
         let tracker = |frequency: Frequency, influence: Vec<f64>| Tracker {
             frequency,
@@ -100,27 +100,28 @@ impl AxisObserverDesign {
         };
         // The dominant modes follow from the axis' own jets, which are to damp them.
         let sampled = |mode: &usize| frequencies[*mode].get() * period < std::f64::consts::PI;
-        let there: Vec<usize> =
+        let visible: Vec<usize> =
             (0..frequencies.len()).filter(sampled).filter(|mode| influence(axis, *mode) != 0.0).collect();
         let own: Vec<Tracker> =
-            there.iter().map(|mode| tracker(frequencies[*mode], vec![influence(axis, *mode)])).collect();
+            visible.iter().map(|mode| tracker(frequencies[*mode], vec![influence(axis, *mode)])).collect();
         let mut all = merge(&own, spec.merge.get());
         for one in &mut all {
             for mode in &mut one.modes {
-                *mode = there[*mode];
+                *mode = visible[*mode];
             }
             let summed = |input: &usize| one.modes.iter().map(|mode| influence(*input, *mode)).sum();
             one.tracker = tracker(one.tracker.frequency, inputs.iter().map(summed).collect());
         }
         let own = inputs.iter().position(|input| *input == axis).unwrap_or(0);
-        let given = spec.trackers.as_ref().map(|given| given.axes()[axis]);
-        let modes = given.map_or_else(|| strongest(&all, own, spec.count()), |given| nearest(&all, given));
+        let trackers = spec.trackers.as_ref().map(|trackers| trackers.axes()[axis]);
+        let modes =
+            trackers.map_or_else(|| strongest(&all, own, spec.count()), |trackers| nearest(&all, trackers));
         let designed: Vec<Tracker> =
-            given.map_or_else(|| modes.iter().map(|mode| mode.tracker.clone()).collect(), <[_]>::to_vec);
+            trackers.map_or_else(|| modes.iter().map(|mode| mode.tracker.clone()).collect(), <[_]>::to_vec);
         let start = started(spec, form, axis, &designed, inputs.len(), period)?;
         let turn = |input: &usize| if spec.uses_cross_axis() { sources[*input].turning[axis] } else { 1.0 };
         let rigid = inputs.iter().map(turn).collect();
-        Ok(Self { modes, start, rigid, inputs, seen: seen[axis].clone() })
+        Ok(Self { modes, start, rigid, inputs, visibilities: visibilities[axis].clone() })
     }
 
     /// Returns the index of the axis' own jets among the inputs.
@@ -143,12 +144,12 @@ fn strongest(all: &[MergedTracker], input: usize, count: usize) -> Vec<MergedTra
 
 /// Returns the mode nearest to each tracker; the tracker without modes if there is none.
 fn nearest(all: &[MergedTracker], trackers: &[Tracker]) -> Vec<MergedTracker> {
-    let of = |tracker: &Tracker| {
+    let model_of = |tracker: &Tracker| {
         let far = |mode: &&MergedTracker| (mode.tracker.frequency.get() - tracker.frequency.get()).abs();
         let found = all.iter().min_by(|a, b| far(a).total_cmp(&far(b)));
         found.cloned().unwrap_or_else(|| MergedTracker { tracker: tracker.clone(), modes: Vec::new() })
     };
-    trackers.iter().map(of).collect()
+    trackers.iter().map(model_of).collect()
 }
 
 /// Returns the trackers with the initial errors of the scenario, limited to the bounds of the design.
@@ -163,26 +164,26 @@ fn started(
     if designed.is_empty() {
         return Ok(Vec::new());
     }
-    let of_axis = |ConfigError { key, why }: ConfigError| {
+    let with_axis = |ConfigError { key, why }: ConfigError| {
         ConfigError::new(key.replacen("trackers", &format!("trackers.{}", AXES[axis]), 1), why)
     };
     let (wrong, reach) = match form {
-        ObserverForm::Gradient(of) => (of.inconsistency(designed, inputs, period), of.reach),
+        ObserverForm::Gradient(form) => (form.inconsistency(designed, inputs, period), form.reach),
         ObserverForm::Recurrence(_) if designed.len() > 1 => {
             let why = format!("must be one mode in the form `recurrence`, got {}", designed.len());
-            return Err(of_axis(ConfigError::new("trackers", why)));
+            return Err(with_axis(ConfigError::new("trackers", why)));
         }
-        ObserverForm::Recurrence(of) => (of.inconsistency(&designed[0], period), of.reach),
+        ObserverForm::Recurrence(form) => (form.inconsistency(&designed[0], period), form.reach),
     };
     if let Some(fault) = wrong {
         let kind = if matches!(form, ObserverForm::Gradient(_)) { "gradient" } else { "recurrence" };
         let own = !fault.key.starts_with("trackers");
-        return Err(if own { fault.within(&format!("form.{kind}")) } else { of_axis(fault) });
+        return Err(if own { fault.within(&format!("form.{kind}")) } else { with_axis(fault) });
     }
     let factor = |error: Finite| 1.0 + error.get();
     let bounds = bounds(designed, reach.get(), period);
-    let frequency = |value: f64, or: Frequency| {
-        Frequency::new(value.clamp(Frequency::SMALLEST, Frequency::LARGEST)).unwrap_or(or)
+    let frequency = |value: f64, default: Frequency| {
+        Frequency::new(value.clamp(Frequency::SMALLEST, Frequency::LARGEST)).unwrap_or(default)
     };
     let start = |(tracker, [low, high]): (&Tracker, [f64; 2])| {
         let known = tracker.frequency;
@@ -220,8 +221,9 @@ mod tests {
             strongest(&all, 0, count).iter().flat_map(|mode| mode.modes.clone()).collect()
         };
         assert_eq!([followed(1), followed(2), followed(3)], [vec![1], vec![1, 2], vec![1, 2, 3]]);
-        let given = [mode(9, 2.6, 1.0), mode(9, 0.1, 1.0)].map(|mode| mode.tracker);
-        let nearest: Vec<usize> = nearest(&all, &given).iter().flat_map(|mode| mode.modes.clone()).collect();
+        let trackers = [mode(9, 2.6, 1.0), mode(9, 0.1, 1.0)].map(|mode| mode.tracker);
+        let nearest: Vec<usize> =
+            nearest(&all, &trackers).iter().flat_map(|mode| mode.modes.clone()).collect();
         assert_eq!(nearest, [2, 0]);
     }
 }

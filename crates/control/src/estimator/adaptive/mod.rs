@@ -64,18 +64,18 @@ fn inconsistency(
     inputs: usize,
     period: f64,
 ) -> Option<ConfigError> {
-    let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+    let error_at = |key: &str, why: String| Some(ConfigError::new(key, why));
     let (damping, reach) = (damping.get(), reach.get());
     if damping >= 1.0 {
-        return at("damping", format!("must be below 1, got {damping}"));
+        return error_at("damping", format!("must be below 1, got {damping}"));
     }
     let [low, high] = influence_bounds.map(NonNegative::get);
     if !(low <= 1.0 && 1.0 <= high && low < high) {
         let why = format!("must be [low, high] with 1, the start, between them, got [{low}, {high}]");
-        return at("influence_bounds", why);
+        return error_at("influence_bounds", why);
     }
     if reach <= 1.0 {
-        return at("reach", format!("must be above 1, got {reach}"));
+        return error_at("reach", format!("must be above 1, got {reach}"));
     }
     tracker::inconsistency(trackers, reach, inputs, period)
 }

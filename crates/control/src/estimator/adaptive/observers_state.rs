@@ -17,7 +17,7 @@ pub struct ObserverSet {
     channels: Vec<AxisObserver>,
     /// Mode estimates of each axis after the last sample.
     modes: Vec<Vec<ModeEstimate>>,
-    given: AppliedPulses,
+    applied_pulses: AppliedPulses,
     /// True after the first sample.
     sampled: bool,
 }
@@ -27,7 +27,7 @@ impl ObserverSet {
     pub fn new(plan: &ObserverDesign) -> Self {
         let channels = plan.channels();
         let modes = vec![Vec::new(); channels.len()];
-        Self { plan: plan.clone(), channels, modes, given: AppliedPulses::default(), sampled: false }
+        Self { plan: plan.clone(), channels, modes, applied_pulses: AppliedPulses::default(), sampled: false }
     }
 }
 
@@ -36,12 +36,12 @@ impl ObserverSet {
     fn row(&self, rates: &[f64], damped: &[DampingStatus]) -> Tracking {
         let mut tracking = Tracking { channels: Vec::with_capacity(3), trackers: Vec::new() };
         for (axis, (channel, design)) in self.channels.iter().zip(&self.plan.axes).enumerate() {
-            let seen = |mode: &usize| design.seen[*mode] * rates[*mode];
+            let measured_rate = |mode: &usize| design.visibilities[*mode] * rates[*mode];
             let (residual, modes) = (channel.residual(), &self.modes[axis]);
             let damped = &damped[axis];
             tracking.channels.push(ChannelState {
                 elastic_rad_s: modes.iter().map(|mode| mode.phase[0]).sum(),
-                true_elastic_rad_s: (0..rates.len()).map(|mode| seen(&mode)).sum(),
+                true_elastic_rad_s: (0..rates.len()).map(|mode| measured_rate(&mode)).sum(),
                 innovation_rms_rad_s: f64::sqrt(residual.innovation),
                 elastic_rms_rad_s: f64::sqrt(residual.elastic),
                 trusted: channel.is_trusted().into(),
@@ -57,9 +57,13 @@ impl ObserverSet {
                 frequency_rad_s: mode.frequency,
                 true_frequency_rad_s: truth.tracker.frequency.get(),
                 influence: channel.influence(mode),
-                true_influence: truth.tracker.influence.get(own).map_or(f64::NAN, |of| of.get()),
+                true_influence: truth
+                    .tracker
+                    .influence
+                    .get(own)
+                    .map_or(f64::NAN, |influence| influence.get()),
                 rate_rad_s: mode.phase[0],
-                true_rate_rad_s: truth.modes.iter().map(seen).sum(),
+                true_rate_rad_s: truth.modes.iter().map(measured_rate).sum(),
                 amplitude_rad_s: mode.amplitude(),
             };
             tracking.trackers.extend(modes.iter().zip(&design.modes).map(state));
@@ -78,11 +82,11 @@ impl Part for ObserverSet {
 
 impl estimator::Estimator for ObserverSet {
     fn input_changed(&mut self, now: Instant, moments: [f64; 3]) {
-        self.given.input_changed(now, moments);
+        self.applied_pulses.input_changed(now, moments);
     }
 
     fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let executed = self.given.take(taken.now, taken.pulses);
+        let executed = self.applied_pulses.take_executed(taken.now, taken.pulses);
         if std::mem::replace(&mut self.sampled, true) {
             self.channels.iter_mut().for_each(|channel| channel.advance(&executed));
         }

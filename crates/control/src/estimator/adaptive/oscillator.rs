@@ -33,9 +33,9 @@ impl OscillatorModel {
         time: f64,
         phase: ModeVector,
     ) -> (ModeVector, ModeVector) {
-        let at = times(transition, phase);
+        let initial = times(transition, phase);
         let turn = self.frequency * time;
-        (at, [turn * (-2.0 * self.damping * at[0] - at[1]), turn * at[0]])
+        (initial, [turn * (-2.0 * self.damping * initial[0] - initial[1]), turn * initial[0]])
     }
 
     /// Returns the state after a pulse of unit acceleration that began and ended this long ago (s), and its derivative
@@ -51,8 +51,9 @@ impl OscillatorModel {
             return ([0.0; 2], [0.0; 2]);
         }
         let [[stays, _], [turns, _]] = self.transition(time);
-        let at = [turns / self.frequency, (1.0 - stays - 2.0 * self.damping * turns) / self.frequency];
-        (at, minus([time * stays, time * turns], at))
+        let step_response =
+            [turns / self.frequency, (1.0 - stays - 2.0 * self.damping * turns) / self.frequency];
+        (step_response, minus([time * stays, time * turns], step_response))
     }
 }
 
@@ -100,13 +101,13 @@ mod tests {
         let h = 1e-5;
         let off = |factor: f64| OscillatorModel { frequency: MODE.frequency * libm::exp(factor * h), ..MODE };
         let phase = [0.3, -0.7];
-        let turned = |of: OscillatorModel| of.propagate(&of.transition(0.2), 0.2, phase).0;
+        let free_phase = |model: OscillatorModel| model.propagate(&model.transition(0.2), 0.2, phase).0;
         let (_, slope) = MODE.propagate(&MODE.transition(0.2), 0.2, phase);
         let pulse = MODE.pulse_response(0.17, 0.04).1;
         for axis in 0..2 {
-            let turn = (turned(off(1.0))[axis] - turned(off(-1.0))[axis]) / (2.0 * h);
+            let turn = (free_phase(off(1.0))[axis] - free_phase(off(-1.0))[axis]) / (2.0 * h);
             close(slope[axis], turn, 1e-9);
-            let pushed = |of: OscillatorModel| of.pulse_response(0.17, 0.04).0[axis];
+            let pushed = |model: OscillatorModel| model.pulse_response(0.17, 0.04).0[axis];
             let push = (pushed(off(1.0)) - pushed(off(-1.0))) / (2.0 * h);
             close(pulse[axis], push, 1e-9);
         }

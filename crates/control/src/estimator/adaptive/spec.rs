@@ -147,23 +147,23 @@ impl Adaptive {
 
     /// Checks the settings against each other; returns the first inconsistent key and the reason.
     pub fn inconsistency(&self) -> Option<ConfigError> {
-        let at = |key: &str, why: String| Some(ConfigError::new(key, why));
+        let error_at = |key: &str, why: String| Some(ConfigError::new(key, why));
         for (key, error) in
             [("frequency_error", self.frequency_error), ("influence_error", self.influence_error)]
         {
             if error.get() <= -1.0 {
-                return at(key, format!("must be above -1, got {}", error.get()));
+                return error_at(key, format!("must be above -1, got {}", error.get()));
             }
         }
         if self.count() == 0 {
-            return at("count", "must be 1 or more, got 0".to_owned());
+            return error_at("count", "must be 1 or more, got 0".to_owned());
         }
         if self.recurs() && self.count() > 1 {
             let why = format!("must be 1 in the form `recurrence`, got {}", self.count());
-            return at("count", why);
+            return error_at("count", why);
         }
         if self.recurs() && self.uses_cross_axis() {
-            return at("cross_axis", "must be false in the form `recurrence`, got true".to_owned());
+            return error_at("cross_axis", "must be false in the form `recurrence`, got true".to_owned());
         }
         None
     }

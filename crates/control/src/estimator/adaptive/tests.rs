@@ -40,14 +40,14 @@ fn burst(cycle: usize) -> Vec<Pulse> {
 
 /// Returns the measured rate at each sample under the bursts, without noise.
 fn measured() -> Vec<f64> {
-    let of = OscillatorModel { frequency: MODE.0, damping: 0.005 };
+    let oscillator = OscillatorModel { frequency: MODE.0, damping: 0.005 };
     let (mut rate, mut phase) = (0.0, [0.0; 2]);
     let sample = |cycle| {
         let y = rate + MODE.1 * phase[0];
-        phase = of.propagate(&of.transition(CYCLE), CYCLE, phase).0;
+        phase = oscillator.propagate(&oscillator.transition(CYCLE), CYCLE, phase).0;
         for Pulse { acceleration, duration, .. } in burst(cycle) {
             rate += acceleration * duration;
-            let push = of.pulse_response(CYCLE, CYCLE - duration).0;
+            let push = oscillator.pulse_response(CYCLE, CYCLE - duration).0;
             phase = [0, 1].map(|axis| phase[axis] + acceleration * push[axis]);
         }
         y
@@ -72,11 +72,11 @@ fn recurred() -> Vec<f64> {
 }
 
 /// Returns frequency (Hz) and influence after some samples.
-fn identified(observer: &mut dyn AdaptiveObserver, measured: &[f64], at: &[usize]) -> Vec<(f64, f64)> {
+fn identified(observer: &mut dyn AdaptiveObserver, measured: &[f64], samples: &[usize]) -> Vec<(f64, f64)> {
     let mut found = Vec::new();
     for (cycle, y) in measured.iter().enumerate() {
         observer.update(*y);
-        if at.contains(&cycle) {
+        if samples.contains(&cycle) {
             let modes = observer.modes();
             found.push((modes[0].frequency / (2.0 * PI), modes[0].influence[0]));
         }
@@ -102,7 +102,7 @@ fn the_plant_of_these_tests_is_exact() {
 
 #[test]
 fn gradient_identifies_a_mode() {
-    let at = [50, 100, 200, 500, 1000];
+    let samples = [50, 100, 200, 500, 1000];
     let exact = [
         (
             (0.3, 1.2),
@@ -121,7 +121,7 @@ fn gradient_identifies_a_mode() {
         ),
     ];
     for ((hertz, influence), frequencies, influences) in exact {
-        let found = identified(&mut gradient(hertz, influence), &measured(), &at);
+        let found = identified(&mut gradient(hertz, influence), &measured(), &samples);
         for ((found, frequency), influence) in found.iter().zip(frequencies).zip(influences) {
             close(found.0, frequency, 1e-7);
             close(found.1, influence, 3e-6);
@@ -132,8 +132,8 @@ fn gradient_identifies_a_mode() {
 #[test]
 fn gradient_tells_two_modes_and_two_inputs_apart() {
     let hertz = |hertz: f64| Frequency::new(2.0 * PI * hertz).expect("a frequency");
-    let mode = |at: f64, influence: [f64; 2], bounds: [f64; 2]| Tracker {
-        frequency: hertz(at),
+    let mode = |frequency: f64, influence: [f64; 2], bounds: [f64; 2]| Tracker {
+        frequency: hertz(frequency),
         influence: influence.map(|i| Finite::new(i).expect("finite")).to_vec(),
         bounds: Some(bounds.map(hertz)),
     };
@@ -176,16 +176,17 @@ fn gradient_tells_two_modes_and_two_inputs_apart() {
                 close(mode.influence[0], influences[2 * index], 1e-9);
                 close(mode.influence[1], influences[2 * index + 1], 1e-9);
             }
-            for (ours, exact) in [observer.rate(), modes[0].phase[0], modes[0].phase[1]].iter().zip(state) {
-                assert!((ours - exact).abs() < 1e-13, "{ours} is off {exact}");
+            for (estimate, exact) in [observer.rate(), modes[0].phase[0], modes[0].phase[1]].iter().zip(state)
+            {
+                assert!((estimate - exact).abs() < 1e-13, "{estimate} is off {exact}");
             }
         }
         observer.advance(&pulses);
         for (phase, (hertz, influence)) in phases.iter_mut().zip(truths) {
-            let of = OscillatorModel { frequency: 2.0 * PI * hertz, damping: 0.005 };
-            *phase = of.propagate(&of.transition(CYCLE), CYCLE, *phase).0;
+            let oscillator = OscillatorModel { frequency: 2.0 * PI * hertz, damping: 0.005 };
+            *phase = oscillator.propagate(&oscillator.transition(CYCLE), CYCLE, *phase).0;
             for Pulse { input, acceleration, start, duration } in &pulses {
-                let push = of.pulse_response(CYCLE - start, CYCLE - start - duration).0;
+                let push = oscillator.pulse_response(CYCLE - start, CYCLE - start - duration).0;
                 *phase = [0, 1].map(|axis| phase[axis] + influence[*input] * acceleration * push[axis]);
             }
         }
@@ -202,16 +203,16 @@ fn recurrence_identifies_a_mode_with_a_bias() {
 
 #[test]
 fn recurrence_is_exact_on_data_of_its_own() {
-    let mut right = recurrence(0.2, 2.0);
+    let mut observer = recurrence(0.2, 2.0);
     let y = recurred();
     for (cycle, y) in y.iter().enumerate() {
-        right.update(*y);
-        right.advance(&burst(cycle));
+        observer.update(*y);
+        observer.advance(&burst(cycle));
     }
     // The frequency is computed without the root of 1 - zeta².
-    close(right.modes()[0].frequency / (2.0 * PI), 0.199_997_5, 1e-7);
-    close(right.modes()[0].influence[0], 2.0, 1e-12);
-    assert!(right.residual().innovation < 1e-36, "{:?}", right.residual());
+    close(observer.modes()[0].frequency / (2.0 * PI), 0.199_997_5, 1e-7);
+    close(observer.modes()[0].influence[0], 2.0, 1e-12);
+    assert!(observer.residual().innovation < 1e-36, "{:?}", observer.residual());
     let found = identified(&mut recurrence(0.3, 1.2), &y, &[1299]);
     close(found[0].0, 0.2, 1.5e-3);
     close(found[0].1, 2.0, 5e-3);

@@ -56,11 +56,11 @@ pub struct MergedTracker {
 /// Returns the trackers of a channel's modes, by frequency. Two whose relative difference is below `merge`, such as
 /// 0.08, cannot be distinguished and are merged, the closest first. Bounds are dropped.
 pub fn merge(modes: &[Tracker], merge: f64) -> Vec<MergedTracker> {
-    let alone = |(index, mode): (usize, &Tracker)| MergedTracker {
+    let unmerged = |(index, mode): (usize, &Tracker)| MergedTracker {
         tracker: Tracker { bounds: None, ..mode.clone() },
         modes: vec![index],
     };
-    let mut merged: Vec<MergedTracker> = modes.iter().enumerate().map(alone).collect();
+    let mut merged: Vec<MergedTracker> = modes.iter().enumerate().map(unmerged).collect();
     merged.sort_by(|a, b| a.tracker.frequency.get().total_cmp(&b.tracker.frequency.get()));
     while let Some(index) = nearest(&merged, merge) {
         let above = merged.remove(index + 1);
@@ -73,8 +73,8 @@ pub fn merge(modes: &[Tracker], merge: f64) -> Vec<MergedTracker> {
 
 /// Returns the index of the first tracker of the closest pair within a ratio.
 fn nearest(merged: &[MergedTracker], merge: f64) -> Option<usize> {
-    let at = |index: usize| merged[index].tracker.frequency.get();
-    let ratio = |index: usize| at(index + 1) / at(index) - 1.0;
+    let frequency_of = |index: usize| merged[index].tracker.frequency.get();
+    let ratio = |index: usize| frequency_of(index + 1) / frequency_of(index) - 1.0;
     let pairs = (0..merged.len().saturating_sub(1)).filter(|&index| ratio(index) < merge);
     pairs.min_by(|&a, &b| ratio(a).total_cmp(&ratio(b)))
 }
@@ -84,24 +84,24 @@ fn nearest(merged: &[MergedTracker], merge: f64) -> Option<usize> {
 /// frequency at the sampling period `period` (s).
 pub fn bounds(trackers: &[Tracker], reach: f64, period: f64) -> Vec<[f64; 2]> {
     let highest = SAMPLED * std::f64::consts::PI / period;
-    let of = |tracker: &Tracker| {
+    let range_of = |tracker: &Tracker| {
         let frequency = tracker.frequency.get();
         if let Some(bounds) = tracker.bounds {
             return bounds.map(Frequency::get);
         }
         let [mut low, mut high] = [frequency / reach, (frequency * reach).min(highest)];
         for other in trackers {
-            let theirs = other.frequency.get();
-            let middle = f64::sqrt(frequency * theirs);
-            if theirs < frequency {
+            let other_frequency = other.frequency.get();
+            let middle = f64::sqrt(frequency * other_frequency);
+            if other_frequency < frequency {
                 low = low.max(other.bounds.map_or(middle, |bounds| bounds[1].get()));
-            } else if theirs > frequency {
+            } else if other_frequency > frequency {
                 high = high.min(other.bounds.map_or(middle, |bounds| bounds[0].get()));
             }
         }
         [low, high]
     };
-    trackers.iter().map(of).collect()
+    trackers.iter().map(range_of).collect()
 }
 
 /// Checks the trackers against the number of inputs, the sampling period (s) and each other; returns the first
@@ -113,34 +113,44 @@ pub fn inconsistency(trackers: &[Tracker], reach: f64, inputs: usize, period: f6
     let nyquist = std::f64::consts::PI / period;
     let bounds = bounds(trackers, reach, period);
     for (index, (tracker, [low, high])) in trackers.iter().zip(&bounds).enumerate() {
-        let at = |key: &str, why: String| Some(ConfigError::new(format!("trackers[{index}].{key}"), why));
+        let error_at =
+            |key: &str, why: String| Some(ConfigError::new(format!("trackers[{index}].{key}"), why));
         let (frequency, found) = (tracker.frequency.get(), tracker.influence.len());
         if found != inputs {
-            return at("influence", format!("must be one number for each of {inputs} inputs, got {found}"));
+            return error_at(
+                "influence",
+                format!("must be one number for each of {inputs} inputs, got {found}"),
+            );
         }
         if tracker.strength() == 0.0 {
-            return at("influence", "must not be 0 for every input: nothing excites the mode".to_owned());
+            return error_at(
+                "influence",
+                "must not be 0 for every input: nothing excites the mode".to_owned(),
+            );
         }
         if frequency >= nyquist {
             let why = format!("must be below the Nyquist frequency of {nyquist} rad/s, got {frequency}");
-            return at("frequency", why);
+            return error_at("frequency", why);
         }
         if low >= high {
-            return at("bounds", format!("must be [low, high] in this order, got [{low}, {high}]"));
+            return error_at("bounds", format!("must be [low, high] in this order, got [{low}, {high}]"));
         }
         if *high >= nyquist {
             let why = format!("must end below the Nyquist frequency of {nyquist} rad/s, got {high}");
-            return at("bounds", why);
+            return error_at("bounds", why);
         }
         if !(low..=high).contains(&&frequency) {
-            return at("frequency", format!("must lie within the bounds [{low}, {high}], got {frequency}"));
+            return error_at(
+                "frequency",
+                format!("must lie within the bounds [{low}, {high}], got {frequency}"),
+            );
         }
         let overlaps = |other: &[f64; 2]| low < &other[1] && &other[0] < high;
         if let Some(other) = bounds[..index].iter().position(overlaps) {
             let [from, to] = bounds[other];
             let why =
                 format!("must not overlap those of trackers[{other}], [{from}, {to}], got [{low}, {high}]");
-            return at("bounds", why);
+            return error_at("bounds", why);
         }
     }
     None
@@ -160,9 +170,9 @@ mod tests {
         Frequency::new(2.0 * PI * hertz).expect("a frequency")
     }
 
-    fn tracker(at: f64, influence: f64) -> Tracker {
+    fn tracker(frequency: f64, influence: f64) -> Tracker {
         let influence = vec![Finite::new(influence).expect("finite")];
-        Tracker { frequency: hertz(at), influence, bounds: None }
+        Tracker { frequency: hertz(frequency), influence, bounds: None }
     }
 
     #[track_caller]
@@ -200,10 +210,10 @@ mod tests {
 
     #[test]
     fn what_does_not_fit_is_refused() {
-        let of = |low: f64, at: f64, high: f64| Tracker {
-            frequency: hertz(at),
+        let new_tracker = |low: f64, frequency: f64, high: f64| Tracker {
+            frequency: hertz(frequency),
             bounds: Some([hertz(low), hertz(high)]),
-            ..tracker(at, 1.0)
+            ..tracker(frequency, 1.0)
         };
         let wrong = |trackers: &[Tracker], inputs| {
             let ConfigError { key, why } =
@@ -213,22 +223,25 @@ mod tests {
         for (found, expected) in [
             (wrong(&[], 1), "trackers must have at least one mode to track, got none"),
             (
-                wrong(&[of(0.1, 0.2, 0.3)], 2),
+                wrong(&[new_tracker(0.1, 0.2, 0.3)], 2),
                 "trackers[0].influence must be one number for each of 2 inputs, got 1",
             ),
             (wrong(&[tracker(0.2, 0.0)], 1), "trackers[0].influence must not be 0 for every input: nothing"),
-            (wrong(&[of(0.3, 0.2, 0.1)], 1), "trackers[0].bounds must be [low, high] in this order, got"),
-            (wrong(&[of(0.1, 0.4, 0.3)], 1), "trackers[0].frequency must lie within the bounds"),
             (
-                wrong(&[of(0.1, 0.2, 2.6)], 1),
+                wrong(&[new_tracker(0.3, 0.2, 0.1)], 1),
+                "trackers[0].bounds must be [low, high] in this order, got",
+            ),
+            (wrong(&[new_tracker(0.1, 0.4, 0.3)], 1), "trackers[0].frequency must lie within the bounds"),
+            (
+                wrong(&[new_tracker(0.1, 0.2, 2.6)], 1),
                 "trackers[0].bounds must end below the Nyquist frequency of 15.7",
             ),
             (
-                wrong(&[of(2.0, 2.6, 2.7)], 1),
+                wrong(&[new_tracker(2.0, 2.6, 2.7)], 1),
                 "trackers[0].frequency must be below the Nyquist frequency of 15.7",
             ),
             (
-                wrong(&[of(0.1, 0.2, 0.3), of(0.29, 0.4, 0.5)], 1),
+                wrong(&[new_tracker(0.1, 0.2, 0.3), new_tracker(0.29, 0.4, 0.5)], 1),
                 "trackers[1].bounds must not overlap those of trackers[0]",
             ),
         ] {

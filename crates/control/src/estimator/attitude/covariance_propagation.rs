@@ -35,41 +35,42 @@ impl SimdTask for CovariancePropagation<'_> {
         let cross = columns(kind, &sides);
         let one = columns(kind, &ONE);
         let along = kind.load(&[x, y, z, 0.0]);
-        let (mut turned, mut drifted) = ([kind; 3], [kind; 3]);
+        let (mut angle_rows, mut bias_rows) = ([kind; 3], [kind; 3]);
         // Covariance that noise adds to theta, and subtracts from the cross-covariance of theta and beta.
         let (mut angle, mut both) = ([kind; 3], [kind; 3]);
-        for at in 0..3 {
-            let twice = product(&cross, &sides[at]);
-            both[at] = (one[at] * 0.5 - cross[at] * c3 + twice * c4) * (seconds * seconds * walk);
-            angle[at] = (one[at] * c3 + along * turn[at] * c5) * (2.0 * seconds * seconds * seconds * walk)
-                + one[at] * (white * seconds);
-            turned[at] = one[at] - cross[at] * c1 + twice * c2;
-            drifted[at] = (one[at] - cross[at] * c2 + twice * c3) * seconds;
+        for row in 0..3 {
+            let twice = product(&cross, &sides[row]);
+            both[row] = (one[row] * 0.5 - cross[row] * c3 + twice * c4) * (seconds * seconds * walk);
+            angle[row] = (one[row] * c3 + along * turn[row] * c5)
+                * (2.0 * seconds * seconds * seconds * walk)
+                + one[row] * (white * seconds);
+            angle_rows[row] = one[row] - cross[row] * c1 + twice * c2;
+            bias_rows[row] = (one[row] - cross[row] * c2 + twice * c3) * seconds;
         }
         // The transition is [turned, -drifted; 0, 1].
         let (mut carried, mut moved) = ([kind; 3], [kind; 3]);
-        for at in 0..3 {
-            let of_angle = [all[6 * at], all[6 * at + 1], all[6 * at + 2], 0.0];
-            let across = [all[18 + 6 * at], all[19 + 6 * at], all[20 + 6 * at], 0.0];
-            let back = [all[18 + at], all[24 + at], all[30 + at], 0.0];
-            let of_bias = [all[21 + 6 * at], all[22 + 6 * at], all[23 + 6 * at], 0.0];
-            carried[at] = product(&turned, &across) - product(&drifted, &of_bias);
-            moved[at] = product(&turned, &of_angle) - product(&drifted, &back);
+        for row in 0..3 {
+            let angle_row = [all[6 * row], all[6 * row + 1], all[6 * row + 2], 0.0];
+            let across = [all[18 + 6 * row], all[19 + 6 * row], all[20 + 6 * row], 0.0];
+            let back = [all[18 + row], all[24 + row], all[30 + row], 0.0];
+            let bias_row = [all[21 + 6 * row], all[22 + 6 * row], all[23 + 6 * row], 0.0];
+            carried[row] = product(&angle_rows, &across) - product(&bias_rows, &bias_row);
+            moved[row] = product(&angle_rows, &angle_row) - product(&bias_rows, &back);
         }
-        let (turns, drifts) = (stored(turned), stored(drifted));
-        let mut of_angle = [kind; 3];
-        for at in 0..3 {
-            let turn = [turns[0][at], turns[1][at], turns[2][at], 0.0];
-            let drift = [drifts[0][at], drifts[1][at], drifts[2][at], 0.0];
-            of_angle[at] = product(&moved, &turn) - product(&carried, &drift) + angle[at];
+        let (turns, drifts) = (stored(angle_rows), stored(bias_rows));
+        let mut angle_block = [kind; 3];
+        for row in 0..3 {
+            let turn = [turns[0][row], turns[1][row], turns[2][row], 0.0];
+            let drift = [drifts[0][row], drifts[1][row], drifts[2][row], 0.0];
+            angle_block[row] = product(&moved, &turn) - product(&carried, &drift) + angle[row];
         }
-        for at in 0..3 {
-            carried[at] = carried[at] - both[at];
+        for row in 0..3 {
+            carried[row] = carried[row] - both[row];
         }
-        let (of_angle, across) = (stored(of_angle), stored(carried));
+        let (angle_block, across) = (stored(angle_block), stored(carried));
         for column in 0..3 {
             for row in 0..3 {
-                all[6 * column + row] = (of_angle[column][row] + of_angle[row][column]) * 0.5;
+                all[6 * column + row] = (angle_block[column][row] + angle_block[row][column]) * 0.5;
                 all[6 * column + 3 + row] = across[row][column];
                 all[18 + 6 * column + row] = across[column][row];
                 all[21 + 6 * column + row] += ONE[column][row] * (walk * seconds);
@@ -79,21 +80,21 @@ impl SimdTask for CovariancePropagation<'_> {
 }
 
 #[inline(always)]
-fn columns<R: LaneFloat>(kind: R, of: &BlockColumns) -> [R; 3] {
-    [kind.load(&of[0]), kind.load(&of[1]), kind.load(&of[2])]
+fn columns<R: LaneFloat>(kind: R, columns: &BlockColumns) -> [R; 3] {
+    [kind.load(&columns[0]), kind.load(&columns[1]), kind.load(&columns[2])]
 }
 
 #[inline(always)]
-fn stored<R: LaneFloat>(of: [R; 3]) -> BlockColumns {
+fn stored<R: LaneFloat>(columns: [R; 3]) -> BlockColumns {
     let mut to = [[0.0; 4]; 3];
-    for at in 0..3 {
-        of[at].store(&mut to[at]);
+    for row in 0..3 {
+        columns[row].store(&mut to[row]);
     }
     to
 }
 
 /// Returns the product of a matrix and a vector.
 #[inline(always)]
-fn product<R: LaneFloat>(of: &[R; 3], vector: &[f64; 4]) -> R {
-    of[0] * vector[0] + of[1] * vector[1] + of[2] * vector[2]
+fn product<R: LaneFloat>(columns: &[R; 3], vector: &[f64; 4]) -> R {
+    columns[0] * vector[0] + columns[1] * vector[1] + columns[2] * vector[2]
 }

@@ -110,7 +110,7 @@ impl ElasticStates {
     ///
     /// # Errors
     /// A `ConfigError` with the key and the reason.
-    pub fn known(&self, body: &Spatial, at: &[String], gyro: usize) -> Result<FilterModes, ConfigError> {
+    pub fn known(&self, body: &Spatial, mounts: &[String], gyro: usize) -> Result<FilterModes, ConfigError> {
         if self.modes.is_empty() {
             return Err(ConfigError::new("modes", "must name at least one mode"));
         }
@@ -123,9 +123,9 @@ impl ElasticStates {
                 return Err(ConfigError::new(format!("modes[{index}]"), format!("names mode {mode} again")));
             }
         }
-        let given = self.frequencies.as_ref().map_or(self.modes.len(), Vec::len);
-        if given != self.modes.len() {
-            let why = format!("must be one for each of {}, got {given}", counted(self.modes.len(), "mode"));
+        let listed = self.frequencies.as_ref().map_or(self.modes.len(), Vec::len);
+        if listed != self.modes.len() {
+            let why = format!("must be one for each of {}, got {listed}", counted(self.modes.len(), "mode"));
             return Err(ConfigError::new("frequencies", why));
         }
         if self.frequency_walk.is_some() && self.frequency_deviation.is_none() {
@@ -139,11 +139,12 @@ impl ElasticStates {
             ));
         }
         let hub = body.shapes(body.points.first().map_or("", |point| &point.name));
-        let mounts: Vec<_> = at.iter().map(|point| body.shapes(point)).collect();
+        let mounts: Vec<_> = mounts.iter().map(|point| body.shapes(point)).collect();
         let known = |(index, mode): (usize, &usize)| {
             let own = &body.modes[*mode];
             let beyond = |mount: &Vec<(Vector, Vector)>| mount[*mode].1 - hub[*mode].1;
-            let frequency = self.frequencies.as_ref().map_or(own.frequency.get(), |given| given[index].get());
+            let frequency =
+                self.frequencies.as_ref().map_or(own.frequency.get(), |frequencies| frequencies[index].get());
             let frequency = frequency * self.factor.get();
             let displacement = self.displacement.get();
             FilterMode {
@@ -173,7 +174,11 @@ impl ElasticStates {
 impl FilterModes {
     /// Returns the rotation, or its rate, of a place whose rotation per unit of a mode is `of`, for these displacements
     /// or rates.
-    pub fn rotation_at(&self, of: impl Fn(&FilterMode) -> Vector, by: impl Iterator<Item = f64>) -> Vector {
-        self.each.iter().zip(by).fold(Vector::zeros(), |sum, (mode, by)| sum + of(mode) * by)
+    pub fn rotation_at(
+        &self,
+        rotation_of: impl Fn(&FilterMode) -> Vector,
+        by: impl Iterator<Item = f64>,
+    ) -> Vector {
+        self.each.iter().zip(by).fold(Vector::zeros(), |sum, (mode, by)| sum + rotation_of(mode) * by)
     }
 }

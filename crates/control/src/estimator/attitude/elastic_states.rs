@@ -51,13 +51,13 @@ impl ElasticFilterStates {
         whole.view_mut((0, 0), (6, 6)).copy_from(covariance);
         for (index, mode) in known.each.iter().enumerate() {
             for (part, deviation) in mode.initial.iter().enumerate() {
-                let at = 6 + 2 * index + part;
-                whole[(at, at)] = deviation * deviation;
+                let index = 6 + 2 * index + part;
+                whole[(index, index)] = deviation * deviation;
             }
         }
         if let Some(identified) = known.identified {
-            for at in 6 + 2 * count..order {
-                whole[(at, at)] = identified.deviation * identified.deviation;
+            for index in 6 + 2 * count..order {
+                whole[(index, index)] = identified.deviation * identified.deviation;
             }
         }
         let frequencies = known.each.iter().map(|mode| mode.frequency).collect();
@@ -68,8 +68,9 @@ impl ElasticFilterStates {
     /// Returns the standard deviations of the frequencies (rad/s); 0 of frequencies that are not identified.
     pub fn deviations(&self) -> Vec<f64> {
         let first = 6 + 2 * self.frequencies.len();
-        let relative =
-            |at: usize| if self.known.identified.is_some() { self.covariance[(at, at)] } else { 0.0 };
+        let relative = |index: usize| {
+            if self.known.identified.is_some() { self.covariance[(index, index)] } else { 0.0 }
+        };
         let each = self.frequencies.iter().enumerate();
         each.map(|(index, frequency)| frequency * f64::sqrt(relative(first + index))).collect()
     }
@@ -102,30 +103,30 @@ impl ElasticFilterStates {
     /// gyro's mount relative to the hub over the interval (rad).
     pub fn propagate(&mut self, seconds: f64, torques: &[(f64, Vector)]) -> Vector {
         let known = self.known.clone();
-        let mut turned = Vector::zeros();
+        let mut rotation = Vector::zeros();
         let moving = self.state.iter_mut().zip(&mut self.mean).zip(&mut self.grown);
         for (((state, mean), grown), (mode, frequency)) in
             moving.zip(known.each.iter().zip(&self.frequencies))
         {
             let before = state[0];
             *grown = [0.0; 2];
-            for (lasts, torque) in torques {
+            for (duration, torque) in torques {
                 let rest = mode.hub.dot(torque) / (frequency * frequency);
-                let [a, b, c, d] = transition(*frequency, mode.damping, *lasts);
+                let [a, b, c, d] = transition(*frequency, mode.damping, *duration);
                 let (x, y) = (state[0] - rest, state[1]);
-                let (swung, rate) = (a * x + b * y, c * x + d * y);
+                let (displacement, rate) = (a * x + b * y, c * x + d * y);
                 *state = [rest + a * x + b * y, rate];
                 // The derivative of exp(W t K) is W t K exp(W t K), and that of the equilibrium is -2 times it.
-                let (x, y, angle) = (grown[0] + 2.0 * rest, grown[1], frequency * lasts);
+                let (x, y, angle) = (grown[0] + 2.0 * rest, grown[1], frequency * duration);
                 *grown = [
                     a * x + b * y + angle * rate - 2.0 * rest,
-                    c * x + d * y - angle * (swung + 2.0 * mode.damping * rate),
+                    c * x + d * y - angle * (displacement + 2.0 * mode.damping * rate),
                 ];
             }
             *mean = if seconds > 0.0 { (state[0] - before) / seconds } else { 0.0 };
-            turned += mode.gyro * (state[0] - before);
+            rotation += mode.gyro * (state[0] - before);
         }
-        turned
+        rotation
     }
 
     /// Propagates the covariance over `seconds`, in which the body rotates by `turn` (rad).
@@ -142,15 +143,15 @@ impl ElasticFilterStates {
         }
         for (index, mode) in self.known.each.iter().enumerate() {
             let frequency = self.frequencies[index];
-            let (at, angle) = (6 + 2 * index, frequency * seconds);
-            flow[(at, at + 1)] = angle;
-            flow[(at + 1, at)] = -angle;
-            flow[(at + 1, at + 1)] = -2.0 * mode.damping * angle;
+            let (index, angle) = (6 + 2 * index, frequency * seconds);
+            flow[(index, index + 1)] = angle;
+            flow[(index + 1, index)] = -angle;
+            flow[(index + 1, index + 1)] = -2.0 * mode.damping * angle;
             for axis in 0..3 {
-                flow[(axis, at + 1)] = -mode.gyro[axis] * angle;
+                flow[(axis, index + 1)] = -mode.gyro[axis] * angle;
             }
             let force = self.known.noise / frequency;
-            added[(at + 1, at + 1)] = force * force * seconds;
+            added[(index + 1, index + 1)] = force * force * seconds;
         }
         // [VanLoan78]: exp [[-F, Q], [0, F']] = [[.., Phi^-1 Qd], [0, Phi']].
         let mut both = DMatrix::zeros(2 * order, 2 * order);
@@ -178,17 +179,17 @@ impl ElasticFilterStates {
         let mut added = added.resize(order, order, 0.0);
         let ([_, half, sixth, ..], across) = (stumpff(turn.norm_squared()), turn.cross_matrix());
         for (index, (mode, [grown, rate])) in self.known.each.iter().zip(&self.grown).enumerate() {
-            let at = first + index;
+            let state = first + index;
             // The derivative of the gyro mount's rotation relative to the hub enters the hub's attitude with a minus.
             let off = mode.gyro * -*grown;
             let off = off - across * off * half + across * (across * off) * sixth;
             for axis in 0..3 {
-                transition[(axis, at)] = off[axis];
+                transition[(axis, state)] = off[axis];
             }
-            transition[(6 + 2 * index, at)] = *grown;
-            transition[(7 + 2 * index, at)] = *rate;
-            transition[(at, at)] = 1.0;
-            added[(at, at)] = identified.walk * identified.walk * seconds;
+            transition[(6 + 2 * index, state)] = *grown;
+            transition[(7 + 2 * index, state)] = *rate;
+            transition[(state, state)] = 1.0;
+            added[(state, state)] = identified.walk * identified.walk * seconds;
         }
         (transition, added)
     }
@@ -203,8 +204,12 @@ impl ElasticFilterStates {
         sensor: usize,
     ) -> Option<(Vector, ElasticInnovation)> {
         let off = rotation_vector(&(attitude * rotation(&self.mount_rotation(sensor))), measured);
-        let reported =
-            self.take(&DMatrix::identity(3, 3), &DVector::from_column_slice(off.as_slice()), noise, sensor)?;
+        let reported = self.apply_innovation(
+            &DMatrix::identity(3, 3),
+            &DVector::from_column_slice(off.as_slice()),
+            noise,
+            sensor,
+        )?;
         Some((off, reported))
     }
 
@@ -212,52 +217,64 @@ impl ElasticFilterStates {
     pub fn correct_vector(
         &mut self,
         attitude: &Quaternion<f64>,
-        sight: &VectorMeasurement,
+        measurement: &VectorMeasurement,
         noise: &DMatrix<f64>,
         sensor: usize,
     ) -> Option<(Vector, ElasticInnovation)> {
-        let expected: Vector = to_body(&(attitude * rotation(&self.mount_rotation(sensor))), &sight.inertial);
-        let off = sight.vector - expected;
-        let moved = expected.cross_matrix();
-        let whole = |of: &nalgebra::Matrix3<f64>| DMatrix::from_fn(3, 3, |row, column| of[(row, column)]);
-        let reported = if sight.is_direction {
+        let expected: Vector =
+            to_body(&(attitude * rotation(&self.mount_rotation(sensor))), &measurement.inertial);
+        let off = measurement.vector - expected;
+        let jacobian = expected.cross_matrix();
+        let whole =
+            |block: &nalgebra::Matrix3<f64>| DMatrix::from_fn(3, 3, |row, column| block[(row, column)]);
+        let reported = if measurement.is_direction {
             let rows = perpendicular_pair(&expected);
             let rows = DMatrix::from_fn(2, 3, |row, column| rows[(row, column)]);
             let off = &rows * DVector::from_column_slice(off.as_slice());
-            let reported =
-                self.take(&(&rows * whole(&moved)), &off, &(&rows * noise * rows.transpose()), sensor)?;
+            let reported = self.apply_innovation(
+                &(&rows * whole(&jacobian)),
+                &off,
+                &(&rows * noise * rows.transpose()),
+                sensor,
+            )?;
             ElasticInnovation { nis: reported.nis * 1.5, ..reported }
         } else {
-            self.take(&whole(&moved), &DVector::from_column_slice(off.as_slice()), noise, sensor)?
+            self.apply_innovation(
+                &whole(&jacobian),
+                &DVector::from_column_slice(off.as_slice()),
+                noise,
+                sensor,
+            )?
         };
         Some((off.cross(&expected) / expected.norm_squared(), reported))
     }
 
-    /// Updates the states with the innovation `off`, its derivatives `moved` with respect to a rotation of the sensor's
+    /// Updates the states with the innovation `off`, its derivatives `jacobian` with respect to a rotation of the sensor's
     /// mount, and the covariance `noise` of the measurement.
-    fn take(
+    fn apply_innovation(
         &mut self,
-        moved: &DMatrix<f64>,
+        jacobian: &DMatrix<f64>,
         off: &DVector<f64>,
         noise: &DMatrix<f64>,
         sensor: usize,
     ) -> Option<ElasticInnovation> {
         let order = self.covariance.nrows();
-        let mut seen = DMatrix::zeros(3, order);
+        let mut observation = DMatrix::zeros(3, order);
         for axis in 0..3 {
-            seen[(axis, axis)] = 1.0;
+            observation[(axis, axis)] = 1.0;
             for (index, mode) in self.known.each.iter().enumerate() {
-                seen[(axis, 6 + 2 * index)] = mode.mounts[sensor][axis];
+                observation[(axis, 6 + 2 * index)] = mode.mounts[sensor][axis];
             }
         }
-        let seen = moved * seen;
-        let to_measured = &self.covariance * seen.transpose();
-        let inverse = Cholesky::new(&seen * &to_measured + noise)?.inverse();
+        let observation = jacobian * observation;
+        let to_measured = &self.covariance * observation.transpose();
+        let inverse = Cholesky::new(&observation * &to_measured + noise)?.inverse();
         let gain = &to_measured * &inverse;
         let error = &gain * off;
-        let kept = DMatrix::identity(order, order) - &gain * &seen;
-        let left = &kept * &self.covariance * kept.transpose() + &gain * noise * gain.transpose();
-        self.covariance = 0.5 * (&left + left.transpose());
+        let reduction = DMatrix::identity(order, order) - &gain * &observation;
+        let posterior =
+            &reduction * &self.covariance * reduction.transpose() + &gain * noise * gain.transpose();
+        self.covariance = 0.5 * (&posterior + posterior.transpose());
         for (index, state) in self.state.iter_mut().enumerate() {
             state[0] += error[6 + 2 * index];
             state[1] += error[7 + 2 * index];

@@ -31,7 +31,7 @@ pub struct AttitudeFilterState {
     pub covariance: Matrix6<f64>,
     /// Elastic modes that the filter estimates too: they hold the full covariance, of which `covariance` is the leading
     /// block.
-    pub swinging: Option<Box<ElasticFilterStates>>,
+    pub elastic: Option<Box<ElasticFilterStates>>,
 }
 
 /// Innovation of a measured attitude or vector.
@@ -51,7 +51,7 @@ impl AttitudeFilterState {
         let variance = |row: usize, _| deviations[row / 3] * deviations[row / 3];
         let covariance =
             Matrix6::from_fn(|row, column| if row == column { variance(row, column) } else { 0.0 });
-        Self { attitude, bias, covariance, swinging: None }
+        Self { attitude, bias, covariance, elastic: None }
     }
 
     /// Propagates the filter over `seconds` with `reading`, the gyro's mean rate over the interval (rad/s).
@@ -79,13 +79,13 @@ impl AttitudeFilterState {
         noise: &GyroNoise,
         torques: &[(f64, Vector)],
     ) {
-        let Some(mut swinging) = self.swinging.take() else { return self.predict(reading, seconds, noise) };
-        let mount = swinging.propagate(seconds, torques);
+        let Some(mut elastic) = self.elastic.take() else { return self.predict(reading, seconds, noise) };
+        let mount = elastic.propagate(seconds, torques);
         let turn = (reading - self.bias) * seconds - mount;
-        swinging.propagate_covariance(&turn, seconds, noise);
+        elastic.propagate_covariance(&turn, seconds, noise);
         self.attitude = unit(self.attitude * rotation(&turn));
-        self.covariance = swinging.attitude_block();
-        self.swinging = Some(swinging);
+        self.covariance = elastic.attitude_block();
+        self.elastic = Some(elastic);
     }
 
     /// Corrects the filter by a measurement of a sensor whose mount is rotated by the modes.
@@ -95,18 +95,18 @@ impl AttitudeFilterState {
         measured: &AttitudeMeasurement,
         noise: &Matrix3<f64>,
     ) -> Option<Correction> {
-        let mut swinging = self.swinging.take()?;
+        let mut elastic = self.elastic.take()?;
         let noise = DMatrix::from_fn(3, 3, |row, column| noise[(row, column)]);
         let reported = match measured {
             AttitudeMeasurement::Attitude(attitude) => {
-                swinging.correct(&self.attitude, attitude, &noise, sensor)
+                elastic.correct(&self.attitude, attitude, &noise, sensor)
             }
-            AttitudeMeasurement::Vector(sight) => {
-                swinging.correct_vector(&self.attitude, sight, &noise, sensor)
+            AttitudeMeasurement::Vector(measurement) => {
+                elastic.correct_vector(&self.attitude, measurement, &noise, sensor)
             }
         };
-        self.covariance = swinging.attitude_block();
-        self.swinging = Some(swinging);
+        self.covariance = elastic.attitude_block();
+        self.elastic = Some(elastic);
         let (innovation, ElasticInnovation { error: [angle, bias], nis }) = reported?;
         self.attitude = unit(self.attitude * rotation(&angle));
         self.bias += bias;
@@ -123,21 +123,25 @@ impl AttitudeFilterState {
         let error = gain * innovation;
         self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
         self.bias += error.fixed_rows::<3>(3);
-        self.covariance = left(&self.covariance, &gain, &(gain * noise * gain.transpose()));
+        self.covariance = corrected_covariance(&self.covariance, &gain, &(gain * noise * gain.transpose()));
         Some(Correction { innovation, nis: innovation.dot(&(inverse * innovation)), numbers: 3 })
     }
 
     /// Corrects the filter by a measured vector whose error has the covariance `noise` in body axes.
-    pub fn correct_vector(&mut self, sight: &VectorMeasurement, noise: &Matrix3<f64>) -> Option<Correction> {
-        let expected = to_body(&self.attitude, &sight.inertial);
-        let (off, moved) = (sight.vector - expected, expected.cross_matrix());
-        let nis = if sight.is_direction {
+    pub fn correct_vector(
+        &mut self,
+        measurement: &VectorMeasurement,
+        noise: &Matrix3<f64>,
+    ) -> Option<Correction> {
+        let expected = to_body(&self.attitude, &measurement.inertial);
+        let (off, jacobian) = (measurement.vector - expected, expected.cross_matrix());
+        let nis = if measurement.is_direction {
             let across = perpendicular_pair(&expected);
-            self.update(&(across * moved), &(across * off), &(across * noise * across.transpose()))? * 1.5
+            self.update(&(across * jacobian), &(across * off), &(across * noise * across.transpose()))? * 1.5
         } else {
-            self.update(&moved, &off, noise)?
+            self.update(&jacobian, &off, noise)?
         };
-        let numbers = if sight.is_direction { 2 } else { 3 };
+        let numbers = if measurement.is_direction { 2 } else { 3 };
         Some(Correction { innovation: off.cross(&expected) / expected.norm_squared(), nis, numbers })
     }
 
@@ -149,55 +153,55 @@ impl AttitudeFilterState {
         noise: &Matrix3<f64>,
         gain: &Matrix6x3<f64>,
     ) -> Option<Correction> {
-        let (off, moved, gain) = match measured {
+        let (off, jacobian, gain) = match measured {
             AttitudeMeasurement::Attitude(attitude) => {
                 (rotation_vector(&self.attitude, attitude), Matrix3::identity(), *gain)
             }
-            AttitudeMeasurement::Vector(sight) => {
-                let expected = to_body(&self.attitude, &sight.inertial);
+            AttitudeMeasurement::Vector(measurement) => {
+                let expected = to_body(&self.attitude, &measurement.inertial);
                 let to_angle = expected.cross_matrix() / -expected.norm_squared();
-                (sight.vector - expected, expected.cross_matrix(), gain * to_angle)
+                (measurement.vector - expected, expected.cross_matrix(), gain * to_angle)
             }
         };
-        let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
-        let spread = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?;
+        let to_measured = self.covariance.fixed_columns::<3>(0) * jacobian.transpose();
+        let spread = Cholesky::new(jacobian * to_measured.fixed_rows::<3>(0) + noise)?;
         let numbers = measured.dimension();
         let nis = 3.0 / numbers as f64 * off.dot(&spread.solve(&off));
         let error = gain * off;
         let innovation = match measured {
             AttitudeMeasurement::Attitude(_) => off,
-            AttitudeMeasurement::Vector(sight) => {
-                let expected = to_body(&self.attitude, &sight.inertial);
+            AttitudeMeasurement::Vector(measurement) => {
+                let expected = to_body(&self.attitude, &measurement.inertial);
                 off.cross(&expected) / expected.norm_squared()
             }
         };
-        self.take(&error, &(gain * moved), &(gain * noise * gain.transpose()));
+        self.apply_correction(&error, &(gain * jacobian), &(gain * noise * gain.transpose()));
         Some(Correction { innovation, nis, numbers })
     }
 
-    /// Applies the estimated `error`, and updates the covariance for the gain's action `told` on the attitude and the
+    /// Applies the estimated `error`, and updates the covariance for the action `gain` on the attitude and the
     /// term `added`.
-    fn take(&mut self, error: &SMatrix<f64, 6, 1>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) {
+    fn apply_correction(&mut self, error: &SMatrix<f64, 6, 1>, gain: &Matrix6x3<f64>, added: &Matrix6<f64>) {
         self.attitude = unit(self.attitude * rotation(&error.fixed_rows::<3>(0).into_owned()));
         self.bias += error.fixed_rows::<3>(3);
-        self.covariance = left(&self.covariance, told, added);
+        self.covariance = corrected_covariance(&self.covariance, gain, added);
     }
 
-    /// Updates the filter with D components `off` of an innovation, their derivatives `moved` with respect to theta,
+    /// Updates the filter with D components `off` of an innovation, their derivatives `jacobian` with respect to theta,
     /// and their covariance `noise`; returns the normalised innovation squared.
     fn update<const D: usize>(
         &mut self,
-        moved: &SMatrix<f64, D, 3>,
+        jacobian: &SMatrix<f64, D, 3>,
         off: &SMatrix<f64, D, 1>,
         noise: &SMatrix<f64, D, D>,
     ) -> Option<f64>
     where
         Const<D>: ToTypenum + DimSub<Const<1>>,
     {
-        let to_measured = self.covariance.fixed_columns::<3>(0) * moved.transpose();
-        let inverse = Cholesky::new(moved * to_measured.fixed_rows::<3>(0) + noise)?.inverse();
+        let to_measured = self.covariance.fixed_columns::<3>(0) * jacobian.transpose();
+        let inverse = Cholesky::new(jacobian * to_measured.fixed_rows::<3>(0) + noise)?.inverse();
         let gain = to_measured * inverse;
-        self.take(&(gain * off), &(gain * moved), &(gain * noise * gain.transpose()));
+        self.apply_correction(&(gain * off), &(gain * jacobian), &(gain * noise * gain.transpose()));
         Some(off.dot(&(inverse * off)))
     }
 
@@ -228,19 +232,23 @@ fn unit(q: Quaternion<f64>) -> Quaternion<f64> {
     q / q.norm()
 }
 
-/// Returns the covariance after a correction: K P K' + `added` with K = 1 - [`told`, 0].
-fn left(covariance: &Matrix6<f64>, told: &Matrix6x3<f64>, added: &Matrix6<f64>) -> Matrix6<f64> {
-    let kept = Matrix6x3::identity() - told;
+/// Returns the covariance after a correction: K P K' + `added` with K = 1 - [`gain`, 0].
+fn corrected_covariance(
+    covariance: &Matrix6<f64>,
+    gain: &Matrix6x3<f64>,
+    added: &Matrix6<f64>,
+) -> Matrix6<f64> {
+    let reduction = Matrix6x3::identity() - gain;
     // The other columns of K are those of the identity.
-    let mut once = kept * covariance.fixed_rows::<3>(0);
+    let mut once = reduction * covariance.fixed_rows::<3>(0);
     let mut below = once.fixed_rows_mut::<3>(3);
     below += covariance.fixed_rows::<3>(3);
-    let mut twice = once.fixed_columns::<3>(0) * kept.transpose();
-    let mut beside = twice.fixed_columns_mut::<3>(3);
-    beside += once.fixed_columns::<3>(3);
+    let mut twice = once.fixed_columns::<3>(0) * reduction.transpose();
+    let mut right_columns = twice.fixed_columns_mut::<3>(3);
+    right_columns += once.fixed_columns::<3>(3);
     symmetric(&(twice + added))
 }
 
-fn symmetric(of: &Matrix6<f64>) -> Matrix6<f64> {
-    (of + of.transpose()) * 0.5
+fn symmetric(matrix: &Matrix6<f64>) -> Matrix6<f64> {
+    (matrix + matrix.transpose()) * 0.5
 }

@@ -31,7 +31,7 @@ pub struct AttitudeFilterRun {
     /// Torque on the body about its axes (N m), which excites the modes.
     torque: Vector,
     /// Correction by the last sample, and true if it had any.
-    told: Correction,
+    last_correction: Correction,
     used: bool,
 }
 
@@ -47,7 +47,7 @@ impl AttitudeFilterRun {
             since: Instant::START,
             sampled: None,
             torque: Vector::zeros(),
-            told: Correction::default(),
+            last_correction: Correction::default(),
             used: false,
         }
     }
@@ -63,7 +63,7 @@ impl AttitudeFilterRun {
         }
         let mut filter =
             AttitudeFilterState::new(attitude * rotation(&off[0]), self.setting.bias + off[1], deviations);
-        filter.swinging = self
+        filter.elastic = self
             .setting
             .modes
             .clone()
@@ -81,10 +81,11 @@ impl AttitudeFilterRun {
         {
             if let (Some(rate), SensorRole::Gyro { latency }) = (reading.rate, role) {
                 // Before the first latency has elapsed, the rate is that at the start.
-                let of = if now < Instant::START + *latency { Instant::START } else { now.before(*latency) };
+                let exposed =
+                    if now < Instant::START + *latency { Instant::START } else { now.before(*latency) };
                 self.rate = rate.into();
-                corrections.extend(history.add_gyro(of, self.rate));
-                self.since = of;
+                corrections.extend(history.add_gyro(exposed, self.rate));
+                self.since = exposed;
             }
         }
         for (role, (sensor, reading)) in
@@ -92,7 +93,7 @@ impl AttitudeFilterRun {
         {
             let SensorRole::Corrects { latency, noise, gain } = role else { continue };
             let measured = match (reading.sight, reading.at) {
-                (Some(sight), _) => AttitudeMeasurement::Vector(sight),
+                (Some(measurement), _) => AttitudeMeasurement::Vector(measurement),
                 (None, Orientation::Attitude(attitude)) => AttitudeMeasurement::Attitude(attitude),
                 (None, Orientation::Angle(_)) => continue,
             };
@@ -107,7 +108,7 @@ impl AttitudeFilterRun {
             }));
         }
         self.used = !corrections.is_empty();
-        self.told = corrections.pop().unwrap_or_default();
+        self.last_correction = corrections.pop().unwrap_or_default();
     }
 
     /// Returns the attitude at `now`, propagated with the last gyro reading.
@@ -117,27 +118,27 @@ impl AttitudeFilterRun {
         }
         let filter = self.history.as_ref()?.latest();
         let mut turn = (self.rate - filter.bias) * now.since(self.since).seconds();
-        if let Some(swinging) = &filter.swinging {
-            turn -= swinging.rates()[1] * now.since(self.since).seconds();
+        if let Some(elastic) = &filter.elastic {
+            turn -= elastic.rates()[1] * now.since(self.since).seconds();
         }
         Some(filter.attitude * rotation(&turn))
     }
 
     /// Returns the elastic part of the last gyro reading (rad/s) that is removed from the rate for the laws.
     fn elastic_rate(&self) -> Vector {
-        let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
-        swinging.map_or_else(Vector::zeros, |swinging| {
-            let [hub, mount] = swinging.rates();
-            if swinging.known.rigid { hub + mount } else { mount }
+        let elastic = self.history.as_ref().and_then(|history| history.latest().elastic.as_deref());
+        elastic.map_or_else(Vector::zeros, |elastic| {
+            let [hub, mount] = elastic.rates();
+            if elastic.known.rigid { hub + mount } else { mount }
         })
     }
 
     /// Returns the attitude that laws read, from that of the hub: without the rotation by known modes if laws read the
     /// rigid motion.
     fn attitude_for_laws(&self, hub: Quaternion<f64>) -> Quaternion<f64> {
-        let swinging = self.history.as_ref().and_then(|history| history.latest().swinging.as_deref());
-        match swinging.filter(|swinging| swinging.known.rigid) {
-            Some(swinging) => hub * rotation(&-swinging.hub_rotation()),
+        let elastic = self.history.as_ref().and_then(|history| history.latest().elastic.as_deref());
+        match elastic.filter(|elastic| elastic.known.rigid) {
+            Some(elastic) => hub * rotation(&-elastic.hub_rotation()),
             None => hub,
         }
     }
@@ -172,7 +173,7 @@ impl AttitudeFilterRun {
             bias_rad_s: filter.bias[axis],
             bias_error_rad_s: -bias_error[axis],
             bias_sd_rad_s: bias_sd[axis],
-            innovation_rad: self.told.innovation[axis],
+            innovation_rad: self.last_correction.innovation[axis],
         };
         Some(AttitudeEstimate {
             q_w: estimate.w,
@@ -181,17 +182,17 @@ impl AttitudeFilterRun {
             q_z: estimate.k,
             axes: [0, 1, 2].map(axis).into(),
             nees: filter.normalised(&error) / AttitudeEstimate::STATES,
-            nis: self.told.nis / AttitudeEstimate::MEASUREMENTS,
-            numbers: self.told.numbers,
+            nis: self.last_correction.nis / AttitudeEstimate::MEASUREMENTS,
+            numbers: self.last_correction.numbers,
             measured: self.used.into(),
         })
     }
 
     /// Returns the log row of the elastic modes; `None` if the filter does not estimate any.
     fn elastic_row(&self) -> Option<ElasticEstimates> {
-        let swinging = self.history.as_ref()?.latest().swinging.as_deref()?;
-        let each = swinging.known.each.iter().zip(&swinging.state).zip(&swinging.frequencies);
-        let modes = each.zip(swinging.deviations()).map(|(((mode, state), frequency), deviation)| {
+        let elastic = self.history.as_ref()?.latest().elastic.as_deref()?;
+        let each = elastic.known.each.iter().zip(&elastic.state).zip(&elastic.frequencies);
+        let modes = each.zip(elastic.deviations()).map(|(((mode, state), frequency), deviation)| {
             let [displacement, rate_over_frequency] = *state;
             ElasticEstimate {
                 displacement,
@@ -227,25 +228,25 @@ impl Estimator for AttitudeFilterRun {
         }
     }
 
-    fn update(&mut self, taken: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
-        let now = taken.now;
+    fn update(&mut self, context: &SampleContext<'_>, state_estimates: &mut [StateEstimate]) {
+        let now = context.now;
         if self.history.is_none() {
-            let Orientation::Attitude(origin) = taken.origin else { return };
-            let beyond = Vector::from_fn(|axis, _| (taken.truth)(axis).rigid_angle);
+            let Orientation::Attitude(origin) = context.origin else { return };
+            let beyond = Vector::from_fn(|axis, _| (context.truth)(axis).rigid_angle);
             let filter = self.prior(&(origin * rotation(&beyond)));
             let mut history = FilterHistory::new(now, filter, self.setting.noise, self.setting.reach);
             history.set_torque(now, self.torque);
             self.history = Some(history);
         }
         self.sampled = None;
-        self.read(now, taken.readings);
+        self.read(now, context.readings);
         self.sampled = self.attitude(now).map(|attitude| (now, attitude));
         let (Some(history), Some((_, attitude))) = (&self.history, self.sampled) else { return };
         let (attitude, elastic) = (self.attitude_for_laws(attitude), self.elastic_rate());
-        let angles = Orientation::Attitude(attitude).error_from(taken.origin);
+        let angles = Orientation::Attitude(attitude).error_from(context.origin);
         for (axis, state_estimate) in state_estimates.iter_mut().enumerate() {
             if self.spec.watch_only {
-                if let Some(measured) = taken.measured {
+                if let Some(measured) = context.measured {
                     [state_estimate.angle, state_estimate.rate] = measured[axis];
                 }
             } else {

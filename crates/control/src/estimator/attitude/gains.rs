@@ -44,9 +44,9 @@ impl Complementary {
     fn gains(&self, period: f64) -> [f64; 2] {
         let (angle, ratio) = (self.bandwidth.get() * period, self.damping.get());
         let decay = libm::exp(-ratio * angle);
-        let swing = 1.0 - ratio * ratio;
-        let part = angle * f64::sqrt(swing.abs());
-        let half = decay * if swing > 0.0 { libm::cos(part) } else { libm::cosh(part) };
+        let damped_part = 1.0 - ratio * ratio;
+        let part = angle * f64::sqrt(damped_part.abs());
+        let half = decay * if damped_part > 0.0 { libm::cos(part) } else { libm::cosh(part) };
         let k = 1.0 - decay * decay;
         [k, (2.0 * half - 2.0 + k) / period]
     }
@@ -82,10 +82,10 @@ impl GainMethod {
             Self::Steady => {
                 // Gains are computed about the principal axes of the covariance, in which errors are independent.
                 let axes = covariance.symmetric_eigen();
-                let of = |variance: f64| steady(noise, period, f64::sqrt(variance));
+                let steady_sd = |variance: f64| steady(noise, period, f64::sqrt(variance));
                 let [attitude, bias] = [0, 1].map(|part| {
                     let diagonal =
-                        Matrix3::from_diagonal(&axes.eigenvalues.map(|variance| of(variance)[part]));
+                        Matrix3::from_diagonal(&axes.eigenvalues.map(|variance| steady_sd(variance)[part]));
                     axes.eigenvectors * diagonal * axes.eigenvectors.transpose()
                 });
                 Some(assemble(attitude, bias))
@@ -132,18 +132,18 @@ mod tests {
             assert!((1.0 - k - libm::exp(-2.0 * ratio * bandwidth * period)).abs() < 1e-15);
             // A free error of the attitude decays as the continuous filter's error at the samples.
             let (mut theta, mut beta) = (1.0, 0.0);
-            let mut seen = vec![theta];
+            let mut angles = vec![theta];
             for _ in 0..50 {
                 let before: f64 = theta - period * beta;
                 theta = before - k * before;
                 beta -= b * before;
-                seen.push(theta);
+                angles.push(theta);
             }
             let product = libm::exp(-2.0 * ratio * bandwidth * period);
             let part = bandwidth * period * f64::sqrt((1.0 - ratio * ratio).abs());
             let half = if ratio < 1.0 { libm::cos(part) } else { libm::cosh(part) };
             let sum = 2.0 * libm::exp(-ratio * bandwidth * period) * half;
-            for x in seen.windows(3) {
+            for x in angles.windows(3) {
                 assert!((x[2] - sum * x[1] + product * x[0]).abs() < 1e-13, "{x:?}");
             }
         }

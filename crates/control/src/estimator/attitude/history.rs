@@ -30,12 +30,14 @@ pub struct DelayedMeasurement {
 
 impl DelayedMeasurement {
     fn correct(&self, filter: &mut AttitudeFilterState) -> Option<Correction> {
-        if filter.swinging.is_some() {
+        if filter.elastic.is_some() {
             return filter.correct_at_mount(self.sensor, &self.measured, &self.noise);
         }
         match (&self.measured, &self.gain) {
             (AttitudeMeasurement::Attitude(attitude), None) => filter.correct(attitude, &self.noise),
-            (AttitudeMeasurement::Vector(sight), None) => filter.correct_vector(sight, &self.noise),
+            (AttitudeMeasurement::Vector(measurement), None) => {
+                filter.correct_vector(measurement, &self.noise)
+            }
             (measured, Some(gain)) => filter.correct_with_gain(measured, &self.noise, gain),
         }
     }
@@ -83,7 +85,7 @@ impl Propagation {
     /// Propagates a filter between two instants with the gyro reading of an interval that contains both.
     fn carry(&self, filter: &mut AttitudeFilterState, reading: &Vector, [from, to]: [Instant; 2]) {
         let seconds = to.since(from).seconds();
-        if filter.swinging.is_some() {
+        if filter.elastic.is_some() {
             filter.predict_with_torques(reading, seconds, &self.noise, &self.pushed(from, to));
         } else {
             filter.predict(reading, seconds, &self.noise);
@@ -93,7 +95,7 @@ impl Propagation {
 
 #[derive(Clone, Debug)]
 struct HistoryEntry {
-    at: Instant,
+    time: Instant,
     /// Gyro reading of the interval that ends at this entry (rad/s).
     reading: Vector,
     fixes: Vec<DelayedMeasurement>,
@@ -102,8 +104,8 @@ struct HistoryEntry {
 
 impl FilterHistory {
     /// Creates the history of a filter at its first instant; `reach` is the largest delay of a measurement.
-    pub fn new(at: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
-        let entry = HistoryEntry { at, reading: Vector::zeros(), fixes: Vec::new(), filter };
+    pub fn new(time: Instant, filter: AttitudeFilterState, noise: GyroNoise, reach: Span) -> Self {
+        let entry = HistoryEntry { time, reading: Vector::zeros(), fixes: Vec::new(), filter };
         let between = Propagation { noise, torques: VecDeque::new() };
         Self { between, reach, entries: VecDeque::from([entry]), early: Vec::new() }
     }
@@ -126,7 +128,7 @@ impl FilterHistory {
             torques.pop_back();
         }
         torques.push_back((now, torque));
-        let oldest = self.entries[0].at;
+        let oldest = self.entries[0].time;
         while torques.get(1).is_some_and(|(from, _)| *from <= oldest) {
             torques.pop_front();
         }
@@ -136,12 +138,12 @@ impl FilterHistory {
     /// waited for it.
     pub fn add_gyro(&mut self, now: Instant, reading: Vector) -> Vec<Correction> {
         let last = &self.entries[self.entries.len() - 1];
-        if now <= last.at {
+        if now <= last.time {
             return Vec::new();
         }
         // The entry's own filter is propagated in place: filters are large.
-        let (from, filter) = (last.at, last.filter.clone());
-        self.entries.push_back(HistoryEntry { at: now, reading, fixes: Vec::new(), filter });
+        let (from, filter) = (last.time, last.filter.clone());
+        self.entries.push_back(HistoryEntry { time: now, reading, fixes: Vec::new(), filter });
         if let Some(entry) = self.entries.back_mut() {
             self.between.carry(&mut entry.filter, &reading, [from, now]);
         }
@@ -151,7 +153,7 @@ impl FilterHistory {
             reported.extend(waiting.into_iter().filter_map(|fix| self.add_measurement(fix)));
         }
         // The last older entry stays: the interval with the oldest exposure still accepted begins there.
-        while self.entries.get(1).is_some_and(|second| second.at + self.reach <= now) {
+        while self.entries.get(1).is_some_and(|second| second.time + self.reach <= now) {
             self.entries.pop_front();
         }
         reported
@@ -159,17 +161,18 @@ impl FilterHistory {
 
     /// Adds a measurement, delayed or not; returns `None` if it is older than the history, or waits for a gyro reading.
     pub fn add_measurement(&mut self, fix: DelayedMeasurement) -> Option<Correction> {
-        let Some(index) = self.entries.iter().position(|entry| fix.exposed <= entry.at) else {
+        let Some(index) = self.entries.iter().position(|entry| fix.exposed <= entry.time) else {
             self.early.push(fix);
             return None;
         };
-        if self.entries[index].at > fix.exposed {
+        if self.entries[index].time > fix.exposed {
             // Exposures before the oldest entry are rejected.
             let before = index.checked_sub(1)?;
             let (reading, from) = (self.entries[index].reading, &self.entries[before]);
             let mut filter = from.filter.clone();
-            self.between.carry(&mut filter, &reading, [from.at, fix.exposed]);
-            self.entries.insert(index, HistoryEntry { at: fix.exposed, reading, fixes: Vec::new(), filter });
+            self.between.carry(&mut filter, &reading, [from.time, fix.exposed]);
+            self.entries
+                .insert(index, HistoryEntry { time: fix.exposed, reading, fixes: Vec::new(), filter });
         }
         let entry = &mut self.entries[index];
         let correction = fix.correct(&mut entry.filter)?;
@@ -184,9 +187,9 @@ impl FilterHistory {
         for index in from..entries.len() {
             let (before, after) = entries.split_at_mut(index);
             let ([.., last], [entry, ..]) = (before, after) else { return };
-            let HistoryEntry { at, reading, fixes, filter } = entry;
+            let HistoryEntry { time, reading, fixes, filter } = entry;
             filter.clone_from(&last.filter);
-            self.between.carry(filter, reading, [last.at, *at]);
+            self.between.carry(filter, reading, [last.time, *time]);
             for fix in &*fixes {
                 fix.correct(filter);
             }

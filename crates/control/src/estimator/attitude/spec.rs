@@ -192,19 +192,19 @@ impl AttitudeFilter {
                        how far modes have turned its mount";
             return refused("elastic", why);
         }
-        let Some((body, at, jets)) = mounted else { return Ok(None) };
+        let Some((body, mounts, jets)) = mounted else { return Ok(None) };
         if jets {
             let why = "is driven by torques about the axes: jets push modes by their forces too, which the filter does not know";
             return refused("elastic", why);
         }
-        elastic.known(body, at, read).map(Some).map_err(|fault| fault.within("elastic"))
+        elastic.known(body, mounts, read).map(Some).map_err(|fault| fault.within("elastic"))
     }
 
     /// Returns latency and error covariance of a sensor of the attitude or of a vector; `None` of another sensor.
     fn measured(&self, sensor: &SensorKind) -> Option<(Span, Result<Matrix3<f64>, ConfigError>)> {
-        let given = self.attitude_noise.map(|noise| noise.map(Positive::get));
+        let noise = self.attitude_noise.map(|noise| noise.map(Positive::get));
         let known = |own: [f64; 3]| {
-            let noise = given.unwrap_or(own);
+            let noise = noise.unwrap_or(own);
             let why = "must be given where a sensor of the attitude has no noise about an axis";
             if noise.iter().all(|noise| *noise > 0.0) {
                 Ok(noise)
@@ -223,7 +223,7 @@ impl AttitudeFilter {
 
     /// Returns the gyro's noise; white noise of sampled rates is converted to an angle random walk.
     fn gyro_noise(&self, gyro: &Gyro, period: f64) -> Result<GyroNoise, ConfigError> {
-        let largest = |of: &dyn Fn(usize) -> f64| (0..3).map(of).fold(0.0, f64::max);
+        let largest = |component: &dyn Fn(usize) -> f64| (0..3).map(component).fold(0.0, f64::max);
         let own = if gyro.integrates() {
             largest(&|axis| gyro.angle_random_walk.about(axis).get())
         } else {
@@ -243,8 +243,9 @@ impl AttitudeFilter {
 }
 
 /// Returns the covariance of a vector sensor, with the standard deviation `given` along each axis, or its `own`.
-fn vector(given: Option<Positive>, own: Matrix3<f64>, key: &str) -> Result<Matrix3<f64>, ConfigError> {
-    let noise = given.map_or(own, |given| Matrix3::from_diagonal_element(given.get() * given.get()));
+fn vector(deviation: Option<Positive>, own: Matrix3<f64>, key: &str) -> Result<Matrix3<f64>, ConfigError> {
+    let noise =
+        deviation.map_or(own, |deviation| Matrix3::from_diagonal_element(deviation.get() * deviation.get()));
     let why = "must be given where the sensor has no noise along an axis";
     if noise.diagonal().iter().all(|variance| *variance > 0.0) {
         Ok(noise)

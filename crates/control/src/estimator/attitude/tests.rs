@@ -22,8 +22,8 @@ fn rows(text: &str) -> Vec<Vec<f64>> {
     text.lines().skip_while(|line| !line.starts_with("k,")).skip(1).map(row).collect()
 }
 
-fn quaternion(of: &[f64]) -> Quaternion<f64> {
-    Quaternion::new(of[0], of[1], of[2], of[3])
+fn quaternion(components: &[f64]) -> Quaternion<f64> {
+    Quaternion::new(components[0], components[1], components[2], components[3])
 }
 
 fn first() -> AttitudeFilterState {
@@ -39,8 +39,8 @@ fn first() -> AttitudeFilterState {
 /// Returns the covariance of a star tracker with boresight z, rotated to body axes.
 fn tracker() -> Matrix3<f64> {
     let axes = Matrix3::new(0.6, 0.0, 0.8, 0.0, 1.0, 0.0, -0.8, 0.0, 0.6);
-    let (across, about) = (2.4e-5 * 2.4e-5, 1.5e-4 * 1.5e-4);
-    axes * Matrix3::from_diagonal(&Vector::new(across, across, about)) * axes.transpose()
+    let (across, about_axis) = (2.4e-5 * 2.4e-5, 1.5e-4 * 1.5e-4);
+    axes * Matrix3::from_diagonal(&Vector::new(across, across, about_axis)) * axes.transpose()
 }
 
 fn at(k: usize) -> Instant {
@@ -62,20 +62,20 @@ fn fix(read: &[Vec<f64>], k: usize) -> DelayedMeasurement {
 fn replay(late: usize) -> (Vec<FilterHistory>, Vec<Correction>) {
     let read = rows(READ);
     let mut history = FilterHistory::new(at(0), first(), NOISE, Span::from_seconds(0.5));
-    let (mut states, mut told) = (vec![history.clone()], Vec::new());
+    let (mut states, mut corrections) = (vec![history.clone()], Vec::new());
     for k in 1..read.len() {
         history.add_gyro(at(k), Vector::from_column_slice(&read[k][2..5]));
         if k > late && (k - late).is_multiple_of(4) {
-            told.push(history.add_measurement(fix(&read, k - late)).unwrap());
+            corrections.push(history.add_measurement(fix(&read, k - late)).unwrap());
         }
         states.push(history.clone());
     }
-    (states, told)
+    (states, corrections)
 }
 
 #[test]
 fn late_attitudes_give_what_forty_digits_give() {
-    let (states, told) = replay(2);
+    let (states, corrections) = replay(2);
     let read = rows(READ);
     for row in rows(GIVEN) {
         let k = row[0] as usize;
@@ -92,9 +92,10 @@ fn late_attitudes_give_what_forty_digits_give() {
         let nees = filter.nees(&quaternion(&read[k][9..13]), &Vector::from_column_slice(&read[k][13..16]));
         assert!((nees / row[15] - 1.0).abs() < 1e-10, "{k} {nees}");
     }
-    for (told, nis) in told.iter().zip([5.333_107_676_038_169, 4.912_012_928_946_308, 7.379_210_099_538_096])
+    for (correction, nis) in
+        corrections.iter().zip([5.333_107_676_038_169, 4.912_012_928_946_308, 7.379_210_099_538_096])
     {
-        assert!((told.nis / nis - 1.0).abs() < 1e-10, "{}", told.nis);
+        assert!((correction.nis / nis - 1.0).abs() < 1e-10, "{}", correction.nis);
     }
 }
 
@@ -159,17 +160,20 @@ fn a_vector_corrects_across_itself_alone() {
         let correction = filter.correct_vector(&vector_measurement, &noise).unwrap();
         // Remaining attitude error perpendicular to the vector, and its variance; along the vector there is no
         // information.
-        let [left, _] = filter.error(&truth, &Vector::zeros());
+        let [remaining, _] = filter.error(&truth, &Vector::zeros());
         let variance = deviation * deviation / body.norm_squared();
         let part = variance / (variance + 1e-6);
         let exact = -(along * along.dot(&off) + (off - along * along.dot(&off)) * part);
-        assert!((left - exact).norm() < 1e-10, "{left} {exact}");
+        assert!((remaining - exact).norm() < 1e-10, "{remaining} {exact}");
         let across = along.cross(&Vector::x()).normalize();
-        let of = |axis: &Vector| {
+        let variance_along = |axis: &Vector| {
             let covariance = filter.covariance.fixed_view::<3, 3>(0, 0).into_owned();
             axis.dot(&(covariance * axis))
         };
-        assert!((of(&along) / 1e-6 - 1.0).abs() < 1e-9 && (of(&across) / (1e-6 * part) - 1.0).abs() < 1e-9);
+        assert!(
+            (variance_along(&along) / 1e-6 - 1.0).abs() < 1e-9
+                && (variance_along(&across) / (1e-6 * part) - 1.0).abs() < 1e-9
+        );
         assert!((correction.innovation + (off - along * along.dot(&off))).norm() < 1e-10);
         let nis = (off - along * along.dot(&off)).norm_squared() / (variance + 1e-6);
         assert!((correction.nis / (if is_direction { 1.5 * nis } else { nis }) - 1.0).abs() < 1e-4);

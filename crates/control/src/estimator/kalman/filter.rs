@@ -77,7 +77,7 @@ pub struct KalmanFilter {
     gated_for: f64,
     trusted: DominantMode,
     /// Results of a step in a batch, where the covariance is kept.
-    beside: lane_step::LaneStep,
+    lane_step: lane_step::LaneStep,
 }
 
 /// Innovation of a sample.
@@ -107,14 +107,14 @@ impl KalmanFilter {
             gated: false,
             gated_for: 0.0,
             trusted: DominantMode::default(),
-            beside: lane_step::LaneStep::default(),
+            lane_step: lane_step::LaneStep::default(),
             tuning,
         };
         let input = DVector::from_fn(order, |i, _| filter.tuning.model.input(i));
         filter.noise.ger(filter.tuning.moment_noise * filter.tuning.period, &input, &input, 0.0);
-        for at in (filter.tuning.model.motion_states()..order).step_by(2) {
+        for index in (filter.tuning.model.motion_states()..order).step_by(2) {
             for (offset, density) in filter.tuning.ratio_noise.iter().enumerate() {
-                filter.noise[(at + offset, at + offset)] = density * filter.tuning.period;
+                filter.noise[(index + offset, index + offset)] = density * filter.tuning.period;
             }
         }
         filter.mode = filter.most_excitable_mode();
@@ -185,8 +185,8 @@ impl KalmanFilter {
         let Self { tuning, mean, covariance, noise, tangent, room, gated, .. } = self;
         let (model, period) = (&tuning.model, tuning.period);
         let carried = match &tuning.prediction {
-            Prediction::Linear(transition, push) => {
-                *mean = transition * &*mean + push * moment;
+            Prediction::Linear(transition, input) => {
+                *mean = transition * &*mean + input * moment;
                 transition.mul_to(covariance, room);
                 room.mul_to(&transition.transpose(), covariance);
                 Some(())
@@ -204,8 +204,8 @@ impl KalmanFilter {
         };
         *covariance += &*noise;
         if *gated {
-            for at in model.motion_states()..model.order() {
-                covariance[(at, at)] -= noise[(at, at)];
+            for index in model.motion_states()..model.order() {
+                covariance[(index, index)] -= noise[(index, index)];
             }
         }
         for row in 0..covariance.nrows() {
@@ -267,17 +267,17 @@ impl KalmanFilter {
     fn learn(&mut self, first: usize, measured: f64, noise: f64, gated: bool) -> Option<f64> {
         let (order, motion) = (self.tuning.model.order(), self.tuning.model.motion_states());
         let innovation = measured - self.observed(first);
-        let mut seen = DVector::zeros(order);
+        let mut observation = DVector::zeros(order);
         for i in (first..motion).step_by(2) {
-            seen += self.covariance.column(i);
+            observation += self.covariance.column(i);
         }
-        let variance = (first..motion).step_by(2).map(|i| seen[i]).sum::<f64>() + noise * noise;
+        let variance = (first..motion).step_by(2).map(|i| observation[i]).sum::<f64>() + noise * noise;
         let nis = innovation * innovation / variance;
         // A variance that is not positive, or an innovation that is NaN, fails here too.
         if !(variance > 0.0 && nis <= FARTHEST * FARTHEST) {
             return None;
         }
-        let mut gain = &seen / variance;
+        let mut gain = &observation / variance;
         if gated {
             gain.rows_mut(motion, order - motion).fill(0.0);
         }
@@ -286,7 +286,7 @@ impl KalmanFilter {
         for column in 0..order {
             for row in 0..=column {
                 let value = self.covariance[(row, column)]
-                    - (gain[row] * seen[column] + seen[row] * gain[column])
+                    - (gain[row] * observation[column] + observation[row] * gain[column])
                     + variance * gain[row] * gain[column];
                 self.covariance[(row, column)] = value;
                 self.covariance[(column, row)] = value;
@@ -330,10 +330,10 @@ impl KalmanFilter {
     fn hold_ratios(&mut self) {
         let [low, high] = self.tuning.bounds;
         let model = &self.tuning.model;
-        for at in (model.motion_states()..model.order()).step_by(2) {
-            if !(low..=high).contains(&self.mean[at]) {
-                self.mean[at] = self.mean[at].clamp(low, high);
-                self.mean[at + 1] = 0.0;
+        for index in (model.motion_states()..model.order()).step_by(2) {
+            if !(low..=high).contains(&self.mean[index]) {
+                self.mean[index] = self.mean[index].clamp(low, high);
+                self.mean[index + 1] = 0.0;
                 self.lock.lose();
             }
         }
@@ -349,10 +349,10 @@ impl KalmanFilter {
         match self.tuning.ranking {
             Ranking::Excitability => self.mode = self.most_excitable_mode(),
             Ranking::Amplitude => {
-                let (mine, sd) = self.amplitude(self.mode);
+                let (own_amplitude, sd) = self.amplitude(self.mode);
                 let clear = |mode: &usize| {
                     let (amplitude, own_sd) = self.amplitude(*mode);
-                    amplitude - mine > sd + own_sd
+                    amplitude - own_amplitude > sd + own_sd
                 };
                 if let Some(mode) = (0..self.tuning.model.modes()).find(clear) {
                     self.mode = mode;

@@ -49,9 +49,9 @@ impl Lock {
     }
 
     /// Updates the detector with NIS and innovation of a sample, or with `None` for a dropped measurement.
-    pub fn update(&mut self, told: Option<(f64, f64)>) {
+    pub fn update(&mut self, innovation: Option<(f64, f64)>) {
         // A window of dropped measurements only is above the bound, a few dropped ones are not.
-        let (nis, innovation) = told.unwrap_or((2.0 * self.bounds[0] / WINDOW as f64, 0.0));
+        let (nis, innovation) = innovation.unwrap_or((2.0 * self.bounds[0] / WINDOW as f64, 0.0));
         if self.recent.len() == WINDOW {
             self.recent.pop_front();
         }

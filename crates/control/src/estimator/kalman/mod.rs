@@ -196,15 +196,15 @@ pub struct FilterContext<'a> {
 impl Kalman {
     /// Creates the filter for a setting; `draws` supplies a drawn prior.
     pub fn filter(&self, setting: &FilterContext<'_>, draws: &mut Stream) -> KalmanFilter {
-        let body = believed(setting.body, self.modes.as_deref());
+        let body = filter_body(setting.body, self.modes.as_deref());
         let ones = vec![1.0; body.modes.len()];
-        let (transition, push) = CoupledMatrices::new(&body, setting.back_emf.0, setting.back_emf.1, &ones)
+        let (transition, input) = CoupledMatrices::new(&body, setting.back_emf.0, setting.back_emf.1, &ones)
             .discrete(setting.period);
         let model = FilterModel::new(&body.modes, 0, setting.back_emf, 1, [1.0; 2]);
         let (mean, spread) = start(setting.body, &model, self.initial, &[], self.prior, draws);
         KalmanFilter::new(FilterParameters {
             model,
-            prediction: Prediction::Linear(transition, push),
+            prediction: Prediction::Linear(transition, input),
             period: setting.period,
             mean,
             spread,
@@ -227,7 +227,7 @@ impl FrequencyTracking {
         prediction: Prediction,
         draws: &mut Stream,
     ) -> KalmanFilter {
-        let body = believed(setting.body, self.modes.as_deref());
+        let body = filter_body(setting.body, self.modes.as_deref());
         let bounds = self.bounds.map(Positive::get);
         let ratios = self.ratios.count(body.modes.len());
         let model = FilterModel::new(&body.modes, ratios, setting.back_emf, self.substeps.get(), bounds);
@@ -250,15 +250,15 @@ impl FrequencyTracking {
             ranking: self.dominant,
         };
         for index in 0..ratios {
-            let at = filter.model.motion_states() + 2 * index;
-            filter.mean[at] = filter.mean[at].clamp(bounds[0], bounds[1]);
+            let index = filter.model.motion_states() + 2 * index;
+            filter.mean[index] = filter.mean[index].clamp(bounds[0], bounds[1]);
         }
         KalmanFilter::new(filter)
     }
 }
 
 /// Returns the body with the modes of the filter's model.
-fn believed(body: &Planar, modes: Option<&[Mode]>) -> Planar {
+fn filter_body(body: &Planar, modes: Option<&[Mode]>) -> Planar {
     Planar { modes: modes.unwrap_or(&body.modes).to_vec(), ..body.clone() }
 }
 

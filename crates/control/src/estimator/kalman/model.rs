@@ -47,13 +47,13 @@ impl FilterModel {
         substeps: u32,
         bounds: [f64; 2],
     ) -> Self {
-        let swing = |mode: &Mode| KalmanMode {
+        let kalman_mode = |mode: &Mode| KalmanMode {
             flow: ModeFlow::new(mode),
             frequency: mode.frequency.get(),
             gain: mode.gain.get(),
             drag: 2.0 * mode.damping.get(),
         };
-        Self { modes: modes.iter().map(swing).collect(), ratios, back_emf, substeps, bounds }
+        Self { modes: modes.iter().map(kalman_mode).collect(), ratios, back_emf, substeps, bounds }
     }
 
     /// Returns the number of motion states: rigid angle and rate, and two for each mode.
@@ -74,7 +74,7 @@ impl FilterModel {
 
     /// Returns the ratio of a mode in a state.
     pub fn ratio(&self, mode: usize, state: &[f64]) -> f64 {
-        self.ratio_of(mode).map_or(1.0, |at| state[at])
+        self.ratio_of(mode).map_or(1.0, |index| state[index])
     }
 
     /// Returns the natural frequency of a mode in a state (rad/s).
@@ -117,10 +117,10 @@ impl FilterModel {
                 self.coast(step, middle, moment, state, tangent.as_deref_mut());
             }
         }
-        for at in (self.motion_states()..self.order()).step_by(2) {
-            state[at] += h * state[at + 1];
+        for index in (self.motion_states()..self.order()).step_by(2) {
+            state[index] += h * state[index + 1];
             if let Some(tangent) = tangent.as_deref_mut() {
-                add_column(tangent, at, at + 1, h);
+                add_column(tangent, index, index + 1, h);
             }
         }
     }
@@ -139,23 +139,31 @@ impl FilterModel {
         if let Some(tangent) = tangent.as_deref_mut() {
             add_column(tangent, 0, 1, h);
         }
-        for (index, swing) in self.modes.iter().enumerate() {
-            let (x, v, at) = (2 + 2 * index, 3 + 2 * index, self.ratio_of(index));
+        for (index, mode_model) in self.modes.iter().enumerate() {
+            let (x, v, ratio_index) = (2 + 2 * index, 3 + 2 * index, self.ratio_of(index));
             let [low, high] = self.bounds;
-            let ratio = at.map_or(1.0, |at| (state[at] + middle * state[at + 1]).clamp(low, high));
-            let turn = swing.turn(h, ratio, moment, (state[x], state[v]), tangent.is_some() && at.is_some());
+            let ratio = ratio_index.map_or(1.0, |ratio_index| {
+                (state[ratio_index] + middle * state[ratio_index + 1]).clamp(low, high)
+            });
+            let turn = mode_model.turn(
+                h,
+                ratio,
+                moment,
+                (state[x], state[v]),
+                tangent.is_some() && ratio_index.is_some(),
+            );
             let [a, b, c, d] = turn.matrix;
             (state[x], state[v]) =
                 (a * state[x] + b * state[v] + turn.shift[0], c * state[x] + d * state[v] + turn.shift[1]);
             let Some(tangent) = tangent.as_deref_mut() else { continue };
             mix_columns(tangent, x, turn.matrix);
-            if let Some(at) = at {
+            if let Some(ratio_index) = ratio_index {
                 // Gradient of the ratio at `middle`: that of the ratio at the period's start, and that of its rate
                 // times `middle`.
-                add_column(tangent, x, at, turn.slope[0]);
-                add_column(tangent, x, at + 1, turn.slope[0] * middle);
-                add_column(tangent, v, at, turn.slope[1]);
-                add_column(tangent, v, at + 1, turn.slope[1] * middle);
+                add_column(tangent, x, ratio_index, turn.slope[0]);
+                add_column(tangent, x, ratio_index + 1, turn.slope[0] * middle);
+                add_column(tangent, v, ratio_index, turn.slope[1]);
+                add_column(tangent, v, ratio_index + 1, turn.slope[1] * middle);
             }
         }
     }
@@ -168,21 +176,21 @@ impl FilterModel {
     /// Returns the factor of the total rate that back-EMF subtracts from the rigid rate in `h` (s).
     pub(super) fn back_emf_fraction(&self, h: f64) -> f64 {
         let a = self.back_emf.0;
-        let s = 1.0 + self.modes[..self.set_back_emf_modes()].iter().map(|swing| swing.gain).sum::<f64>();
+        let s = 1.0 + self.modes[..self.set_back_emf_modes()].iter().map(|mode| mode.gain).sum::<f64>();
         if s == 0.0 { a * h } else { -libm::expm1(-a * h * s) / s }
     }
 
     /// Applies back-EMF alone: z' = -a g c z, of rank one, with the exponential z - g (1 - exp(-a s h))/s c z, s = c g.
     fn brake(&self, h: f64, state: &mut [f64], tangent: Option<&mut DMatrix<f64>>) {
-        let (felt, part) = (self.set_back_emf_modes(), self.back_emf_fraction(h));
-        let rate = (0..=felt).map(|i| state[1 + 2 * i]).sum::<f64>();
+        let (mode_count, part) = (self.set_back_emf_modes(), self.back_emf_fraction(h));
+        let rate = (0..=mode_count).map(|i| state[1 + 2 * i]).sum::<f64>();
         state[1] -= part * rate;
-        for (index, swing) in self.modes.iter().enumerate() {
-            state[3 + 2 * index] -= swing.gain * part * rate;
+        for (index, mode_model) in self.modes.iter().enumerate() {
+            state[3 + 2 * index] -= mode_model.gain * part * rate;
         }
         if let Some(tangent) = tangent {
             let mut rate = tangent.column(1).into_owned();
-            for index in 1..=felt {
+            for index in 1..=mode_count {
                 rate += tangent.column(1 + 2 * index);
             }
             for index in 0..=self.modes.len() {
@@ -232,8 +240,8 @@ fn add_column(matrix: &mut DMatrix<f64>, to: usize, from: usize, factor: f64) {
 fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) {
     let rows = matrix.nrows();
     let pair = &mut matrix.as_mut_slice()[first * rows..(first + 2) * rows];
-    let (left, right) = pair.split_at_mut(rows);
-    for (x, v) in left.iter_mut().zip(right) {
+    let (first, second) = pair.split_at_mut(rows);
+    for (x, v) in first.iter_mut().zip(second) {
         (*x, *v) = (a * *x + b * *v, c * *x + d * *v);
     }
 }
@@ -258,9 +266,9 @@ mod tests {
 
     /// Returns the exact motion at a constant ratio, by the matrix exponential.
     fn exact(back_emf: (f64, bool), ratio: f64, moment: f64, h: f64) -> Vec<f64> {
-        let (transition, push) =
+        let (transition, input) =
             CoupledMatrices::new(&body(), back_emf.0, back_emf.1, &[ratio; 4]).discrete(h);
-        (transition * nalgebra::DVector::from_row_slice(&STATE) + push * moment).as_slice().to_vec()
+        (transition * nalgebra::DVector::from_row_slice(&STATE) + input * moment).as_slice().to_vec()
     }
 
     fn split(
@@ -321,13 +329,13 @@ mod tests {
             let mut tangent = DMatrix::identity(order, order);
             model.propagate(0.3, 3e-5, &mut start.clone(), Some(&mut tangent));
             for column in 0..order {
-                let moved = |by: f64| {
+                let shifted = |by: f64| {
                     let mut state = start.clone();
                     state[column] += by;
                     model.propagate(0.3, 3e-5, &mut state, None);
                     state
                 };
-                let (above, below) = (moved(1e-4), moved(-1e-4));
+                let (above, below) = (shifted(1e-4), shifted(-1e-4));
                 for row in 0..order {
                     let slope = (above[row] - below[row]) / 2e-4;
                     assert!((tangent[(column, row)] - slope).abs() < 1e-9, "{ratios} {row} {column}");

@@ -25,8 +25,8 @@ pub struct SteadyStateFilter {
 impl KalmanFilter {
     /// Returns the filter's steady state, if it is linear and its gains settle.
     pub fn steady_state(&self) -> Option<SteadyStateFilter> {
-        let Prediction::Linear(transition, push) = &self.tuning().prediction else { return None };
-        let (order, tuning) = (push.len(), self.tuning());
+        let Prediction::Linear(transition, input) = &self.tuning().prediction else { return None };
+        let (order, tuning) = (input.len(), self.tuning());
         let noises: Vec<f64> = [Some(tuning.angle_noise), tuning.rate_noise].into_iter().flatten().collect();
         let mut covariance = DMatrix::from_diagonal(&tuning.spread.map(|sd| sd * sd));
         let mut before: Vec<DVector<f64>> = Vec::new();
@@ -36,13 +36,13 @@ impl KalmanFilter {
             covariance = transition * covariance * transition.transpose() + self.noise();
             let mut gains = Vec::with_capacity(noises.len());
             for (first, noise) in noises.iter().enumerate() {
-                let seen = (first..order)
+                let observable = (first..order)
                     .step_by(2)
                     .fold(DVector::zeros(order), |sum, place| sum + covariance.column(place));
                 let variance =
-                    (first..order).step_by(2).map(|place| seen[place]).sum::<f64>() + noise * noise;
-                let gain = &seen / variance;
-                covariance -= &gain * seen.transpose();
+                    (first..order).step_by(2).map(|place| observable[place]).sum::<f64>() + noise * noise;
+                let gain = &observable / variance;
+                covariance -= &gain * observable.transpose();
                 gains.push(gain);
             }
             covariance = (&covariance + covariance.transpose()) * 0.5;
@@ -61,7 +61,7 @@ impl KalmanFilter {
         let moves = before.iter().any(|gain| gain.amax() > 1e-9);
         (still > 100 && moves).then(|| SteadyStateFilter {
             transition: transition.row_iter().map(|row| row.iter().copied().collect()).collect(),
-            push: push.iter().copied().collect(),
+            push: input.iter().copied().collect(),
             gains: before.iter().map(|gain| gain.iter().copied().collect()).collect(),
         })
     }

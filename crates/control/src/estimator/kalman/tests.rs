@@ -33,7 +33,7 @@ fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> Kalman
 type Measured = fn(u32) -> f64;
 
 /// Returns moment (rad/s²) and angle (rad) of a synthetic run at a sample.
-fn course(sample: u32) -> (f64, f64) {
+fn reference_motion(sample: u32) -> (f64, f64) {
     let t = 0.3 * f64::from(sample);
     (3e-5 * libm::sin(0.1 * t), 0.06 * libm::exp(-0.02 * t) + 3e-3 * libm::sin(0.3 * t))
 }
@@ -53,7 +53,7 @@ fn extended_filter_of_known_ratios_is_the_linear_one() {
         let mut other = filter(&format!("{kind}\n{known}"), None);
         let mut linear = linear.clone();
         for sample in 0..200 {
-            let (moment, angle) = course(sample);
+            let (moment, angle) = reference_motion(sample);
             linear.predict(moment);
             other.predict(moment);
             let (a, b) = (linear.update(Some((angle, 0.0))), other.update(Some((angle, 0.0))));
@@ -76,12 +76,13 @@ fn unscented_and_extended_filter_agree_where_little_is_unknown() {
     let mut extended = filter(&format!("extended_kalman]\n{spec}"), Some(1e-6));
     let mut unscented = filter(&format!("unscented_kalman]\n{spec}"), Some(1e-6));
     for sample in 0..100 {
-        let (moment, _) = course(sample);
+        let (moment, _) = reference_motion(sample);
         extended.predict(moment);
         unscented.predict(moment);
         // Measurements are the filters' prediction plus a small innovation.
-        let seen = |first: usize| extended.mean().iter().take(10).skip(first).step_by(2).sum::<f64>();
-        let (angle, rate) = (seen(0) + 1e-6, seen(1) - 1e-7);
+        let elastic_angle =
+            |first: usize| extended.mean().iter().take(10).skip(first).step_by(2).sum::<f64>();
+        let (angle, rate) = (elastic_angle(0) + 1e-6, elastic_angle(1) - 1e-7);
         let (a, b) = (extended.update(Some((angle, rate))), unscented.update(Some((angle, rate))));
         assert!((a.innovation - b.innovation).abs() < 1e-10, "{sample}: {a:?} {b:?}");
     }
@@ -102,8 +103,8 @@ fn nonsense_is_never_passed_on() {
         ("huge", |_| 1e300),
         ("large", |sample| if sample % 2 == 0 { 1e6 } else { -1e6 }),
         ("stuck", |_| 0.06),
-        ("now and then", |sample| if sample % 7 == 0 { f64::NAN } else { course(sample).1 }),
-        ("jumps", |sample| if sample > 50 { 3.0 } else { course(sample).1 }),
+        ("now and then", |sample| if sample % 7 == 0 { f64::NAN } else { reference_motion(sample).1 }),
+        ("jumps", |sample| if sample > 50 { 3.0 } else { reference_motion(sample).1 }),
     ];
     for kind in [
         "kalman]",
@@ -116,7 +117,7 @@ fn nonsense_is_never_passed_on() {
             for (name, angle) in nonsense {
                 let mut filter = filter(kind, rate_noise);
                 for sample in 0..400 {
-                    filter.predict(if sample == 9 { f64::NAN } else { course(sample).0 });
+                    filter.predict(if sample == 9 { f64::NAN } else { reference_motion(sample).0 });
                     let reported = filter.update(Some((angle(sample), angle(sample + 1))));
                     assert!(reported.nis.is_none_or(f64::is_finite), "{kind} {name} {sample}");
                     let (state_estimate, mode) = (filter.dominant(), filter.mode());
@@ -146,14 +147,14 @@ fn nonsense_is_never_passed_on() {
 #[test]
 fn a_sensor_that_sticks_is_no_body_of_other_frequencies() {
     let cases: [(&str, Measured); 2] =
-        [("stuck", |_| 0.06), ("jumps", |sample| if sample > 50 { 3.0 } else { course(sample).1 })];
+        [("stuck", |_| 0.06), ("jumps", |sample| if sample > 50 { 3.0 } else { reference_motion(sample).1 })];
     for kind in ["extended_kalman]", "unscented_kalman]"] {
         for spec in ["", "ratios = 'each'", "ratio = 1.5"] {
             for (name, angle) in cases {
                 let lost = (0..40).filter(|seed| {
                     let mut filter = drawn(&format!("{kind}\n{spec}"), None, *seed);
                     for sample in 0..400 {
-                        filter.predict(course(sample).0);
+                        filter.predict(reference_motion(sample).0);
                         filter.update(Some((angle(sample), 0.0)));
                     }
                     filter.lock_lost()
@@ -176,13 +177,13 @@ fn a_body_is_followed_again_after_a_silence() {
             let mut truth = drawn("kalman]\nprior = 'true'", None, seed);
             let mut noise = Seed { scenario: seed, run: 0 }.stream("sensor");
             for sample in 0..400 {
-                let moment = course(sample).0;
+                let moment = reference_motion(sample).0;
                 truth.predict(moment);
                 filter.predict(moment);
                 let angle: f64 = truth.mean().iter().take(10).step_by(2).sum();
                 let silent = (100..160).contains(&sample);
                 filter.update((!silent).then(|| (angle + 1e-5 * noise.normal(), 0.0)));
-                if let Some(place) = [159, 260, 399].iter().position(|at| *at == sample) {
+                if let Some(place) = [159, 260, 399].iter().position(|known| *known == sample) {
                     lost[place] += u32::from(filter.lock_lost());
                 }
             }

@@ -94,9 +94,9 @@ impl Convergence {
     /// the given W2 (`elastic`).
     pub fn region(&self, kappa: f64, elastic: &[f64]) -> Vec<RegionEdge> {
         let [w1, _, w3] = self.weights;
-        let at =
+        let value_at =
             |&w2: &f64| RegionEdge { elastic: w2, next: Self { weights: [w1, w2, w3], ..*self }.edge(kappa) };
-        elastic.iter().map(at).collect()
+        elastic.iter().map(value_at).collect()
     }
 
     /// Returns the area of the region of convergence in the plane of W2 and W3 for `kappa`.

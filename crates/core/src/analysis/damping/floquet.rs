@@ -77,8 +77,8 @@ impl Convergence {
         }
         let (mut from, mut to) = (best.0 / ratio, best.0 * ratio);
         for _ in 0..40 {
-            let (left, right) = (from + (to - from) / 3.0, to - (to - from) / 3.0);
-            if radius(left) < radius(right) { to = right } else { from = left }
+            let (lower, upper) = (from + (to - from) / 3.0, to - (to - from) / 3.0);
+            if radius(lower) < radius(upper) { to = upper } else { from = lower }
         }
         let gain_best = 0.5 * (from + to);
         Some(GainMargin { gain_max: low, gain_best, spectral_radius: radius(gain_best) })

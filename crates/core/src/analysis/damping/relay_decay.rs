@@ -31,8 +31,8 @@ impl Decay {
     /// Returns the amplitude (rad/s) after `time` (s) with a threshold and without natural damping: sqrt(V² - g²) =
     /// sqrt(V0² - g²) - s t, at least g.
     pub fn amplitude_above(&self, start: f64, threshold: f64, time: f64) -> f64 {
-        let left = f64::sqrt((start - threshold) * (start + threshold)) - self.slope * time;
-        libm::hypot(left.max(0.0), threshold)
+        let remaining = f64::sqrt((start - threshold) * (start + threshold)) - self.slope * time;
+        libm::hypot(remaining.max(0.0), threshold)
     }
 
     /// Returns the time (s) in which the amplitude falls from `start` to a threshold, which may be 0; `None` if it does
@@ -57,11 +57,11 @@ impl Decay {
 
     /// Returns the integral of a function of V/g over the time in which the amplitude falls from `start` to a
     /// threshold.
-    fn integral(&self, start: f64, threshold: f64, of: impl Fn(f64) -> f64) -> f64 {
+    fn integral(&self, start: f64, threshold: f64, integrand: impl Fn(f64) -> f64) -> f64 {
         // With V = g cosh u the integrand is smooth at the threshold.
         let part = |_, u: f64| {
             let (tanh, cosh) = (libm::tanh(u), libm::cosh(u));
-            of(cosh) * threshold * tanh / (self.rate * threshold + self.slope * tanh / cosh)
+            integrand(cosh) * threshold * tanh / (self.rate * threshold + self.slope * tanh / cosh)
         };
         quadrature::integral(&[0.0, libm::acosh(start / threshold)], 0.5, part)
     }

@@ -84,13 +84,13 @@ impl ClosedLoop {
         let stacked = PackedMatrix::new(&[&rows, &power]);
         let mut state = self.start.as_slice().to_vec();
         let mut out = vec![0.0; stacked.rows()];
-        let mut left = count;
-        while left > 0 {
+        let mut active = count;
+        while active > 0 {
             stacked.apply(&state, &mut out);
-            let reported = left.min(BLOCK);
+            let reported = active.min(BLOCK);
             out[..reported].iter().for_each(|angle| report(*angle));
             state.copy_from_slice(&out[BLOCK..BLOCK + order]);
-            left -= reported;
+            active -= reported;
         }
     }
 }

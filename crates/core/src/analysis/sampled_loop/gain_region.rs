@@ -64,14 +64,14 @@ type GainInterval = (f64, f64, usize);
 /// Returns the admissible gains at one frequency (rad/s): the loop is stable, and its settling time is at most the
 /// limit (s).
 pub fn region(
-    of: &SampledLoop,
+    sampled_loop: &SampledLoop,
     frequency: f64,
     scaling: Scaling,
     gains: Gains,
     window: SettlingWindow,
     limit: f64,
 ) -> GainRegion {
-    let held = DiscretePlant::new(of, &of.ratios(frequency, scaling));
+    let held = DiscretePlant::new(sampled_loop, &sampled_loop.ratios(frequency, scaling));
     let (mut best, mut run): (Option<GainInterval>, Option<GainInterval>) = (None, None);
     for gain in gains.values() {
         run = does(&held.closed(gain), window, limit)
@@ -97,14 +97,14 @@ pub fn region(
 /// Returns the admissible gains at each of these frequencies (rad/s) in order, computed on the threads of the current
 /// rayon pool.
 pub fn regions(
-    of: &SampledLoop,
+    sampled_loop: &SampledLoop,
     frequencies: &[f64],
     scaling: Scaling,
     gains: Gains,
     window: SettlingWindow,
     limit: f64,
 ) -> Vec<GainRegion> {
-    frequencies.par_iter().map(|w| region(of, *w, scaling, gains, window, limit)).collect()
+    frequencies.par_iter().map(|w| region(sampled_loop, *w, scaling, gains, window, limit)).collect()
 }
 
 /// Returns the schedule of the midpoints: frequencies (rad/s) and gains, where there are any.

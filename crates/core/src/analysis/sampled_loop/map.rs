@@ -24,14 +24,14 @@ pub struct MapCell {
 /// within it the periods (s). Rows are computed on the threads of the current rayon pool. A delay of the loop scales
 /// with the period, so that a delay of one sample stays one.
 pub fn map(
-    of: &SampledLoop,
+    sampled_loop: &SampledLoop,
     frequencies: &[f64],
     periods: &[f64],
     scaling: Scaling,
     gain: impl Fn(f64) -> f64 + Sync,
     window: SettlingWindow,
 ) -> Vec<MapCell> {
-    evaluate(of, frequencies, periods, scaling, gain, |frequency_rad_s, period_s, closed| {
+    evaluate(sampled_loop, frequencies, periods, scaling, gain, |frequency_rad_s, period_s, closed| {
         let settling = closed.settle(window);
         MapCell {
             frequency_rad_s,

@@ -86,10 +86,10 @@ impl SampledLoop {
     /// Returns the ratios of the natural frequencies at which the dominant mode has the frequency `frequency` (rad/s).
     pub fn ratios(&self, frequency: f64, scaling: Scaling) -> Vec<f64> {
         let ratio = frequency / self.frequency();
-        let of = |index: usize| match scaling {
+        let scaled_mode = |index: usize| match scaling {
             Scaling::First if index != self.dominant => 1.0,
             Scaling::All | Scaling::First => ratio,
         };
-        (0..self.body.modes.len()).map(of).collect()
+        (0..self.body.modes.len()).map(scaled_mode).collect()
     }
 }

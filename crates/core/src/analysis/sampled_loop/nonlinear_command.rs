@@ -19,18 +19,18 @@ impl ClosedLoop {
         let added = PackedMatrix::new(&[&forced, &added[0], &added[1]]);
 
         let mut state = self.start.as_slice().to_vec();
-        let (mut angle, mut fed) = ((&self.angle * &self.start).x, (&self.feedback * &self.start).x);
+        let (mut angle, mut fed_back) = ((&self.angle * &self.start).x, (&self.feedback * &self.start).x);
         let (mut out, mut push) = (vec![0.0; stacked.rows()], vec![0.0; stacked.rows()]);
         added.apply(&[1.0], &mut push);
         for _ in 0..count {
             report(angle);
-            let command = shape.execute(-fed);
+            let command = shape.execute(-fed_back);
             stacked.apply(&state, &mut out);
             for (out, push) in out.iter_mut().zip(&push) {
                 *out += push * command;
             }
             state.copy_from_slice(&out[..order]);
-            (angle, fed) = (out[order], out[order + 1]);
+            (angle, fed_back) = (out[order], out[order + 1]);
         }
     }
 }

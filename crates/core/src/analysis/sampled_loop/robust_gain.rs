@@ -65,15 +65,15 @@ impl ModelUncertainty {
     }
 
     /// Returns the perturbed loops, the unperturbed one first.
-    fn loops(&self, of: &SampledLoop) -> Vec<SampledLoop> {
+    fn loops(&self, sampled_loop: &SampledLoop) -> Vec<SampledLoop> {
         let signs = |part: f64| if part > 0.0 { vec![-1.0, 1.0] } else { vec![0.0] };
         let delays = if self.delay > 0.0 { vec![0.0, self.delay] } else { vec![0.0] };
-        let mut loops = vec![of.clone()];
+        let mut loops = vec![sampled_loop.clone()];
         for delay in delays {
             for w in signs(self.frequency) {
                 for k in signs(self.modal_gain) {
                     for b in signs(self.authority) {
-                        loops.push(self.off(of, w, k, b, delay));
+                        loops.push(self.off(sampled_loop, w, k, b, delay));
                     }
                 }
             }
@@ -82,8 +82,8 @@ impl ModelUncertainty {
         loops
     }
 
-    fn off(&self, of: &SampledLoop, w: f64, k: f64, b: f64, delay: f64) -> SampledLoop {
-        let mut off = of.clone();
+    fn off(&self, sampled_loop: &SampledLoop, w: f64, k: f64, b: f64, delay: f64) -> SampledLoop {
+        let mut off = sampled_loop.clone();
         for mode in &mut off.body.modes {
             let changed = mode.frequency.get() * (1.0 + w * self.frequency);
             mode.frequency = Frequency::new(changed).unwrap_or(mode.frequency);
@@ -134,7 +134,7 @@ pub struct RobustSearch {
     /// Settling band and horizon.
     pub window: SettlingWindow,
     /// Uncertainty of the model.
-    pub doubt: ModelUncertainty,
+    pub uncertainty: ModelUncertainty,
     /// Quantity that is minimised.
     pub goal: RobustGoal,
     /// Quantile of the goal over the perturbed loops; 1 is the worst loop.
@@ -145,12 +145,13 @@ pub struct RobustSearch {
 
 /// Returns the best gain at each of these frequencies (rad/s) in order, computed on the threads of the current rayon
 /// pool.
-pub fn optimize(of: &SampledLoop, frequencies: &[f64], search: RobustSearch) -> Vec<RobustGain> {
-    let loops = search.doubt.loops(of);
+pub fn optimize(sampled_loop: &SampledLoop, frequencies: &[f64], search: RobustSearch) -> Vec<RobustGain> {
+    let loops = search.uncertainty.loops(sampled_loop);
     let gains = search.gains.values();
     let best = |frequency: &f64| {
-        let ratios = of.ratios(*frequency, search.scaling);
-        let held: Vec<DiscretePlant> = loops.iter().map(|of| DiscretePlant::new(of, &ratios)).collect();
+        let ratios = sampled_loop.ratios(*frequency, search.scaling);
+        let held: Vec<DiscretePlant> =
+            loops.iter().map(|sampled_loop| DiscretePlant::new(sampled_loop, &ratios)).collect();
         let key = |score: &GainScore| match search.goal {
             RobustGoal::Settling => (score.settling, score.itae),
             RobustGoal::Itae => (score.itae, score.settling),

@@ -57,7 +57,12 @@ impl ClosedLoop {
             index += 1;
         });
         let settled = outside.is_none_or(|last| last + 1 < count);
-        let at = |part: f64| settled.then(|| outside.map_or(0.0, |last| (last as f64 + part) * self.period));
-        Settling { time_s: at(0.0), crossing_s: at(entry), itae_rad_s2: weighted * self.period * self.period }
+        let time_at =
+            |part: f64| settled.then(|| outside.map_or(0.0, |last| (last as f64 + part) * self.period));
+        Settling {
+            time_s: time_at(0.0),
+            crossing_s: time_at(entry),
+            itae_rad_s2: weighted * self.period * self.period,
+        }
     }
 }

@@ -55,16 +55,16 @@ impl ClosedLoop {
         }
         let radius = modulus(value);
         let matrix = self.matrix();
-        let right = eigenvector(&matrix, value)?;
-        let left = eigenvector(&matrix.transpose(), value)?;
+        let right_vector = eigenvector(&matrix, value)?;
+        let left_vector = eigenvector(&matrix.transpose(), value)?;
         let dot = |a: &DVector<Complex<f64>>, b: &DVector<Complex<f64>>| {
             a.iter().zip(b.iter()).map(|(a, b)| a * b).sum::<Complex<f64>>()
         };
         let complex = |v: &[f64]| DVector::from_iterator(v.len(), v.iter().map(|v| Complex::new(*v, 0.0)));
-        let shown = dot(&complex(self.angle.as_slice()), &right);
-        let begun = dot(&left, &complex(self.start.as_slice()));
+        let shown = dot(&complex(self.angle.as_slice()), &right_vector);
+        let initial = dot(&left_vector, &complex(self.start.as_slice()));
         let pair = if value.im == 0.0 { 1.0 } else { 2.0 };
-        let amplitude = pair * modulus(shown * begun / dot(&left, &right));
+        let amplitude = pair * modulus(shown * initial / dot(&left_vector, &right_vector));
         let settling = if amplitude <= band {
             Some(0.0)
         } else {
@@ -86,8 +86,9 @@ fn modulus(value: Complex<f64>) -> f64 {
 /// Computes an eigenvector by inverse iteration, from a shift close to the eigenvalue.
 fn eigenvector(matrix: &DMatrix<f64>, value: Complex<f64>) -> Option<DVector<Complex<f64>>> {
     let order = matrix.nrows();
-    let beside = value * (1.0 + 1e-11);
-    let shifted = matrix.map(|m| Complex::new(m, 0.0)) - DMatrix::from_diagonal_element(order, order, beside);
+    let perturbed = value * (1.0 + 1e-11);
+    let shifted =
+        matrix.map(|m| Complex::new(m, 0.0)) - DMatrix::from_diagonal_element(order, order, perturbed);
     let factors = shifted.lu();
     let mut vector = DVector::from_fn(order, |i, _| Complex::new(1.0, 0.1 * i as f64));
     for _ in 0..4 {

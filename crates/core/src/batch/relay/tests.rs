@@ -25,7 +25,7 @@ fn shipped(name: &str, changes: &[(&str, String)]) -> Scenario {
 }
 
 /// Returns the metrics of a single run as text, with digits for all bits.
-fn alone(number: u64, scenario: &Scenario) -> String {
+fn single(number: u64, scenario: &Scenario) -> String {
     let run = CampaignRun { number, scenario: scenario.clone(), drawn: Vec::new() };
     Campaign::simulate(&run, ()).expect("a run").to_json().to_string()
 }
@@ -37,7 +37,7 @@ fn compare(scenarios: &[Scenario], least: usize) {
         .map(|(scenario, number)| BatchJob { number, scenario, selection: &Selection::ALL })
         .collect();
     assert!(scenarios.iter().all(|scenario| RelayBatch.accepts(scenario)));
-    let expected: Vec<String> = jobs.iter().map(|job| alone(job.number, job.scenario)).collect();
+    let expected: Vec<String> = jobs.iter().map(|job| single(job.number, job.scenario)).collect();
     for processor in Processor::all() {
         let found = RelayBatch.simulate(processor, &jobs);
         let whole = found.iter().flatten().count();
@@ -52,19 +52,19 @@ fn compare(scenarios: &[Scenario], least: usize) {
 
 #[test]
 fn runs_of_many_gains_come_to_the_same() {
-    let of = |index: u32| {
+    let variant = |index: u32| {
         let k_t = 0.28 + 0.12 * f64::from(index) / 40.0;
         shipped("relay-fixed", &[("law.relay.k_t", k_t.to_string())])
     };
-    let scenarios: Vec<Scenario> = (0..40).map(of).collect();
+    let scenarios: Vec<Scenario> = (0..40).map(variant).collect();
     compare(&scenarios, 40);
 }
 
 #[test]
 fn shipped_scenarios_and_others_come_to_the_same() {
     for name in ["relay-fixed", "relay-quiet", "relay-adaptive", "relay-no-freeze"] {
-        let of = |gain: &str| shipped(name, &[("law.relay.k_t", gain.to_owned())]);
-        compare(&["0.31", "0.3389", "0.35", "0.29", "0.33"].map(of), 5);
+        let shipped_with = |gain: &str| shipped(name, &[("law.relay.k_t", gain.to_owned())]);
+        compare(&["0.31", "0.3389", "0.35", "0.29", "0.33"].map(shipped_with), 5);
     }
     let text = |modes: &str, rest: &str| {
         let text = format!(
@@ -98,7 +98,7 @@ fn shipped_scenarios_and_others_come_to_the_same() {
 fn runs_of_damped_modes_come_to_the_same() {
     for name in ["relay-fixed", "relay-adaptive", "relay-no-freeze"] {
         for modes in ["{ frequency = 0.44, gain = 0.0213, damping = 0.01 }", FIVE] {
-            let of = |index: u32| {
+            let variant = |index: u32| {
                 let k_t = 0.28 + 0.12 * f64::from(index) / 19.0;
                 let modes = format!("[{modes}]");
                 let duration = "6000.0".to_owned();
@@ -111,7 +111,7 @@ fn runs_of_damped_modes_come_to_the_same() {
                     ],
                 )
             };
-            let scenarios: Vec<Scenario> = (0..19).map(of).collect();
+            let scenarios: Vec<Scenario> = (0..19).map(variant).collect();
             compare(&scenarios, 19);
         }
     }

@@ -30,11 +30,11 @@ pub fn process_samples<R: LaneFloat>(
     due: &[bool; 16],
     kind: R,
 ) {
-    let (mut takes, mut flags) = ([false; 16], [0.0; 16]);
+    let (mut has_sample, mut flags) = ([false; 16], [0.0; 16]);
     let (mut measured, mut moments) = ([0.0; 16], [0.0; 16]);
     let mut others = false;
     for (lane, run) in runs.iter_mut().enumerate() {
-        if !run.goes_on {
+        if !run.continues {
             continue;
         }
         if !(due[lane] && run.simulation.sample_is_due()) {
@@ -43,14 +43,14 @@ pub fn process_samples<R: LaneFloat>(
         }
         let angle = run.simulation.read_sample_ahead().ok().flatten();
         let moment = run.simulation.filter().and_then(|(_, moment)| moment);
-        if let Some(of) = angle.zip(moment).filter(|(_, moment)| moment.is_finite()) {
-            (measured[lane], moments[lane]) = of;
-            (takes[lane], flags[lane]) = (true, 1.0);
+        if let Some(sample) = angle.zip(moment).filter(|(_, moment)| moment.is_finite()) {
+            (measured[lane], moments[lane]) = sample;
+            (has_sample[lane], flags[lane]) = (true, 1.0);
         } else {
-            run.goes_on = false;
+            run.continues = false;
         }
     }
-    if !takes.contains(&true) {
+    if !has_sample.contains(&true) {
         return;
     }
     let before = others.then(|| filters.covariances());
@@ -58,33 +58,33 @@ pub fn process_samples<R: LaneFloat>(
     filters.load_means(&each);
     filters.predict(&each, kind.load(&moments));
     let predicted = filters.are_valid();
-    filters.store_means(&mut each, &takes);
+    filters.store_means(&mut each, &has_sample);
     let mut still = [0.0; 16];
     for (lane, filter) in each.iter().enumerate() {
-        still[lane] = f64::from(u8::from(takes[lane] && filter.is_below_gate()));
+        still[lane] = f64::from(u8::from(has_sample[lane] && filter.is_below_gate()));
     }
     let zero = kind.splat(0.0);
-    let [innovation, nis] = filters.update(kind.load(&measured), zero.lt(kind.load(&still)));
+    let [sample, nis] = filters.update(kind.load(&measured), zero.lt(kind.load(&still)));
     let sound = predicted & filters.are_valid() & zero.le(nis) & nis.le(kind.splat(KalmanFilter::FARTHEST));
-    filters.store_means(&mut each, &takes);
+    filters.store_means(&mut each, &has_sample);
     if let Some(before) = before {
         filters.restore(&before, zero.lt(kind.load(&flags)));
     }
     let sound = R::select(sound, kind.splat(1.0), zero);
     for (lane, filter) in each.iter_mut().enumerate() {
-        if takes[lane] && sound.lane(lane) > 0.0 {
-            filters.apply(lane, filter, still[lane] > 0.0, innovation.lane(lane), nis.lane(lane));
+        if has_sample[lane] && sound.lane(lane) > 0.0 {
+            filters.apply(lane, filter, still[lane] > 0.0, sample.lane(lane), nis.lane(lane));
         }
     }
     filters.load_means(&each);
     let mut truths = vec![[0.0; 16]; filters.count()];
     let mut judged = false;
     for (lane, run) in runs.iter_mut().enumerate() {
-        if !takes[lane] {
+        if !has_sample[lane] {
             continue;
         }
         if sound.lane(lane) == 0.0 {
-            run.goes_on = false;
+            run.continues = false;
         } else if gathers[lane].is_assessed(run.simulation.now().seconds()) {
             judged = true;
             for (truth, value) in truths.iter_mut().zip(run.simulation.true_state()) {
@@ -94,8 +94,8 @@ pub fn process_samples<R: LaneFloat>(
     }
     if judged {
         let mut truth = vec![zero; truths.len()];
-        for at in 0..truths.len() {
-            truth[at] = kind.load(&truths[at]);
+        for index in 0..truths.len() {
+            truth[index] = kind.load(&truths[index]);
         }
         let nees = filters.nees(&truth);
         for (lane, filter) in all(runs).into_iter().enumerate() {

@@ -43,7 +43,7 @@ struct LinearFlows<R> {
     from: Vec<R>,
     room: [Vec<R>; 2],
     /// Transitions over spans (s): the spans, the columns of the matrices, and the response to a unit moment.
-    kept: Vec<([f64; 16], Vec<R>, Vec<R>)>,
+    cached: Vec<([f64; 16], Vec<R>, Vec<R>)>,
 }
 
 impl<R: LaneFloat> LaneMotions<R> {
@@ -53,10 +53,10 @@ impl<R: LaneFloat> LaneMotions<R> {
         if runs.iter().any(|run| run.motion.start().len() != 2 * count) {
             return None;
         }
-        let beside = |of: &dyn Fn(&BatchedRun) -> f64| {
+        let gathered = |value_of: &dyn Fn(&BatchedRun) -> f64| {
             let mut each = [0.0; 16];
             for lane in 0..R::LANES {
-                each[lane] = of(&runs[lane.min(runs.len() - 1)]);
+                each[lane] = value_of(&runs[lane.min(runs.len() - 1)]);
             }
             kind.load(&each)
         };
@@ -69,8 +69,8 @@ impl<R: LaneFloat> LaneMotions<R> {
             if drifting.iter().any(|motion| motion.ratios() != ratios) {
                 return None;
             }
-            let alone = vec![vec![RatioSeries::new(0.0); ratios]; runs.len()];
-            LaneFlow::Drifting(springs, alone, vec![RatioSeries::new(kind); ratios])
+            let series = vec![vec![RatioSeries::new(0.0); ratios]; runs.len()];
+            LaneFlow::Drifting(springs, series, vec![RatioSeries::new(kind); ratios])
         } else if constant.len() == runs.len() {
             LaneFlow::Constant(Box::new(LinearFlows::new(kind, &constant)))
         } else {
@@ -78,7 +78,7 @@ impl<R: LaneFloat> LaneMotions<R> {
         };
         let mut series = vec![kind.splat(0.0); TERMS * count];
         for index in 0..2 * count {
-            series[index] = beside(&|run| run.motion.start()[index]);
+            series[index] = gathered(&|run| run.motion.start()[index]);
         }
         Some(Self { count, series, flow })
     }
@@ -92,16 +92,16 @@ impl<R: LaneFloat> LaneMotions<R> {
         }
         let moment = kind.load(&moments);
         match &mut self.flow {
-            LaneFlow::Drifting(springs, alone, beside) => {
-                for (run, ratios) in runs.iter().zip(alone.iter_mut()) {
+            LaneFlow::Drifting(springs, series, lane_series) => {
+                for (run, ratios) in runs.iter().zip(series.iter_mut()) {
                     if let Some(motion) = run.motion.drifting() {
-                        motion.expand_ratios(run.departed.seconds(), ratios);
+                        motion.expand_ratios(run.segment_start.seconds(), ratios);
                     }
                 }
-                for (index, ratio) in beside.iter_mut().enumerate() {
-                    ratio.set_lane(alone, index);
+                for (index, ratio) in lane_series.iter_mut().enumerate() {
+                    ratio.set_lane(series, index);
                 }
-                springs.expand(beside, moment, &mut self.series[..SERIES * self.count]);
+                springs.expand(lane_series, moment, &mut self.series[..SERIES * self.count]);
             }
             LaneFlow::Constant(flat) => flat.expand(moment, &mut self.series),
         }
@@ -118,8 +118,8 @@ impl<R: LaneFloat> LaneMotions<R> {
 
     /// Computes the angles of all coordinates, and their rates, `spans` (s) after the start of the segment.
     #[inline(always)]
-    pub fn evaluate(&mut self, spans: &[f64; 16], h: R, here: &mut [R]) {
-        let (angles, rates) = here.split_at_mut(self.count);
+    pub fn evaluate(&mut self, spans: &[f64; 16], h: R, states: &mut [R]) {
+        let (angles, rates) = states.split_at_mut(self.count);
         match &mut self.flow {
             LaneFlow::Drifting(springs, ..) => {
                 for index in 0..self.count {
@@ -135,28 +135,28 @@ impl<R: LaneFloat> LaneMotions<R> {
 impl<R: LaneFloat> LinearFlows<R> {
     fn new(kind: R, all: &[&TransitionFlow]) -> Self {
         let order = all[0].system().input.len();
-        let beside = |of: &dyn Fn(&TransitionFlow) -> f64| {
+        let gathered = |value_of: &dyn Fn(&TransitionFlow) -> f64| {
             let mut each = [0.0; 16];
             for lane in 0..R::LANES {
-                each[lane] = of(all[lane.min(all.len() - 1)]);
+                each[lane] = value_of(all[lane.min(all.len() - 1)]);
             }
             kind.load(&each)
         };
-        let entries = (0..order * order).map(|at| (at / order, at % order));
+        let entries = (0..order * order).map(|index| (index / order, index % order));
         let filled =
             |row: usize, column: usize| all.iter().any(|motion| motion.system().system[(row, column)] != 0.0);
         let columns = |row: usize| (0..order).filter(|column| filled(row, *column)).collect();
         let zero = kind.splat(0.0);
         Self {
             systems: all.iter().map(|motion| motion.system().clone()).collect(),
-            matrix: entries.map(|at| beside(&|motion| motion.system().system[at])).collect(),
+            matrix: entries.map(|index| gathered(&|motion| motion.system().system[index])).collect(),
             columns: (0..order).map(columns).collect(),
-            input: (0..order).map(|at| beside(&|motion| motion.system().input[at])).collect(),
-            reach: beside(&|motion| REACH / motion.fastest()),
+            input: (0..order).map(|index| gathered(&|motion| motion.system().input[index])).collect(),
+            reach: gathered(&|motion| REACH / motion.fastest()),
             moment: zero,
             from: vec![zero; order],
             room: [vec![zero; order], vec![zero; order]],
-            kept: Vec::with_capacity(KEPT),
+            cached: Vec::with_capacity(KEPT),
         }
     }
 
@@ -192,9 +192,9 @@ impl<R: LaneFloat> LinearFlows<R> {
     #[inline(always)]
     fn evaluate(&mut self, spans: &[f64; 16], angles: &mut [R], rates: &mut [R]) {
         let order = self.from.len();
-        let known = self.kept.iter().position(|(kept, ..)| kept == spans);
-        let at = known.unwrap_or_else(|| self.keep(spans));
-        let (_, transition, input) = &self.kept[at];
+        let known = self.cached.iter().position(|(stored, ..)| stored == spans);
+        let index = known.unwrap_or_else(|| self.keep(spans));
+        let (_, transition, input) = &self.cached[index];
         for row in 0..order {
             let mut sum = self.from[0] * transition[row];
             for column in 1..order {
@@ -217,35 +217,35 @@ impl<R: LaneFloat> LinearFlows<R> {
             // Bodies that differ only in their noise share one transition.
             let same =
                 (0..lane).find(|other| spans[*other] == spans[lane] && self.systems[*other] == *system);
-            let of = same.map_or_else(
+            let matrices = same.map_or_else(
                 || system.discrete(spans[lane]),
                 |other: usize| -> (_, _) {
                     let known: &(_, _) = &all[other];
                     known.clone()
                 },
             );
-            all.push(of);
+            all.push(matrices);
         }
         let kind = self.moment;
         let mut each = [0.0; 16];
         let mut transition = vec![kind; order * order];
-        for (at, entry) in transition.iter_mut().enumerate() {
+        for (index, entry) in transition.iter_mut().enumerate() {
             for (lane, (matrix, _)) in all.iter().enumerate() {
-                each[lane] = matrix.as_slice()[at];
+                each[lane] = matrix.as_slice()[index];
             }
             *entry = kind.load(&each);
         }
         let mut input = vec![kind; order];
-        for (at, entry) in input.iter_mut().enumerate() {
+        for (index, entry) in input.iter_mut().enumerate() {
             for (lane, (_, vector)) in all.iter().enumerate() {
-                each[lane] = vector[at];
+                each[lane] = vector[index];
             }
             *entry = kind.load(&each);
         }
-        if self.kept.len() == KEPT {
-            self.kept.remove(0);
+        if self.cached.len() == KEPT {
+            self.cached.remove(0);
         }
-        self.kept.push((*spans, transition, input));
-        self.kept.len() - 1
+        self.cached.push((*spans, transition, input));
+        self.cached.len() - 1
     }
 }

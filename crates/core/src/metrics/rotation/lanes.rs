@@ -78,10 +78,10 @@ impl<R: LaneFloat> LaneManoeuvreMetrics<R> {
         self.error = peak(&error, self.error, counts);
         let [plain, weighted] = error.integrals();
         let mut area = (length * (from * plain + length * weighted)).abs();
-        let of = [error.bounds().0, error.bounds().1, error.at(0.5), angle[0], from, length];
+        let inputs = [error.bounds().0, error.bounds().1, error.at(0.5), angle[0], from, length];
         let mut all = [[0.0; 16]; 6];
         for index in 0..6 {
-            of[index].store(&mut all[index]);
+            inputs[index].store(&mut all[index]);
         }
         for lane in 0..R::LANES {
             if !passed.counts[lane] {
@@ -129,13 +129,13 @@ impl<R: LaneFloat> LaneManoeuvreMetrics<R> {
 
 /// Returns the largest absolute values in the lanes that count, computed lane by lane where bounds do not decide.
 #[inline(always)]
-fn peak<R: LaneFloat>(of: &Polynomials<R>, floor: R, counts: R::Mask) -> R {
-    let (mut best, certain) = of.magnitude(floor);
+fn peak<R: LaneFloat>(polynomials: &Polynomials<R>, floor: R, counts: R::Mask) -> R {
+    let (mut best, certain) = polynomials.magnitude(floor);
     if !(certain | !counts).all() {
         let doubtful = R::select(certain | !counts, floor.splat(0.0), floor.splat(1.0));
         for lane in 0..R::LANES {
             if doubtful.lane(lane) > 0.0 {
-                best = best.with_lane(lane, of.lane(lane).magnitude(floor.lane(lane)));
+                best = best.with_lane(lane, polynomials.lane(lane).magnitude(floor.lane(lane)));
             }
         }
     }

@@ -186,7 +186,7 @@ impl Flow for OneAxisFlow {
         };
         Ok(trip.map(|trip| {
             let at = departed + trip.after;
-            (self.next_crossing.1, self.next_crossing.2) = (trip.sight, at);
+            (self.next_crossing.1, self.next_crossing.2) = (trip.observation, at);
             (at, trip.guard)
         }))
     }

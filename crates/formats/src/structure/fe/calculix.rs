@@ -24,7 +24,7 @@ enum At {
 /// # Errors
 /// The error, with its line.
 pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, String> {
-    let mut at = At::Elsewhere;
+    let mut section = At::Elsewhere;
     let mut natural: Vec<NaturalFrequency> = Vec::new();
     let mut factors = ParticipationTable::new("participation factors");
     let mut masses = ParticipationTable::new("effective modal masses");
@@ -32,21 +32,21 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
     let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
         if line.is_row() {
-            match at {
+            match section {
                 At::Eigenvalues => natural.push(eigenvalue(&line, natural.last())?),
-                At::Factors => factors.take(&line)?,
-                At::Masses => masses.take(&line)?,
+                At::Factors => factors.read_line(&line)?,
+                At::Masses => masses.read_line(&line)?,
                 At::TotalMass | At::Elsewhere => {}
             }
             continue;
         }
         let squeezed = line.squeezed();
-        at = match squeezed.as_str() {
+        section = match squeezed.as_str() {
             "EIGENVALUEOUTPUT" => At::Eigenvalues,
             "PARTICIPATIONFACTORS" => At::Factors,
             "EFFECTIVEMODALMASS" => At::Masses,
             "TOTALEFFECTIVEMASS" => At::TotalMass,
-            _ if at == At::TotalMass
+            _ if section == At::TotalMass
                 && squeezed.starts_with(|c: char| c.is_ascii_digit() || "+-.".contains(c)) =>
             {
                 mass = Some(total(&line)?);
@@ -55,7 +55,7 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
             _ if squeezed.is_empty()
                 || ["MODE", "REAL", "("].iter().any(|head| squeezed.starts_with(head)) =>
             {
-                at
+                section
             }
             _ => At::Elsewhere,
         };

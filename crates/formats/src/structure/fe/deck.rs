@@ -85,7 +85,7 @@ struct Reader {
     members: BTreeMap<String, Vec<Member>>,
     points: BTreeMap<usize, (usize, usize)>,
     /// Masses of sets, with the line of each.
-    given: Vec<(String, f64, usize)>,
+    set_masses: Vec<(String, f64, usize)>,
     /// How many members of sets were looked up.
     members_read: usize,
 }
@@ -101,7 +101,7 @@ enum Member {
 /// # Errors
 /// The error, with its line.
 pub fn read(text: impl BufRead) -> Result<Deck, String> {
-    let (mut reader, mut at) = (Reader::default(), At::Elsewhere);
+    let (mut reader, mut section) = (Reader::default(), At::Elsewhere);
     let mut lines = Lines::new(text);
     let mut keyword = String::new();
     while let Some(line) = lines.next()? {
@@ -113,13 +113,13 @@ pub fn read(text: impl BufRead) -> Result<Deck, String> {
         if text.starts_with('*') || keyword.ends_with(',') {
             keyword.push_str(&line.squeezed().to_ascii_uppercase());
             if !keyword.ends_with(',') {
-                at.is_whole(&line)?;
-                at = reader.open(&keyword, &line)?;
+                section.is_whole(&line)?;
+                section = reader.open(&keyword, &line)?;
                 keyword.clear();
             }
             continue;
         }
-        reader.take(&line, &mut at)?;
+        reader.read_line(&line, &mut section)?;
     }
     reader.finish()
 }
@@ -186,7 +186,7 @@ impl Reader {
         })
     }
 
-    fn take(&mut self, line: &TextLine, at: &mut At) -> Result<(), String> {
+    fn read_line(&mut self, line: &TextLine, section: &mut At) -> Result<(), String> {
         let number = line.number;
         let words: Vec<&str> = line.text.split(',').map(str::trim).filter(|word| !word.is_empty()).collect();
         let whole = |index: usize, name: &str| -> Result<usize, String> {
@@ -197,7 +197,7 @@ impl Reader {
             let word = words.get(index).copied().unwrap_or_default();
             real(word).ok_or_else(|| format!("line {number}: `{name}` must be a finite number, got `{word}`"))
         };
-        match at {
+        match section {
             At::Elsewhere => {}
             At::Nodes => {
                 let mut position = Vector3::zeros();
@@ -265,15 +265,15 @@ impl Reader {
                     return Err(format!("line {number}: must belong to a *MATERIAL"));
                 };
                 self.deck.densities.insert(name.clone(), density);
-                *at = At::Elsewhere;
+                *section = At::Elsewhere;
             }
             At::Mass { set } => {
                 let mass = number_at(0, "mass")?;
                 if mass <= 0.0 {
                     return Err(format!("line {number}: `mass` must be positive, got {mass}"));
                 }
-                self.given.push((set.clone(), mass, number));
-                *at = At::Elsewhere;
+                self.set_masses.push((set.clone(), mass, number));
+                *section = At::Elsewhere;
             }
         }
         Ok(())
@@ -282,11 +282,11 @@ impl Reader {
     /// Assigns the masses to the nodes of their elements.
     fn finish(mut self) -> Result<Deck, String> {
         let mut weighed: BTreeMap<usize, f64> = BTreeMap::new();
-        for (set, mass, line) in &self.given {
+        for (set, mass, line) in &self.set_masses {
             let mut open = vec![set.clone()];
-            let mut seen: BTreeSet<String> = BTreeSet::new();
+            let mut names: BTreeSet<String> = BTreeSet::new();
             while let Some(name) = open.pop() {
-                if !seen.insert(name.clone()) {
+                if !names.insert(name.clone()) {
                     continue;
                 }
                 let members = self

@@ -84,7 +84,7 @@ impl ElementKind {
             Self::Tetrahedron4 | Self::Tetrahedron10 => (&[[0.0, 0.0], [1.0, 0.0], [0.0, 1.0]], false),
         };
         let layer = |z: f64| ring.iter().map(move |[x, y]| [*x, *y, z]);
-        let edges = |z: f64| {
+        let corners = |z: f64| {
             let after = ring.iter().cycle().skip(1);
             ring.iter()
                 .zip(after)
@@ -92,10 +92,10 @@ impl ElementKind {
         };
         let mut nodes: Vec<[f64; 3]> = if prism {
             let upright = layer(-1.0).map(|[x, y, _]| [x, y, 0.0]);
-            layer(-1.0).chain(layer(1.0)).chain(edges(-1.0)).chain(upright).chain(edges(1.0)).collect()
+            layer(-1.0).chain(layer(1.0)).chain(corners(-1.0)).chain(upright).chain(corners(1.0)).collect()
         } else {
             let upright = ring.iter().map(|[x, y]| [x / 2.0, y / 2.0, 0.5]);
-            layer(0.0).chain([[0.0, 0.0, 1.0]]).chain(edges(0.0)).chain(upright).collect()
+            layer(0.0).chain([[0.0, 0.0, 1.0]]).chain(corners(0.0)).chain(upright).collect()
         };
         nodes.truncate(self.count());
         nodes
@@ -104,13 +104,13 @@ impl ElementKind {
     /// Returns the monomials of which the shape functions consist.
     fn monomials(self) -> Vec<[i32; 3]> {
         let all = (0..27).map(|index| [index % 3, index / 3 % 3, index / 9]);
-        let squares = |of: &[i32; 3]| of.iter().filter(|power| **power == 2).count();
-        let fits = |of: &[i32; 3]| {
-            let [x, y, z] = *of;
+        let squares = |powers: &[i32; 3]| powers.iter().filter(|power| **power == 2).count();
+        let fits = |powers: &[i32; 3]| {
+            let [x, y, z] = *powers;
             match self {
-                Self::Brick8 => squares(of) == 0,
+                Self::Brick8 => squares(powers) == 0,
                 // At most one square, in addition to the monomials of the corners.
-                Self::Brick20 => squares(of) <= 1,
+                Self::Brick20 => squares(powers) <= 1,
                 Self::Wedge6 => x + y <= 1 && z <= 1,
                 Self::Wedge15 => x + y <= 2 && z <= 1 || x + y <= 1,
                 Self::Tetrahedron4 => x + y + z <= 1,
@@ -149,7 +149,7 @@ impl ElementKind {
             Self::Wedge6 => line(2).iter().map(|z| ([1.0 / 3.0, 1.0 / 3.0, z.0], 0.5 * z.1)).collect(),
             Self::Wedge15 => {
                 let across = [[1.0 / 6.0; 2], [2.0 / 3.0, 1.0 / 6.0], [1.0 / 6.0, 2.0 / 3.0]];
-                let places = across.iter().flat_map(|at| line(3).iter().map(move |z| (at, z)));
+                let places = across.iter().flat_map(|base| line(3).iter().map(move |z| (base, z)));
                 places.map(|([x, y], z)| ([*x, *y, z.0], z.1 / 6.0)).collect()
             }
             Self::Tetrahedron4 => vec![([0.25; 3], 1.0 / 6.0)],
@@ -157,21 +157,21 @@ impl ElementKind {
             Self::Tetrahedron10 => {
                 let (near, far) = (0.138_196_601_125_010_5, 0.585_410_196_624_968_5);
                 [[near; 3], [far, near, near], [near, far, near], [near, near, far]]
-                    .map(|at| (at, 1.0 / 24.0))
+                    .map(|corner| (corner, 1.0 / 24.0))
                     .to_vec()
             }
         }
     }
 
     /// Returns the distance of natural coordinates from the element: 0 inside.
-    pub fn outside(self, at: &Vector3<f64>) -> f64 {
+    pub fn outside(self, point: &Vector3<f64>) -> f64 {
         let beyond = |excess: f64| excess.max(0.0);
         match self {
-            Self::Brick8 | Self::Brick20 => beyond(at.amax() - 1.0),
+            Self::Brick8 | Self::Brick20 => beyond(point.amax() - 1.0),
             Self::Wedge6 | Self::Wedge15 => {
-                beyond(-at.x).max(-at.y).max(at.x + at.y - 1.0).max(at.z.abs() - 1.0)
+                beyond(-point.x).max(-point.y).max(point.x + point.y - 1.0).max(point.z.abs() - 1.0)
             }
-            Self::Tetrahedron4 | Self::Tetrahedron10 => beyond(-at.min()).max(at.sum() - 1.0),
+            Self::Tetrahedron4 | Self::Tetrahedron10 => beyond(-point.min()).max(point.sum() - 1.0),
         }
     }
 }
@@ -213,20 +213,20 @@ impl ShapeFunctions {
     }
 }
 
-fn monomial(powers: [i32; 3], at: [f64; 3]) -> f64 {
+fn monomial(powers: [i32; 3], point: [f64; 3]) -> f64 {
     // Powers are 0, 1 or 2.
     let one = |power: i32, x: f64| [1.0, x, x * x][power.clamp(0, 2) as usize];
-    powers.iter().zip(at).map(|(power, x)| one(*power, x)).product()
+    powers.iter().zip(point).map(|(power, x)| one(*power, x)).product()
 }
 
 impl Values {
     /// Interpolates vectors given at the nodes.
     pub fn interpolate(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Vector3<f64> {
-        self.functions.iter().zip(nodes).map(|(function, at)| at * *function).sum()
+        self.functions.iter().zip(nodes).map(|(function, node)| node * *function).sum()
     }
 
     /// Returns the derivatives of vectors interpolated from the nodes: one column for each natural coordinate.
     pub fn slopes(&self, nodes: impl Iterator<Item = Vector3<f64>>) -> Matrix3<f64> {
-        self.derivatives.iter().zip(nodes).map(|(slope, at)| at * slope.transpose()).sum()
+        self.derivatives.iter().zip(nodes).map(|(slope, node)| node * slope.transpose()).sum()
     }
 }

@@ -79,13 +79,13 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
     };
     let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
-        reader.take(&line)?;
+        reader.read_line(&line)?;
     }
     reader.results(keep)
 }
 
 impl Reader {
-    fn take(&mut self, line: &TextLine) -> Result<(), String> {
+    fn read_line(&mut self, line: &TextLine) -> Result<(), String> {
         let text = &line.text;
         if text.contains("FATAL MESSAGE") || text.trim_start().starts_with("*ERROR") {
             let shown: String = text.trim().chars().take(80).collect();
@@ -107,9 +107,9 @@ impl Reader {
         if let Some(rest) = squeezed.strip_prefix("OUTPUTFOREIGENVECTOR") {
             self.eigenvector = rest.parse().ok();
             self.at = At::Elsewhere;
-        } else if let Some(at) = title(&squeezed) {
-            self.at = at;
-            match at {
+        } else if let Some(title) = title(&squeezed) {
+            self.at = title;
+            match title {
                 At::Eigenvalues => self.titled = Some(remark(&squeezed)),
                 At::Factors => self.mystran = text.contains("M O D A L"),
                 _ => {}
@@ -130,7 +130,7 @@ impl Reader {
             At::Factors => self.factors.take_with_cycles(line),
             At::Masses => self.masses.take_with_cycles(line),
             At::Reactions => match self.eigenvector {
-                Some(mode) => self.reactions.take(mode, line),
+                Some(mode) => self.reactions.read_line(mode, line),
                 None => Ok(()),
             },
             At::MassMatrix | At::Elsewhere => Ok(()),
@@ -156,12 +156,12 @@ impl Reader {
         fields.real(6)?;
         let natural = natural.checked(fields.real(2)?, fields.real(4)?)?;
         // The title on a further page does not begin a new table.
-        let goes_on = self.eigenvalues.last().is_some_and(|table| {
+        let is_continued = self.eigenvalues.last().is_some_and(|table| {
             let rises = table.rows.last().is_some_and(|last| last.mode < natural.mode);
             rises && self.titled.is_none_or(|remark| remark == table.remark)
         });
         let remark = self.titled.take().unwrap_or_default();
-        if !goes_on {
+        if !is_continued {
             self.eigenvalues.push(Eigenvalues { remark, rows: Vec::new() });
         }
         if let Some(table) = self.eigenvalues.last_mut() {

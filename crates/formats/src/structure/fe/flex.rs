@@ -39,7 +39,7 @@ struct Section {
     holds: SectionKind,
     /// Number of elements stated in the section.
     count: Option<usize>,
-    taken: usize,
+    read_count: usize,
     /// The indices of its elements.
     indices: BTreeSet<[usize; 3]>,
 }
@@ -82,7 +82,7 @@ pub fn read(text: impl BufRead, keep: Option<usize>) -> Result<FileResults, Stri
         complete: Vec::new(),
     };
     while let Some(line) = lines.next()? {
-        reader.take(&line)?;
+        reader.read_line(&line)?;
     }
     reader.close("at its end")?;
     reader.results(keep)
@@ -114,7 +114,7 @@ impl SectionKind {
 }
 
 impl Reader {
-    fn take(&mut self, line: &TextLine) -> Result<(), String> {
+    fn read_line(&mut self, line: &TextLine) -> Result<(), String> {
         let squeezed = line.squeezed();
         if squeezed.starts_with('*') || squeezed.starts_with("[EOF]") {
             self.close(&format!("before line {}", line.number))?;
@@ -122,7 +122,7 @@ impl Reader {
             self.section = SectionKind::from_heading(&squeezed).map(|holds| Section {
                 holds,
                 count: count(holds),
-                taken: 0,
+                read_count: 0,
                 indices: BTreeSet::new(),
             });
             return Ok(());
@@ -136,11 +136,11 @@ impl Reader {
             section.count = Some(line.fields(["number of elements"])?.whole(0)?);
             return Ok(());
         };
-        if section.taken == count {
+        if section.read_count == count {
             return Err(format!("line {}: must end after {count} elements", line.number));
         }
-        section.taken += 1;
-        let (holds, row) = (section.holds, section.taken - 1);
+        section.read_count += 1;
+        let (holds, row) = (section.holds, section.read_count - 1);
         self.element(&line, holds, row)
     }
 
@@ -193,10 +193,12 @@ impl Reader {
 
     /// Ends a section.
     fn close(&mut self, place: &str) -> Result<(), String> {
-        let Some(Section { holds, count, taken, .. }) = self.section.take() else { return Ok(()) };
-        let Some(count) = count.filter(|count| *count == taken) else {
+        let Some(Section { holds, count, read_count, .. }) = self.section.take() else { return Ok(()) };
+        let Some(count) = count.filter(|count| *count == read_count) else {
             let count = count.map_or_else(|| "a count".to_owned(), |count| format!("{count} elements"));
-            return Err(format!("must have {count} in its section {holds:?}, got {taken} elements {place}"));
+            return Err(format!(
+                "must have {count} in its section {holds:?}, got {read_count} elements {place}"
+            ));
         };
         if self.complete.contains(&holds) {
             return Err(format!("must have its section {holds:?} once, and another ends {place}"));
@@ -274,10 +276,10 @@ impl Reader {
             let n = |row: usize, column: usize| self.integrals[(mode, 6 + 3 * row + column)];
             let follows = [n(1, 2) - n(2, 1), n(2, 0) - n(0, 2), n(0, 1) - n(1, 0)];
             for (axis, follows) in follows.into_iter().enumerate() {
-                let given = self.integrals[(mode, 3 + axis)];
-                if knows_rotations && (given - follows).abs() > AGREEMENT * largest {
+                let value = self.integrals[(mode, 3 + axis)];
+                if knows_rotations && (value - follows).abs() > AGREEMENT * largest {
                     return Err(format!(
-                        "must have the same rotation of mode {mode} about axis {axis} in Hf, {given}, and from L, {follows}"
+                        "must have the same rotation of mode {mode} about axis {axis} in Hf, {value}, and from L, {follows}"
                     ));
                 }
                 integrals[(mode, 3 + axis)] = follows;

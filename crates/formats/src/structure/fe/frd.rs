@@ -81,23 +81,23 @@ struct Head {
 /// # Errors
 /// The error, with its line.
 pub fn read(text: impl BufRead) -> Result<Frd, String> {
-    let (mut frd, mut at, mut head, mut ended) = (Frd::default(), At::Elsewhere, Head::default(), false);
+    let (mut frd, mut section, mut head, mut ended) = (Frd::default(), At::Elsewhere, Head::default(), false);
     let mut lines = Lines::new(text);
     while let Some(line) = lines.next()? {
         let start = line.text.get(..line.text.len().min(6)).unwrap_or_default();
         match start.trim_end() {
-            " -3" => frd.begin(&mut at, At::Elsewhere, &line)?,
+            " -3" => frd.begin(&mut section, At::Elsewhere, &line)?,
             " 9999" => {
-                frd.begin(&mut at, At::Elsewhere, &line)?;
+                frd.begin(&mut section, At::Elsewhere, &line)?;
                 ended = true;
                 break;
             }
-            _ if start.starts_with(" -1") || start.starts_with(" -2") => frd.take(&line, &at)?,
+            _ if start.starts_with(" -1") || start.starts_with(" -2") => frd.read_line(&line, &section)?,
             _ if start.starts_with(" -4") => {
                 let name = line.text.get(5..13).or_else(|| line.text.get(5..)).unwrap_or_default().trim();
                 // The block before ends first: its mode has to be whole when another follows.
-                frd.begin(&mut at, At::Elsewhere, &line)?;
-                at = if name == "DISP" { frd.open(&line, &mut head)? } else { At::Elsewhere };
+                frd.begin(&mut section, At::Elsewhere, &line)?;
+                section = if name == "DISP" { frd.open(&line, &mut head)? } else { At::Elsewhere };
             }
             "    2C" | "    3C" => {
                 let form = line.text.split_whitespace().next_back().unwrap_or_default();
@@ -108,7 +108,7 @@ pub fn read(text: impl BufRead) -> Result<Frd, String> {
                     ));
                 }
                 let next = if start == "    2C" { At::Nodes } else { At::Elements };
-                frd.begin(&mut at, next, &line)?;
+                frd.begin(&mut section, next, &line)?;
             }
             "    1U" if line.text.starts_with("    1UMAT") => {
                 let name = line.text.get(14..).unwrap_or_default().trim().to_ascii_uppercase();
@@ -122,7 +122,7 @@ pub fn read(text: impl BufRead) -> Result<Frd, String> {
                     ));
                 }
             }
-            "    1P" => head.take(&line)?,
+            "    1P" => head.read_line(&line)?,
             "  100C" => head.cycles = Some((line.number, line.column(12..24, "frequency")?.real()?)),
             _ => {}
         }
@@ -140,7 +140,7 @@ pub fn read(text: impl BufRead) -> Result<Frd, String> {
 }
 
 impl Head {
-    fn take(&mut self, line: &TextLine) -> Result<(), String> {
+    fn read_line(&mut self, line: &TextLine) -> Result<(), String> {
         let words: Vec<&str> = line.text.split_whitespace().collect();
         let [name, value] = words[..] else { return Ok(()) };
         let number = line.number;
@@ -182,10 +182,10 @@ impl Frd {
     }
 
     /// Reads a row of a block.
-    fn take(&mut self, line: &TextLine, at: &At) -> Result<(), String> {
+    fn read_line(&mut self, line: &TextLine, section: &At) -> Result<(), String> {
         let second = line.text.starts_with(" -2");
         let number = line.number;
-        match at {
+        match section {
             At::Elsewhere => {}
             At::Nodes => {
                 let node = line.column(NODE, "node")?.whole()?;
@@ -259,9 +259,9 @@ impl Frd {
     }
 
     /// Ends the block that the lines before are of, which has to be whole, and begins another.
-    fn begin(&self, at: &mut At, next: At, line: &TextLine) -> Result<(), String> {
+    fn begin(&self, section: &mut At, next: At, line: &TextLine) -> Result<(), String> {
         let (needed, number) = (self.positions.len(), line.number);
-        match (&*at, self.shapes.last()) {
+        match (&*section, self.shapes.last()) {
             (At::Elements, _) => self.is_whole()?,
             (At::Displacements, Some(NodalMode { natural, displacements }))
                 if displacements.len() != needed =>
@@ -279,7 +279,7 @@ impl Frd {
         if next == At::Nodes && !(self.elements.is_empty() && self.shapes.is_empty()) {
             return Err(format!("line {number}: must have its nodes before elements and displacements"));
         }
-        *at = next;
+        *section = next;
         Ok(())
     }
 

@@ -38,8 +38,8 @@ pub fn modes(
         lowest(natural, [&ParticipationTable::new("factors"), &ParticipationTable::new("masses")], keep)?;
     let mut shapes = Vec::with_capacity(natural.len());
     for natural in &natural {
-        if let Some(at) = frd.shapes.iter().position(|shape| shape.natural.mode == natural.mode) {
-            shapes.push(frd.shapes.swap_remove(at).displacements);
+        if let Some(index) = frd.shapes.iter().position(|shape| shape.natural.mode == natural.mode) {
+            shapes.push(frd.shapes.swap_remove(index).displacements);
         }
     }
     let mut sums = Sums::new(frd.positions.len(), shapes.len());
@@ -91,7 +91,7 @@ impl Rules {
     fn points(&mut self, kind: ElementKind, rule: MassRule) -> &[(Values, f64)] {
         let functions = self.functions.entry(kind).or_insert_with(|| ShapeFunctions::for_kind(kind));
         self.points.entry((kind, rule)).or_insert_with(|| {
-            kind.points(rule).into_iter().map(|(at, weight)| (functions.at(at), weight)).collect()
+            kind.points(rule).into_iter().map(|(point, weight)| (functions.at(point), weight)).collect()
         })
     }
 }
@@ -183,8 +183,8 @@ impl Sums {
         shapes: &[Vec<Vector3<f64>>],
     ) -> Result<(), String> {
         if let Some(place) = frd.places.get(&point.node) {
-            let alone = Values { functions: vec![1.0], derivatives: Vec::new() };
-            self.add_mass(point.mass, &frd.positions[*place], &alone, &[*place], shapes);
+            let single_node = Values { functions: vec![1.0], derivatives: Vec::new() };
+            self.add_mass(point.mass, &frd.positions[*place], &single_node, &[*place], shapes);
             return Ok(());
         }
         let (line, node) = (point.line, point.node);
@@ -200,9 +200,9 @@ impl Sums {
             let Element { kind, nodes, .. } = &frd.elements[within.element];
             let functions = rules.functions(*kind);
             let across = within.across();
-            for at in &across {
+            for point in &across {
                 let mass = part / across.len() as f64;
-                self.add_mass(mass, &position, &functions.at(*at), nodes, shapes);
+                self.add_mass(mass, &position, &functions.at(*point), nodes, shapes);
             }
         }
         Ok(())
@@ -262,7 +262,7 @@ impl Within {
 
 impl Found {
     fn for_point(point: &StructurePoint, frd: &Frd, rules: &mut Rules) -> Result<Self, String> {
-        let at = Vector3::from(point.at);
+        let position = Vector3::from(point.at);
         let mut within = Vec::new();
         for (index, element) in frd.elements.iter().enumerate() {
             let (mut low, mut high) = (frd.positions[element.nodes[0]], frd.positions[element.nodes[0]]);
@@ -271,8 +271,8 @@ impl Found {
                 high = high.sup(&frd.positions[*node]);
             }
             let margin = INSIDE * (high - low).norm();
-            if (0..3).all(|axis| (low[axis] - margin..=high[axis] + margin).contains(&at[axis]))
-                && let Some(found) = locate(rules.functions(element.kind), (index, element), frd, &at)
+            if (0..3).all(|axis| (low[axis] - margin..=high[axis] + margin).contains(&position[axis]))
+                && let Some(found) = locate(rules.functions(element.kind), (index, element), frd, &position)
             {
                 within.push(found);
             }
@@ -288,11 +288,11 @@ impl Found {
     /// of an element: sections of a thin one turn as its nodes move, and along it shapes bend more than its functions
     /// can.
     fn shape(&self, frd: &Frd, shape: &[Vector3<f64>], scale: f64) -> [[f64; 3]; 2] {
-        let (mut moved, mut turned) = (Vector3::zeros(), Vector3::zeros());
+        let (mut displacement, mut rotation) = (Vector3::zeros(), Vector3::zeros());
         let part = scale / self.within.len() as f64;
         for Within { element, values, directions, .. } in &self.within {
             let nodes = || frd.elements[*element].nodes.iter().map(|node| shape[*node]);
-            moved += values.interpolate(nodes()) * part;
+            displacement += values.interpolate(nodes()) * part;
             let slopes = values.slopes(nodes());
             let (mut matrix, mut side) = (Matrix3::zeros(), Vector3::zeros());
             for axis in 0..3 {
@@ -301,9 +301,9 @@ impl Found {
                 matrix += (Matrix3::identity() * along.norm_squared() - along * along.transpose()) * weight;
                 side += along.cross(&slopes.column(axis)) * weight;
             }
-            turned += matrix.try_inverse().unwrap_or_else(Matrix3::zeros) * side * part;
+            rotation += matrix.try_inverse().unwrap_or_else(Matrix3::zeros) * side * part;
         }
-        [moved.into(), turned.into()]
+        [displacement.into(), rotation.into()]
     }
 }
 
@@ -312,14 +312,14 @@ fn locate(
     functions: &ShapeFunctions,
     (index, element): (usize, &Element),
     frd: &Frd,
-    at: &Vector3<f64>,
+    position: &Vector3<f64>,
 ) -> Option<Within> {
     let positions = || element.nodes.iter().map(|node| frd.positions[*node]);
     let mut natural = Vector3::zeros();
     for _ in 0..20 {
         let values = functions.at(natural.into());
         let directions = values.slopes(positions());
-        let step = directions.try_inverse()? * (at - values.interpolate(positions()));
+        let step = directions.try_inverse()? * (position - values.interpolate(positions()));
         if step.amax() < 1e-12 {
             let inside = functions.kind().outside(&natural) < INSIDE;
             return inside.then_some(Within { element: index, natural, values, directions });

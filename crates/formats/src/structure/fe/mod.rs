@@ -115,10 +115,10 @@ impl ResultFormat {
             Self::Flex => flex::read(text, keep),
             Self::Frd => {
                 // CalculiX gives results the name of their deck.
-                let beside = path.with_extension("inp");
-                let reported = |why: String| format!("the deck {}: {why}", beside.display());
+                let deck = path.with_extension("inp");
+                let reported = |why: String| format!("the deck {}: {why}", deck.display());
                 let deck =
-                    deck::read(open_text_up_to(&beside, LONGEST).map_err(reported)?).map_err(reported)?;
+                    deck::read(open_text_up_to(&deck, LONGEST).map_err(reported)?).map_err(reported)?;
                 integrals::modes(frd::read(text)?, &deck, keep, points)
             }
         }
@@ -197,12 +197,12 @@ fn lowest(
 }
 
 /// Returns the number of modes to keep of the modes of a file.
-fn kept(there: usize, keep: Option<usize>) -> Result<usize, String> {
+fn kept(available: usize, keep: Option<usize>) -> Result<usize, String> {
     match keep {
-        None if there > MOST_MODES => {
-            Err(format!("has {there} modes: `keep` must say how many, at most {MOST_MODES}"))
+        None if available > MOST_MODES => {
+            Err(format!("has {available} modes: `keep` must say how many, at most {MOST_MODES}"))
         }
-        Some(keep) if keep > there => Err(format!("has {there} modes, and `keep` asks for {keep}")),
-        keep => Ok(keep.unwrap_or(there)),
+        Some(keep) if keep > available => Err(format!("has {available} modes, and `keep` asks for {keep}")),
+        keep => Ok(keep.unwrap_or(available)),
     }
 }

@@ -24,7 +24,7 @@ impl Reactions {
     ///
     /// # Errors
     /// Fields that are not of this form.
-    pub fn take(&mut self, mode: usize, line: &TextLine) -> Result<(), String> {
+    pub fn read_line(&mut self, mode: usize, line: &TextLine) -> Result<(), String> {
         let fields = line.fields(["GRID", "COORD", "T1", "T2", "T3", "R1", "R2", "R3"])?;
         self.modes.entry(mode).or_default().push((fields.whole(0)?, fields.six(2)?));
         Ok(())

@@ -29,8 +29,8 @@ fn file(name: &str, points: &[StructurePoint]) -> FileResults {
     ResultFormat::from_path(&path).expect("a format").read(&path, None, points).expect("modes")
 }
 
-fn tip(at: [f64; 3]) -> StructurePoint {
-    StructurePoint { name: "tip".to_owned(), at }
+fn tip(position: [f64; 3]) -> StructurePoint {
+    StructurePoint { name: "tip".to_owned(), at: position }
 }
 
 #[test]
@@ -58,10 +58,10 @@ fn first_moments_follow_from_shapes_and_masses() {
 #[test]
 fn points_move_as_the_structure_at_their_place() {
     // The mean of the nodes of an end face is its centre, except for the warping of the face.
-    for (structure, at, moved, turned) in
+    for (structure, position, displacement, rotation) in
         [("boom", [3.05, 1.25, 2.1], 1e-3, 2e-3), ("beam", [4.0, 0.0, 0.0], 2e-5, 1e-4)]
     {
-        let results = file(&format!("{structure}.frd"), &[tip(at)]);
+        let results = file(&format!("{structure}.frd"), &[tip(position)]);
         let mut worst = [0.0_f64; 2];
         for (mode, row) in results.modes.iter().zip(rows("tips.csv", structure)) {
             for (half, error) in worst.iter_mut().enumerate() {
@@ -72,7 +72,7 @@ fn points_move_as_the_structure_at_their_place() {
                 }
             }
         }
-        assert!(worst[0] < moved && worst[1] < turned, "{structure}: {worst:?}");
+        assert!(worst[0] < displacement && worst[1] < rotation, "{structure}: {worst:?}");
     }
     // At the position of a node, a point has the displacement of that node.
     let results = file("panel.frd", &[tip([6.0, 0.0, 0.0])]);
@@ -169,11 +169,11 @@ fn errors_name_line_and_field() {
 fn sets_of_masses_may_be_written_anyhow() {
     let (frd, deck) = (text("boom.frd"), text("boom.inp"));
     let sound = read(&frd, &deck, &[]).expect("modes");
-    let ways = [
+    let variants = [
         ("*ELEMENT, TYPE=MASS, ELSET=TIP", "*Element,\n type = mass"),
         ("*MASS, ELSET=TIP", "*ELSET, ELSET=TIP, GENERATE\n16, 19, 1\n*mass, elset=tip"),
     ];
-    let generated = ways.iter().fold(deck.clone(), |deck, (from, to)| deck.replacen(from, to, 1));
+    let generated = variants.iter().fold(deck.clone(), |deck, (from, to)| deck.replacen(from, to, 1));
     assert_eq!(read(&frd, &generated, &[]).expect("modes"), sound);
     let within = deck.replacen("*MASS, ELSET=TIP", "*ELSET, ELSET=ALL\nTIP, 1\n*MASS, ELSET=ALL", 1);
     assert_eq!(read(&frd, &within, &[]).expect("modes"), sound);

@@ -51,7 +51,7 @@ impl ParticipationTable {
     ///
     /// # Errors
     /// Fields that are not of this form, and modes that begin again.
-    pub fn take(&mut self, line: &TextLine) -> Result<(), String> {
+    pub fn read_line(&mut self, line: &TextLine) -> Result<(), String> {
         let fields = line.fields([
             "MODE NO.",
             "X-COMPONENT",
@@ -160,7 +160,7 @@ pub fn modes_from_factors(
 pub fn modes_from_masses(
     natural: &[NaturalFrequency],
     masses: &ParticipationTable,
-    ask: &str,
+    request: &str,
 ) -> Result<Vec<FileMode>, String> {
     let largest = |rows: Range<usize>| {
         masses
@@ -183,7 +183,7 @@ pub fn modes_from_masses(
             if parts.iter().filter(|part| **part != 0.0).count() > 1 || parts.iter().any(|part| *part < 0.0) {
                 return Err(format!(
                     "line {}: must have participation factors beside effective masses, of which mode {} has several \
-                     and their signs are lost: {ask}",
+                     and their signs are lost: {request}",
                     row.line, natural.mode
                 ));
             }

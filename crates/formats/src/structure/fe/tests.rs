@@ -97,11 +97,11 @@ fn matrices_of_42_that_are_not_diagonal_are_solved() {
     let text = String::from_utf8(bytes("bars.flex")).expect("text");
     let rows = expected("bars");
     let a = [[1.0, 0.5, 0.0, 0.0], [0.0, 2.0, 0.0, 0.3], [0.2, 0.0, 1.0, 0.0], [0.0, 0.0, -0.4, 3.0]];
-    let through = |of: &dyn Fn(usize) -> f64, j: usize| (0..4).map(|i| of(i) * a[i][j]).sum::<f64>();
-    let matrix = |of: &dyn Fn(f64) -> f64| {
+    let through = |column: &dyn Fn(usize) -> f64, j: usize| (0..4).map(|i| column(i) * a[i][j]).sum::<f64>();
+    let matrix = |entry: &dyn Fn(f64) -> f64| {
         let mut text = "16\n".to_owned();
         for (i, j) in (0..16).map(|place| (place / 4, place % 4)) {
-            let element: f64 = (0..4).map(|k| a[k][i] * of(rows[k][0]) * a[k][j]).sum();
+            let element: f64 = (0..4).map(|k| a[k][i] * entry(rows[k][0]) * a[k][j]).sum();
             writeln!(text, "{i} {j} {element:e} ! [Row] [Col] Value").expect("written");
         }
         text

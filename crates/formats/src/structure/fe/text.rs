@@ -119,8 +119,8 @@ impl TextColumn<'_> {
         self.word.parse().map_err(|_| self.wrong("a whole number"))
     }
 
-    fn wrong(&self, what: &str) -> String {
-        format!("line {}: `{}` must be {what}, got `{}`", self.number, self.name, self.word)
+    fn wrong(&self, expected: &str) -> String {
+        format!("line {}: `{}` must be {expected}, got `{}`", self.number, self.name, self.word)
     }
 }
 
@@ -160,9 +160,9 @@ impl<const N: usize> Fields<'_, N> {
         Ok(six)
     }
 
-    fn wrong(&self, field: usize, what: &str) -> String {
+    fn wrong(&self, field: usize, expected: &str) -> String {
         let shown: String = self.words[field].chars().take(40).collect();
-        format!("line {}: `{}` must be {what}, got `{shown}`", self.number, self.names[field])
+        format!("line {}: `{}` must be {expected}, got `{shown}`", self.number, self.names[field])
     }
 }
 

@@ -92,18 +92,18 @@ impl Appendage {
     /// Returns the matrix that transforms vectors from the appendage's axes, at drive angle `angle` (rad), to the
     /// body's.
     pub(super) fn axes(&self, angle: f64) -> Matrix3<f64> {
-        let turned = self.turned.matrix();
-        self.drive.as_ref().map_or(turned, |drive| turned * drive.rotation(angle))
+        let orientation = self.turned.matrix();
+        self.drive.as_ref().map_or(orientation, |drive| orientation * drive.rotation(angle))
     }
 
     /// Returns the clamped modes: those of the table, or the single mode of the hinge.
     pub fn clamped_modes(&self) -> Cow<'_, [ClampedMode]> {
-        let hinged = self.hinge.as_ref().and_then(|hinge| hinge.mode(&self.swung()));
+        let hinged = self.hinge.as_ref().and_then(|hinge| hinge.mode(&self.hinged_body()));
         hinged.map_or(Cow::Borrowed(&self.modes), |mode| Cow::Owned(vec![mode]))
     }
 
     /// Returns the appendage as a rigid body on its hinge.
-    fn swung(&self) -> HingedBody<'_> {
+    fn hinged_body(&self) -> HingedBody<'_> {
         HingedBody {
             mass: self.mass.get(),
             centre: vector(&self.centre),
@@ -124,11 +124,11 @@ impl Appendage {
             ("plate", self.plate.is_some()),
             ("thermal", self.thermal.is_some()),
         ];
-        if let Some((key, _)) = others.into_iter().find(|(_, there)| *there) {
+        if let Some((key, _)) = others.into_iter().find(|(_, is_given)| *is_given) {
             let why = "must be left out: an appendage with a `hinge` is rigid, and swings on the hinge alone";
             return Err(ConfigError::new(key, why));
         }
-        hinge.check(&self.swung()).map_err(|fault| fault.within("hinge"))
+        hinge.check(&self.hinged_body()).map_err(|fault| fault.within("hinge"))
     }
 
     /// Returns the appendage as a panel of the integrator; its drive, if it has one, gets the index `drives`.
@@ -147,7 +147,7 @@ impl Appendage {
             inertia: tensor(&self.inertia),
             modes: self.clamped_modes().iter().map(mode).collect(),
             drive: self.drive.as_ref().map(|drive| (drive.axis(), drives)),
-            hinge: self.hinge.as_ref().map(|hinge| hinge.for_integrator(&self.swung())),
+            hinge: self.hinge.as_ref().map(|hinge| hinge.for_integrator(&self.hinged_body())),
         }
     }
 

@@ -62,12 +62,16 @@ impl AssembledSpacecraft {
         rotors: &[HubRotor],
     ) -> Result<Self, ConfigError> {
         validation::validate(spacecraft, appendages)?;
-        let turned: Vec<_> = appendages.iter().zip(angles).map(|(of, angle)| (of, of.axes(*angle))).collect();
-        let bodies = turned.iter().map(|(appendage, axes)| appendage.mass_properties(axes));
+        let oriented: Vec<_> = appendages
+            .iter()
+            .zip(angles)
+            .map(|(appendage, angle)| (appendage, appendage.axes(*angle)))
+            .collect();
+        let bodies = oriented.iter().map(|(appendage, axes)| appendage.mass_properties(axes));
         let bodies: Vec<_> = std::iter::once(spacecraft.mass_properties()).chain(bodies).collect();
         let whole = MassProperties::sum(&bodies);
         let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
-        let parts = parts(&turned, &whole.centre);
+        let parts = parts(&oriented, &whole.centre);
         for (index, appendage) in appendages.iter().enumerate() {
             let thermal = appendage.thermal.as_ref();
             if let Some(fault) = thermal.and_then(|thermal| thermal.fault(appendage.clamped_modes().len())) {
@@ -81,15 +85,15 @@ impl AssembledSpacecraft {
             translations: columns(&parts, |part| part.translation),
             rotations: columns(&parts, |part| antisymmetric_part(&part.moments)),
         };
-        let left = held.residual_inertia().unwrap_or_else(Matrix3::zeros);
-        validation::validate_hub_inertia(&left, &held.inertia)?;
+        let residual = held.residual_inertia().unwrap_or_else(Matrix3::zeros);
+        validation::validate_hub_inertia(&residual, &held.inertia)?;
         let unsolved =
             || ConfigError::new("spacecraft.inertia", "leaves the free modes without a mass matrix");
         let free = held.free_modes().ok_or_else(unsolved)?;
         let ratios: Vec<f64> = parts.iter().map(|part| part.damping).collect();
         let damping = FreeModeDamping::new(&free, &held.frequencies, &ratios);
         let hub_points = spacecraft.hub_points();
-        let places = places(&hub_points, &turned, parts.len());
+        let places = places(&hub_points, &oriented, parts.len());
         Ok(Self {
             spatial: Spatial {
                 inertia: rows(&held.inertia)?,
@@ -148,7 +152,7 @@ impl ClampedModeInBody {
 /// Returns the clamped modes about the total centre of mass, at a distance b from each root: N becomes C N C' + b (C
 /// t)'.
 fn parts(appendages: &[OrientedAppendage<'_>], centre: &Vector) -> Vec<ClampedModeInBody> {
-    let of = |(appendage, axes): &OrientedAppendage<'_>| -> Vec<ClampedModeInBody> {
+    let modes_of = |(appendage, axes): &OrientedAppendage<'_>| -> Vec<ClampedModeInBody> {
         let from_centre = vector(&appendage.at) - centre;
         let mode = |mode: &super::ClampedMode| {
             let translation = axes * appendage.translation(mode);
@@ -164,11 +168,11 @@ fn parts(appendages: &[OrientedAppendage<'_>], centre: &Vector) -> Vec<ClampedMo
         };
         appendage.clamped_modes().iter().map(mode).collect()
     };
-    appendages.iter().flat_map(of).collect()
+    appendages.iter().flat_map(modes_of).collect()
 }
 
-fn columns(parts: &[ClampedModeInBody], of: impl Fn(&ClampedModeInBody) -> Vector) -> Matrix3xX<f64> {
-    let columns: Vec<Vector> = parts.iter().map(of).collect();
+fn columns(parts: &[ClampedModeInBody], vector_of: impl Fn(&ClampedModeInBody) -> Vector) -> Matrix3xX<f64> {
+    let columns: Vec<Vector> = parts.iter().map(vector_of).collect();
     Matrix3xX::from_fn(columns.len(), |row, column| columns[column][row])
 }
 
@@ -190,8 +194,8 @@ fn places<'a>(
                 let shape = mode.shapes.get(&point.name).copied().unwrap_or_default();
                 shapes[first + index] = (axes * vector(&shape.translation), axes * vector(&shape.rotation));
             }
-            let at = vector(&appendage.at) + axes * vector(&point.position);
-            places.push(BodyPoint { point, at, shapes });
+            let position = vector(&appendage.at) + axes * vector(&point.position);
+            places.push(BodyPoint { point, at: position, shapes });
         }
         first += clamped.len();
     }
@@ -278,11 +282,11 @@ fn finite(value: f64) -> Result<Finite, ConfigError> {
     Finite::new(value).ok_or_else(out_of_range)
 }
 
-fn three(of: &Vector) -> Result<[Finite; 3], ConfigError> {
-    Ok([finite(of.x)?, finite(of.y)?, finite(of.z)?])
+fn three(vector: &Vector) -> Result<[Finite; 3], ConfigError> {
+    Ok([finite(vector.x)?, finite(vector.y)?, finite(vector.z)?])
 }
 
-fn rows(of: &Matrix3<f64>) -> Result<[[Finite; 3]; 3], ConfigError> {
-    let row = |row: usize| three(&of.row(row).transpose());
+fn rows(matrix: &Matrix3<f64>) -> Result<[[Finite; 3]; 3], ConfigError> {
+    let row = |row: usize| three(&matrix.row(row).transpose());
     Ok([row(0)?, row(1)?, row(2)?])
 }

@@ -100,19 +100,19 @@ impl AppendageDrive {
                 format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {}", self.angle.get());
             return Err(ConfigError::new("angle", why));
         }
-        let ways = [self.rate.is_some(), !self.table.is_empty(), self.track.is_some()];
-        if ways.iter().filter(|given| **given).count() != 1 {
+        let motions = [self.rate.is_some(), !self.table.is_empty(), self.track.is_some()];
+        if motions.iter().filter(|is_given| **is_given).count() != 1 {
             let why = "needs exactly one of `rate`, `table` and `track`";
             return Err(ConfigError::new("", why));
         }
-        let beside = [
+        let other_keys = [
             ("angle", self.angle.get() != 0.0, self.rate.is_some()),
             ("from", self.from.is_some(), self.rate.is_some()),
             ("until", self.until.is_some(), self.rate.is_some()),
             ("acceleration", self.acceleration.is_some(), self.track.is_none()),
             ("normal", self.normal.is_some(), self.track.is_some()),
         ];
-        if let Some((key, ..)) = beside.into_iter().find(|(_, given, fits)| *given && !fits) {
+        if let Some((key, ..)) = other_keys.into_iter().find(|(_, is_given, fits)| *is_given && !fits) {
             let with = match key {
                 "normal" => "`track`",
                 "acceleration" => "`rate` or `table`",

@@ -62,7 +62,9 @@ impl Appendage {
                 .read(others.map(|other| &other.modes))
                 .map_err(|why| ConfigError::new("modes", why));
         };
-        let keys = |of: &Self| (of.mass, of.keep, of.units, of.damping.clone(), of.points.clone());
+        let keys = |options: &Self| {
+            (options.mass, options.keep, options.units, options.damping.clone(), options.points.clone())
+        };
         if let Some(others) =
             others.filter(|others| others.modes.file() == Some(file) && keys(others) == keys(self))
         {
@@ -109,7 +111,7 @@ impl Appendage {
             ("keep", self.keep.is_some()),
             ("units", self.units.is_some()),
         ];
-        keys.iter().find(|(_, there)| *there).map_or(Ok(()), |(key, _)| {
+        keys.iter().find(|(_, is_given)| *is_given).map_or(Ok(()), |(key, _)| {
             let why = "must be left out: it applies to `modes` from a .f06, .frd, .dat or .flex file, and a table contains this itself";
             Err(ConfigError::new(*key, why))
         })
@@ -176,10 +178,10 @@ impl Appendage {
             let unit = root * units.length();
             clamped.moments = Some([three(x, unit)?, three(y, unit)?, three(z, unit)?]);
         }
-        for (point, [moved, turned]) in self.points.iter().zip(&mode.shapes) {
+        for (point, [moved, rotation]) in self.points.iter().zip(&mode.shapes) {
             let shape = Shape {
                 translation: three(*moved, 1.0 / root)?,
-                rotation: three(*turned, 1.0 / (root * units.length()))?,
+                rotation: three(*rotation, 1.0 / (root * units.length()))?,
             };
             clamped.shapes.insert(point.name.clone(), shape);
         }

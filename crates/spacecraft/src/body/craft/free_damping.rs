@@ -43,7 +43,7 @@ impl FreeModeDamping {
     }
 
     /// Returns the full matrix if the coupling is not small, or if `asked` requires it.
-    pub fn full_matrix(&self, asked: bool) -> Option<DMatrix<f64>> {
-        (asked || self.coupling > SMALL).then(|| self.matrix.clone())
+    pub fn full_matrix(&self, requested: bool) -> Option<DMatrix<f64>> {
+        (requested || self.coupling > SMALL).then(|| self.matrix.clone())
     }
 }

@@ -56,21 +56,21 @@ impl Hinge {
     }
 
     /// Returns the hinge in the integrator's form.
-    pub(super) fn for_integrator(&self, swung: &HingedBody<'_>) -> three_axis::HingeGeometry {
-        three_axis::HingeGeometry { about: self.axis(), inertia: swung.about(&self.axis()) }
+    pub(super) fn for_integrator(&self, body: &HingedBody<'_>) -> three_axis::HingeGeometry {
+        three_axis::HingeGeometry { about: self.axis(), inertia: body.inertia_about(&self.axis()) }
     }
 
     /// Returns the mode of the hinge, in which the appendage turns as a whole, by 1/sqrt(I) per unit; `None` if its
     /// frequency is out of range.
-    pub(super) fn mode(&self, swung: &HingedBody<'_>) -> Option<ClampedMode> {
-        let (axis, centre, own) = (self.axis(), swung.centre, &swung.inertia);
-        let inertia = swung.about(&axis);
+    pub(super) fn mode(&self, body: &HingedBody<'_>) -> Option<ClampedMode> {
+        let (axis, centre, own) = (self.axis(), body.centre, &body.inertia);
+        let inertia = body.inertia_about(&axis);
         let unit = f64::sqrt(inertia);
         let frequency = f64::sqrt(self.stiffness.get() / inertia);
         // Integral of r r' dm. That of r (a x r)' is its product with [a]'.
-        let second = 0.5 * own.trace() * Matrix3::identity() - own + swung.mass * centre * centre.transpose();
+        let second = 0.5 * own.trace() * Matrix3::identity() - own + body.mass * centre * centre.transpose();
         let moments = second * axis.cross_matrix().transpose() / unit;
-        let three = |v: Vector| [v.x, v.y, v.z].map(|of| Finite::new(of).unwrap_or_default());
+        let three = |v: Vector| [v.x, v.y, v.z].map(|component| Finite::new(component).unwrap_or_default());
         let shape = |position: &[Finite; 3]| Shape {
             translation: three(axis.cross(&vector(position)) / unit),
             rotation: three(axis / unit),
@@ -78,13 +78,13 @@ impl Hinge {
         Some(ClampedMode {
             frequency: Frequency::new(frequency)?,
             damping: NonNegative::new(0.5 * self.damping.get() / (inertia * frequency))?,
-            translation: three(axis.cross(&centre) * (swung.mass / unit)),
+            translation: three(axis.cross(&centre) * (body.mass / unit)),
             along: None,
             rotation: None,
             moments: Some([0, 1, 2].map(|row| three(moments.row(row).transpose()))),
             displacement: Finite::new(self.angle.get() * unit)?,
             rate: Finite::new(self.rate.get() * unit)?,
-            shapes: swung.points.iter().map(|point| (point.name.clone(), shape(&point.position))).collect(),
+            shapes: body.points.iter().map(|point| (point.name.clone(), shape(&point.position))).collect(),
         })
     }
 
@@ -92,7 +92,7 @@ impl Hinge {
     ///
     /// # Errors
     /// A key within the hinge, and the reason.
-    pub(super) fn check(&self, swung: &HingedBody<'_>) -> Result<(), ConfigError> {
+    pub(super) fn check(&self, body: &HingedBody<'_>) -> Result<(), ConfigError> {
         let length = vector(&self.about).norm();
         if !(1e-6..=1e6).contains(&length) {
             return Err(ConfigError::new(
@@ -105,8 +105,8 @@ impl Hinge {
             let why = format!("must be an angle of -{MOST_ANGLE} to {MOST_ANGLE} rad, got {angle}");
             return Err(ConfigError::new("angle", why));
         }
-        let inertia = swung.about(&self.axis());
-        let whole = 0.5 * swung.inertia.trace() + swung.mass * swung.centre.norm_squared();
+        let inertia = body.inertia_about(&self.axis());
+        let whole = 0.5 * body.inertia.trace() + body.mass * body.centre.norm_squared();
         if !(inertia > LEAST * whole && inertia.is_finite()) {
             let why = format!(
                 "must be an axis about which the appendage has inertia, got one of {inertia} kg m²: give it an `inertia`, or its \
@@ -114,7 +114,7 @@ impl Hinge {
             );
             return Err(ConfigError::new("about", why));
         }
-        if self.mode(swung).is_none() {
+        if self.mode(body).is_none() {
             let why = format!(
                 "must give a frequency of {} to {} rad/s, with an inertia of {inertia} kg m² about the hinge, got {}",
                 Frequency::SMALLEST,
@@ -129,7 +129,7 @@ impl Hinge {
 
 impl HingedBody<'_> {
     /// Returns the moment of inertia about an axis through the root (kg m²).
-    fn about(&self, axis: &Vector) -> f64 {
+    fn inertia_about(&self, axis: &Vector) -> f64 {
         axis.dot(&(self.inertia * axis)) + self.mass * axis.cross(&self.centre).norm_squared()
     }
 }

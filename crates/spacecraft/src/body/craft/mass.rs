@@ -19,14 +19,15 @@ impl MassProperties {
     pub fn sum(parts: &[Self]) -> Self {
         let mass: f64 = parts.iter().map(|part| part.mass).sum();
         let centre = parts.iter().map(|part| part.centre * part.mass).sum::<Vector>() / mass;
-        let about = |part: &Self| part.inertia + point_mass_inertia(part.mass, &(part.centre - centre));
-        let inertia: Matrix3<f64> = parts.iter().map(about).sum();
+        let inertia_about_centre =
+            |part: &Self| part.inertia + point_mass_inertia(part.mass, &(part.centre - centre));
+        let inertia: Matrix3<f64> = parts.iter().map(inertia_about_centre).sum();
         // Rotated tensors are symmetric only within rounding.
         Self { mass, centre, inertia: 0.5 * (inertia + inertia.transpose()) }
     }
 }
 
 /// Returns the inertia tensor of a point mass (kg) at a position (m).
-pub fn point_mass_inertia(mass: f64, at: &Vector) -> Matrix3<f64> {
-    mass * (Matrix3::identity() * at.norm_squared() - at * at.transpose())
+pub fn point_mass_inertia(mass: f64, position: &Vector) -> Matrix3<f64> {
+    mass * (Matrix3::identity() * position.norm_squared() - position * position.transpose())
 }

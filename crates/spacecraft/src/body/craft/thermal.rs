@@ -31,11 +31,11 @@ pub struct Bending {
 impl Thermal {
     /// Returns the key and the reason, if there is not one deflection for each mode.
     pub(super) fn fault(&self, modes: usize) -> Option<ConfigError> {
-        let given = self.deflection.len();
-        (given != modes).then(|| {
+        let count = self.deflection.len();
+        (count != modes).then(|| {
             ConfigError::new(
                 "thermal.deflection",
-                format!("must be one for each of {}, got {given}", counted(modes, "mode")),
+                format!("must be one for each of {}, got {count}", counted(modes, "mode")),
             )
         })
     }
@@ -53,11 +53,11 @@ pub(super) fn bendings(appendages: &[Appendage], frequencies: &[f64], shapes: &D
                 w * w * eta.get()
             };
             let held: Vec<f64> = thermal.deflection.iter().enumerate().map(force).collect();
-            let of_free = |column: usize| -> f64 {
+            let free_deflection = |column: usize| -> f64 {
                 held.iter().enumerate().map(|(index, force)| shapes[(first + index, column)] * force).sum()
             };
             bendings.push(Bending {
-                forces: (0..shapes.ncols()).map(of_free).collect(),
+                forces: (0..shapes.ncols()).map(free_deflection).collect(),
                 time_constant: thermal.time_constant.get(),
             });
         }

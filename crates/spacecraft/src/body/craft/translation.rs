@@ -12,7 +12,7 @@ pub struct Translation {
     /// Total mass (kg).
     mass: f64,
     /// Position of the point on the undeformed body, from the centre of mass (m).
-    at: Vector,
+    position: Vector,
     /// Displacement of the point per unit of each free mode, in the hub's axes (1/sqrt(kg)).
     shifts: Vec<Vector>,
 }
@@ -21,9 +21,9 @@ impl Translation {
     /// Creates the translation of a body of the given mass (kg), for its first point.
     pub fn new(body: &Spatial, mass: f64) -> Self {
         let first = body.points.first();
-        let at = first.map_or_else(Vector::zeros, |point| vector(&point.position));
+        let position = first.map_or_else(Vector::zeros, |point| vector(&point.position));
         let shifts = body.displacements(first.map_or("", |point| &point.name), &Vector::zeros());
-        Self { mass, at, shifts }
+        Self { mass, position, shifts }
     }
 
     /// Returns the acceleration of the centre of mass under a force (N), in m/s².
@@ -38,7 +38,7 @@ impl Translation {
         };
         let bent = || [sum(&view.displacements), sum(&view.rates)];
         let [moved, speed] = view.shift.unwrap_or_else(bent);
-        let arm = self.at + moved;
+        let arm = self.position + moved;
         let rate = view.rate.cross(&arm) + speed;
         let q = view.attitude;
         let inertial = |v: Vector| (q * Quaternion::from_imag(v) * q.conjugate()).vector().into_owned();

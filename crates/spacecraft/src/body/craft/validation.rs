@@ -132,8 +132,8 @@ fn distinct<'a>(points: &'a [NamedPoint], known: &mut Vec<&'a str>) -> Result<()
 
 fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), ConfigError> {
     if let (Some(rotation), Some(moments)) = (&mode.rotation, mode.moments()) {
-        let (given, follows) = (vector(rotation), antisymmetric_part(&moments));
-        if (given - follows).norm() > AGREEMENT * moments.norm() {
+        let (stated, follows) = (vector(rotation), antisymmetric_part(&moments));
+        if (stated - follows).norm() > AGREEMENT * moments.norm() {
             let follows: Vec<_> = follows.iter().map(|part| format!("{part:.6}")).collect();
             let why = format!("must be that of the first moments, [{}], or left out", follows.join(", "));
             return Err(ConfigError::new("rotation", why));
@@ -158,8 +158,8 @@ fn mode_itself(appendage: &Appendage, mode: &ClampedMode) -> Result<(), ConfigEr
             ));
         }
     }
-    let of_appendage = |name: &String| appendage.points.iter().any(|point| point.name == *name);
-    if let Some(name) = mode.shapes.keys().find(|name| !of_appendage(name)) {
+    let is_on_appendage = |name: &String| appendage.points.iter().any(|point| point.name == *name);
+    if let Some(name) = mode.shapes.keys().find(|name| !is_on_appendage(name)) {
         let key = format!("shapes.{}", bare_or_quoted(name));
         return Err(ConfigError::new(key, "must be at one of the appendage's `points`"));
     }
@@ -184,14 +184,14 @@ fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
         let scale = f64::sqrt(moment.max(rounded));
         if scale > 0.0 { scale } else { 1.0 }
     });
-    let mut left = Matrix6::identity();
+    let mut remaining = Matrix6::identity();
     for axis in 0..3 {
-        left[(3 + axis, 3 + axis)] = own.eigenvalues[axis].max(0.0) / (scales[axis] * scales[axis]);
+        remaining[(3 + axis, 3 + axis)] = own.eigenvalues[axis].max(0.0) / (scales[axis] * scales[axis]);
     }
     let clamped = appendage.clamped_modes();
     let modes = clamped.iter().zip(appendage.participations());
     for (index, (mode, (t, r))) in modes.enumerate() {
-        let at = |key: &str, why: String| Err(ConfigError::new(format!("modes[{index}]{key}"), why));
+        let error_at = |key: &str, why: String| Err(ConfigError::new(format!("modes[{index}]{key}"), why));
         let effective = t.norm_squared();
         if effective > mass * (1.0 + ROUNDING) {
             let hint = if effective > OTHER_UNITS * mass {
@@ -202,28 +202,28 @@ fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
             let why = format!(
                 "must carry no more than the appendage: its effective mass is {effective} kg, the appendage's mass {mass} kg{hint}"
             );
-            return at(".translation", why);
+            return error_at(".translation", why);
         }
         let carried = r.norm_squared();
-        let there = if carried > 0.0 { (r.transpose() * about_root * r).x / carried } else { 0.0 };
-        if carried > there * (1.0 + ROUNDING) {
-            let hint = if carried > OTHER_UNITS * there { ": is it in sqrt(kg) mm?" } else { "" };
+        let available = if carried > 0.0 { (r.transpose() * about_root * r).x / carried } else { 0.0 };
+        if carried > available * (1.0 + ROUNDING) {
+            let hint = if carried > OTHER_UNITS * available { ": is it in sqrt(kg) mm?" } else { "" };
             let key = if mode.moments.is_some() { ".moments" } else { ".rotation" };
             let why = format!(
                 "must carry no more than the appendage: its effective inertia about its axis is {carried} kg m², the \
-                 appendage's, about the root, {there} kg m²{hint}"
+                 appendage's, about the root, {available} kg m²{hint}"
             );
-            return at(key, why);
+            return error_at(key, why);
         }
         let about_centre: Vector = own.eigenvectors.tr_mul(&(r - centre.cross(&t)));
         let mut row = Vector6::zeros();
         row.fixed_rows_mut::<3>(0).copy_from(&(t / f64::sqrt(mass)));
         row.fixed_rows_mut::<3>(3).copy_from(&about_centre.component_div(&scales));
-        left -= row * row.transpose();
-        if !left.iter().all(|element| element.is_finite()) {
-            return at("", "must have numbers of a size that can be computed with".to_owned());
+        remaining -= row * row.transpose();
+        if !remaining.iter().all(|element| element.is_finite()) {
+            return error_at("", "must have numbers of a size that can be computed with".to_owned());
         }
-        let least = left.symmetric_eigenvalues().min();
+        let least = remaining.symmetric_eigenvalues().min();
         if least < -ROUNDING {
             let (with, before) = if index == 0 { ("", "") } else { ("with the modes before ", ", together") };
             let why = format!(
@@ -231,7 +231,7 @@ fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
                  of its root{before}; is one of `translation`, `rotation`, `centre` about another point, or in other units?",
                 1.0 - least
             );
-            return at("", why);
+            return error_at("", why);
         }
     }
     Ok(())
@@ -241,8 +241,8 @@ fn residual(appendage: &Appendage) -> Result<(), ConfigError> {
 ///
 /// # Errors
 /// The key of the hub's inertia, and the least moment left.
-pub fn validate_hub_inertia(left: &Matrix3<f64>, whole: &Matrix3<f64>) -> Result<(), ConfigError> {
-    let matrix = DMatrix::from_iterator(3, 3, left.iter().copied());
+pub fn validate_hub_inertia(residual: &Matrix3<f64>, whole: &Matrix3<f64>) -> Result<(), ConfigError> {
+    let matrix = DMatrix::from_iterator(3, 3, residual.iter().copied());
     let least = eigenvalues(&matrix).and_then(|values| values.first().copied()).unwrap_or(f64::NAN);
     if least > 1e-6 * whole.norm() {
         return Ok(());

@@ -96,20 +96,20 @@ impl Spatial {
 
     /// Returns the translation (1/sqrt(kg)) and rotation (rad/(m sqrt(kg))) of each mode at a point.
     pub fn shapes(&self, point: &str) -> Vec<(Vector, Vector)> {
-        let of = |mode: &ThreeAxisMode| {
+        let clamped_mode = |mode: &ThreeAxisMode| {
             let shape = mode.shapes.get(point).copied().unwrap_or_default();
             (vector(&shape.translation), vector(&shape.rotation))
         };
-        self.modes.iter().map(of).collect()
+        self.modes.iter().map(clamped_mode).collect()
     }
 
     /// Returns the displacement per unit of each mode of the place at an offset (m) from a point, in hub axes that turn
     /// with the first point (1/sqrt(kg)).
     pub fn displacements(&self, point: &str, offset: &Vector) -> Vec<Vector> {
         let first = self.points.first().map_or("", |point| &point.name);
-        let at = self.point(point).unwrap_or_default();
+        let position = self.point(point).unwrap_or_default();
         let shift = |((shift, rotation), (_, hub)): (&(Vector, Vector), &(Vector, Vector))| {
-            shift - hub.cross(&at) + (rotation - hub).cross(offset)
+            shift - hub.cross(&position) + (rotation - hub).cross(offset)
         };
         self.shapes(point).iter().zip(&self.shapes(first)).map(shift).collect()
     }

@@ -108,8 +108,8 @@ impl UncoupledSegment {
             phase.displacement = mode.equilibrium + mode.displacement;
             phase.quadrature = mode.quadrature;
         }
-        let [angle, rate, acceleration] = found.seen;
+        let [angle, rate, acceleration] = found.observation;
         let guard = usize::from(!found.first);
-        Some(Some(Crossing { after, guard, sight: AngleObservation { angle, rate, acceleration } }))
+        Some(Some(Crossing { after, guard, observation: AngleObservation { angle, rate, acceleration } }))
     }
 }

@@ -106,17 +106,18 @@ impl GradientObserver {
 
     /// Propagates one mode and its derivatives over a cycle.
     fn turn(&mut self, mode: usize, pulses: &[Pulse]) {
-        let of = self.oscillator(mode);
+        let oscillator = self.oscillator(mode);
         let (period, first) = (self.period, self.influences(mode));
-        let transition = of.transition(period);
-        let (mut phase, mut by_frequency) = of.propagate(&transition, period, self.motion.phases[mode]);
+        let transition = oscillator.transition(period);
+        let (mut phase, mut by_frequency) =
+            oscillator.propagate(&transition, period, self.motion.phases[mode]);
         for parameter in &mut self.parameters {
             let slope = &mut parameter.slope.phases[mode];
-            *slope = of.propagate(&transition, period, *slope).0;
+            *slope = oscillator.propagate(&transition, period, *slope).0;
         }
         for pulse in self.sound(pulses) {
             let (began, ended) = (period - pulse.start, period - pulse.start - pulse.duration);
-            let (push, slope) = of.pulse_response(began, ended);
+            let (push, slope) = oscillator.pulse_response(began, ended);
             let parameter = &mut self.parameters[first + pulse.input];
             for axis in 0..2 {
                 let pushed = push[axis] * pulse.acceleration;
@@ -180,18 +181,18 @@ impl AdaptiveObserver for GradientObserver {
     }
 
     fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
-        let of_mode = |(mode, phase): (usize, &ModeVector)| {
-            let (of, first) = (self.oscillator(mode), self.influences(mode));
-            let free = of.propagate(&of.transition(ahead), ahead, *phase).0[0];
+        let from_mode = |(mode, phase): (usize, &ModeVector)| {
+            let (oscillator, first) = (self.oscillator(mode), self.influences(mode));
+            let free = oscillator.propagate(&oscillator.transition(ahead), ahead, *phase).0[0];
             let pushed = self.sound(pulses).map(|pulse| {
                 let (began, ended) = (ahead - pulse.start, ahead - pulse.start - pulse.duration);
                 self.parameters[first + pulse.input].value
                     * pulse.acceleration
-                    * of.pulse_response(began, ended).0[0]
+                    * oscillator.pulse_response(began, ended).0[0]
             });
             free + pushed.sum::<f64>()
         };
-        self.motion.phases.iter().enumerate().map(of_mode).collect()
+        self.motion.phases.iter().enumerate().map(from_mode).collect()
     }
 
     fn rate(&self) -> f64 {

@@ -72,15 +72,15 @@ struct RecurrenceState {
     /// Excitation that multiplies the influence (rad/s).
     driven: f64,
     /// Correction that the weight W3 or W7 subtracts from the next prediction (rad/s).
-    taken: f64,
+    correction: f64,
     /// Mean square of the elastic rate ((rad/s)²).
     square: f64,
 }
 
 impl RecurrenceState {
     fn is_sound(&self) -> bool {
-        let Self { rate, elastic, elastic_before, push, push_before, driven, taken, square, .. } = self;
-        [rate, elastic, elastic_before, push, push_before, driven, taken, square]
+        let Self { rate, elastic, elastic_before, push, push_before, driven, correction, square, .. } = self;
+        [rate, elastic, elastic_before, push, push_before, driven, correction, square]
             .into_iter()
             .all(|n| n.abs() < HUGE)
     }
@@ -134,7 +134,7 @@ impl AdaptiveObserver for RecurrenceObserver {
     fn update(&mut self, measured: f64) {
         let innovation = measured - self.motion.rate - self.motion.elastic;
         if innovation.is_nan() || innovation.abs() > FARTHEST {
-            self.motion.taken = 0.0;
+            self.motion.correction = 0.0;
             self.residual.update(None, self.motion.elastic);
             return;
         }
@@ -142,7 +142,7 @@ impl AdaptiveObserver for RecurrenceObserver {
         let weights = if active { self.spec.active } else { self.spec.coast };
         self.motion.rate += weights.rigid.get() * innovation;
         self.motion.elastic += weights.elastic.get() * innovation;
-        self.motion.taken = weights.next.get() * innovation;
+        self.motion.correction = weights.next.get() * innovation;
         self.motion.square += WEIGHT * (self.motion.elastic * self.motion.elastic - self.motion.square);
         self.learn(innovation, active);
         self.stay_finite();
@@ -157,7 +157,7 @@ impl AdaptiveObserver for RecurrenceObserver {
         motion.rate += next;
         motion.elastic = self.turn * elastic - self.shrink * self.shrink * elastic_before
             + self.influence * driven
-            - motion.taken;
+            - motion.correction;
         motion.elastic_before = elastic;
         (motion.push_before, motion.push, motion.driven) = (push, next, driven);
         motion.push_largest = motion.push_largest.max(next.abs());
@@ -165,11 +165,11 @@ impl AdaptiveObserver for RecurrenceObserver {
     }
 
     fn predict(&self, ahead: f64, pulses: &[Pulse]) -> Vec<f64> {
-        let of = self.oscillator();
-        let free = of.propagate(&of.transition(ahead), ahead, self.phase()).0[0];
+        let oscillator = self.oscillator();
+        let free = oscillator.propagate(&oscillator.transition(ahead), ahead, self.phase()).0[0];
         let pushed = Self::sound(pulses).map(|pulse| {
             let (began, ended) = (ahead - pulse.start, ahead - pulse.start - pulse.duration);
-            self.influence * pulse.acceleration * of.pulse_response(began, ended).0[0]
+            self.influence * pulse.acceleration * oscillator.pulse_response(began, ended).0[0]
         });
         vec![free + pushed.sum::<f64>()]
     }

@@ -9,11 +9,11 @@ use super::{FARTHEST, FilterLanes, Innovation, KalmanFilter};
 #[derive(Copy, Clone, Debug, Default)]
 pub struct LaneStep {
     /// Innovation of the sample; `None` if the batch did not process it.
-    told: Option<Innovation>,
+    innovation: Option<Innovation>,
     /// Normalised squared error of the estimate, if it is assessed.
     nees: f64,
     /// True if the filter runs in a batch.
-    pub lent: bool,
+    pub in_lanes: bool,
 }
 
 impl<R: LaneFloat> FilterLanes<R> {
@@ -25,13 +25,13 @@ impl<R: LaneFloat> FilterLanes<R> {
     /// Completes the update of the filter in `lane` with its innovation and its NIS.
     pub fn apply(&mut self, lane: usize, filter: &mut KalmanFilter, gated: bool, innovation: f64, nis: f64) {
         filter.before.0.copy_from(&filter.mean);
-        let (told, rests) = filter.settle(gated, innovation, Some(nis));
-        filter.beside.told = Some(told);
+        let (innovation, rests) = filter.settle(gated, innovation, Some(nis));
+        filter.lane_step.innovation = Some(innovation);
         if rests {
             for rate in (self.motion + 1..self.order).step_by(2) {
-                let (at, mean) = (rate * self.order + rate, filter.before.0[rate]);
-                let more = self.covariance[at].lane(lane) + mean * mean;
-                self.covariance[at] = self.covariance[at].with_lane(lane, more);
+                let (index, mean) = (rate * self.order + rate, filter.before.0[rate]);
+                let more = self.covariance[index].lane(lane) + mean * mean;
+                self.covariance[index] = self.covariance[index].with_lane(lane, more);
             }
         }
     }
@@ -58,9 +58,9 @@ impl<R: LaneFloat> FilterLanes<R> {
             }
         }
         let (error, b) = self.tangent[..2 * order].split_at_mut(order);
-        for at in 0..order {
-            error[at] = truth[at] - self.mean[at];
-            b[at] = error[at];
+        for index in 0..order {
+            error[index] = truth[index] - self.mean[index];
+            b[index] = error[index];
         }
         for i in 0..order {
             let coefficient = b[i] / root[i * order + i];
@@ -88,21 +88,21 @@ impl KalmanFilter {
 
     /// Returns true if the filter runs in a batch.
     pub fn is_in_lanes(&self) -> bool {
-        self.beside.lent
+        self.lane_step.in_lanes
     }
 
     /// Moves out the innovation of the sample that the batch processed for this filter.
     pub fn lane_innovation(&mut self) -> Option<Innovation> {
-        self.beside.told.take()
+        self.lane_step.innovation.take()
     }
 
     /// Sets the normalised squared error that the batch computed, limited to `FARTHEST`.
     pub fn set_lane_error(&mut self, nees: f64) {
-        self.beside.nees = if nees <= Self::FARTHEST { nees } else { Self::FARTHEST };
+        self.lane_step.nees = if nees <= Self::FARTHEST { nees } else { Self::FARTHEST };
     }
 
     /// Returns the normalised squared error set by `set_lane_error`.
     pub fn lane_nees(&self) -> f64 {
-        self.beside.nees
+        self.lane_step.nees
     }
 }

@@ -54,15 +54,15 @@ impl<R: LaneFloat> FilterLanes<R> {
             return None;
         }
         let (order, modes) = (model.order(), model.modes.len());
-        let beside = |of: &dyn Fn(&KalmanFilter) -> f64| {
+        let gathered = |value_of: &dyn Fn(&KalmanFilter) -> f64| {
             let mut each = [0.0; 16];
             for lane in 0..R::LANES {
-                each[lane] = of(&*filters[lane.min(filters.len() - 1)]);
+                each[lane] = value_of(&*filters[lane.min(filters.len() - 1)]);
             }
             kind.load(&each)
         };
-        let list = |count: usize, of: &dyn Fn(&KalmanFilter, usize) -> f64| -> Vec<R> {
-            (0..count).map(|at| beside(&|filter| of(filter, at))).collect()
+        let list = |count: usize, value_of: &dyn Fn(&KalmanFilter, usize) -> f64| -> Vec<R> {
+            (0..count).map(|index| gathered(&|filter| value_of(filter, index))).collect()
         };
         let step = first.period / f64::from(model.substeps);
         let zero = kind.splat(0.0);
@@ -72,23 +72,23 @@ impl<R: LaneFloat> FilterLanes<R> {
             period: first.period,
             substeps: model.substeps,
             bounds: model.bounds,
-            mean: list(order, &|filter, at| filter.mean[at]),
-            covariance: list(order * order, &|filter, at| filter.covariance.as_slice()[at]),
-            noise: list(order * order, &|filter, at| filter.noise.as_slice()[at]),
+            mean: list(order, &|filter, index| filter.mean[index]),
+            covariance: list(order * order, &|filter, index| filter.covariance.as_slice()[index]),
+            noise: list(order * order, &|filter, index| filter.noise.as_slice()[index]),
             tangent: vec![zero; order * order],
             room: vec![zero; order * order],
-            frequency: list(modes, &|filter, at| filter.tuning.model.modes[at].frequency),
-            gain: list(modes, &|filter, at| filter.tuning.model.modes[at].gain),
-            drag: list(modes, &|filter, at| filter.tuning.model.modes[at].drag),
+            frequency: list(modes, &|filter, index| filter.tuning.model.modes[index].frequency),
+            gain: list(modes, &|filter, index| filter.tuning.model.modes[index].gain),
+            drag: list(modes, &|filter, index| filter.tuning.model.modes[index].drag),
             ratio: (0..modes).map(|mode| model.ratio_of(mode)).collect(),
             brake: (model.back_emf.0 > 0.0).then(|| {
-                (beside(&|filter| filter.tuning.model.back_emf_fraction(step)), model.set_back_emf_modes())
+                (gathered(&|filter| filter.tuning.model.back_emf_fraction(step)), model.set_back_emf_modes())
             }),
-            angle_noise: beside(&|filter| filter.tuning.angle_noise),
+            angle_noise: gathered(&|filter| filter.tuning.angle_noise),
             turns: vec![[zero; 4]; modes],
         };
         for filter in filters {
-            filter.beside.lent = true;
+            filter.lane_step.in_lanes = true;
         }
         Some(all)
     }
@@ -98,28 +98,28 @@ impl<R: LaneFloat> FilterLanes<R> {
     pub fn predict(&mut self, filters: &[&mut KalmanFilter], moment: R) {
         let order = self.order;
         let zero = moment.splat(0.0);
-        for at in 0..order * order {
-            self.tangent[at] = zero;
+        for index in 0..order * order {
+            self.tangent[index] = zero;
         }
-        for at in 0..order {
-            self.tangent[at * order + at] = zero.splat(1.0);
+        for index in 0..order {
+            self.tangent[index * order + index] = zero.splat(1.0);
         }
         let step = self.period / f64::from(self.substeps);
         for substep in 0..self.substeps {
             let middle = (f64::from(substep) + 0.5) * step;
-            if let Some((part, felt)) = self.brake {
+            if let Some((part, mode_count)) = self.brake {
                 self.turn(filters, 0.5 * step, middle);
                 self.coast(0.5 * step, middle, moment);
-                self.brake(part, felt);
+                self.brake(part, mode_count);
                 self.coast(0.5 * step, middle, moment);
             } else {
                 self.turn(filters, step, middle);
                 self.coast(step, middle, moment);
             }
         }
-        for at in (self.motion..order).step_by(2) {
-            self.mean[at] = self.mean[at] + self.mean[at + 1] * self.period;
-            self.add_column(at, at + 1, zero.splat(self.period));
+        for index in (self.motion..order).step_by(2) {
+            self.mean[index] = self.mean[index] + self.mean[index + 1] * self.period;
+            self.add_column(index, index + 1, zero.splat(self.period));
         }
         self.carry();
         let mut gated = [0.0; 16];
@@ -127,10 +127,10 @@ impl<R: LaneFloat> FilterLanes<R> {
             gated[lane] = f64::from(u8::from(filter.gated));
         }
         let gated = zero.lt(zero.load(&gated));
-        for at in self.motion..order {
-            let at = at * order + at;
-            let without = self.covariance[at] - self.noise[at];
-            self.covariance[at] = R::select(gated, without, self.covariance[at]);
+        for index in self.motion..order {
+            let diagonal = index * order + index;
+            let without = self.covariance[diagonal] - self.noise[diagonal];
+            self.covariance[diagonal] = R::select(gated, without, self.covariance[diagonal]);
         }
     }
 
@@ -176,8 +176,8 @@ impl<R: LaneFloat> FilterLanes<R> {
     #[inline(always)]
     fn ratio_at(&self, mode: usize, middle: f64) -> R {
         let one = self.angle_noise.splat(1.0);
-        let Some(at) = self.ratio[mode] else { return one };
-        let ratio = self.mean[at] + self.mean[at + 1] * middle;
+        let Some(index) = self.ratio[mode] else { return one };
+        let ratio = self.mean[index] + self.mean[index + 1] * middle;
         let [low, high] = self.bounds;
         ratio.max(one.splat(low)).min(one.splat(high))
     }
@@ -197,32 +197,34 @@ impl<R: LaneFloat> FilterLanes<R> {
             let centre = self.gain[mode] * moment / (w * w);
             let one = moment.splat(1.0);
             let shift = [centre * (one - a), -centre * c];
-            let (was, went) = (self.mean[x], self.mean[v]);
-            self.mean[x] = a * was + b * went + shift[0];
-            self.mean[v] = c * was + d * went + shift[1];
+            let (displacement, velocity) = (self.mean[x], self.mean[v]);
+            self.mean[x] = a * displacement + b * velocity + shift[0];
+            self.mean[v] = c * displacement + d * velocity + shift[1];
             for row in 0..order {
-                let (left, right) = (self.tangent[x * order + row], self.tangent[v * order + row]);
-                self.tangent[x * order + row] = a * left + b * right;
-                self.tangent[v * order + row] = c * left + d * right;
+                let (displacement_entry, velocity_entry) =
+                    (self.tangent[x * order + row], self.tangent[v * order + row]);
+                self.tangent[x * order + row] = a * displacement_entry + b * velocity_entry;
+                self.tangent[v * order + row] = c * displacement_entry + d * velocity_entry;
             }
-            if let Some(at) = self.ratio[mode] {
-                let (p, q) = (a * (was - centre) + b * went, c * (was - centre) + d * went);
-                let first = q * h - b * went - centre * 2.0 * (one - a);
-                let second = w * -h * (w * p + self.drag[mode] * q) + q - d * went + centre * 2.0 * c;
+            if let Some(ratio_index) = self.ratio[mode] {
+                let (p, q) =
+                    (a * (displacement - centre) + b * velocity, c * (displacement - centre) + d * velocity);
+                let first = q * h - b * velocity - centre * 2.0 * (one - a);
+                let second = w * -h * (w * p + self.drag[mode] * q) + q - d * velocity + centre * 2.0 * c;
                 let (first, second) = (first / ratio, second / ratio);
-                self.add_column(x, at, first);
-                self.add_column(x, at + 1, first * middle);
-                self.add_column(v, at, second);
-                self.add_column(v, at + 1, second * middle);
+                self.add_column(x, ratio_index, first);
+                self.add_column(x, ratio_index + 1, first * middle);
+                self.add_column(v, ratio_index, second);
+                self.add_column(v, ratio_index + 1, second * middle);
             }
         }
     }
 
     #[inline(always)]
-    fn brake(&mut self, part: R, felt: usize) {
+    fn brake(&mut self, part: R, mode_count: usize) {
         let order = self.order;
         let mut rate = self.mean[1];
-        for index in 1..=felt {
+        for index in 1..=mode_count {
             rate = rate + self.mean[1 + 2 * index];
         }
         self.mean[1] = self.mean[1] - part * rate;
@@ -231,13 +233,13 @@ impl<R: LaneFloat> FilterLanes<R> {
         }
         for row in 0..order {
             let mut rate = self.tangent[order + row];
-            for index in 1..=felt {
+            for index in 1..=mode_count {
                 rate = rate + self.tangent[(1 + 2 * index) * order + row];
             }
             for index in 0..=self.gain.len() {
                 let gain = if index == 0 { part.splat(1.0) } else { self.gain[index - 1] };
-                let at = (1 + 2 * index) * order + row;
-                self.tangent[at] = -gain * part * rate + self.tangent[at];
+                let index = (1 + 2 * index) * order + row;
+                self.tangent[index] = -gain * part * rate + self.tangent[index];
             }
         }
     }
@@ -256,32 +258,33 @@ impl<R: LaneFloat> FilterLanes<R> {
     pub fn update(&mut self, measured: R, gated: R::Mask) -> [R; 2] {
         let order = self.order;
         let mut angle = self.mean[0];
-        for at in (2..self.motion).step_by(2) {
-            angle = angle + self.mean[at];
+        for index in (2..self.motion).step_by(2) {
+            angle = angle + self.mean[index];
         }
         let innovation = measured - angle;
-        let seen = &mut self.room[..2 * order];
+        let observation = &mut self.room[..2 * order];
         for row in 0..order {
-            seen[row] = self.covariance[row];
-            for at in (2..self.motion).step_by(2) {
-                seen[row] = seen[row] + self.covariance[at * order + row];
+            observation[row] = self.covariance[row];
+            for index in (2..self.motion).step_by(2) {
+                observation[row] = observation[row] + self.covariance[index * order + row];
             }
         }
-        let mut variance = seen[0];
-        for at in (2..self.motion).step_by(2) {
-            variance = variance + seen[at];
+        let mut variance = observation[0];
+        for index in (2..self.motion).step_by(2) {
+            variance = variance + observation[index];
         }
         let variance = variance + self.angle_noise * self.angle_noise;
         for row in 0..order {
-            let gain = seen[row] / variance;
+            let gain = observation[row] / variance;
             let none = row >= self.motion;
-            seen[order + row] = if none { R::select(gated, gain.splat(0.0), gain) } else { gain };
-            self.mean[row] = innovation * seen[order + row] + self.mean[row];
+            observation[order + row] = if none { R::select(gated, gain.splat(0.0), gain) } else { gain };
+            self.mean[row] = innovation * observation[order + row] + self.mean[row];
         }
         for column in 0..order {
             for row in 0..=column {
-                let (gain, other) = (seen[order + row], seen[order + column]);
-                let value = self.covariance[column * order + row] - (gain * seen[column] + seen[row] * other)
+                let (gain, other) = (observation[order + row], observation[order + column]);
+                let value = self.covariance[column * order + row]
+                    - (gain * observation[column] + observation[row] * other)
                     + variance * gain * other;
                 self.covariance[column * order + row] = value;
                 self.covariance[row * order + column] = value;
@@ -295,12 +298,12 @@ impl<R: LaneFloat> FilterLanes<R> {
     pub fn are_valid(&self) -> R::Mask {
         let zero = self.angle_noise.splat(0.0);
         let (mut sum, mut least) = (zero, zero);
-        for at in 0..self.order * self.order {
-            sum = sum + self.covariance[at] * 0.0;
+        for index in 0..self.order * self.order {
+            sum = sum + self.covariance[index] * 0.0;
         }
-        for at in 0..self.order {
-            sum = sum + self.mean[at] * 0.0;
-            least = self.covariance[at * self.order + at].min(least);
+        for index in 0..self.order {
+            sum = sum + self.mean[index] * 0.0;
+            least = self.covariance[index * self.order + index].min(least);
         }
         zero.le(least) & sum.le(zero)
     }
@@ -321,11 +324,11 @@ impl<R: LaneFloat> FilterLanes<R> {
     #[inline(always)]
     pub fn load_means(&mut self, filters: &[&mut KalmanFilter]) {
         let mut each = [0.0; 16];
-        for at in 0..self.order {
+        for index in 0..self.order {
             for (lane, filter) in filters.iter().enumerate() {
-                each[lane] = filter.mean[at];
+                each[lane] = filter.mean[index];
             }
-            self.mean[at] = self.mean[at].load(&each);
+            self.mean[index] = self.mean[index].load(&each);
         }
     }
 
@@ -333,11 +336,11 @@ impl<R: LaneFloat> FilterLanes<R> {
     #[inline(always)]
     pub fn store_means(&self, filters: &mut [&mut KalmanFilter], lanes: &[bool]) {
         let mut each = [0.0; 16];
-        for at in 0..self.order {
-            self.mean[at].store(&mut each);
+        for index in 0..self.order {
+            self.mean[index].store(&mut each);
             for (lane, filter) in filters.iter_mut().enumerate() {
                 if lanes[lane] {
-                    filter.mean[at] = each[lane];
+                    filter.mean[index] = each[lane];
                 }
             }
         }
@@ -350,19 +353,19 @@ pub(super) fn dot<R: LaneFloat>(zero: R, a: &[R], b: &[R]) -> R {
     let count = a.len();
     let mut sum = zero;
     let mut all = [sum; 8];
-    let mut at = 0;
-    while count - at >= 8 {
+    let mut position = 0;
+    while count - position >= 8 {
         for part in 0..8 {
-            all[part] = all[part] + a[at + part] * b[at + part];
+            all[part] = all[part] + a[position + part] * b[position + part];
         }
-        at += 8;
+        position += 8;
     }
     for part in 0..4 {
         sum = sum + (all[part] + all[part + 4]);
     }
-    while at < count {
-        sum = sum + a[at] * b[at];
-        at += 1;
+    while position < count {
+        sum = sum + a[position] * b[position];
+        position += 1;
     }
     sum
 }

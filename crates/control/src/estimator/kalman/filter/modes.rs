@@ -14,8 +14,8 @@ impl KalmanFilter {
         let (cos, sin) =
             if amplitude > 0.0 { (self.mean[x] / amplitude, quadrature / amplitude) } else { (1.0, 0.0) };
         let mut gradient = [(x, cos), (v, sin / w), (x, 0.0)];
-        if let Some(at) = self.tuning.model.ratio_of(mode) {
-            gradient[2] = (at, -sin * quadrature / self.mean[at]);
+        if let Some(index) = self.tuning.model.ratio_of(mode) {
+            gradient[2] = (index, -sin * quadrature / self.mean[index]);
         }
         (amplitude, f64::sqrt(self.variance(&gradient)))
     }
@@ -24,8 +24,9 @@ impl KalmanFilter {
     pub fn frequency(&self, mode: usize) -> (f64, f64) {
         let model = &self.tuning.model;
         let w = model.frequency(mode, self.mean.as_slice());
-        let sd =
-            model.ratio_of(mode).map_or(0.0, |at| w / self.mean[at] * f64::sqrt(self.covariance[(at, at)]));
+        let sd = model
+            .ratio_of(mode)
+            .map_or(0.0, |index| w / self.mean[index] * f64::sqrt(self.covariance[(index, index)]));
         (w, sd)
     }
 
