@@ -48,9 +48,9 @@ impl<W: Write + Seek> McapLog<W> {
         let metadata = metadata.map(|(key, value)| (key.to_owned(), value));
         let own = (!from.own_parts.is_empty()).then(|| ("own_parts".to_owned(), from.own_parts.join(", ")));
         write_metadata(&mut writer, "flexsc.run", metadata.into_iter().chain(own).collect())?;
-        let channels = vec![None; TOPICS.len()];
+        let by_topic = vec![None; TOPICS.len()];
         let channels =
-            Channels { writer, channels, since_flush: 0, start_ns: from.epoch_ns, from_start: Vec::new() };
+            Channels { writer, by_topic, since_flush: 0, start_ns: from.epoch_ns, from_start: Vec::new() };
         Ok(Self { log: MessageEncoder::new(channels, from, detail)? })
     }
 
@@ -76,7 +76,7 @@ impl<W: Write + Seek> McapLog<W> {
 struct Channels<W: Write + Seek> {
     writer: Writer<W>,
     /// Channel and number of messages of each topic that has any, in the order of [`TOPICS`] and then of the custom topics.
-    channels: Vec<Option<(u16, u32)>>,
+    by_topic: Vec<Option<(u16, u32)>>,
     since_flush: u64,
     /// Start of the run (ns past 1970 UTC).
     start_ns: u64,
@@ -97,13 +97,13 @@ impl<W: Write + Seek> Channels<W> {
 
     fn write(&mut self, topic: usize, log_time: u64, data: &[u8]) -> Result<(), RecordError> {
         let (channel_id, sequence) = self.channel(topic)?;
-        self.channels[topic] = Some((channel_id, sequence.wrapping_add(1)));
+        self.by_topic[topic] = Some((channel_id, sequence.wrapping_add(1)));
         let header = MessageHeader { channel_id, sequence, log_time, publish_time: log_time };
         self.writer.write_to_known_channel(&header, data).map_err(failure)
     }
 
     fn channel(&mut self, index: usize) -> Result<(u16, u32), RecordError> {
-        match self.channels[index] {
+        match self.by_topic[index] {
             Some(channel) => Ok(channel),
             None => self.add_channel(LogTopic::Declared(index)),
         }
@@ -120,7 +120,7 @@ impl<W: Write + Seek> Channels<W> {
 impl<W: Write + Seek> MessageSink for Channels<W> {
     fn declare(&mut self, _: usize, topic: LogTopic<'_>) -> Result<(), RecordError> {
         let channel = self.add_channel(topic)?;
-        self.channels.push(Some(channel));
+        self.by_topic.push(Some(channel));
         Ok(())
     }
 

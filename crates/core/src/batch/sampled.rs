@@ -131,8 +131,7 @@ impl SimdTask for BatchLoop<'_> {
             if fresh {
                 motions.expand(runs, kind);
             }
-            let mut next = [Instant::START; 16];
-            let mut due = [false; 16];
+            let (mut next, mut due) = ([Instant::START; 16], [false; 16]);
             for (lane, run) in runs.iter().enumerate() {
                 (next[lane], due[lane]) = run.simulation.next_event();
                 if run.continues {

@@ -11,7 +11,7 @@ use flexsc_record::Record;
 
 use super::SimulationError;
 use super::plant::Plant;
-use super::sensors::SensorSchedule;
+use super::sensor_schedule::SensorSchedule;
 use crate::scenario::Scenario;
 
 /// Exposures of all star trackers of a run.

@@ -19,6 +19,7 @@ mod recorder;
 mod relay_kernel;
 mod run_to;
 mod run_view;
+mod sensor_schedule;
 mod sensors;
 mod start_finish;
 mod stepping;
@@ -260,7 +261,8 @@ impl Simulation {
     fn add_cycle(&mut self) {
         let (now, plant, loads) = (self.clock.now(), &self.plant, &self.loads);
         self.estimation.add_cycle(now, plant);
-        self.laws.objective.add_cycle(now, plant, &self.estimation, &self.guidance, loads);
+        let (origin, estimates) = (self.estimation.origin(), &self.estimation.estimates);
+        self.laws.objective.add_cycle(now, plant, origin, estimates, &self.guidance, loads);
     }
 
     /// Fails if a custom part cannot go on.

@@ -2,11 +2,12 @@
 
 use flexsc_control::adaptation::Objective;
 use flexsc_control::estimator::{AdaptationRun, MotionSample, ObjectiveMeter, ObjectiveWindow};
+use flexsc_control::sensor::Orientation;
+use flexsc_control::state_estimate::StateEstimate;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 
-use super::estimation::Estimation;
 use super::guidance::Guidance;
 use super::loads::Loads;
 use super::plant::Plant;
@@ -77,25 +78,26 @@ impl AdaptationObjective {
         }
     }
 
-    /// Adds the three-axis motion at the start of a cycle.
+    /// Adds the three-axis motion at the start of a cycle, with the origin of the angles and the state estimates.
     pub fn add_cycle(
         &mut self,
         now: Instant,
         plant: &Plant,
-        estimation: &Estimation,
+        origin: &Orientation,
+        estimates: &[StateEstimate],
         guidance: &Guidance,
         loads: &Loads,
     ) {
         let Some(meter) = &mut self.0 else { return };
         let truth = plant.truth();
-        let error = || truth.orientation.error_from(estimation.origin());
+        let error = || truth.orientation.error_from(origin);
         let norm = |v: [f64; 3]| Vector::from(v).norm();
         let value = match meter.objective {
             Objective::PointingErrorMean | Objective::PointingErrorRms | Objective::PointingErrorPeak => {
                 norm(error())
             }
             Objective::RateErrorRms => {
-                let goal = guidance.reference_motion(now, &estimation.estimates);
+                let goal = guidance.reference_motion(now, estimates);
                 let goal = goal.map_or([0.0; 3], |goals| goals.map(|goal| goal.rate));
                 norm([0, 1, 2].map(|axis| truth.rate[axis] - goal[axis]))
             }

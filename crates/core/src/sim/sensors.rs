@@ -2,17 +2,17 @@
 
 use flexsc_control::custom::PartError;
 use flexsc_control::part::{Part, ReportContext};
-use flexsc_control::sensor::{ExposureMean, Orientation, Reading, Sensor, SensorKind, Truth};
+use flexsc_control::sensor::{Orientation, Reading, SensorKind, Truth};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::random::Seed;
-use flexsc_numerics::time::{Instant, Span};
-use flexsc_record::Record;
-use flexsc_record::Report;
+use flexsc_numerics::time::Instant;
+use flexsc_record::{Record, Report};
 use flexsc_spacecraft::environment::to_body;
 
 use super::SimulationError;
 use super::exposures::Exposures;
 use super::plant::Plant;
+use super::sensor_schedule::SensorSchedule;
 use crate::scenario::Scenario;
 
 /// Run-time state of the sensors.
@@ -35,22 +35,6 @@ pub struct Sensors {
     exposures: Exposures,
     /// True if the sample that was read ahead for the current instant has a measurement; `None` if none was read ahead.
     sample_read_ahead: Option<bool>,
-}
-
-/// Sensor with its sampling schedule.
-#[derive(Clone, Debug)]
-pub struct SensorSchedule {
-    sensor: Box<dyn Sensor>,
-    /// True if the sensor measures the attitude or angle, not only rates.
-    provides_attitude: bool,
-    period: Option<Span>,
-    next: Option<Instant>,
-    /// Reading before the newest one.
-    last: Option<Reading>,
-    /// True for the magnetometer that provides the field.
-    is_field_source: bool,
-    /// True if rates are derived from differences of the sensor's angles.
-    derives_rates: bool,
 }
 
 impl Sensors {
@@ -215,27 +199,5 @@ impl Part for Sensors {
 
     fn failure(&self) -> Option<PartError> {
         self.schedules.iter().find_map(|due| due.sensor.failure())
-    }
-}
-
-impl SensorSchedule {
-    /// Hands the mean of the exposure that ends now to the sensor.
-    pub fn close_exposure(&mut self, exposure: &ExposureMean) {
-        self.sensor.close_exposure(exposure);
-    }
-
-    /// Returns the rates (rad/s) of a sensor that measures angles only: differences over the period, and the true rates
-    /// at first.
-    fn differentiated_rates(&self, now: Instant, reading: &Reading, truth: &Truth) -> Option<[f64; 3]> {
-        if !self.derives_rates {
-            return None;
-        }
-        let (Some(period), true) = (self.period, now > Instant::START) else { return Some(truth.rate) };
-        let nowhere = match reading.at {
-            Orientation::Angle(_) => Orientation::Angle(0.0),
-            attitude @ Orientation::Attitude(_) => attitude,
-        };
-        let last = self.last.map_or(nowhere, |last| last.at);
-        Some(reading.at.error_from(&last).map(|difference| difference / period.seconds()))
     }
 }

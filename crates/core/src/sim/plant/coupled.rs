@@ -114,6 +114,14 @@ impl Surroundings for ExternalTorques {
     }
 }
 
+/// Coupled motion during a segment.
+#[derive(Copy, Clone, Debug)]
+pub struct CoupledSegment<'a> {
+    pub motion: &'a CoupledMotion,
+    /// Start of the segment (s).
+    pub start: f64,
+}
+
 impl CoupledMotion {
     /// Creates the motion at the start, under the environment alone, with the modal rotations at the first sensor and
     /// where torques act, the bearings of the rotors, if any, and the steps that it shares with other runs.

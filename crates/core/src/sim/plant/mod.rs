@@ -30,6 +30,7 @@ use flexsc_spacecraft::wrench::Wrench;
 use super::SimulationError;
 use crate::scenario::{ResolvedScenario, Scenario};
 
+use coupled::CoupledSegment;
 use external::ExternalFlow;
 use one_way::OneWayFlow;
 use two_way::TwoWayFlow;
@@ -198,22 +199,23 @@ impl Plant {
     /// tachometer.
     #[inline]
     pub fn wheel_bearings(&self) -> Vec<RotorObservation> {
-        self.coupled().map_or_else(Vec::new, TwoWayFlow::wheel_bearings)
+        self.coupled().map_or_else(Vec::new, |segment| segment.motion.rotor_states(segment.start))
     }
 
     /// Returns the slip states of the wheels in bearings.
     pub fn bearing_states(&self) -> &[SlipDirection] {
-        self.coupled().map_or(&[], TwoWayFlow::bearing_states)
+        self.coupled().map_or(&[], |segment| segment.motion.slips())
     }
 
     /// Returns the specific force at an accelerometer of a spacecraft at the current instant (m/s²), under the loads
     /// from then on.
     pub fn specific_force(&self, place: &AccelerometerMount) -> Vector {
-        self.coupled().map_or_else(Vector::zeros, |motion| motion.specific_force(place))
+        self.coupled()
+            .map_or_else(Vector::zeros, |segment| segment.motion.specific_force(place, segment.start))
     }
 
     /// Returns the motion whose modes act back on the rotation, if the body has it.
-    fn coupled(&self) -> Option<&TwoWayFlow> {
+    fn coupled(&self) -> Option<CoupledSegment<'_>> {
         self.quantities().three_axis().and_then(ThreeAxisQuantities::coupled)
     }
 

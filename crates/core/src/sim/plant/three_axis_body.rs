@@ -10,7 +10,7 @@ use flexsc_spacecraft::flow::{ElasticModes, RigidBody, ThreeAxisState};
 use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::Quaternion;
 
-use super::two_way::TwoWayFlow;
+use super::coupled::CoupledSegment;
 use crate::scenario::ResolvedScenario;
 
 /// A mode is visible to a sensor if it rotates the sensor by at least this fraction of the largest modal rotation
@@ -64,7 +64,7 @@ pub trait ThreeAxisQuantities {
     fn fastest_frequency(&self) -> f64;
 
     /// Returns the motion whose modes act back on the rotation; `None` for another one.
-    fn coupled(&self) -> Option<&TwoWayFlow> {
+    fn coupled(&self) -> Option<CoupledSegment<'_>> {
         None
     }
 }

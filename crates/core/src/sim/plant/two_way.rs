@@ -5,7 +5,7 @@ use std::borrow::Cow;
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::AxisState;
-use flexsc_dynamics::three_axis::{FlexibleBody, RotorObservation, SlipDirection};
+use flexsc_dynamics::three_axis::FlexibleBody;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
@@ -14,7 +14,7 @@ use flexsc_spacecraft::environment::SurroundingsState;
 use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::Quaternion;
 
-use super::coupled::{AccelerometerMount, CoupledMotion};
+use super::coupled::{CoupledMotion, CoupledSegment};
 use super::flow::{Flow, FlowQuantities};
 use super::three_axis_body::{ThreeAxisBody, ThreeAxisQuantities};
 use crate::scenario::ResolvedScenario;
@@ -42,27 +42,6 @@ impl TwoWayFlow {
         );
         let motion = motion.with_appendages(study.drives.as_ref());
         Self { body, motion, segment_start: Instant::START }
-    }
-
-    /// Returns the integrator's motion.
-    pub fn motion(&self) -> &CoupledMotion {
-        &self.motion
-    }
-
-    /// Returns the states of the wheels in bearings at the current instant; empty without friction, imbalance and
-    /// tachometer.
-    pub fn wheel_bearings(&self) -> Vec<RotorObservation> {
-        self.motion.rotor_states(self.segment_start.seconds())
-    }
-
-    /// Returns the slip states of the wheels in bearings.
-    pub fn bearing_states(&self) -> &[SlipDirection] {
-        self.motion.slips()
-    }
-
-    /// Returns the specific force at an accelerometer at the current instant (m/s²), under the loads from then on.
-    pub fn specific_force(&self, place: &AccelerometerMount) -> Vector {
-        self.motion.specific_force(place, self.segment_start.seconds())
     }
 }
 
@@ -173,7 +152,7 @@ impl ThreeAxisQuantities for TwoWayFlow {
         self.motion.fastest()
     }
 
-    fn coupled(&self) -> Option<&TwoWayFlow> {
-        Some(self)
+    fn coupled(&self) -> Option<CoupledSegment<'_>> {
+        Some(CoupledSegment { motion: &self.motion, start: self.segment_start.seconds() })
     }
 }
