@@ -303,9 +303,9 @@ fn a_killed_campaign_keeps_its_rows() {
 #[test]
 fn statistics_are_finite_and_count_what_they_leave_out() {
     let dir = Dir::new();
-    // An unstable loop: the angle grows to some 1e200 rad, whose square is beyond every double.
-    let unstable = "duration = 36.0\n[body.planar]\nangle = 0.1\n[law.pd]\nk_p = 1.0\nk_d = 0.0\nperiod = 1.0\n\
-                    [uncertain]\n\"law.pd.k_p\" = { choice = [1.0, 1e6] }\n";
+    // An unstable loop of a huge body: the torque grows to some 1e196 N m, whose square is beyond every double.
+    let unstable = "duration = 36.0\n[body.planar]\ninertia = 1e190\nangle = 0.1\n[law.pd]\nk_p = 1e190\nk_d = 0.0\n\
+                    period = 1.0\n[uncertain]\n\"law.pd.k_p\" = { choice = [1e190, 3e190] }\n";
     dir.write("unstable.toml", unstable);
     let ran = dir.run("simulate unstable.toml --runs 12 --table csv -o out").exits(0);
     let statistics = table(&dir, "out/statistics.csv");

@@ -136,11 +136,11 @@ impl Record for Rows {
             Sample::Switching(command, _) => self.switched = command.torque_nm,
             Sample::Row(_) => {}
             Sample::Report(report) => {
-                if let Some(cycle) = report.get() {
+                if let Some(cycle) = report.get::<ThreeAxisCycle>() {
                     self.add_cycle(t, cycle, report);
-                } else if let Some(pointing) = report.get() {
+                } else if let Some(pointing) = report.get::<Pointing>() {
                     self.add_three_axes(t, pointing, report);
-                } else if let Some(rate) = report.get() {
+                } else if let Some(rate) = report.get::<Rate>() {
                     self.add_one_axis(t, rate, report);
                 }
             }
@@ -224,7 +224,7 @@ pub fn metrics_are_numbers(run: &Flown) -> Result<(), String> {
             MetricValue::Count(_) | MetricValue::Word(_) => Vec::new(),
         };
         let may_be_missing = meaning.doc.contains("null") || MISSING.contains(&meaning.name);
-        let wrong = numbers.iter().find(|number| !number.is_finite() && !(may_be_missing && number.is_nan()));
+        let wrong = numbers.iter().find(|number| !(number.is_finite() || may_be_missing && number.is_nan()));
         if let Some(wrong) = wrong {
             return Err(format!("{} is {wrong}", meaning.name));
         }

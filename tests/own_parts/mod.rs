@@ -21,6 +21,7 @@ use flexsc_core::record::{
 };
 use flexsc_core::scenario::CustomParts;
 use flexsc_core::{Document, Scenario, Simulation, SimulationError};
+use flexsc_view::with_layout;
 
 const ONE_ANGLE: &str = "duration = 200.0\nseed = 5\n[law.open]\n[body.planar]\ninertia = 100.0\nangle = 2e-3\n\
                          modes = [{ frequency = 1.3, gain = 0.2, damping = 0.02 }]\n\
@@ -97,7 +98,7 @@ fn parts_from_outside_log_their_states() {
         let mut trace = Trace::new(Detail::Full);
         Simulation::new(&study, 0).run(&mut trace).expect("a run");
         let run = CampaignRun { number: 0, scenario: study.clone(), drawn: Vec::new() };
-        let provenance = Campaign::provenance(&run);
+        let provenance = with_layout(Campaign::provenance(&run), &study, Detail::Full);
         let layout = String::from_utf8(provenance.attachments[0].data.clone()).expect("a text");
         let mut bytes = LogBytes::new(&provenance, Detail::Full).expect("a log");
         Simulation::new(&study, 0).run(&mut bytes).expect("a run");

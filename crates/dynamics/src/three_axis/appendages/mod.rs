@@ -15,6 +15,7 @@
 
 mod configuration;
 mod hinge;
+mod hinge_forces;
 mod modal_basis;
 mod projection;
 mod stage;
