@@ -126,7 +126,8 @@ def derivative(of, step=1e-3):
 def integrated(rates_between, y, ends, rtol, atol):
     """The instants of the rows after the start with the states there, by DOP853.
 
-    `rates_between(begin, end)` is y' between two neighbours of the instants 0 and `ends`, which are among the rows.
+    `rates_between(begin, end)` is y' between two neighbours of the instants 0 and `ends`, which are among
+    the rows.
     """
     t, states = 0.0, []
     for end in ends:
@@ -140,8 +141,9 @@ def integrated(rates_between, y, ends, rtol, atol):
 
 
 def mean_axes(m0, eta, first):
-    """The turn of the hub to the mean axes, which modes at `eta` do not turn: the attitude of a scenario is theirs.
+    """The turn of the hub to the mean axes, which modes at `eta` do not turn.
 
+    The attitude of a scenario is that of the mean axes.
     M has the modes from the index `first` on.
     """
     return -np.linalg.solve(m0[:3, :3], m0[:3, first:] @ eta)

@@ -191,7 +191,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let ticks = R::select(fits, nearest, nearest.splat(0.0));
         let after = ticks / ticks.splat(1e15);
         for mode in &mut self.modes {
-            let mut mode_motion = mode.from_equilibrium(moment);
+            let mut mode_motion = mode.about_equilibrium(moment);
             mode_motion.advance(after);
             mode.store_end(&mode_motion);
         }
@@ -213,7 +213,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let found: PredictedCrossing<R> = match &mut self.modes[..] {
             // Two modes, the usual case, stay in registers.
             [first, second] if !D::IS_DAMPED => {
-                let mut two = [first.from_equilibrium(moment), second.from_equilibrium(moment)];
+                let mut two = [first.about_equilibrium(moment), second.about_equilibrium(moment)];
                 let found = predict(&from, levels, &mut two);
                 first.store_end(&two[0]);
                 second.store_end(&two[1]);
@@ -221,7 +221,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
             }
             modes => {
                 for index in 0..modes.len() {
-                    self.predicted_modes[index] = modes[index].from_equilibrium(moment);
+                    self.predicted_modes[index] = modes[index].about_equilibrium(moment);
                 }
                 let found = predict(&from, levels, &mut self.predicted_modes);
                 for index in 0..modes.len() {

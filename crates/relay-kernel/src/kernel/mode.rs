@@ -24,7 +24,7 @@ pub struct LaneMode<R, D> {
 impl<R: LaneFloat, D: DampingRule<R>> LaneMode<R, D> {
     /// Returns the mode about its equilibrium under an angular acceleration (rad/s²).
     #[inline(always)]
-    pub fn from_equilibrium(&self, moment: R) -> PredictedMode<R, D> {
+    pub fn about_equilibrium(&self, moment: R) -> PredictedMode<R, D> {
         let equilibrium = self.excitability * moment;
         PredictedMode {
             frequency: self.frequency,

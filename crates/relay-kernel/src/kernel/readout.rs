@@ -25,7 +25,7 @@ impl<R: LaneFloat, D: DampingRule<R>> RelayKernel<R, D> {
         let zero = span.splat(0.0);
         let (mut centre, mut reach) = (zero, zero);
         for mode in &self.modes {
-            let mode = mode.from_equilibrium(moment);
+            let mode = mode.about_equilibrium(moment);
             centre = centre + mode.equilibrium;
             reach = reach + mode.amplitude_bound();
         }
