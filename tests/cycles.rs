@@ -45,6 +45,23 @@ fn a_rigid_cycle_has_one_multiplier() {
     close(cycle.number("cycle_multiplier_max").expect("a multiplier"), 0.2492 * 0.2492, 1e-3);
 }
 
+#[test]
+fn without_weak_torque_a_body_crosses_the_dead_zone_at_a_constant_rate() {
+    for (weak, tolerance) in [("0.0", 1e-13), ("1e-300", 1e-13), ("1e-12", 1e-6)] {
+        let case = scenario("relay-fixed", &[("body.planar.modes", "[]"), ("law.relay.weak", weak)]);
+        let LawKind::Relay(law) = &case.law else { panic!("a relay") };
+        let body = case.model.planar().expect("one axis");
+        let all = cycles(law, body, 0.31);
+        let [cycle] = &all[..] else { panic!("{all:?}") };
+        assert_eq!(cycle.sides, RelaySides::Two);
+        // Braking from the boundary at which the push ends to the entry rate, then coasting to the other boundary.
+        let strong = law.strong.get() / body.inertia.get();
+        let braking = cycle.brake_s * (cycle.entry_rate_rad_s + 0.5 * strong * cycle.brake_s);
+        let width = 2.0 * law.dead_zone.get() - law.hysteresis.get();
+        close(cycle.coast_s, (width - braking) / cycle.entry_rate_rad_s, tolerance);
+    }
+}
+
 /// A rigid body under the paper's law at a gain.
 fn rigid(k_t: f64) -> Scenario {
     scenario("relay-fixed", &[("body.planar.modes", "[]"), ("law.relay.k_t", &k_t.to_string())])

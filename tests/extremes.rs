@@ -95,7 +95,7 @@ fn runs_of_minutes_are_announced() {
 fn values_without_end_are_answered_or_refused() {
     let dir = Dir::with(&["relay-fixed", "relay-one-sided", "rotation-sine", "wheel-friction"]);
     // A coast of up to 1e296 s, in closed form.
-    for (weak, told) in [("1e-15", "two-sided cycle, stable"), ("1e-300", "no limit cycle exists")] {
+    for (weak, told) in [("1e-15", "coast          14.2"), ("1e-300", "period         38.98")] {
         dir.run_bounded(&format!("cycle relay-fixed.toml --set law.relay.weak={weak}"))
             .exits(0)
             .says(&[told]);
@@ -115,6 +115,12 @@ fn values_without_end_are_answered_or_refused() {
             &format!("got {peak} N m"),
         ]);
     }
+    for peak in ["1e30", "1e300"] {
+        dir.run_bounded(&format!("plan rotation-sine.toml --peak-torque {peak}")).exits(2).says(&[
+            "--peak-torque: must be so small that the command lasts at least 1e-4 periods",
+            &format!("got {peak} N m"),
+        ]);
+    }
     // Bearings that stop a wheel at once, and bearings that no motor turns.
     let friction = "simulate wheel-friction.toml --log none --set actuator.wheels.friction";
     dir.run_bounded(&format!("{friction}.coulomb=1000")).exits(2).says(&[
@@ -122,6 +128,9 @@ fn values_without_end_are_answered_or_refused() {
         "got 1000",
     ]);
     dir.run_bounded(&format!("{friction}.breakaway=1000")).exits(0).says(&["4 stops"]);
+    // A wheel that its bearing stops within 40 ms: the steps resolve that.
+    dir.run_bounded(&format!("{friction}.viscous=1")).exits(0);
+    dir.run_bounded(&format!("{friction}.viscous=1e9")).exits(2).says(&["`--yes` runs it anyway"]);
 }
 
 #[test]

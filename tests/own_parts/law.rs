@@ -7,8 +7,9 @@ use flexsc_core::control::law::{
     Authority, Command, ControlOutput, DecisionCause, Guards, Law, LawKind, LawSpec, LawState, Phase,
     Setpoint,
 };
+use flexsc_core::control::offers::LawOffers;
 use flexsc_core::control::part::{Occasion, Part, ReportContext};
-use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{CustomField, CustomTopic, Report};
 
@@ -49,8 +50,8 @@ impl LawSpec for Pid {
         Box::new(Integrating { law: self.clone(), axis: authority.axis, integral: 0.0 })
     }
 
-    fn period(&self) -> Option<Span> {
-        Some(Span::from_seconds(self.period))
+    fn offers(&self) -> LawOffers {
+        LawOffers::new(Some(Span::from_seconds(self.period)), EstimateNeeds::Motion)
     }
 }
 

@@ -72,14 +72,15 @@ impl Results for RelayCycles {
         if cycles.is_empty() {
             say!("  no limit cycle exists");
         }
+        let time = |of: f64| if of < 1e9 { format!("{of:.9} s") } else { format!("{of:.3e} s") };
         for cycle in cycles {
             let kind = if cycle.sides == RelaySides::Two { "two-sided" } else { "one-sided" };
             let stability = if cycle.stable { "stable" } else { "unstable" };
             say!("  {kind} cycle, {stability}: multiplier {:.4}", cycle.multiplier);
-            say!("    period         {:.9} s", cycle.period_s);
-            say!("    push           {:.9} s", cycle.push_s);
-            say!("    brake          {:.9} s", cycle.brake_s);
-            say!("    coast          {:.9} s", cycle.coast_s);
+            say!("    period         {}", time(cycle.period_s));
+            say!("    push           {}", time(cycle.push_s));
+            say!("    brake          {}", time(cycle.brake_s));
+            say!("    coast          {}", time(cycle.coast_s));
             say!("    entry rate     {}", units.quantity(cycle.entry_rate_rad_s, "rad/s"));
             let ends = [cycle.angle_min_rad, cycle.angle_max_rad];
             say!("    angle          {}", units.list(&ends, " to ", "rad"));

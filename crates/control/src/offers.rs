@@ -86,6 +86,8 @@ pub struct LawOffers {
     pub period: Option<Span>,
     /// Estimates that the law reads.
     pub needs: EstimateNeeds,
+    /// True if the law is a relay, whose torque changes only with its state.
+    pub is_switching: bool,
     /// True if the law commands nothing.
     pub is_open: bool,
     /// True if the law decides where the motion crosses a boundary.
@@ -104,6 +106,7 @@ impl LawOffers {
         Self {
             period,
             needs,
+            is_switching: false,
             is_open: false,
             finds_crossings: false,
             plans_pulses: false,

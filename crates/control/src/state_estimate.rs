@@ -44,8 +44,8 @@ pub struct DominantMode {
     pub frequency: f64,
 }
 
-/// Estimates that a law reads.
-#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+/// Estimates that a law reads, from the fewest to the most.
+#[derive(Copy, Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum EstimateNeeds {
     /// No estimates.
     Nothing,
@@ -57,6 +57,13 @@ pub enum EstimateNeeds {
     DominantMode,
     /// Rates, and all elastic modes.
     ElasticRates,
+}
+
+impl EstimateNeeds {
+    /// Returns the needs of several laws together: the most that one of them reads.
+    pub fn most(laws: impl Iterator<Item = Self>) -> Self {
+        laws.max().unwrap_or(Self::Nothing)
+    }
 }
 
 /// Status of active damping about an axis.

@@ -10,8 +10,9 @@ use flexsc_core::control::law::{
     Authority, Command, ControlOutput, DecisionCause, Guards, Law, LawKind, LawSpec, LawState, Phase,
     Setpoint,
 };
+use flexsc_core::control::offers::LawOffers;
 use flexsc_core::control::part::Part;
-use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::prelude::*;
 
@@ -32,8 +33,8 @@ impl LawSpec for Pid {
         Box::new(PidState(*self, 0.0))
     }
 
-    fn period(&self) -> Option<Span> {
-        Some(Span::from_seconds(self.1))
+    fn offers(&self) -> LawOffers {
+        LawOffers::new(Some(Span::from_seconds(self.1)), EstimateNeeds::Motion)
     }
 }
 

@@ -22,7 +22,7 @@ pub enum Distribution {
     LogUniform([Positive; 2]),
     /// Normal with this mean and standard deviation.
     Normal(Normal),
-    /// The scenario's own value times a factor that is uniform between 1 - this and 1 + this.
+    /// The scenario's own value times a factor that is uniform between 1 - x and 1 + x, where x is this number.
     RelativeUniform(Positive),
     /// The scenario's own value times a normal factor with mean 1 and this standard deviation.
     RelativeNormal(Positive),

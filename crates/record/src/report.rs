@@ -80,6 +80,9 @@ pub struct Report {
     rows: Vec<ReportedRow>,
     /// Values that are not logged.
     values: Vec<Box<dyn ReportValue>>,
+    /// Boxes of earlier rows and values, for the next ones of their types.
+    spare_rows: Vec<Box<dyn LogRow>>,
+    spare_values: Vec<Box<dyn ReportValue>>,
 }
 
 /// Row for the log.
@@ -105,19 +108,49 @@ impl Report {
         report
     }
 
+    /// Removes all rows and values. Their memory is kept, so that a report of the same rows allocates none.
+    pub fn clear(&mut self) {
+        self.spare_rows.extend(self.rows.drain(..).map(|reported| reported.row));
+        self.spare_values.append(&mut self.values);
+    }
+
     /// Adds a row for the log.
     pub fn add(&mut self, row: impl LogRow) {
-        self.insert(ReportedRow { row: Box::new(row), revision: None, is_repeated: false });
+        self.add_reported(row, None);
     }
 
     /// Adds a row that is logged only if `revision` differs from that of the topic's last row, 0 at the start.
     pub fn add_revision(&mut self, revision: u64, row: impl LogRow) {
-        self.insert(ReportedRow { row: Box::new(row), revision: Some(revision), is_repeated: false });
+        self.add_reported(row, Some(revision));
+    }
+
+    fn add_reported<R: LogRow>(&mut self, row: R, revision: Option<u64>) {
+        let spare = self.spare_rows.iter().position(|spare| (&**spare as &dyn Any).is::<R>());
+        let row = match spare.map(|index| self.spare_rows.swap_remove(index)) {
+            Some(mut known) => {
+                if let Some(place) = (&mut *known as &mut dyn Any).downcast_mut() {
+                    *place = row;
+                }
+                known
+            }
+            None => Box::new(row),
+        };
+        self.insert(ReportedRow { row, revision, is_repeated: false });
     }
 
     /// Adds a value that metrics and figures read, and that is not logged.
-    pub fn add_value(&mut self, value: impl ReportValue) {
-        self.values.push(Box::new(value));
+    pub fn add_value<T: ReportValue>(&mut self, value: T) {
+        let spare = self.spare_values.iter().position(|spare| (&**spare as &dyn Any).is::<T>());
+        let value = match spare.map(|index| self.spare_values.swap_remove(index)) {
+            Some(mut known) => {
+                if let Some(place) = (&mut *known as &mut dyn Any).downcast_mut() {
+                    *place = value;
+                }
+                known
+            }
+            None => Box::new(value),
+        };
+        self.values.push(value);
     }
 
     /// Inserts a row after those of topics that are written before its own.

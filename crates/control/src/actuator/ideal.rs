@@ -19,7 +19,7 @@ use crate::requirement::{Requirements, Rule};
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct Ideal {
-    /// Intervals in which it fails.
+    /// Intervals in which the actuator fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -48,7 +48,7 @@ pub struct Jets {
     /// For `groups`: the thrusters that act together.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub groups: Option<ThrusterGroups>,
-    /// Intervals in which they fail.
+    /// Intervals in which the jets fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

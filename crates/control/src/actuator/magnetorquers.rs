@@ -24,7 +24,7 @@ use crate::requirement::{Requirements, Rule};
 pub struct Magnetorquers {
     /// Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three.
     pub moment: PerAxis<Positive>,
-    /// Intervals in which they fail.
+    /// Intervals in which the magnetorquers fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -119,6 +119,9 @@ impl Saturation {
 
     /// Observes the wheels and magnetorquers in the report of a cycle that begins at a time (s).
     pub fn observe(&mut self, t: f64, report: &Report) {
+        if self.wheels.is_empty() && self.moments.iter().all(|limit| limit.is_infinite()) {
+            return;
+        }
         let wheels = report.get().map_or(&[][..], |row: &flexsc_record::Wheels| &row.wheels);
         let torquers = report.get().map_or(&[][..], |row: &flexsc_record::Magnetorquers| &row.axes);
         let reaches = |value: f64, limit: f64| value.abs() >= limit * (1.0 - AT_LIMIT);

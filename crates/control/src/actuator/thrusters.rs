@@ -28,7 +28,7 @@ pub struct Thrusters {
     /// Quantum of a pulse's length (s); 0 for none.
     #[serde(default)]
     pub quantum: NonNegative,
-    /// Intervals in which they fail.
+    /// Intervals in which the thrusters fail.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -21,7 +21,7 @@ use super::{Actuator, ActuatorEvent, ActuatorKind, Demand, Jets, Magnetorquers, 
 pub struct UnloadingTask {
     /// Total momentum of the wheels above which unloading begins (N m s).
     pub above: Positive,
-    /// Total momentum below which it ends (N m s).
+    /// Total momentum below which unloading ends (N m s).
     pub below: NonNegative,
     /// For jets: the largest mean torque about each axis over a cycle (N m), which the wheels counteract.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -44,7 +44,7 @@ pub struct UnloadingTask {
 pub struct WheelUnloading {
     /// Total momentum of the wheels above which unloading begins (N m s).
     pub above: Positive,
-    /// Total momentum below which it ends (N m s).
+    /// Total momentum below which unloading ends (N m s).
     pub below: NonNegative,
     /// Largest mean torque of the jets about each axis over a cycle (N m), which the wheels counteract.
     #[serde(default, skip_serializing_if = "Option::is_none")]

@@ -17,7 +17,7 @@ pub struct ZeroOrderHold {
     /// Time of the first period (s); default: 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub phase: Option<Time>,
-    /// Intervals in which it fails.
+    /// Intervals in which the actuator fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<Failure>,
 }

@@ -32,7 +32,7 @@ pub struct ActiveDamping {
     /// 1.5 times the amplitude of the limit cycle due to the delay, and at least the change by two whole cycles of firing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub threshold: Option<[Positive; 3]>,
-    /// Fraction of the threshold at which they stop.
+    /// Fraction of the threshold at which the pulses of active damping stop.
     pub release: Fraction,
     /// Whether a pulse is only as long as it takes to stop the elastic motion; otherwise it fills the cycle.
     pub pulse_width: bool,

@@ -17,7 +17,7 @@ use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
     Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
-use crate::offers::{LawPlace, Offers};
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
 use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
@@ -101,8 +101,8 @@ impl LawSpec for AttitudeLaw {
         })
     }
 
-    fn period(&self) -> Option<Span> {
-        Some(self.period)
+    fn offers(&self) -> LawOffers {
+        LawOffers::new(Some(self.period), EstimateNeeds::Motion)
     }
 
     /// Returns the usual 5 % of a step.
@@ -115,10 +115,6 @@ impl LawSpec for AttitudeLaw {
         let (inertia, wn) = (conditions.inertia, self.bandwidth.get());
         let at_rest = inertia * wn * wn * conditions.angle.abs();
         conditions.profile_acceleration.map_or(at_rest, |acceleration| inertia * acceleration)
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        EstimateNeeds::Motion
     }
 
     fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {

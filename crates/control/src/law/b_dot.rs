@@ -53,16 +53,8 @@ impl LawSpec for BDot {
         Box::new(BDotState { law: *self, gain: self.gain.get(), tuned: f64::NAN })
     }
 
-    fn period(&self) -> Option<Span> {
-        Some(self.period)
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        EstimateNeeds::Field
-    }
-
     fn offers(&self) -> LawOffers {
-        LawOffers { commands_moments: true, ..LawOffers::new(self.period(), self.needs()) }
+        LawOffers { commands_moments: true, ..LawOffers::new(Some(self.period), EstimateNeeds::Field) }
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {

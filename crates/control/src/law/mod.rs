@@ -98,69 +98,24 @@ pub trait LawSpec {
     /// Returns the run-time state of the law about an axis with this actuator authority.
     fn start(&self, authority: &Authority) -> Box<dyn Law>;
 
-    /// Returns the law's own period, at which it samples and commands; `None` if it decides at events.
-    fn period(&self) -> Option<Span> {
-        None
+    /// Returns the offers of the law to the other parts of a scenario; by default those of a law without a period that
+    /// reads estimates of the motion.
+    fn offers(&self) -> LawOffers {
+        LawOffers::new(None, EstimateNeeds::Motion)
     }
 
-    /// Returns true if the law is a relay, whose torque changes only with its state.
-    fn is_switching(&self) -> bool {
-        false
-    }
+    /// Adds the requirements of the law on the other parts of a scenario.
+    fn requires(&self, _place: &LawPlace, _offers: &Offers, _needs: &mut Requirements) {}
 
     /// Returns the error band about the setpoint within which the law is expected to stay.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::None
     }
 
-    /// Returns the half width of the zone without torque (rad); 0 without a zone.
-    fn dead_zone(&self) -> f64 {
-        0.0
-    }
-
-    /// Returns the torque command per angle error (1/rad); 0 if the law is no spring.
-    fn stiffness(&self) -> f64 {
-        0.0
-    }
-
     /// Returns an estimate of the largest torque (N m) that the law commands.
     fn expected_torque(&self, _conditions: &TorqueConditions) -> f64 {
         0.0
     }
-
-    /// Returns the half width (rad) of the band about the target that the law keeps with an actuator authority, if it depends
-    /// on that.
-    fn band_with(&self, _: &Authority) -> Option<f64> {
-        None
-    }
-
-    /// Returns the half width (rad) of the zone about the target in which the body coasts, of a law that plans pulses.
-    fn coasting_zone(&self) -> Option<f64> {
-        None
-    }
-
-    /// Returns the number of steps per radian of the fastest mode in which the law's crossings are searched; 0 if it has none.
-    fn search_steps(&self, _is_coupled: bool) -> f64 {
-        0.0
-    }
-
-    /// Returns the mean time between switchings on a rigid body of this inertia (s), if the law switches at crossings.
-    fn switching_interval(&self, _inertia: f64) -> Option<f64> {
-        None
-    }
-
-    /// Returns the estimates that the law reads.
-    fn needs(&self) -> EstimateNeeds {
-        EstimateNeeds::Motion
-    }
-
-    /// Returns the offers of the law to the other parts of a scenario.
-    fn offers(&self) -> LawOffers {
-        LawOffers::new(self.period(), self.needs())
-    }
-
-    /// Adds the requirements of the law on the other parts of a scenario.
-    fn requires(&self, _place: &LawPlace, _offers: &Offers, _needs: &mut Requirements) {}
 
     /// Returns the parameters that an adaptation may tune.
     fn tunable(&self) -> Vec<Tunable> {
@@ -170,6 +125,23 @@ pub trait LawSpec {
     /// Returns the concrete type behind the trait, so that the providing program can downcast it; `None` by default.
     fn any(&self) -> Option<&dyn Any> {
         None
+    }
+}
+
+impl dyn LawSpec {
+    /// Returns the law's own period, at which it samples and commands; `None` if it decides at events.
+    pub fn period(&self) -> Option<Span> {
+        self.offers().period
+    }
+
+    /// Returns the estimates that the law reads.
+    pub fn needs(&self) -> EstimateNeeds {
+        self.offers().needs
+    }
+
+    /// Returns true if the law is a relay, whose torque changes only with its state.
+    pub fn is_switching(&self) -> bool {
+        self.offers().is_switching
     }
 }
 

@@ -21,12 +21,8 @@ impl LawSpec for Open {
         self.copy()
     }
 
-    fn needs(&self) -> EstimateNeeds {
-        EstimateNeeds::Nothing
-    }
-
     fn offers(&self) -> LawOffers {
-        LawOffers { is_open: true, ..LawOffers::new(None, self.needs()) }
+        LawOffers { is_open: true, ..LawOffers::new(None, EstimateNeeds::Nothing) }
     }
 }
 

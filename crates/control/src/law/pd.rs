@@ -13,7 +13,7 @@ use super::{
     AttitudeErrorMeasure, Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards,
     Law, LawSpec, LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable, TunedNumbers,
 };
-use crate::offers::{LawPlace, Offers};
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
 use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
@@ -132,17 +132,15 @@ impl LawSpec for Pd {
         self.copy()
     }
 
-    fn period(&self) -> Option<Span> {
-        Some(self.period)
+    fn offers(&self) -> LawOffers {
+        let reads_mode = self.extra.is_some();
+        let needs = if reads_mode { EstimateNeeds::DominantMode } else { EstimateNeeds::Motion };
+        LawOffers::new(Some(self.period), needs)
     }
 
     /// Returns the usual 5 % of a step.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Fraction(0.05)
-    }
-
-    fn stiffness(&self) -> f64 {
-        self.k_p.get()
     }
 
     fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {
@@ -154,10 +152,6 @@ impl LawSpec for Pd {
         super::requirements::require_measure(self.error, offers, needs);
         let disorder = self.extra.as_ref().and_then(Extra::disorder);
         needs.report(Rule::GainSchedule, disorder.map(|fault| fault.within("extra.schedule")));
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        if self.extra.is_some() { EstimateNeeds::DominantMode } else { EstimateNeeds::Motion }
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -1,11 +1,10 @@
 //! Separate laws about three axes.
 
-use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-use super::{Authority, ErrorBand, EstimateNeeds, Law, LawKind, LawSpec, Tunable};
-use crate::offers::{LawPlace, Offers};
+use super::{Authority, EstimateNeeds, Law, LawKind, LawSpec, Tunable};
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::requirement::{Requirements, Rule};
 
 /// A law of one angle for each of three axes.
@@ -42,32 +41,18 @@ impl LawSpec for PerAxisLaws {
         self.roll.start(authority)
     }
 
-    /// Returns the shortest period of the laws, at which sensors without their own period are read.
-    fn period(&self) -> Option<Span> {
-        self.all().into_iter().filter_map(|law| law.period()).min()
-    }
-
-    fn is_switching(&self) -> bool {
-        self.all().into_iter().all(|law| law.is_switching())
+    /// Returns the shortest period of the laws, at which sensors without their own period are read, and the most that
+    /// one of them reads.
+    fn offers(&self) -> LawOffers {
+        let laws = self.all();
+        let period = laws.iter().filter_map(|law| law.period()).min();
+        let needs = EstimateNeeds::most(laws.iter().map(|law| law.needs()));
+        let is_switching = laws.iter().all(|law| law.is_switching());
+        LawOffers { is_switching, ..LawOffers::new(period, needs) }
     }
 
     fn requires(&self, _: &LawPlace, _: &Offers, needs: &mut Requirements) {
         needs.require(Rule::Law, false, "", "must be a law of one axis");
-    }
-
-    fn expected_band(&self) -> ErrorBand {
-        ErrorBand::None
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        let any_law_needs = |needs: EstimateNeeds| self.all().into_iter().any(|law| law.needs() == needs);
-        let order = [
-            EstimateNeeds::ElasticRates,
-            EstimateNeeds::DominantMode,
-            EstimateNeeds::Motion,
-            EstimateNeeds::Field,
-        ];
-        order.into_iter().find(|needs| any_law_needs(*needs)).unwrap_or(EstimateNeeds::Nothing)
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -19,7 +19,7 @@ use serde::{Deserialize, Deserializer, Serialize};
 use super::active_damping::{ActiveDamping, ActiveDampingState, exceeds};
 use super::{
     Authority, Command, ControlOutput, DecisionCause, EstimateNeeds, Frame, Guards, Law, LawSpec, LawState,
-    Phase, ReferenceNeeds, Setpoint, SwitchingLines, TorqueConditions, Tunable, error_band,
+    Phase, ReferenceNeeds, Setpoint, SwitchingLines, TorqueConditions, Tunable,
 };
 use crate::offers::{LawOffers, LawPlace, Offers, TorqueLimit};
 use crate::part::Part;
@@ -45,7 +45,7 @@ pub struct PhasePlane {
     /// Rate error above which the jets begin to fire (rad/s); near and beyond the edges of the dead zone they begin at a
     /// smaller one.
     pub switch_on: Positive,
-    /// Rate error below which they stop (rad/s); it is also the smallest return rate.
+    /// Rate error below which the jets stop (rad/s); it is also the smallest return rate.
     pub switch_off: Positive,
     /// Target attitudes, in the order of their times; before the first one, the target is the inertial axes.
     #[serde(default)]
@@ -227,20 +227,9 @@ impl LawSpec for PhasePlane {
         })
     }
 
-    fn period(&self) -> Option<Span> {
-        Some(self.period)
-    }
-
-    fn band_with(&self, authority: &Authority) -> Option<f64> {
-        Some(error_band(self, authority))
-    }
-
-    fn coasting_zone(&self) -> Option<f64> {
-        Some(self.dead_zone.get())
-    }
-
     fn offers(&self) -> LawOffers {
-        LawOffers { plans_pulses: true, has_states: true, ..LawOffers::new(self.period(), self.needs()) }
+        let needs = if self.damping.is_some() { EstimateNeeds::ElasticRates } else { EstimateNeeds::Motion };
+        LawOffers { plans_pulses: true, has_states: true, ..LawOffers::new(Some(self.period), needs) }
     }
 
     fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
@@ -264,10 +253,6 @@ impl LawSpec for PhasePlane {
             "damping",
             "needs the elastic rates of an `[estimator.adaptive]`, and there is none",
         );
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        if self.damping.is_some() { EstimateNeeds::ElasticRates } else { EstimateNeeds::Motion }
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -2,7 +2,7 @@
 
 use flexsc_numerics::quantity::Finite;
 
-use super::{ActiveDamping, AttitudeTarget, LawKind, LawSpec, Pd, Relay};
+use super::{ActiveDamping, AttitudeTarget, Authority, LawKind, LawSpec, Pd, Relay, error_band};
 use crate::custom::Custom;
 
 impl LawKind {
@@ -24,6 +24,27 @@ impl LawKind {
     /// Returns the sampled PD law, if the law is one.
     pub fn pd(&self) -> Option<&Pd> {
         if let Self::Pd(law) = self { Some(law) } else { None }
+    }
+
+    /// Returns the half width of the zone without torque (rad); 0 without a zone.
+    pub fn dead_zone(&self) -> f64 {
+        self.relay().map_or(0.0, |law| law.dead_zone.get())
+    }
+
+    /// Returns the torque command per angle error (1/rad); 0 if the law is no spring.
+    pub fn stiffness(&self) -> f64 {
+        self.pd().map_or(0.0, |law| law.k_p.get())
+    }
+
+    /// Returns the half width (rad) of the zone about the target in which the body coasts, of a law that plans pulses.
+    pub fn coasting_zone(&self) -> Option<f64> {
+        if let Self::PhasePlane(law) = self { Some(law.dead_zone.get()) } else { None }
+    }
+
+    /// Returns the half width (rad) of the band about the target that the law keeps with an actuator authority, if it
+    /// depends on that.
+    pub fn band_with(&self, authority: &Authority) -> Option<f64> {
+        if let Self::PhasePlane(law) = self { Some(error_band(law, authority)) } else { None }
     }
 
     /// Returns the coefficients of the sampled filters of the law's output; empty without filters.

@@ -13,8 +13,8 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::{
-    Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, LawState, Phase,
-    Setpoint, TorqueConditions, Tunable, TunedNumbers,
+    Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec,
+    LawState, Phase, Setpoint, TorqueConditions, Tunable, TunedNumbers,
 };
 use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
@@ -73,11 +73,16 @@ impl Relay {
         (gamma >= width).then(|| ConfigError::new("hysteresis", why()))
     }
 
+    /// Returns the number of steps per radian of the fastest mode in which crossings are searched.
+    pub fn search_steps(&self, is_coupled: bool) -> f64 {
+        if self.sides == RelaySides::One && !is_coupled { ONE_SIDED_STEPS } else { SEARCH_STEPS }
+    }
+
     /// Returns an estimate of the mean time between switchings in the limit cycle of a rigid body (s).
     ///
     /// The push over the hysteresis gives back the speed that the brake takes. Then the body crosses the dead zone, or
     /// the weak torque returns it to the boundary that it left.
-    fn mean_switching(&self, inertia: f64) -> f64 {
+    pub fn switching_interval(&self, inertia: f64) -> f64 {
         let (push, weak) = (self.strong.get() / inertia, self.weak.get() / inertia);
         let (zone, back, k_t) = (self.dead_zone.get(), self.hysteresis.get(), self.k_t.get());
         // The overshoot of `expected_band`. Without a brake it grows: switchings are most frequent at half the dead zone.
@@ -101,20 +106,9 @@ impl LawSpec for Relay {
         self.copy()
     }
 
-    fn is_switching(&self) -> bool {
-        true
-    }
-
-    fn search_steps(&self, is_coupled: bool) -> f64 {
-        if self.sides == RelaySides::One && !is_coupled { ONE_SIDED_STEPS } else { SEARCH_STEPS }
-    }
-
-    fn switching_interval(&self, inertia: f64) -> Option<f64> {
-        Some(self.mean_switching(inertia))
-    }
-
     fn offers(&self) -> LawOffers {
-        LawOffers { finds_crossings: true, has_states: true, ..LawOffers::new(self.period(), self.needs()) }
+        let offers = LawOffers::new(None, EstimateNeeds::Motion);
+        LawOffers { is_switching: true, finds_crossings: true, has_states: true, ..offers }
     }
 
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
@@ -150,10 +144,6 @@ impl LawSpec for Relay {
     /// on.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Absolute(self.dead_zone.get() + self.hysteresis.get())
-    }
-
-    fn dead_zone(&self) -> f64 {
-        self.dead_zone.get()
     }
 
     fn expected_torque(&self, conditions: &TorqueConditions) -> f64 {

@@ -13,7 +13,7 @@ use super::{
     ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
 use crate::custom::PartError;
-use crate::offers::{LawPlace, Offers};
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::{Part, ReportContext};
 use crate::requirement::Requirements;
 use crate::state_estimate::StateEstimate;
@@ -100,31 +100,21 @@ impl LawSpec for Stages {
         Box::new(StagesState { stages: stages.collect(), active: 0, places, tuned: None })
     }
 
-    /// Returns the shortest period of the laws.
+    /// Returns the shortest period of the laws, and the most that one of them reads.
+    fn offers(&self) -> LawOffers {
+        let period = self.laws().filter_map(|law| law.period()).min();
+        LawOffers::new(period, EstimateNeeds::most(self.laws().map(|law| law.needs())))
+    }
+
     fn requires(&self, _: &LawPlace, offers: &Offers, needs: &mut Requirements) {
         if let Some(index) = self.laws().position(|law| law.offers().commands_moments) {
             require_field(&format!("[{index}].law.{}", self.0[index].law.kind()), offers, needs);
         }
     }
 
-    fn period(&self) -> Option<Span> {
-        self.laws().filter_map(|law| law.period()).min()
-    }
-
     /// Returns the error band of the last law.
     fn expected_band(&self) -> ErrorBand {
         self.0.last().map_or(ErrorBand::None, |stage| stage.law.expected_band())
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        let any_law_needs = |needs: EstimateNeeds| self.laws().any(|law| law.needs() == needs);
-        let order = [
-            EstimateNeeds::ElasticRates,
-            EstimateNeeds::DominantMode,
-            EstimateNeeds::Motion,
-            EstimateNeeds::Field,
-        ];
-        order.into_iter().find(|needs| any_law_needs(*needs)).unwrap_or(EstimateNeeds::Nothing)
     }
 
     fn tunable(&self) -> Vec<Tunable> {
@@ -217,7 +207,7 @@ mod tests {
              [[stages]]\nfrom = 5.0\nlaw.attitude = { period = 1.0, bandwidth = 0.1 }",
         );
         assert_eq!(laws.inconsistency(), None);
-        assert_eq!(laws.period(), Some(Span::from_seconds(1.0)));
+        assert_eq!(laws.offers().period, Some(Span::from_seconds(1.0)));
         let authority = Authority {
             axis: 0,
             accelerations: [f64::INFINITY; 2],

@@ -17,6 +17,7 @@ use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec,
     LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
 };
+use crate::offers::LawOffers;
 use crate::part::Part;
 use crate::state_estimate::StateEstimate;
 
@@ -242,17 +243,13 @@ impl LawSpec for StateSpace {
         })
     }
 
-    fn period(&self) -> Option<Span> {
-        Some(self.period)
+    fn offers(&self) -> LawOffers {
+        LawOffers::new(Some(self.period), EstimateNeeds::Motion)
     }
 
     /// Returns the usual 5 % of a step.
     fn expected_band(&self) -> ErrorBand {
         ErrorBand::Fraction(0.05)
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        EstimateNeeds::Motion
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -53,7 +53,7 @@ pub struct Accelerometer {
     /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Intervals in which it fails.
+    /// Intervals in which the accelerometer fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
 }

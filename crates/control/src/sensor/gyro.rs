@@ -68,7 +68,7 @@ pub struct Gyro {
     /// diagonal is 0.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub misalignment: Option<Box<[[Finite; 3]; 3]>>,
-    /// Intervals in which it fails; the attitude is still known.
+    /// Intervals in which the gyro fails; star trackers still give the attitude.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<sensor::SensorFailure>,
 }

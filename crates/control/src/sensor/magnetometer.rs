@@ -45,7 +45,7 @@ pub struct Magnetometer {
     /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Intervals in which it fails.
+    /// Intervals in which the magnetometer fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
 }

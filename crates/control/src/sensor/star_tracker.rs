@@ -38,7 +38,7 @@ pub struct StarTracker {
     /// Rate of the body at the tracker at and above which it gives no measurement (rad/s); default: no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blackout_rate: Option<Positive>,
-    /// Intervals in which it fails.
+    /// Intervals in which the star tracker fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
 }

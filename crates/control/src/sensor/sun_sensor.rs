@@ -51,7 +51,7 @@ pub struct SunSensor {
     /// Time from a sample to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Intervals in which it fails.
+    /// Intervals in which the Sun sensor fails.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
 }

@@ -30,7 +30,7 @@ pub struct Tachometer {
     /// Standard deviation of the white noise of each reading (rad/s).
     #[serde(default)]
     pub noise: NonNegative,
-    /// Intervals in which they fail; the drives then keep the last reading.
+    /// Intervals in which the tachometers fail; the drives then keep the last reading.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub faults: Vec<SensorFailure>,
 }

@@ -79,7 +79,8 @@ impl RigidRelay {
 
     fn cycle(&self, sides: RelaySides, k_t: f64) -> Option<RigidCycle> {
         let Self { strong, weak, eps, gamma, inertia, left_boundary } = *self;
-        if weak <= 0.0 {
+        // Without a weak torque nothing returns a body to the boundary that it left.
+        if weak <= 0.0 && sides == RelaySides::One {
             return None;
         }
         let q = f64::sqrt(2.0 * strong * gamma);
@@ -100,7 +101,11 @@ impl RigidRelay {
         let brake = k_t * push;
         let exit = -0.5 * q * ((1.0 - 2.0 * k_t) * z + 1.0 / z);
         let (coast, halves, angle_min) = match sides {
-            RelaySides::Two => ((-exit - entry) / weak, 2.0, -angle_max),
+            // (-exit - entry)/weak, without the difference of two numbers that a weak torque of 0 makes equal.
+            RelaySides::Two => {
+                let crossing = 2.0 * (2.0 * eps - gamma) / (q * q) - 1.0 / strong;
+                (q * crossing / (z * (1.0 - k_t) * (1.0 - r)), 2.0, -angle_max)
+            }
             RelaySides::One => ((entry - exit) / weak, 1.0, eps - entry * entry / (2.0 * weak)),
         };
         // A two-sided coast that would reverse, or a one-sided one that reaches the left boundary, is no cycle.

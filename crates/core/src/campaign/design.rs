@@ -18,7 +18,7 @@ pub const MOST_NUMBERS: usize = 10_000_000;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Design {
-    /// How the `[uncertain]` keys are drawn.
+    /// Sampling of the `[uncertain]` keys.
     #[serde(default)]
     pub draws: Sampling,
     /// How many points a Latin hypercube of the `[uncertain]` keys has; 0 for others.
@@ -68,9 +68,9 @@ pub enum DesignBlock {
     },
     /// Points that are spread over ranges of keys.
     Sample {
-        /// How they are spread.
+        /// Method that spreads the points over the ranges.
         sampling: Sampling,
-        /// How many they are.
+        /// Number of points.
         count: u64,
         /// The ranges.
         ranges: Vec<KeyRange>,

@@ -122,7 +122,7 @@ impl Directory {
         Ok(directory)
     }
 
-    /// Removes all runs but these.
+    /// Removes the parts of all runs but these.
     pub fn shrink(&mut self, runs: Range<u64>) -> Result<(), DirectoryError> {
         for part in self.parts()?.iter().filter(|part| part.start < runs.start || part.end > runs.end) {
             let file = self.file(part);

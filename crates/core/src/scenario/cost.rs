@@ -266,7 +266,8 @@ impl Scenario {
         // Crossings are predicted or searched, and exact panels integrated, by steps that are a part of a vibration.
         let is_coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let is_sampled = self.study.sample_period.is_some();
-        let search = if is_sampled { 0.0 } else { self.law.search_steps(is_coupled) };
+        let search =
+            if is_sampled { 0.0 } else { self.law.relay().map_or(0.0, |law| law.search_steps(is_coupled)) };
         let strides = if self.model.chain().is_some() {
             20.0
         } else if search > 0.0 {
@@ -283,7 +284,8 @@ impl Scenario {
             steps.push(("duration".to_owned(), strides * duration * fastest));
         }
         let body = self.model.planar().filter(|_| !is_sampled);
-        if let Some(mean) = body.and_then(|body| self.law.switching_interval(body.commanded_inertia())) {
+        if let (Some(body), Some(law)) = (body, self.law.relay()) {
+            let mean = law.switching_interval(body.commanded_inertia());
             // The first window of chatter ends the run.
             let chatters = mean * SWITCHINGS as f64 <= shortest_window(fastest);
             let switchings = if chatters { SWITCHINGS as f64 } else { duration / mean };
@@ -293,7 +295,7 @@ impl Scenario {
             let rate = self.largest_expected_rate(body);
             let turn = LONGEST_TURN / rate;
             let step = self.model.flexible().map_or(turn, |flexible| flexible.step(rate));
-            let step = step.min(self.imbalance_step());
+            let step = step.min(self.rotor_step());
             if step.is_finite() {
                 let count = if self.is_quiet(rate) {
                     // Applied forces shorten steps to those that resolve the modes.
@@ -351,12 +353,13 @@ impl Scenario {
         limits.fold(start, f64::max) + around + own + gimbals + self.largest_sine_frequency()
     }
 
-    /// Returns the length of steps that resolve the imbalance of wheels at their initial or bias speed (s); infinite
-    /// without wheels.
-    fn imbalance_step(&self) -> f64 {
+    /// Returns the length of steps that resolve viscous friction and the imbalance of wheels at their initial or bias
+    /// speed (s); infinite without wheels.
+    fn rotor_step(&self) -> f64 {
         let Some((wheels, _)) = self.actuator.wheels() else { return f64::INFINITY };
         let highest = self.study.bearings.iter().map(Bearing::highest_order).fold(0.0, f64::max);
-        IMBALANCE_PHASE / (highest * wheels.largest_initial_speed())
+        let slowing = self.study.bearings.iter().map(Bearing::viscous_rate).fold(0.0, f64::max);
+        IMBALANCE_PHASE / (highest * wheels.largest_initial_speed()).max(slowing)
     }
 
     /// Returns the periodic messages of a log of the given detail: the key and the number of messages of each.

@@ -90,7 +90,7 @@ impl Guidance {
         }
     }
 
-    /// Whether the target moves from one attitude to another, of three axes.
+    /// Returns true if the target of three axes moves from one attitude to another.
     pub fn slews(&self, now: Instant) -> bool {
         self.profile.as_ref().is_some_and(|way| way.slews(now))
     }

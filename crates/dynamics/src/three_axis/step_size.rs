@@ -5,7 +5,7 @@ use flexsc_numerics::lanes::{LaneFloat, SimdTask};
 
 use super::constants::{BodyConstants, ModeConstants, centrifugal_terms};
 use super::motion::{EXTRA_RESPONSES, ThreeAxisMotion};
-use super::rotors::gimbal;
+use super::rotors::{Bearing, gimbal};
 use super::shared::StepResponses;
 use super::state::IntegratorState;
 use super::step_levels::{BodyMotion, ModeAmplitude};
@@ -71,7 +71,13 @@ impl ThreeAxisMotion {
             amplitudes: estimated.then_some(&*amplitudes),
         };
         let level = self.levels.level(motion);
-        self.levels.level_for_frequency(level, self.imbalance_frequency(&self.grid))
+        self.levels.level_for_frequency(level, self.imbalance_frequency(&self.grid).max(self.friction_rate()))
+    }
+
+    /// Returns the highest rate at which viscous friction slows a rotor (1/s): the stages of a longer step would not
+    /// converge.
+    fn friction_rate(&self) -> f64 {
+        self.bearings.iter().map(Bearing::viscous_rate).fold(0.0, f64::max)
     }
 
     /// Returns the highest frequency of the rotors' imbalance in a state (rad/s).

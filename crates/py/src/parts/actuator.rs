@@ -67,7 +67,7 @@ impl Demanded {
         self.demands.iter().map(value).collect()
     }
 
-    /// The kinds of these numbers: `torque`, `change` or `moment`.
+    /// The kinds of the commanded numbers: `torque`, `change` or `moment`.
     #[getter]
     fn kinds(&self) -> Vec<&'static str> {
         let kind = |demand: &Demand| match demand {

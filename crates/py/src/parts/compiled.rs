@@ -7,8 +7,9 @@ use flexsc_core::control::law::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, Guards, Law, LawSpec, LawState, Phase,
     Setpoint,
 };
+use flexsc_core::control::offers::LawOffers;
 use flexsc_core::control::part::Part;
-use flexsc_core::control::state_estimate::StateEstimate;
+use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::dynamics::guard::Guard;
 use flexsc_core::numerics::time::{Instant, Span};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
@@ -70,12 +71,9 @@ impl LawSpec for CompiledLaw {
         })
     }
 
-    fn period(&self) -> Option<Span> {
-        self.period
-    }
-
-    fn is_switching(&self) -> bool {
-        self.switches
+    fn offers(&self) -> LawOffers {
+        let is_switching = self.switches;
+        LawOffers { is_switching, ..LawOffers::new(self.period, EstimateNeeds::Motion) }
     }
 
     fn expected_band(&self) -> ErrorBand {

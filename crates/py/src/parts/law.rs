@@ -9,6 +9,7 @@ use flexsc_core::control::law::{
     Authority as EngineAuthority, ControlOutput as Held, DecisionCause, ErrorBand, Law, LawSpec, LawState,
     Phase, ReferenceNeeds, Setpoint, Tunable,
 };
+use flexsc_core::control::offers::LawOffers;
 use flexsc_core::control::part::Part;
 use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::numerics::time::{Instant as Exact, Span};
@@ -214,7 +215,7 @@ impl PythonLaw {
     }
 }
 
-/// A period, which is longer than nothing.
+/// Returns a period of more than 0 s, or an error that names it.
 pub fn positive(seconds: f64, name: &str) -> PyResult<Span> {
     match span(seconds, name)? {
         Span::ZERO => Err(PyValueError::new_err(format!("{name} must be longer than 0 s"))),
@@ -239,20 +240,12 @@ impl LawSpec for PythonLaw {
         })
     }
 
-    fn period(&self) -> Option<Span> {
-        self.period
-    }
-
-    fn is_switching(&self) -> bool {
-        self.switches
+    fn offers(&self) -> LawOffers {
+        LawOffers { is_switching: self.switches, ..LawOffers::new(self.period, self.reads) }
     }
 
     fn expected_band(&self) -> ErrorBand {
         self.promise.map_or(ErrorBand::None, ErrorBand::Absolute)
-    }
-
-    fn needs(&self) -> EstimateNeeds {
-        self.reads
     }
 
     fn tunable(&self) -> Vec<Tunable> {

@@ -15,6 +15,9 @@ const STRIDES: usize = 480;
 /// No command is searched that lasts longer, in periods of the fastest mode: its peak is sought among that many.
 const MOST_PERIODS: f64 = 2e4;
 
+/// No command is searched that is shorter, in periods of the fastest mode: the modes would take no part in it.
+const FEWEST_PERIODS: f64 = 1e-4;
+
 /// Plans the shortest manoeuvre whose peak torque does not exceed `limit` (N m).
 pub fn shortest_plan(planner: &ManoeuvrePlanner, limit: f64) -> Result<Plan, ConfigError> {
     let bound = planner.rigid_bound(limit);
@@ -41,6 +44,16 @@ pub fn shortest_plan(planner: &ManoeuvrePlanner, limit: f64) -> Result<Plan, Con
             format!(
                 "must be enough for a command that lasts at most {MOST_PERIODS:e} periods of the fastest mode, got {} N m, with \
                  which it lasts {periods:.1e}",
+                quantity::shortest(limit)
+            ),
+        ));
+    }
+    if fastest > 0.0 && periods < FEWEST_PERIODS {
+        return Err(ConfigError::new(
+            "peak_torque",
+            format!(
+                "must be so small that the command lasts at least {FEWEST_PERIODS:e} periods of the fastest mode, got {} N m, \
+                 with which it lasts {periods:.1e}",
                 quantity::shortest(limit)
             ),
         ));

@@ -25,7 +25,7 @@ pub struct ElasticStates {
     /// Natural frequencies in the filter's model (rad/s); default: the body's own.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub frequencies: Option<Vec<Positive>>,
-    /// Factor on these frequencies: the error of the filter's model.
+    /// Factor on the frequencies: the error of the filter's model.
     #[serde(default = "one")]
     pub factor: Positive,
     /// Relative standard deviation of the frequencies at the start, which the filter then identifies; default: it takes them as

@@ -1,7 +1,7 @@
 //! Rows of a cycle of three axes: errors, rates, jets, wheels, and adaptive observers.
 
 use flexsc_control::actuator::Saturation;
-use flexsc_record::{LoggedRevisions, Record, RecordError, Tracking};
+use flexsc_record::{LoggedRevisions, Record, RecordError, Report, Tracking};
 
 use super::journal_events::JournalEvents;
 use crate::scenario::Scenario;
@@ -14,13 +14,21 @@ pub struct CycleRows {
     revisions: LoggedRevisions,
     /// How wheels and magnetorquers reach their limits.
     saturation: Saturation,
+    /// Reports of the last cycle: of the body and its actuators, and of the estimator.
+    actuator_report: Report,
+    estimator_report: Report,
 }
 
 impl CycleRows {
     /// Creates the memory of a scenario's rows, before its start.
     pub fn new(scenario: &Scenario) -> Self {
         let saturation = Saturation::new(&scenario.actuator, scenario.duration.seconds());
-        Self { revisions: LoggedRevisions::default(), saturation }
+        Self {
+            revisions: LoggedRevisions::default(),
+            saturation,
+            actuator_report: Report::new(),
+            estimator_report: Report::new(),
+        }
     }
 
     /// Returns the warning of the run's end that wheels or magnetorquers have reached their limits.
@@ -37,18 +45,22 @@ impl CycleRows {
     ) -> Result<(), RecordError> {
         let Some(motion) = run.plant.quantities().three_axis() else { return Ok(()) };
         let (now, truth) = (run.now, run.plant.truth());
-        let mut report = run.actuator_cycle_report(motion);
+        let report = &mut self.actuator_report;
+        report.clear();
+        run.add_actuator_cycle(motion, report);
         report.skip_repeated(&mut self.revisions);
-        self.saturation.observe(now.seconds(), &report);
-        run.record_report(&report, record)?;
+        self.saturation.observe(now.seconds(), report);
+        run.record_report(report, record)?;
         if let Some(written) = run.guidance.target_as_written(now) {
             let error = || truth.orientation.error_from(&run.guidance.target(now));
             journal.target(now, written, error, record)?;
         }
         if run.estimation.has_estimator {
             let damped = run.laws.damping_status();
-            let report = run.estimator_cycle_report(&damped);
-            run.record_report(&report, record)?;
+            let report = &mut self.estimator_report;
+            report.clear();
+            run.add_estimator_cycle(&damped, report);
+            run.record_report(report, record)?;
             if report.row::<Tracking>().is_some() {
                 let trusted = |axis: usize| run.estimation.estimates[axis].elastic_is_trusted;
                 journal.damping_changed(now, &damped, [0, 1, 2].map(trusted), record)?;

@@ -90,18 +90,15 @@ impl RunView<'_> {
         report
     }
 
-    /// Returns the rows of the estimator at the start of a cycle, with this status of active damping about each axis.
-    pub fn estimator_cycle_report(&self, damping: &[DampingStatus]) -> Report {
-        let mut report = Report::new();
-        self.add_reports(Occasion::Cycle, damping, &[&*self.estimation.estimator], &mut report);
-        report
+    /// Adds the rows of the estimator at the start of a cycle, with this status of active damping about each axis.
+    pub fn add_estimator_cycle(&self, damping: &[DampingStatus], report: &mut Report) {
+        self.add_reports(Occasion::Cycle, damping, &[&*self.estimation.estimator], report);
     }
 
-    /// Returns the values of a three-axis body and the rows of its actuator at the start of a cycle.
-    pub fn actuator_cycle_report(&self, motion: &dyn ThreeAxisQuantities) -> Report {
+    /// Adds the values of a three-axis body and the rows of its actuator at the start of a cycle.
+    pub fn add_actuator_cycle(&self, motion: &dyn ThreeAxisQuantities, report: &mut Report) {
         let (rigid, elastic) = motion.body().rates;
         let (elastic_energy_j, visible_energy_j) = motion.elastic_energies();
-        let mut report = Report::new();
         report.add_value(ThreeAxisCycle {
             elastic_energy_j,
             visible_energy_j,
@@ -113,8 +110,7 @@ impl RunView<'_> {
         });
         let actuator = &*self.loads.actuator;
         report.add_value(StoredMomentum(actuator.capabilities().stored_momentum(self.now)));
-        self.add_reports(Occasion::Cycle, &[], &[actuator], &mut report);
-        report
+        self.add_reports(Occasion::Cycle, &[], &[actuator], report);
     }
 
     /// Adds the rows of some parts at the current instant to a report.

@@ -78,6 +78,11 @@ impl Bearing {
         self.viscous * speed + self.coulomb * slip.sign()
     }
 
+    /// Returns the rate at which viscous friction slows the rotor (1/s).
+    pub fn viscous_rate(&self) -> f64 {
+        if self.viscous > 0.0 { self.viscous / self.inertia } else { 0.0 }
+    }
+
     /// Returns true if the bearing can hold its rotor at rest.
     pub fn can_stick(&self) -> bool {
         self.breakaway > 0.0
