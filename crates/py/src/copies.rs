@@ -96,11 +96,12 @@ impl Simulators {
             pool.in_place_scope(|scope| {
                 scope.spawn(move |_| {
                     let each = flights.par_iter_mut().zip(rows.par_chunks_exact_mut(width));
-                    each.with_min_len(TOGETHER)
-                        .enumerate()
-                        .for_each_with(stop_flag, |stop_flag, (index, (flight, row))| {
-                            on(index, flight, row, stop_flag)
-                        });
+                    each.with_min_len(TOGETHER).enumerate().for_each_with(
+                        stop_flag,
+                        |stop_flag, (index, (flight, row))| {
+                            on(index, flight, row, stop_flag);
+                        },
+                    );
                     // The receiver is gone if Python raised.
                     let _ = done.send(());
                 });

@@ -10,7 +10,7 @@ use super::row::TopicRow;
 use super::topics::{TOPICS, index_of, report_rank};
 
 /// Row of any topic, with its type erased.
-pub trait LogRow: Any + fmt::Debug {
+pub trait LogRow: Any + fmt::Debug + Send + Sync {
     /// Returns the topic of the row.
     fn topic(&self) -> LogTopic<'_>;
 
@@ -24,7 +24,7 @@ pub trait LogRow: Any + fmt::Debug {
     fn copy(&self) -> Box<dyn LogRow>;
 }
 
-impl<R: TopicRow + Clone + fmt::Debug + 'static> LogRow for R {
+impl<R: TopicRow + Clone + fmt::Debug + Send + Sync + 'static> LogRow for R {
     fn topic(&self) -> LogTopic<'_> {
         LogTopic::Declared(const { index_of(R::TOPIC.name) })
     }
@@ -56,12 +56,12 @@ impl Clone for Box<dyn LogRow> {
 }
 
 /// Value of a part at one instant that is not logged.
-pub trait ReportValue: Any + fmt::Debug {
+pub trait ReportValue: Any + fmt::Debug + Send + Sync {
     /// Returns a copy of the value.
     fn copy_value(&self) -> Box<dyn ReportValue>;
 }
 
-impl<T: Any + fmt::Debug + Clone> ReportValue for T {
+impl<T: Any + fmt::Debug + Clone + Send + Sync> ReportValue for T {
     fn copy_value(&self) -> Box<dyn ReportValue> {
         Box::new(self.clone())
     }

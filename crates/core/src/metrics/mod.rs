@@ -337,6 +337,9 @@ impl Record for MetricsCollector {
     }
 
     fn record(&mut self, now: Instant, sample: Sample<'_>) -> Result<(), RecordError> {
+        if let (RunKind::Switchings(switchings), Sample::Switching(..)) = (&mut self.kind, sample) {
+            return switchings.record(now, sample);
+        }
         if let Some(filter) = &mut self.filter {
             let one = sample.get().map(|estimate: &Estimate| std::slice::from_ref(estimate));
             let axes = one.or_else(|| sample.get().map(|estimates: &Estimates| &estimates.axes[..]));
@@ -360,9 +363,10 @@ impl Record for MetricsCollector {
             RunKind::Spatial(spatial) => {
                 if let Sample::Report(report) = sample {
                     spatial.observe_cycle(now, report);
+                } else {
+                    sample.get().into_iter().for_each(|event| spatial.observe_bearing_event(event));
+                    sample.get().into_iter().for_each(|row| spatial.observe_acceleration(row));
                 }
-                sample.get().into_iter().for_each(|event| spatial.observe_bearing_event(event));
-                sample.get().into_iter().for_each(|row| spatial.observe_acceleration(row));
                 sample.get().into_iter().for_each(|tracking| self.tracked.observe(tracking));
                 Ok(())
             }

@@ -271,7 +271,9 @@ impl Part for Observing {
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         if at.occasion == Occasion::Sample {
             let row = self.attitude_row(at.now, &at.truth.orientation(), at.truth.gyro_bias());
-            row.into_iter().for_each(|row| report.add(row));
+            if let Some(row) = row {
+                report.add(row);
+            }
         }
     }
 
