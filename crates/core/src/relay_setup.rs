@@ -127,10 +127,10 @@ pub fn law_state(phase: CyclePhase, side: f64) -> Phase {
     match (phase, side > 0.0) {
         (CyclePhase::Coast, true) => Phase::WeakRight,
         (CyclePhase::Coast, false) => Phase::WeakLeft,
-        (CyclePhase::Push, true) => Phase::RightPush,
-        (CyclePhase::Push, false) => Phase::LeftPush,
-        (CyclePhase::Brake, true) => Phase::RightBrake,
-        (CyclePhase::Brake, false) => Phase::LeftBrake,
+        (CyclePhase::Push, true) => Phase::PushFromRight,
+        (CyclePhase::Push, false) => Phase::PushFromLeft,
+        (CyclePhase::Brake, true) => Phase::BrakeFromRight,
+        (CyclePhase::Brake, false) => Phase::BrakeFromLeft,
     }
 }
 

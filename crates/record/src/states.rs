@@ -97,15 +97,15 @@ labels! {
         /// Relay: weak push before the first boundary is reached.
         Start = "W0",
         /// Relay: strong push to the left, from beyond the right boundary.
-        RightPush = "RACC",
+        PushFromRight = "RACC",
         /// Relay: strong timed brake of the leftward motion.
-        RightBrake = "RBRK",
+        BrakeFromRight = "RBRK",
         /// Relay: weak push to the right, while coasting inside the dead zone.
         WeakRight = "W+",
         /// Relay: strong push to the right, from beyond the left boundary.
-        LeftPush = "LACC",
+        PushFromLeft = "LACC",
         /// Relay: strong timed brake of the rightward motion.
-        LeftBrake = "LBRK",
+        BrakeFromLeft = "LBRK",
         /// Relay: weak push to the left, while coasting inside the dead zone.
         WeakLeft = "W-",
         /// Phase plane: the rate is within its limits.
@@ -120,7 +120,7 @@ labels! {
 impl Phase {
     /// Returns true if the strong torque is on.
     pub const fn is_strong(self) -> bool {
-        matches!(self, Self::RightPush | Self::RightBrake | Self::LeftPush | Self::LeftBrake)
+        matches!(self, Self::PushFromRight | Self::BrakeFromRight | Self::PushFromLeft | Self::BrakeFromLeft)
     }
 }
 

@@ -21,10 +21,11 @@ use crate::part::Part;
 use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
-/// Steps of the law per radian of the fastest mode: between runs in batches, which take half as long, and single runs with
-/// damped modes, which take twice as long.
+/// Steps of the crossing search per radian of the fastest mode, for the estimate of computing time. Runs in batches need half
+/// as many, single runs with damped modes twice as many.
 const SEARCH_STEPS: f64 = 0.1;
-/// Steps per radian of the fastest mode with a one-sided law, whose long flights outside the dead zone are searched.
+/// Steps of the crossing search per radian of the fastest mode with a one-sided law, for the estimate of computing time: long
+/// motions outside the dead zone are searched.
 const ONE_SIDED_STEPS: f64 = 0.7;
 
 /// The relay law.
@@ -173,7 +174,7 @@ impl Law for Relay {
         state_estimate: &StateEstimate,
     ) -> ControlOutput {
         let phase = self.next(cause, state_estimate);
-        if matches!(phase, Phase::RightPush | Phase::LeftPush) {
+        if matches!(phase, Phase::PushFromRight | Phase::PushFromLeft) {
             self.pushed_at = now;
         }
         self.phase = Some(phase);
@@ -209,20 +210,20 @@ impl Relay {
     /// Returns the state after an event.
     fn next(&self, cause: DecisionCause, state_estimate: &StateEstimate) -> Phase {
         match (self.phase.unwrap_or(Phase::Start), cause) {
-            (_, DecisionCause::Start) if self.right().holds(state_estimate.angle) => Phase::RightPush,
+            (_, DecisionCause::Start) if self.right().holds(state_estimate.angle) => Phase::PushFromRight,
             (_, DecisionCause::Start)
                 if self.sides == RelaySides::Two && self.left().holds(state_estimate.angle) =>
             {
-                Phase::LeftPush
+                Phase::PushFromLeft
             }
             (_, DecisionCause::Start) => Phase::Start,
-            (Phase::RightPush, _) => Phase::RightBrake,
-            (Phase::RightBrake, _) => Phase::WeakRight,
-            (Phase::LeftPush, _) => Phase::LeftBrake,
-            (Phase::LeftBrake, _) => Phase::WeakLeft,
+            (Phase::PushFromRight, _) => Phase::BrakeFromRight,
+            (Phase::BrakeFromRight, _) => Phase::WeakRight,
+            (Phase::PushFromLeft, _) => Phase::BrakeFromLeft,
+            (Phase::BrakeFromLeft, _) => Phase::WeakLeft,
             // The body leaves the dead zone through the right boundary, guard 0, or the left one.
-            (_, DecisionCause::Guard(0) | DecisionCause::Timeout) => Phase::RightPush,
-            (_, DecisionCause::Guard(_)) => Phase::LeftPush,
+            (_, DecisionCause::Guard(0) | DecisionCause::Timeout) => Phase::PushFromRight,
+            (_, DecisionCause::Guard(_)) => Phase::PushFromLeft,
         }
     }
 
@@ -245,10 +246,10 @@ impl Relay {
         };
         match phase {
             Phase::WeakLeft => until_guards(-weak, boundaries),
-            Phase::RightPush => until_guards(-strong, Guards::one(Guard::at_most(back))),
-            Phase::LeftPush => until_guards(strong, Guards::one(Guard::at_least(-back))),
-            Phase::RightBrake => until_braked(strong),
-            Phase::LeftBrake => until_braked(-strong),
+            Phase::PushFromRight => until_guards(-strong, Guards::one(Guard::at_most(back))),
+            Phase::PushFromLeft => until_guards(strong, Guards::one(Guard::at_least(-back))),
+            Phase::BrakeFromRight => until_braked(strong),
+            Phase::BrakeFromLeft => until_braked(-strong),
             // Start, and the state after the right brake.
             _ => until_guards(weak, boundaries),
         }

@@ -12,7 +12,7 @@ use crate::one_or_many::OneOrMany;
 pub struct ExposureMean(Vec<(f64, Quaternion<f64>)>);
 
 impl ExposureMean {
-    /// Adds an attitude with the time `lasts` (s) that it represents.
+    /// Adds an attitude with its weight, the duration that it represents (s).
     pub fn add(&mut self, attitude: Quaternion<f64>, duration: f64) {
         self.0.push((duration, attitude));
     }

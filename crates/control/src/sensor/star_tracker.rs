@@ -17,25 +17,25 @@ use crate::part::Part;
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
 pub struct StarTracker {
-    /// Point of the structure at which it is mounted; default: the first of the body's points.
+    /// Point of the structure at which the star tracker is mounted; default: the first of the body's points.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub point: Option<String>,
-    /// Period of its exposures (s).
+    /// Period of the exposures (s).
     pub period: Span,
-    /// Standard deviation of the white noise about each of its axes (rad): x and y across the boresight, z about it.
+    /// Standard deviation of the white noise about the star tracker's axes (rad): x and y across the boresight, z about it.
     #[serde(default)]
     pub noise: [NonNegative; 3],
-    /// Orientation of its axes in the body, a unit quaternion \[w, x, y, z\] that turns vectors of its axes into the body's;
-    /// default: its axes are the body's.
+    /// Orientation of the star tracker's axes in the body: a unit quaternion \[w, x, y, z\] that transforms vectors from its axes
+    /// to the body's; default: the identity.
     #[serde(default)]
     pub axes: Attitude,
     /// Time from the middle of an exposure to its output (s).
     #[serde(default)]
     pub latency: Time,
-    /// Time over which it gathers light (s): a reading is the mean attitude over it; 0 for that of the instant.
+    /// Exposure time (s): a reading is the mean attitude over the exposure; 0 for the attitude at an instant.
     #[serde(default, skip_serializing_if = "is_instant")]
     pub exposure: Time,
-    /// Rate of the body at the tracker at and above which it gives no measurement (rad/s); default: no limit.
+    /// Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub blackout_rate: Option<Positive>,
     /// Intervals in which the star tracker fails.
@@ -55,8 +55,8 @@ impl StarTracker {
         StarTrackerState {
             tracker: self.clone(),
             noise: [0, 1, 2].map(draws),
-            late: LatencyQueue::new(self.period, self.latency()),
-            gathers: None,
+            queue: LatencyQueue::new(self.period, self.latency()),
+            open_exposure: None,
         }
     }
 
@@ -122,9 +122,9 @@ pub struct StarTrackerState {
     tracker: StarTracker,
     /// Random stream about each of the tracker's axes.
     noise: [Stream; 3],
-    late: LatencyQueue,
-    /// Attitude in the middle of the current exposure, and the error of its reading (rad).
-    gathers: Option<(Quaternion<f64>, Vector)>,
+    queue: LatencyQueue,
+    /// True attitude in the middle of the exposure that is open, and the error of the reading (rad).
+    open_exposure: Option<(Quaternion<f64>, Vector)>,
 }
 
 impl StarTrackerState {
@@ -133,7 +133,7 @@ impl StarTrackerState {
         // Random numbers are drawn during a failure too, so that later ones do not depend on it.
         let deviations = self.tracker.noise.map(NonNegative::get);
         let draws: [f64; 3] = std::array::from_fn(|axis| deviations[axis] * self.noise[axis].normal());
-        self.gathers = None;
+        self.open_exposure = None;
         let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) else {
             return None;
         };
@@ -148,7 +148,7 @@ impl StarTrackerState {
         let reported = with_failures(faults, now, Some(reading), last);
         // A repeated reading, and the reading at the start, already have their exposure.
         let again = with_failures(faults, now, None, last).is_some() || now == Instant::START;
-        self.gathers =
+        self.open_exposure =
             (reported.is_some() && !again && self.tracker.has_exposure()).then_some((attitude, error));
         reported
     }
@@ -160,20 +160,20 @@ impl Sensor for StarTrackerState {
     /// Returns the reading whose latency has elapsed; the reading at the start is available at once, as if exposed
     /// before.
     fn read(&mut self, now: Instant, truth: &Truth, last: Option<&Reading>) -> Option<Reading> {
-        if self.late.samples_now(now) {
+        if self.queue.samples_now(now) {
             let reading = self.expose(now, truth, last);
-            self.late.push(now, reading);
+            self.queue.push(now, reading);
         }
-        self.late.take_due(now)
+        self.queue.take_due(now)
     }
 
     fn next_due(&mut self, _: Instant, _: Span) -> Instant {
-        self.late.next_due()
+        self.queue.next_due()
     }
 
     fn close_exposure(&mut self, exposure: &ExposureMean) {
-        if let Some((middle, error)) = self.gathers.take() {
-            self.late.replace_last(Orientation::Attitude(exposure.mean(&middle) * rotation(&error)));
+        if let Some((middle, error)) = self.open_exposure.take() {
+            self.queue.replace_last(Orientation::Attitude(exposure.mean(&middle) * rotation(&error)));
         }
     }
 
@@ -247,7 +247,7 @@ mod tests {
                     gathered = Instant::START;
                 }
                 let reading = truth(attitude_at(now.seconds()), [0.0; 3], [0.0; 3]);
-                let exposes = tracker.late.samples_now(now) && now > Instant::START;
+                let exposes = tracker.queue.samples_now(now) && now > Instant::START;
                 let (one, other) = (tracker.read(now, &reading, None), plain.read(now, &reading, None));
                 if exposes {
                     gathered = now + tracker.tracker.half_exposure();
@@ -274,13 +274,13 @@ mod tests {
         let faults = "faults = [{ stuck = { from = 2.0, to = 3.0 } }, { silent = { from = 3.0, to = 4.0 } }]";
         let mut tracker = start(&format!("latency = 1.5\nexposure = 1.0\nblackout_rate = 0.1\n{faults}"));
         let last = Reading { at: Orientation::Attitude(still), rate: None, sight: None };
-        let mut gathers = |t: f64, rate: f64| {
+        let mut open_exposure = |t: f64, rate: f64| {
             let now = Instant::START + Span::from_seconds(t);
             tracker.read(now, &truth(still, [0.0; 3], [rate, 0.0, 0.0]), Some(&last));
-            tracker.gathers.is_some()
+            tracker.open_exposure.is_some()
         };
         let found = [(0.0, 0.0), (1.0, 0.0), (2.0, 0.0), (3.0, 0.0), (4.0, 0.2), (5.0, 0.0)];
-        assert_eq!(found.map(|(t, rate)| gathers(t, rate)), [false, true, false, false, false, true]);
+        assert_eq!(found.map(|(t, rate)| open_exposure(t, rate)), [false, true, false, false, false, true]);
     }
 
     #[test]

@@ -149,8 +149,8 @@ impl LimitCycleDetector {
                 .filter(|&index| self.switchings[self.place(index)].phase == phase)
                 .collect()
         };
-        let right_pushes = sections_of(Phase::RightPush);
-        let sections = if right_pushes.len() > 1 { right_pushes } else { sections_of(Phase::LeftPush) };
+        let right_pushes = sections_of(Phase::PushFromRight);
+        let sections = if right_pushes.len() > 1 { right_pushes } else { sections_of(Phase::PushFromLeft) };
         let last = *sections.last()?;
         let end = self.switching(last).state;
         let order = (1..=LONGEST.min(sections.len() - 1)).find(|order| {
@@ -163,7 +163,7 @@ impl LimitCycleDetector {
         let span = |pair: &[Switching]| pair[1].switching.time.since(pair[0].switching.time).seconds();
         let period = one[one.len() - 1].switching.time.since(one[0].switching.time).seconds();
         let count = |phase| one[1..].iter().filter(|s| s.switching.phase == phase).count();
-        let kind = match (count(Phase::RightPush), count(Phase::LeftPush)) {
+        let kind = match (count(Phase::PushFromRight), count(Phase::PushFromLeft)) {
             (0, _) | (_, 0) => CycleKind::OneSided,
             (right, left) if right == left => CycleKind::TwoSided,
             _ => CycleKind::Mixed,

@@ -155,8 +155,8 @@ impl RelayMetrics {
     }
 
     fn enter(&mut self, now: Instant, phase: Phase, torque: f64) {
-        self.pushes.0 += u64::from(phase == Phase::RightPush);
-        self.pushes.1 += u64::from(phase == Phase::LeftPush);
+        self.pushes.0 += u64::from(phase == Phase::PushFromRight);
+        self.pushes.1 += u64::from(phase == Phase::PushFromLeft);
         self.switch(now, torque, phase.is_strong());
     }
 }

@@ -21,8 +21,8 @@ use nalgebra::{Cholesky, Matrix3};
 
 use super::{AppendageDrives, Scenario, ScenarioSpec};
 
-/// Assessment period of a run without a period of its own (s).
-const TICK: f64 = 1.0;
+/// Period of the cycles if neither law nor sensors have a period (s).
+const DEFAULT_CYCLE: f64 = 1.0;
 /// Tolerance for rounded shares.
 const ROUNDING: f64 = 1e-9;
 
@@ -37,7 +37,7 @@ pub struct ResolvedScenario {
     pub law_period: Option<Span>,
     /// Sampling period; `None` if the angle is measured at every instant.
     pub sample_period: Option<Span>,
-    /// Assessment period of a three-axis body.
+    /// Period of the cycles of a three-axis body: that of the law, else of the sensors, else 1 s.
     pub assessment_period: Span,
     /// Point of a three-axis body at which each sensor is mounted.
     pub sensor_points: Vec<String>,
@@ -105,7 +105,7 @@ impl ResolvedScenario {
             ..Self::default()
         };
         study.assessment_period =
-            study.law_period.or(study.sample_period).unwrap_or(Span::from_seconds(TICK));
+            study.law_period.or(study.sample_period).unwrap_or(Span::from_seconds(DEFAULT_CYCLE));
         match model.axes() {
             BodyAxes::One(body) => study.axes.push(body.clone()),
             BodyAxes::Three(body) => study.locate_sensors_and_actuators(written, model, body, unmet)?,

@@ -10,22 +10,24 @@ use crate::scenario::Scenario;
 /// scenario needs more than a few.
 const MOST_DECISIONS: u32 = 32;
 
-/// Current instant of a run, with the counters of what must not happen without end.
+/// Current instant of a run, with counters of decisions, switchings and bearing events, whose excess is chatter.
 #[derive(Clone, Debug)]
 pub struct Clock {
     now: Instant,
     end: Instant,
-    /// Period of the cycles of a three-axis body, and (`next_cycle`) the instant of the next one.
+    /// Period at which a three-axis run is assessed and logged: that of the law, else of the sensors, else 1 s; `None` for
+    /// one axis.
     cycle_period: Option<Span>,
+    /// Instant of the next cycle.
     next_cycle: Option<Instant>,
     decisions_at_now: u32,
-    /// How often the law has switched since the last window of switchings ended, and when that was.
+    /// Number of switchings in the current window of switchings, and the start of that window.
     switchings: (u64, Instant),
     /// Shortest duration of a window of switchings (s) that is not chatter.
     shortest_window: f64,
     /// True if a wheel in bearings has stuck or let go at the current instant.
     bearing_event: bool,
-    /// Number of such events within a nanosecond, and the instant of the first.
+    /// Number of bearing events within a nanosecond, and the instant of the first.
     recent_bearing_events: (u32, Instant),
 }
 
@@ -77,7 +79,7 @@ impl Clock {
         self.now == Instant::START && self.decisions_at_now == 0
     }
 
-    /// Begins the cycles of a three-axis body, of which the first is due at once.
+    /// Begins the cycles of a three-axis body; the first cycle is due at the current instant.
     pub fn begin_cycles(&mut self) {
         self.next_cycle = self.cycle_period.map(|_| self.now);
     }

@@ -82,8 +82,8 @@ impl ControlLaws {
         matches!(event, Event::Guard(_)) || self.laws.must_decide(now, sampled, estimates)
     }
 
-    /// Asks the laws that an event concerns; returns the cause of the first decision.
-    pub fn ask(
+    /// Lets the laws that an event concerns decide, without a count of switchings; returns the cause of the first decision.
+    pub fn decide_uncounted(
         &mut self,
         now: Instant,
         event: Event,
@@ -113,16 +113,16 @@ impl ControlLaws {
         guidance: &Guidance,
         estimates: &mut [StateEstimate],
     ) -> LawDecision {
-        let before = self.state();
+        let before = self.phase();
         let counted =
-            if self.objective.counts_switchings() { self.states(estimates.len()) } else { Vec::new() };
-        let cause = self.ask(now, event, guidance, estimates);
+            if self.objective.counts_switchings() { self.phases(estimates.len()) } else { Vec::new() };
+        let cause = self.decide_uncounted(now, event, guidance, estimates);
         if !counted.is_empty() {
-            let after = self.states(estimates.len());
+            let after = self.phases(estimates.len());
             let switched = counted.iter().zip(&after).filter(|(before, after)| before != after).count();
             self.objective.count_switchings(now, switched);
         }
-        LawDecision { before, after: self.state(), cause }
+        LawDecision { before, after: self.phase(), cause }
     }
 
     /// Finds the first guard crossing of the segment that begins now and whose inputs hold up to `end`.
@@ -185,13 +185,13 @@ impl ControlLaws {
         self.laws.outputs()
     }
 
-    /// Returns the state of the first law.
-    pub fn state(&self) -> Phase {
+    /// Returns the phase of the first law.
+    pub fn phase(&self) -> Phase {
         self.laws.about(0).state().phase
     }
 
-    /// Returns the states of the laws about the first `axes` axes.
-    pub fn states(&self, axes: usize) -> Vec<Phase> {
+    /// Returns the phases of the laws about the first `axes` axes.
+    pub fn phases(&self, axes: usize) -> Vec<Phase> {
         (0..axes).map(|axis| self.laws.about(axis).state().phase).collect()
     }
 

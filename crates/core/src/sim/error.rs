@@ -28,11 +28,11 @@ pub enum SimulationError {
          of any mode: is its hysteresis too small, or its torque too large?"
     )]
     LawChatter {
-        /// Instant of the state.
+        /// Instant of the last switching.
         at: Instant,
-        /// Number of decisions.
+        /// Number of switchings.
         count: u64,
-        /// The span in which it would not be an error (s).
+        /// Shortest duration of that many switchings that is no error (s).
         span: f64,
     },
     /// Wheels slip and stick endlessly.

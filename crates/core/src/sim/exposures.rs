@@ -69,7 +69,7 @@ impl Exposures {
     }
 
     /// Closes and opens the exposures that are due, and hands the means of closed ones to their sensors.
-    fn serve(&mut self, now: Instant, sensors: &mut [SensorSchedule]) {
+    fn close_and_open(&mut self, now: Instant, sensors: &mut [SensorSchedule]) {
         for shutter in self.shutters.iter_mut().filter(|shutter| shutter.due <= now) {
             if shutter.is_open {
                 sensors[shutter.sensor].close_exposure(&shutter.exposure);
@@ -91,7 +91,7 @@ impl Exposures {
 }
 
 impl Exposures {
-    /// Closes and opens the exposures that are due at `now`, of a body with this motion.
+    /// Closes and opens the exposures that are due at `now`, at which the plant is evaluated.
     pub fn update(
         &mut self,
         now: Instant,
@@ -101,7 +101,7 @@ impl Exposures {
     ) -> Result<(), SimulationError> {
         if self.due().is_some_and(|due| due <= now) {
             self.accumulate_mean(now, plant, record)?;
-            self.serve(now, sensors);
+            self.close_and_open(now, sensors);
         }
         Ok(())
     }
@@ -122,19 +122,20 @@ impl Exposures {
     fn accumulate_mean(
         &mut self,
         now: Instant,
-        body: &Plant,
+        plant: &Plant,
         record: &mut dyn Record,
     ) -> Result<(), SimulationError> {
         let Self { shutters, copy, averaged } = self;
-        let Some(plant) = copy.as_mut().filter(|_| now > *averaged) else { return Ok(()) };
+        let Some(copy) = copy.as_mut().filter(|_| now > *averaged) else { return Ok(()) };
         let from = std::mem::replace(averaged, now);
-        let fastest = plant.fastest_frequency().max(body.fastest_frequency());
+        // The copy is at the start of the interval, the plant of the run at its end.
+        let fastest = copy.fastest_frequency().max(plant.fastest_frequency());
         for (t, lasts) in quadrature::nodes(now.since(from).seconds(), fastest) {
             let at = from + Span::from_seconds(t);
-            plant.advance(at, record)?;
-            plant.evaluate(at)?;
+            copy.advance(at, record)?;
+            copy.evaluate(at)?;
             for shutter in shutters.iter_mut().filter(|shutter| shutter.is_open) {
-                let truth = plant.truth_at_sensor(shutter.sensor);
+                let truth = copy.truth_at_sensor(shutter.sensor);
                 if let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) {
                     shutter.exposure.add(attitude, lasts);
                 }

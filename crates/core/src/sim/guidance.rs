@@ -69,8 +69,8 @@ impl Guidance {
         }
     }
 
-    /// Returns the setpoint of a law about an axis: `led` if the three-axis reference moves; the manoeuvre for laws
-    /// that track; else the goal.
+    /// Returns the setpoint of a law about an axis: `led`, if the three-axis reference moves; for laws that track, the state
+    /// of the manoeuvre, until its end; otherwise the setpoint after the manoeuvre.
     pub fn setpoint_for(&self, law: &dyn Law, now: Instant, led: Option<Setpoint>) -> Setpoint {
         if let Some(goal) = led {
             return goal;

@@ -24,7 +24,7 @@ pub struct Loads {
     /// Instants, latest first, at which the waveform has a break, a disturbance or the environment changes, the
     /// frequency drift has a kink, or the appendage drives reach the angles at which the modes are replaced.
     scheduled_changes: Vec<Instant>,
-    /// Next instant of `edges`, or of the random changes of disturbances.
+    /// Next instant of `scheduled_changes`, or of a random change of a disturbance.
     next_change: Option<Instant>,
     /// Next instant at which a load changes without a command.
     pub due: Option<Instant>,
@@ -49,7 +49,7 @@ impl Loads {
         edges.dedup();
         let stream = |index: usize| seed.stream(&format!("disturbance {index}"));
         let disturbances = scenario.disturbance.iter().enumerate();
-        let mut drive = Self {
+        let mut loads = Self {
             actuator: scenario.study.actuator(scenario, seed),
             distribution: scenario.study.distribution(scenario),
             disturbances: disturbances
@@ -61,12 +61,12 @@ impl Loads {
             wrench: Wrench::default(),
             applied: AppliedTorque::default(),
         };
-        drive.update_due();
-        drive
+        loads.find_next_change();
+        loads
     }
 
-    /// Finds the next instant at which a load changes.
-    fn update_due(&mut self) {
+    /// Finds the next instant at which a load changes without a command.
+    fn find_next_change(&mut self) {
         let drawn = self.disturbances.iter().filter_map(DisturbanceState::due).min();
         self.next_change = self.scheduled_changes.last().copied().into_iter().chain(drawn).min();
         self.due = self.next_change.into_iter().chain(self.actuator.due()).min();
@@ -89,13 +89,13 @@ impl Loads {
     }
 
     /// Applies the changes of loads that are due at `now`, after the laws have decided, given the rigid rates (rad/s).
-    pub fn serve(&mut self, now: Instant, rigid: [f64; 3]) {
+    pub fn apply_due_changes(&mut self, now: Instant, rigid: [f64; 3]) {
         while self.scheduled_changes.last().is_some_and(|edge| *edge <= now) {
             self.scheduled_changes.pop();
         }
         self.disturbances.iter_mut().for_each(|disturbance| disturbance.update(now));
         self.actuator.update(now, ActuatorEvent::Due(rigid));
-        self.update_due();
+        self.find_next_change();
     }
 
     /// Sets the magnetic field in body axes (T) in the actuator, if there is one.
@@ -107,7 +107,7 @@ impl Loads {
 
     /// Copies the speeds and momenta of wheels in bearings from the motion into the actuator.
     pub fn update_rotor_states(&mut self, now: Instant, plant: &Plant) {
-        let rotors = plant.wheel_bearings();
+        let rotors = plant.rotor_observations();
         if !rotors.is_empty() {
             self.actuator.update(now, ActuatorEvent::Rotors(&rotors));
         }

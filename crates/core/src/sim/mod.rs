@@ -142,13 +142,12 @@ impl Simulation {
         self.respond(event, record)
     }
 
-    /// Performs steps 1 to 5 of an instant, which a run that is stopped there has behind it; returns the event for the
-    /// laws.
+    /// Performs steps 1 to 5 of an instant, after which a run can be stopped; returns the event for the laws.
     fn sense(&mut self, record: &mut dyn Record) -> Result<Event, SimulationError> {
         let now = self.clock.now();
         // 1. State of the body.
         self.plant.evaluate(now)?;
-        // 2. Exposures that end, the target of this instant, and the sensors.
+        // 2. Exposures that end, and the target of this instant.
         self.sensors.update_exposures(now, &self.plant, record)?;
         let is_sampled = self.sensors.sample_is_due(now);
         let event = self.laws.event(now, is_sampled);
@@ -158,7 +157,7 @@ impl Simulation {
         {
             self.estimation.update_angle_origin(now, &self.guidance);
         }
-        // 3. Sample and estimates.
+        // 2. and 3. The sensors measure, and the estimator takes the sample.
         if is_sampled {
             self.take_sample(record)?;
         }
@@ -176,7 +175,7 @@ impl Simulation {
     /// Performs steps 6 to 9 of an instant, in which the laws respond to `event`.
     fn respond(&mut self, event: Event, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
-        // 6. and 7. Laws, and the actuator's commands.
+        // 6. and 7. The estimates are predicted, the laws decide, the actuator takes the commands: a new segment.
         if self.laws.external_command_pending || self.laws.must_decide(now, event, &self.estimation.estimates)
         {
             self.control_step(event, record)?;
@@ -184,7 +183,7 @@ impl Simulation {
         // 8. Bearings, disturbances and the actuator's own periods: a new segment.
         if self.clock.take_bearing_event() || self.loads.due == Some(now) {
             self.loads.set_magnetic_field(now, self.sensors.magnetic_field(self.plant.truth()));
-            self.loads.serve(now, self.plant.truth().rigid);
+            self.loads.apply_due_changes(now, self.plant.truth().rigid);
             self.begin_segment(record)?;
         }
         self.check_custom_parts()?;
@@ -237,9 +236,7 @@ impl Simulation {
         self.plant.record_pieces(now, &self.loads.applied, record)?;
         self.sensors.end_segment(now, &self.plant, record)?;
         self.laws.objective.add_motion(now, &self.plant, &self.loads);
-        if axes == 1 {
-            self.loads.set_applied_torque();
-        }
+        self.loads.set_applied_torque();
         self.estimation.begin_segment(now, &self.plant, &self.loads);
         self.plant.begin_segment(self.loads.wrench(now));
         self.laws.objective.add_torque(now, axes, &self.loads);

@@ -245,7 +245,7 @@ mod tests {
             simulation.run_until(Instant::START + Span::from_seconds(until), &mut trace).expect("a run");
         }
         let topics = ["/command", "/envelope_mean", "/adaptation"].map(|topic| trace.topic(topic).cloned());
-        let sensed = simulation.laws.state();
+        let sensed = simulation.laws.phase();
         format!("{topics:?} {:?} {sensed:?} {:?}", simulation.state(), simulation.estimation.estimates)
     }
 

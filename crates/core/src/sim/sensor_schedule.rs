@@ -32,6 +32,7 @@ impl SensorSchedule {
             return None;
         }
         let (Some(period), true) = (self.period, now > Instant::START) else { return Some(truth.rate) };
+        // Without a previous reading, differences count from angle 0, or from the attitude itself.
         let nowhere = match reading.at {
             Orientation::Angle(_) => Orientation::Angle(0.0),
             attitude @ Orientation::Attitude(_) => attitude,

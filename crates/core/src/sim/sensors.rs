@@ -25,8 +25,7 @@ pub struct Sensors {
     pub reading: Option<Reading>,
     /// Latest measured angle (rad) and rate (rad/s) about each axis.
     pub measured: Vec<[f64; 2]>,
-    /// Instant and value of the last measured magnetic field in body axes (T); `field_rate` is its rate of change
-    /// (T/s).
+    /// Instant and value of the last measured magnetic field in body axes (T).
     field: Option<(Instant, Vector)>,
     /// Rate of change of `field` (T/s); `None` before the second sample.
     pub field_rate: Option<Vector>,
@@ -43,7 +42,7 @@ impl Sensors {
         let (study, axes) = (&scenario.study, scenario.study.axes.len());
         let all = &scenario.sensor;
         let rates = all.iter().any(|sensor| sensor.rate_noise(0).is_some());
-        let feels = all.iter().position(SensorKind::measures_field);
+        let field_source = all.iter().position(SensorKind::measures_field);
         let due = |(index, sensor): (usize, &SensorKind)| {
             let period = if all.motion_sensors() == 1 && sensor.measures_motion() {
                 study.sample_period
@@ -56,7 +55,7 @@ impl Sensors {
                 period,
                 next: period.map(|period| Instant::START + period),
                 last: None,
-                is_field_source: feels == Some(index),
+                is_field_source: field_source == Some(index),
                 derives_rates: all.provides_attitude(index) && !rates,
             }
         };

@@ -10,9 +10,9 @@ impl Simulation {
     pub(super) fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
         self.plant.evaluate(now)?;
-        self.laws.ask(now, Event::Start, &self.guidance, &mut self.estimation.estimates);
+        self.laws.decide_uncounted(now, Event::Start, &self.guidance, &mut self.estimation.estimates);
         self.command_actuator();
-        self.loads.serve(now, self.plant.truth().rigid);
+        self.loads.apply_due_changes(now, self.plant.truth().rigid);
         self.begin_segment(record)?;
         if let Some(search) = self.estimation.search().or(self.laws.objective.search()) {
             // The value of a tuned parameter is logged from the start on.

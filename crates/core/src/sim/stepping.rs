@@ -149,7 +149,7 @@ impl Simulation {
         let Some(event) = event.or(is_external.then_some(Event::Due { sampled: false })) else {
             return Ok(false);
         };
-        let before = self.laws.states(self.estimation.axis_count());
+        let before = self.laws.phases(self.estimation.axis_count());
         if event == Event::Start {
             self.begin(record)?;
             return Ok(false);
@@ -159,7 +159,7 @@ impl Simulation {
             self.estimation.update_angle_origin(self.clock.now(), &self.guidance);
         }
         self.respond(event, record)?;
-        let after = self.laws.states(self.estimation.axis_count());
+        let after = self.laws.phases(self.estimation.axis_count());
         Ok(occasion == Some(StopAt::Switching) && after != before)
     }
 }

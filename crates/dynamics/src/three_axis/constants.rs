@@ -180,8 +180,9 @@ impl BodyConstants {
         }
     }
 
-    /// Returns the rigid momentum Gt and the rate of the hub for a change of the inertia: (J_left + J1) w = G +
-    /// J_left phi P and Gt = G - J1 w.
+    /// Returns the rigid momentum Gt (N m s) and the rate w of the hub (rad/s) for the momentum G without rotors (N m s), the
+    /// elastic rate sum phi P (rad/s) and a change J1 of the inertia (kg m²): (J_left + J1) w = G + J_left sum phi P and
+    /// Gt = G - J1 w.
     pub fn momentum_and_rate(
         &self,
         momentum: &Vector,

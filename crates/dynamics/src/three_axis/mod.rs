@@ -1,6 +1,6 @@
 //! Three-axis dynamics of a flexible body with rotors, with two-way coupling between body and modes.
 //!
-//! With free modes W, phi, the total angular momentum H about the centre of mass in the body's axes, rotors a h, the
+//! With free modes W, phi, the total angular momentum H about the centre of mass in the hub's axes, rotors a h, the
 //! change J1 of the inertia and the canonical rates P of the modes, in which torques, rotors and w x H do not appear:
 //!
 //! ```text
@@ -14,17 +14,26 @@
 //! start of the segment; an instant between grid points is reached by one shorter off-grid step, so that observation
 //! does not change the motion.
 //!
+//! A prime at a state (q', P', H', th', h') is a time derivative; at a factor in front of another (phi' Gt, w' J1 w) it
+//! is a transpose. `x` is the cross product and [v] its matrix, [v] u = v x u; [c_i] is the vector of the values c_i of
+//! all modes; `o` is the product of quaternions.
+//!
 //! | symbol | name in the code | unit |
 //! |---|---|---|
-//! | Q_m; Q | `attitude` of the state, `mean_attitude`; `attitude` of the view | unit quaternion |
-//! | H_m; H_m' | `momentum`; `momentum_rate` | N m s; N m |
+//! | G = H - sum a h | `free` | N m s |
+//! | Gr, with Gr th' the rate of the hub against the mean axes | `rate_correction` of `small_rotation.rs` returns (1 - Gr) th' | - |
+//! | A, b; h of a step | `MATRIX`, `WEIGHTS` of `gauss_legendre`; `h` | -; s |
+//! | D = 2 zeta W on the diagonal | `damping` of a mode | 1/s |
+//! | u = h', torque on a rotor | `torque` of a `Rotor` | N m |
+//! | Q_m; Q | `mean_attitude`; `attitude` of the view | unit quaternion |
+//! | H_m; H_m'; H | `mean_momentum`; `momentum_rate`; `momentum` of the view | N m s; N m; N m s |
 //! | w; w_m; J^-1 Gt | `rate` of the hub; `mean_rate`; `rigid_rate` | rad/s |
 //! | Gt; integral of J^-1 Gt | `rigid_momentum`; `rigid_angle` | N m s; rad |
 //! | J; J^-1; J_left | `inertia`; `inverse`; `residual_inertia` | kg m²; 1/(kg m²); kg m² |
 //! | J1(q); J1_i | `inertia_change`; `moments` of a mode | kg m²; sqrt(kg) m |
 //! | W; zeta; phi; sum phi phi' | `frequency`; `damping`; `rotation` of a mode; `bending` | rad/s; -; rad/(m sqrt(kg)); 1/(kg m²) |
 //! | q; q'; P | `displacements`; `rates`; state of a mode as (q, P/W) | m sqrt(kg); m sqrt(kg)/s |
-//! | th = sum phi q; sum phi P | `elastic_rotation`; `elastic_rate` | rad; rad/s |
+//! | th = sum phi q; sum phi P; sum phi q' = w - J^-1 Gt | `elastic_rotation`; `canonical_elastic_rate`; `elastic_rate` | rad; rad/s; rad/s |
 //! | g = phi' Gt; s | `g`; `s` of a mode at the nodes: imposed rate, force that varies over a step | m sqrt(kg)/s; N/sqrt(kg) |
 //! | off-diagonal D; f | `coupled_damping`; `forces` | 1/s; N/sqrt(kg) |
 //! | a, h; h of gimbals | `rotors`; `gimbal_momentum` | N m s |
@@ -50,7 +59,7 @@
 //! 1. `body.rs`, `surroundings.rs`, `free_modes.rs`: the body and what acts on it; `constants.rs`, `state.rs`: what is
 //!    derived from it and what is integrated.
 //! 2. `step/`: one step: `mod.rs`, `mode_response.rs`, `predictor.rs`, `iterate.rs` (all nodes at once, SIMD),
-//!    `iterate_scalar.rs` (node by node, for rotors in bearings and moving appendages), `modal_forces.rs`,
+//!    `iterate_scalar.rs` (node by node, for rotors in bearings and articulated appendages), `modal_forces.rs`,
 //!    `attitude_nodes.rs`, `convergence.rs`.
 //! 3. `motion.rs`: segments, with their loads in `segment_loads.rs`, and the grid of steps; `step_levels.rs` and `step_size.rs`: how long a step is; `shared.rs`:
 //!    what the runs of a campaign share; `accelerations.rs`: the right-hand side at an instant.

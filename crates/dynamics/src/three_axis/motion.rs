@@ -56,7 +56,7 @@ pub struct ThreeAxisMotion {
     pub(super) amplitudes: Vec<ModeAmplitude>,
     memory: StepMemory,
     counts: StepCounts,
-    /// Driven appendages, if any.
+    /// Articulated appendages, on drives or hinges, if any.
     pub(super) appendages: Option<Box<ArticulatedMotion>>,
 }
 
@@ -116,8 +116,8 @@ impl ThreeAxisMotion {
             [q, (speed - mode.rotation.dot(&rigid_momentum)) / mode.frequency, 0.0, 0.0]
         };
         let state = IntegratorState {
-            attitude,
-            momentum: SmallRotation::new(elastic_rotation).to_mean_axes(&momentum),
+            mean_attitude: attitude,
+            mean_momentum: SmallRotation::new(elastic_rotation).to_mean_axes(&momentum),
             rigid_angle: Vector::zeros(),
             com: [Vector::zeros(); 2],
             rounding: (Quaternion::default(), Vector::zeros(), Vector::zeros()),

@@ -12,9 +12,9 @@ use super::small_rotation::SmallRotation;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct IntegratorState {
     /// Unit quaternion that rotates vectors from the mean axes into inertial axes.
-    pub attitude: Quaternion<f64>,
+    pub mean_attitude: Quaternion<f64>,
     /// Total angular momentum in mean axes (N m s), rotors included.
-    pub momentum: Vector,
+    pub mean_momentum: Vector,
     /// Integral of the rigid rate J^-1 Gt (rad).
     pub rigid_angle: Vector,
     /// Displacement of the centre of mass since the start (m) and its velocity (m/s), in inertial axes.
@@ -30,9 +30,9 @@ pub(super) struct IntegratorState {
 impl IntegratorState {
     /// Copies another state without allocation.
     pub fn copy_from(&mut self, other: &Self) {
-        let Self { attitude, momentum, rigid_angle, com, rounding, modes, rotor_states } = self;
-        (*attitude, *momentum, *rigid_angle, *rounding) =
-            (other.attitude, other.momentum, other.rigid_angle, other.rounding);
+        let Self { mean_attitude, mean_momentum, rigid_angle, com, rounding, modes, rotor_states } = self;
+        (*mean_attitude, *mean_momentum, *rigid_angle, *rounding) =
+            (other.mean_attitude, other.mean_momentum, other.rigid_angle, other.rounding);
         *com = other.com;
         modes.copy_from_slice(&other.modes);
         if !rotor_states.is_empty() {
@@ -65,14 +65,14 @@ pub struct BodyView {
     pub displacements: Vec<f64>,
     /// Rates q' of the modes (m sqrt(kg)/s).
     pub rates: Vec<f64>,
-    /// Present frequencies of the modes (rad/s) of a body with drives; empty otherwise.
+    /// Present frequencies of the modes (rad/s) of a body with articulated appendages; empty otherwise.
     pub frequencies: Vec<f64>,
-    /// Present hub rotation per unit of each mode (rad/(m sqrt(kg))) of a body with drives; empty otherwise.
+    /// Present hub rotation per unit of each mode (rad/(m sqrt(kg))) of a body with articulated appendages; empty otherwise.
     pub rotations: Vec<Vector>,
     /// Shift of the hub's points relative to the centre of mass since the start (m) and its rate (m/s), for a body
     /// with drives.
     pub shift: Option<[Vector; 2]>,
-    /// Inertia tensor of the deformed body (kg m²), for a body with drives.
+    /// Inertia tensor of the deformed body (kg m²), for a body with articulated appendages.
     pub inertia: Option<Matrix3<f64>>,
     /// Angle (rad) and rate (rad/s) of each hinge.
     pub hinges: Vec<[f64; 2]>,
@@ -114,9 +114,9 @@ impl BodyView {
             model.lanes.run(SumModes { model, states: &state.modes });
         let hub_to_mean = SmallRotation::new(elastic_rotation);
         let inertia_change = tensor(inertia_change);
-        self.mean_attitude = state.attitude;
-        self.attitude = state.attitude * rotation(&elastic_rotation);
-        self.momentum = hub_to_mean.to_hub_axes(&state.momentum);
+        self.mean_attitude = state.mean_attitude;
+        self.attitude = state.mean_attitude * rotation(&elastic_rotation);
+        self.momentum = hub_to_mean.to_hub_axes(&state.mean_momentum);
         let (rigid_momentum, rate) = model.momentum_and_rate(
             &(self.momentum - rotors),
             &elastic_rate,

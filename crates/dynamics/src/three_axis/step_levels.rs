@@ -1,4 +1,5 @@
-//! Step lengths: as long as the modes allow, halved as often as the rotation requires.
+//! Available step lengths and the error estimate that selects one: as long as the modes allow, halved as often as the
+//! rotation requires. `step_size.rs` applies it to the present motion.
 //!
 //! Modes are exact oscillators, and their response to constant torques is exact: the error of a step is due to the
 //! elastic motion that rotates with the body, in products with the body's rate. With steps of 1.5 rad of the fastest
@@ -33,7 +34,7 @@ const MAX_REDUCTIONS: u32 = 40;
 const LONGEST: f64 = 1024.0;
 
 /// Number of halvings from the longest step to one that resolves all modes.
-const DOUBLINGS: i32 = 6;
+const HALVINGS: i32 = 6;
 
 /// Admissible estimated attitude drift due to modes that a step does not resolve (rad/s): 1e-10 rad in 1e4 s.
 /// Measured on the reference spacecraft, at rates from 1e-6 to 0.03 rad/s and modal rates of 1e-9 to 0.1 m
@@ -105,12 +106,12 @@ impl StepLevels {
         let resolving = if fastest > 0.0 { PHASE / fastest } else { LONGEST };
         // Damping that couples modes is a force that only resolved modes represent correctly.
         let longest =
-            if model.coupled_damping.is_some() { resolving } else { libm::scalbn(resolving, DOUBLINGS) };
+            if model.coupled_damping.is_some() { resolving } else { libm::scalbn(resolving, HALVINGS) };
         Self {
             base: longest.min(LONGEST),
             max_rotation: MAX_ROTATION,
             resolving,
-            modes: rotation_rate_bound(model),
+            modes: attitude_effects(model),
             unresolved: coupled.iter().copied().filter(|w| *w > RESOLVED).collect(),
         }
     }
@@ -215,7 +216,7 @@ impl StepLevels {
 /// Returns the effect of each mode's amplitude on the attitude: by the hub's rotation, by the change of the inertia,
 /// and by coupling to slower modes through the change of inertia. The spurious force of an unresolved mode on a
 /// slower one may be resonant: an undamped mode then grows throughout, a damped one up to 1/(2 zeta) of the force.
-fn rotation_rate_bound(model: &BodyConstants) -> Vec<ModeRotationRate> {
+fn attitude_effects(model: &BodyConstants) -> Vec<ModeRotationRate> {
     let moments = |of: &ModeConstants| tensor(of.moments).norm();
     let couples = |of: &ModeConstants| of.rotation.norm() * moments(of) / of.frequency;
     let grows = |of: &ModeConstants| (1.0 / (2.0 * of.damping * of.frequency * DURATION)).min(1.0);
@@ -317,7 +318,7 @@ mod tests {
             };
             let inertia = Matrix3::from_diagonal_element(300.0);
             let body = FlexibleBody { inertia, modes: vec![mode(1.0), mode(90.0)], damping: None };
-            rotation_rate_bound(&BodyConstants::new(&body))
+            attitude_effects(&BodyConstants::new(&body))
         };
         for (undamped, damped) in rates(0.0).iter().zip(rates(0.005)) {
             assert_eq!((undamped.rotation, undamped.rotation), (undamped.unresolved, damped.rotation));

@@ -38,7 +38,7 @@ impl ThreeAxisMotion {
             && self.loads.com_acceleration == Vector::zeros()
             && surroundings.is_none_or(|(surroundings, _)| surroundings.thermal_forces().is_empty());
         // Gt without the present deformation.
-        let rigid_momentum = self.grid.momentum - rotors;
+        let rigid_momentum = self.grid.mean_momentum - rotors;
         // Within a step, a hinge turns by at most half of the angle allowed for the body.
         environment_rate += 2.0
             * self
@@ -47,11 +47,12 @@ impl ThreeAxisMotion {
                 .map_or(0.0, |appendages| appendages.rate_bound(&self.grid.modes, &rigid_momentum));
         let Self { model, grid, loads, amplitudes, .. } = self;
         let torque = loads.torque.norm() + exerted + change.norm();
-        let momentum = grid.momentum.norm();
+        let momentum = grid.mean_momentum.norm();
         let rigid_rate = model.inverse * rigid_momentum;
         // Static deflections about which the modes oscillate; these do not contribute to the error.
         let applied = loads.torque - change;
-        let (net, centrifugal) = (applied - rigid_rate.cross(&grid.momentum), centrifugal_terms(&rigid_rate));
+        let (net, centrifugal) =
+            (applied - rigid_rate.cross(&grid.mean_momentum), centrifugal_terms(&rigid_rate));
         let lanes = model.lanes;
         let (modes, forces) = (&grid.modes[..], &loads.forces[..]);
         lanes.run(Amplitudes {
@@ -82,7 +83,7 @@ impl ThreeAxisMotion {
 
     /// Returns the highest frequency of the rotors' imbalance in a state (rad/s).
     fn imbalance_frequency(&self, state: &IntegratorState) -> f64 {
-        let momentum = state.momentum.norm();
+        let momentum = state.mean_momentum.norm();
         let frequencies = self.bearings.iter().zip(&state.rotor_states).map(|(bearing, rotor)| {
             bearing.highest_order()
                 * ((rotor.values.x / bearing.inertia).abs() + self.model.mobility * momentum)
@@ -106,7 +107,7 @@ impl ThreeAxisMotion {
         let stored = self.loads.rotors(self.time).0.norm()
             + self.current.rotor_states.iter().map(|rotor| rotor.values.x.abs()).sum::<f64>()
             + self.loads.gimbals.iter().map(|gimbal| gimbal.momentum).sum::<f64>();
-        let rotation = self.model.mobility * (self.current.momentum.norm() + stored);
+        let rotation = self.model.mobility * (self.current.mean_momentum.norm() + stored);
         modes + environment_rate + rotation + self.imbalance_frequency(&self.current)
     }
 

@@ -5,7 +5,8 @@
 use flexsc_numerics::attitude::Vector;
 use nalgebra::{Matrix3, Quaternion};
 
-/// Environment that acts on a body.
+/// Torques and forces on a body that depend on time or attitude within a segment: of the environment and of periodic
+/// disturbances.
 pub trait Surroundings {
     /// Returns the torque in the body's axes (N m) at a time `t` since the start (s), for the attitude of the hub and
     /// the present inertia of the body (kg m²).

@@ -6,12 +6,12 @@ use flexsc_numerics::attitude::vector;
 use super::{ElasticModes, RigidBody, RigidState};
 use crate::body::Spatial;
 
-/// State of a spatial body: rigid motion and modal phases.
+/// State of a three-axis body: rigid motion and modes.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ThreeAxisState {
-    /// Rigid rotation.
+    /// Attitude and angular momentum of the rigid part; in two-way coupled motion, those of the mean axes.
     pub turn: RigidState,
-    /// Phase of each elastic mode: displacement (m sqrt(kg)), and rate over natural frequency.
+    /// State of each elastic mode: displacement, and rate over natural frequency (m sqrt(kg)).
     pub modes: Vec<ModeState>,
 }
 

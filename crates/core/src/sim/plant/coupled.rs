@@ -19,15 +19,18 @@ use nalgebra::{Matrix3, Quaternion};
 
 use crate::scenario::{AppendageDrives, DriveProfiles};
 
-/// Coupled motion, with the data that convert loads and true state between the plant and the integrator.
+/// Motion of a three-axis body whose modes act back on its rotation: the integrator, with the data that convert loads
+/// and true state between it and the plant.
 #[derive(Clone, Debug)]
 pub struct CoupledMotion {
     motion: ThreeAxisMotion,
     frequencies: Vec<f64>,
-    /// Modal rotations of the hub, and (`sensed`, `acts`) their differences at the first sensor and where torques act.
+    /// Modal rotations of the hub (rad/(m sqrt(kg))).
     hub: Vec<Vector>,
-    sensed: Vec<Vector>,
-    acts: Vec<Vector>,
+    /// Modal rotations at the first sensor less those of the hub.
+    sensor_offsets: Vec<Vector>,
+    /// Modal rotations at the point where torques act less those of the hub.
+    torque_offsets: Vec<Vector>,
     outside: ExternalTorques,
     acting: SegmentLoads,
     /// Translation under forces, and the initial position of the first point from the centre of mass (m).
@@ -62,10 +65,12 @@ impl AccelerometerMount {
     }
 }
 
-/// Torques from outside: the body's own disturbance, the environment, and sines.
+/// Torques that depend on time or attitude within a segment, as the integrator reads them.
 #[derive(Clone, Debug)]
 struct ExternalTorques {
+    /// Periodic disturbance of the body itself.
     own: Option<PeriodicTorque>,
+    /// Environment.
     around: Option<SurroundingsState>,
     /// Sinusoidal torques of actuators and disturbances, each with its axis.
     sines: Vec<(Vector, Sine)>,
@@ -114,7 +119,7 @@ impl Surroundings for ExternalTorques {
     }
 }
 
-/// Coupled motion during a segment.
+/// Two-way coupled motion, with the start of its segment.
 #[derive(Copy, Clone, Debug)]
 pub struct CoupledSegment<'a> {
     pub motion: &'a CoupledMotion,
@@ -150,8 +155,8 @@ impl CoupledMotion {
         Self {
             translation: moving,
             motion,
-            sensed: beyond(sensed),
-            acts: beyond(acts),
+            sensor_offsets: beyond(sensed),
+            torque_offsets: beyond(acts),
             outside: ExternalTorques { own: body.disturbance.clone(), around, sines: Vec::new() },
             acting: SegmentLoads::default(),
             frequencies,
@@ -239,7 +244,7 @@ impl CoupledMotion {
     }
 
     /// Returns the slip states of the rotors in bearings.
-    pub fn slips(&self) -> &[SlipDirection] {
+    pub fn slip_states(&self) -> &[SlipDirection] {
         self.motion.slip_states()
     }
 
@@ -250,7 +255,7 @@ impl CoupledMotion {
 
     /// Returns the states of the rotors in bearings at the current instant, in a segment that began `began` seconds
     /// after the start.
-    pub fn rotor_states(&self, began: f64) -> Vec<RotorObservation> {
+    pub fn rotor_observations(&self, began: f64) -> Vec<RotorObservation> {
         self.motion.rotor_observations(self.outside.since(began))
     }
 
@@ -284,7 +289,7 @@ impl CoupledMotion {
         // The integrator gives the modes their part of a torque on the hub; jets and torques at other points excite
         // them differently.
         let given = wrench.forces.iter().copied().chain(std::iter::repeat(0.0));
-        let beyond = self.hub.iter().zip(&self.acts).zip(given);
+        let beyond = self.hub.iter().zip(&self.torque_offsets).zip(given);
         forces.clear();
         forces.extend(beyond.map(|((of_hub, acts), force)| force - of_hub.dot(&push) + acts.dot(&hub)));
         self.change_modal_basis(began);
@@ -311,7 +316,7 @@ impl CoupledMotion {
         };
         let elastic = sum(sensed, &seen.rates);
         truth.orientation = Orientation::Attitude(seen.attitude);
-        truth.elastic = sum(&self.sensed, &seen.displacements).into();
+        truth.elastic = sum(&self.sensor_offsets, &seen.displacements).into();
         truth.rate = (seen.rigid_rate + elastic).into();
         truth.rigid = seen.rigid_rate.into();
         truth.turned = (seen.rigid_angle + sum(sensed, &seen.displacements)).into();

@@ -28,8 +28,8 @@ impl ExternalFlow {
         Self { body, mobility, segment_start: None }
     }
 
-    /// Returns the start of the last segment and its reduced moment (rad/s²), once per segment; `None` since the last
-    /// call.
+    /// Returns the start of the last segment and its reduced moment (rad/s²), once per segment; `None` if no segment has begun
+    /// since the last call.
     pub fn take_segment_start(&mut self) -> Option<(Instant, f64)> {
         self.segment_start.take()
     }

@@ -20,11 +20,12 @@ pub trait Flow: Any + fmt::Debug + Send + Sync {
     /// Begins a motion segment at the current instant, under the loads from now on.
     fn begin_segment(&mut self, wrench: &Wrench);
 
-    /// Integrates a motion without a closed form up to `now`, unless the record fails, so that evaluating it there is
-    /// cheap; returns the earlier instant at which it stopped because a wheel stuck or let go.
+    /// Advances an integrated motion to `now`; a motion in closed form needs no advance. Returns the earlier instant at
+    /// which a wheel stuck or slipped, where the motion stops, if there is one; fails if the record fails.
     fn advance(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError>;
 
-    /// Advances the body to `now` and writes its true state; returns false if that is no longer finite.
+    /// Writes the true state at `now`; returns false if it is no longer finite. A three-axis motion must have been
+    /// advanced to `now`: its state is that of the last advance.
     fn evaluate(&mut self, now: Instant, truth: &mut Truth) -> bool;
 
     /// Returns the instant and index of the first guard crossing of this segment within `horizon`; `None` also for

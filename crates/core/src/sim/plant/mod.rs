@@ -88,14 +88,14 @@ impl Plant {
         Self { flow: Box::new(flow), truth: INITIAL_TRUTH }
     }
 
-    /// Integrates a motion without a closed form up to `now`, unless the record fails; returns the earlier instant at
-    /// which it stopped because a wheel stuck or let go.
+    /// Advances an integrated motion to `now`; a motion in closed form needs no advance. Returns the earlier instant at
+    /// which a wheel stuck or slipped, where the motion stops, if there is one; fails if the record fails.
     #[inline]
     pub fn advance(&mut self, now: Instant, record: &mut dyn Record) -> Result<Option<Instant>, RecordError> {
         self.flow.advance(now, record)
     }
 
-    /// Advances the body to `now`, evaluates the true state, and returns it.
+    /// Evaluates the true state at `now`, to which the plant must have been advanced, and returns it.
     #[inline]
     pub fn evaluate(&mut self, now: Instant) -> Result<&Truth, SimulationError> {
         if self.flow.evaluate(now, &mut self.truth) {
@@ -198,13 +198,13 @@ impl Plant {
     /// Returns the states of the wheels in bearings at the current instant; empty without friction, imbalance and
     /// tachometer.
     #[inline]
-    pub fn wheel_bearings(&self) -> Vec<RotorObservation> {
-        self.coupled().map_or_else(Vec::new, |segment| segment.motion.rotor_states(segment.start))
+    pub fn rotor_observations(&self) -> Vec<RotorObservation> {
+        self.coupled().map_or_else(Vec::new, |segment| segment.motion.rotor_observations(segment.start))
     }
 
     /// Returns the slip states of the wheels in bearings.
-    pub fn bearing_states(&self) -> &[SlipDirection] {
-        self.coupled().map_or(&[], |segment| segment.motion.slips())
+    pub fn slip_states(&self) -> &[SlipDirection] {
+        self.coupled().map_or(&[], |segment| segment.motion.slip_states())
     }
 
     /// Returns the specific force at an accelerometer of a spacecraft at the current instant (m/s²), under the loads

@@ -19,7 +19,7 @@ use super::flow::{Flow, FlowQuantities};
 use super::three_axis_body::{ThreeAxisBody, ThreeAxisQuantities};
 use crate::scenario::ResolvedScenario;
 
-/// Coupled motion of a three-axis body.
+/// Flow of a three-axis body whose modes act back on its rotation.
 #[derive(Clone, Debug)]
 pub struct TwoWayFlow {
     body: ThreeAxisBody,
@@ -68,6 +68,7 @@ impl Flow for TwoWayFlow {
         }
         self.motion.write_state(&body.rigid, &mut body.state);
         if let Some((_, rotations)) = self.motion.modes() {
+            // The modes change with the angles of drives. Sensors are then on the hub (`Rule::FixedSensors`).
             body.sensor_rotations.copy_from_slice(rotations);
         }
         body.evaluated_at = met.unwrap_or(now);

@@ -14,7 +14,7 @@ pub struct BearingRows(Vec<SlipDirection>);
 impl BearingRows {
     /// Initialises the slip states at the start, to detect changes.
     pub fn begin(&mut self, plant: &Plant) {
-        self.0 = plant.bearing_states().to_vec();
+        self.0 = plant.slip_states().to_vec();
     }
 
     /// Records the wheels whose slip state has changed since the last instant: passes through zero speed, sticking,
@@ -25,7 +25,7 @@ impl BearingRows {
         journal: &JournalEvents,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        let slips = run.plant.bearing_states();
+        let slips = run.plant.slip_states();
         if self.0 == slips {
             return Ok(());
         }

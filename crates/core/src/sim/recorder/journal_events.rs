@@ -80,7 +80,7 @@ impl JournalEvents {
         self.journal.write_line(now, (LogLevel::Info, "run"), "the end of the run".to_owned(), record)
     }
 
-    /// A part of the run needs attention.
+    /// Writes a warning about a part of the run.
     pub fn warned(
         &self,
         now: Instant,
@@ -127,7 +127,7 @@ impl JournalEvents {
         self.journal.write_line(now, (LogLevel::Info, "adaptation"), line, record)
     }
 
-    /// Writes the changes of the filters about the first `axes` axes: lost the body, or following it again.
+    /// Writes which filters have lost lock or have it again; with one axis, without the name of the axis.
     pub fn lock_changed(
         &mut self,
         now: Instant,

@@ -132,7 +132,7 @@ impl MotionRows {
 /// Returns the row of the one-axis law.
 fn law_row(run: &RunView<'_>) -> Law {
     Law {
-        state: run.laws.state(),
+        state: run.laws.phase(),
         torque_nm: run.loads.actuator.effort(0).demanded,
         gain: run.laws.tuned_value(),
     }

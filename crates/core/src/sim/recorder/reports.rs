@@ -54,7 +54,7 @@ impl TrueState for RunView<'_> {
     }
 
     fn rotors(&self) -> Vec<RotorObservation> {
-        self.plant.wheel_bearings()
+        self.plant.rotor_observations()
     }
 
     fn gyro_bias(&self) -> [f64; 3] {

@@ -190,8 +190,8 @@ impl Configuration {
         modes.fold(Matrix3::zeros(), |sum: Matrix3<f64>, (moments, eta)| sum + moments * *eta)
     }
 
-    /// Returns the rate of the hub (rad/s) from its momentum without rotors; `rates` holds pi on entry and eta' on
-    /// return.
+    /// Returns the rate w of the hub (rad/s) for the momentum without rotors (N m s) and the displacements `eta` of the
+    /// clamped modes; replaces their momenta pi in `rates` by their rates eta'.
     pub fn rates(&self, free: &Vector, eta: &[f64], rates: &mut [f64]) -> Vector {
         rates.iter_mut().zip(&self.modal_momenta).for_each(|(pi, modal_momentum)| *pi -= modal_momentum);
         self.solve_mass(rates);

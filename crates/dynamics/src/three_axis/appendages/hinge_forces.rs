@@ -10,8 +10,8 @@
 //! dT/dth = (w x b - (p + p1)/m) . (u x (a x S)) + u . (a x K u),
 //! ```
 //!
-//! in which p1 = w x s + g is the momentum that displacements of other modes have because the body and drives turn, s = sum t eta
-//! over these modes. The momentum p of a hinge is not small, so that its product with p1 counts: T has -p . p1/m. With t of the
+//! in which p1 = w x s + g is the momentum of the displacements of the other modes due to the rotation of the body and of the
+//! drives, with s = sum t eta and g (`panel_momentum_per_mode`) times eta, summed over these modes. The momentum p of a hinge is not small, so that its product with p1 counts: T has -p . p1/m. With t of the
 //! hinge, that changes its delta by -s x t/m and its k by -t . g/m, and dT/d eta of another mode by -p . (w x t + its part of g)/m.
 
 use flexsc_numerics::attitude::Vector;
@@ -58,7 +58,8 @@ impl Configuration {
             .collect()
     }
 
-    /// Changes what hinges have of the body's rate by what these displacements of other modes do to the centre of mass.
+    /// Corrects delta and k of the hinge modes for the shift of the centre of mass by the displacements `eta` of the other
+    /// modes: by -s x t/m and -t . g/m.
     pub(super) fn offset_hinges(&mut self, eta: &[f64]) {
         let Self { hinges, translations, panel_momentum_per_mode, rotations, modal_momenta, mass, .. } = self;
         let (mut offset, mut carried) = (Vector::zeros(), Vector::zeros());
@@ -75,8 +76,9 @@ impl Configuration {
         }
     }
 
-    /// Gives hinges their dT/d eta at this rate of the hub (rad/s), displacements of other modes, and rates of all, and adds to the
-    /// other modes what hinges do to theirs.
+    /// Sets the forces on the hinge modes to dT/d eta, and adds the effect of the hinges' momentum to the forces on the
+    /// other modes (N/sqrt(kg)): for the rate of the hub (rad/s), the displacements `small` of the other modes, and the
+    /// rates of all modes.
     pub fn add_hinge_terms(&self, rate: &Vector, small: &[f64], rates: &[f64], forces: &mut [f64]) {
         if self.hinges.is_empty() {
             return;

@@ -4,11 +4,11 @@
 //! eta,
 //!
 //! ```text
-//! T = 1/2 w' (J + J1 eta) w + w' (b0 + b1 eta) + e0 + a1 eta + w' delta eta' + k' eta' + 1/2 eta' E eta',
+//! E_k = 1/2 w' (J + J1 eta) w + w' (b0 + b1 eta) + e0 + a1 eta + w' delta eta' + k' eta' + 1/2 eta' E eta',
 //! ```
 //!
 //! Here b0 and b1 are of first order in alpha', e0 and a1 of second, and J, J1, delta and E depend on alpha. Momenta
-//! are H = dT/dw + sum a h and pi = dT/d eta'; H' = T - w x H, pi' = -O² eta - D eta' + dT/d eta + f. Q, H, eta and
+//! are H = dE_k/dw + sum a h and pi = dE_k/d eta'; with the torque T, H' = T - w x H and pi' = -O² eta - D eta' + dE_k/d eta + f. Q, H, eta and
 //! pi are continuous even where alpha jumps. Steps carry them in the free modes of one configuration, q = Y0⁻¹ eta
 //! and P = Y0' pi, whose oscillation is exact; the difference of q' from P + phi' G as the panels turn on enters at
 //! the stages. A panel on a hinge turns by its own coordinate, and all coefficients depend on that too (`hinge.rs`).

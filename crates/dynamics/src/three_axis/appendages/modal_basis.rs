@@ -137,7 +137,7 @@ impl ModalBasis {
     }
 
     /// Returns the clamped momenta pi for the canonical rates P.
-    pub fn held_rates(&self, p: &[f64]) -> Vec<f64> {
+    pub fn to_clamped_momenta(&self, p: &[f64]) -> Vec<f64> {
         self.inverse.tr_mul(&DVector::from_column_slice(p)).as_slice().to_vec()
     }
 

@@ -34,10 +34,11 @@ impl ArticulatedMotion {
         let p: Vec<f64> = p.collect();
         let elastic_rotation = self.basis.hub_rotation(&q);
         ReducedState {
-            attitude: state.attitude * rotation(&elastic_rotation),
-            momentum: SmallRotation::new(elastic_rotation).to_hub_axes(&(state.momentum + state.rounding.1)),
+            attitude: state.mean_attitude * rotation(&elastic_rotation),
+            momentum: SmallRotation::new(elastic_rotation)
+                .to_hub_axes(&(state.mean_momentum + state.rounding.1)),
             eta: self.basis.to_clamped(&q),
-            pi: self.basis.held_rates(&p),
+            pi: self.basis.to_clamped_momenta(&p),
             elastic_rotation,
         }
     }
@@ -102,8 +103,8 @@ impl ArticulatedMotion {
     fn restore(&self, reduced: &ReducedState, state: &mut IntegratorState) {
         let (q, p) = (self.basis.to_free(&reduced.eta), self.basis.force_to_free(&reduced.pi));
         let elastic_rotation = self.basis.hub_rotation(&q);
-        state.attitude = reduced.attitude * rotation(&-elastic_rotation);
-        state.momentum = SmallRotation::new(elastic_rotation).to_mean_axes(&reduced.momentum);
+        state.mean_attitude = reduced.attitude * rotation(&-elastic_rotation);
+        state.mean_momentum = SmallRotation::new(elastic_rotation).to_mean_axes(&reduced.momentum);
         state.rounding.0 = Quaternion::default();
         state.rounding.1 = Vector::zeros();
         state.rigid_angle += reduced.elastic_rotation - elastic_rotation;

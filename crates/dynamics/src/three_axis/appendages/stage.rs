@@ -27,8 +27,9 @@ pub struct StageScratch {
 
 /// Motion of an articulated body at a stage.
 pub struct StageRates {
-    /// Rate of the hub (rad/s), and its elastic part (rad/s).
+    /// Rate w of the hub (rad/s).
     pub rate: Vector,
+    /// Elastic part sum phi q' of the rate (rad/s).
     pub elastic_rate: Vector,
     /// Inertia of the deformed body (kg m²).
     pub inertia: Matrix3<f64>,
@@ -62,7 +63,7 @@ impl ArticulatedMotion {
         }
     }
 
-    /// Evaluates the motion at a stage for the momentum `free` without rotors (N m s); `scratch` holds q and P.
+    /// Evaluates the motion at a stage for the momentum G = H - sum a h without rotors (N m s); `scratch` holds q and P.
     pub fn stage_rates(
         &self,
         stage: usize,
@@ -76,7 +77,8 @@ impl ArticulatedMotion {
         }
         let configuration = &scratch.configuration[stage];
         configuration.without_hinges(&mut scratch.eta);
-        scratch.rates = self.basis.held_rates(&scratch.p);
+        // The momenta pi, which the next call replaces by the rates eta'.
+        scratch.rates = self.basis.to_clamped_momenta(&scratch.p);
         let rate = configuration.rates(free, &scratch.eta, &mut scratch.rates);
         scratch.modal_rates = self.basis.to_free(&scratch.rates);
         let arm_torque = com_acceleration.map_or_else(Vector::zeros, |com_acceleration| {

@@ -1,9 +1,9 @@
 //! Rotors with friction in their bearings and imbalance: their motion and the forces they exert at the stages of a
 //! step.
 //!
-//! A rotor turns against the body at Omega = h/I - a.w, and th' = Omega. While it slips, its bearing subtracts c
-//! Omega + t sgn Omega from the motor torque; a rotor that is stuck turns with the body, h = I a.w, and adds I a a'
-//! to the body's inertia.
+//! A rotor of inertia I turns relative to the body at the speed Omega = h/I - a.w; its angle psi has the rate Omega. While the
+//! rotor slips, the bearing subtracts the friction c Omega + t_c sgn Omega (viscous, Coulomb) from the motor torque. A stuck
+//! rotor turns with the body, h = I a.w, and adds I a a' to the body's inertia.
 
 use flexsc_numerics::attitude::Vector;
 use nalgebra::Matrix3;
@@ -25,7 +25,8 @@ pub struct Bearing {
     pub lines: Vec<HarmonicLine>,
 }
 
-/// Harmonic of the imbalance: the load on the body is Omega² (c cos k th + s sin k th), where k is the order.
+/// Harmonic of the imbalance: the load on the body is Omega² (c cos k psi + s sin k psi), where k is the order and psi the
+/// angle of the rotor against the body.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct HarmonicLine {
     /// Order k: periods per revolution.
@@ -94,15 +95,16 @@ impl Bearing {
     }
 }
 
-/// State of a rotor: momentum (N m s), angle against the body since the start (rad) and friction heat (J) in `sums`,
-/// and their rounding errors in `lost`.
+/// State of a rotor in a bearing.
 #[derive(Copy, Clone, Debug, Default, PartialEq)]
 pub struct RotorState {
+    /// Momentum (N m s), angle against the body since the start (rad) and friction heat (J).
     pub values: Vector,
+    /// Rounding errors of `values` (compensated summation).
     pub rounding: Vector,
 }
 
-/// Rotors in bearings during a segment.
+/// Rotors in bearings, each with its motor torque, its bearing and its slip state.
 #[derive(Copy, Clone)]
 pub struct BearingLoads<'a> {
     pub bearings: &'a [Bearing],
@@ -119,7 +121,7 @@ pub struct RotorStage {
     pub rates: Vec<Vector>,
     /// Rates of `at` at the nodes of the step.
     pub node_rates: Vec<[Vector; 3]>,
-    /// Imbalance terms Omega² cos k th and Omega² sin k th of each harmonic of each rotor.
+    /// Imbalance terms Omega² cos k psi and Omega² sin k psi of each harmonic of each rotor (rad²/s²).
     pub imbalance_terms: Vec<[f64; 2]>,
 }
 
@@ -168,7 +170,7 @@ impl BearingLoads<'_> {
         momentum / self.bearings[index].inertia - self.rotors[index].axis.dot(rate)
     }
 
-    /// Updates the rates of all rotors from `spun.at`, and the imbalance terms, for a body with the angular rate
+    /// Updates the rates of all rotors from `stage.at`, and the imbalance terms, for a body with the angular rate
     /// `rate` (rad/s); returns the torque of the imbalance on the hub (N m).
     pub fn update_rates(&self, rate: &Vector, stage: &mut RotorStage) -> Vector {
         let mut torque = Vector::zeros();

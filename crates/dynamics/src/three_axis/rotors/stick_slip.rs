@@ -68,7 +68,7 @@ impl ThreeAxisMotion {
             .zip(&self.model.modes)
             .fold(Vector::zeros(), |sum, ([q, ..], mode)| sum + mode.rotation * *q);
         for (index, rotor) in loads.rotors.iter().enumerate().skip(self.loads.rotors.len()) {
-            self.current.momentum +=
+            self.current.mean_momentum +=
                 SmallRotation::new(elastic_rotation).to_mean_axes(&(rotor.axis * rotor.momentum));
             if index < self.bearings.len() {
                 self.slips[index] = self.initial_slip(index, &rotor.axis, rotor.momentum);
@@ -76,7 +76,8 @@ impl ThreeAxisMotion {
             }
         }
         for gimbal in loads.gimbals.iter().skip(self.loads.gimbals.len()) {
-            self.current.momentum += SmallRotation::new(elastic_rotation).to_mean_axes(&gimbal.at(0.0).0);
+            self.current.mean_momentum +=
+                SmallRotation::new(elastic_rotation).to_mean_axes(&gimbal.at(0.0).0);
         }
     }
 

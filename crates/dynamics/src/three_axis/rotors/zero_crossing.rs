@@ -1,7 +1,7 @@
 //! Search for the first instant at which a rotor stops or breaks away; no event is missed.
 //!
 //! Over a grid step the second derivative of a margin (a rotor's speed, or the unused holding torque of its bearing)
-//! is bounded by M (`bounds.rs`). Over a part d of the step the margin is therefore at least the smaller of its end
+//! is bounded by M (`error_bounds.rs`). Over a part d of the step the margin is therefore at least the smaller of its end
 //! values less M d²/8. Where this is not positive the part is halved, until it is, or the margin is monotonic and has
 //! one zero. Steps are those of the grid, whatever is observed, so that the event's instant does not depend on
 //! observations.

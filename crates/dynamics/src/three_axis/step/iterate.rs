@@ -38,8 +38,8 @@ fn momentum<R: LaneFloat>(kind: R, from: &Vector, momentum_rate: &StoredVectors,
     momentum
 }
 
-/// SIMD task that iterates the stages of a step without rotors in bearings and driven appendages; returns the number
-/// of iterations.
+/// SIMD task that iterates the stages of a step without rotors in bearings and without articulated appendages; returns the
+/// number of iterations.
 pub struct NodeIteration<'a> {
     pub step: &'a IntegrationStep<'a>,
     pub state: &'a IntegratorState,
@@ -87,7 +87,7 @@ impl SimdTask for NodeIteration<'_> {
             change.inertia_change = largest_norm_squared(&deformations.inertia_change);
             change.rate = largest_of_nodes(forcing.rate.dot(forcing.rate));
             if uses_attitude {
-                attitudes.compute(&state.attitude, &nodes.mean_rates(), step.h);
+                attitudes.compute(&state.mean_attitude, &nodes.mean_rates(), step.h);
             }
             if step.has_converged(&change, momentum_scale, modal_rate_scale, previous) {
                 break;
@@ -95,7 +95,7 @@ impl SimdTask for NodeIteration<'_> {
             previous = change.largest(step.h, momentum_scale, modal_rate_scale);
         }
         if !uses_attitude {
-            attitudes.compute(&state.attitude, &nodes.mean_rates(), step.h);
+            attitudes.compute(&state.mean_attitude, &nodes.mean_rates(), step.h);
         }
         iterations
     }
@@ -171,7 +171,7 @@ fn evaluate<R: LaneFloat>(
     nodes: &mut NodeValues,
 ) -> (NodeForcing<R>, IterationChange) {
     let (model, h) = (step.model, step.h);
-    let momentum = momentum(kind, &state.momentum, &nodes.momentum_rate, h);
+    let momentum = momentum(kind, &state.mean_momentum, &nodes.momentum_rate, h);
     let hub_to_mean = SmallRotationLanes::new(kind, deformations.elastic_rotation);
     let times = times(kind, h);
     let (rotors, change) = &step.rotors;
@@ -207,7 +207,7 @@ fn evaluate<R: LaneFloat>(
     for _ in 0..INNER_ITERATIONS {
         let mut kept = [[0.0; 4]; 3];
         momentum_rate.store(&mut kept);
-        let next = self::momentum(kind, &state.momentum, &kept, h);
+        let next = self::momentum(kind, &state.mean_momentum, &kept, h);
         more = next - momentum;
         mean_rate = at + more.transform(&model.inverse);
         momentum_rate = torque_mean - mean_rate.cross(next);
@@ -251,7 +251,7 @@ fn environment_torque<R: LaneFloat>(
         deformations.inertia_change[entry].store(&mut inertia_change[entry]);
     }
     for node in 0..3 {
-        let at = attitudes.at(&state.attitude, node, step.h);
+        let at = attitudes.at(&state.mean_attitude, node, step.h);
         let inertia_change = tensor(inertia_change.map(|of| of[node]));
         let (change, tide) =
             step.environment_at(NODES[node] * step.h, &at, &vector(&elastic_rotation, node), &inertia_change);

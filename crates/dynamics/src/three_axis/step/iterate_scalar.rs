@@ -1,4 +1,4 @@
-//! Stages of a step one after the other: for its start, and for bodies with rotors in bearings or driven appendages.
+//! Stages of a step one after the other: for its start, and for bodies with rotors in bearings or articulated appendages.
 
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::gauss_legendre::{MATRIX, NODES};
@@ -13,10 +13,13 @@ use crate::three_axis::rotors::RotorStage;
 use crate::three_axis::small_rotation::SmallRotation;
 use crate::three_axis::state::IntegratorState;
 
-/// Modal sums at an instant: sum phi q (rad), sum phi P (rad/s), and the change of the inertia (kg m²).
+/// Sums over the modes at an instant.
 pub struct Deformation {
+    /// Elastic rotation th = sum phi q (rad).
     pub elastic_rotation: Vector,
+    /// Sum phi P of the canonical rates (rad/s); the elastic rate of the hub is sum phi q'.
     pub elastic_rate: Vector,
+    /// Change J1 of the inertia (kg m²).
     pub inertia_change: Matrix3<f64>,
     /// Torque on the hub by forces whose points of application the modes move (N m).
     pub arm_torque: Vector,
@@ -33,9 +36,10 @@ pub struct ModalSums {
 
 impl ModalSums {
     #[inline]
-    pub fn add(&mut self, of: &ModeConstants, q: f64, p: f64, changes_inertia: bool) {
+    /// Adds a mode with the displacement q (m sqrt(kg)) and the canonical rate P (m sqrt(kg)/s).
+    pub fn add(&mut self, of: &ModeConstants, q: f64, canonical_rate: f64, changes_inertia: bool) {
         self.elastic_rotation += of.rotation * q;
-        self.elastic_rate += of.rotation * p;
+        self.elastic_rate += of.rotation * canonical_rate;
         if changes_inertia {
             self.inertia_change.iter_mut().zip(&of.moments).for_each(|(sum, moment)| *sum += moment * q);
         }
@@ -73,15 +77,18 @@ impl IntegrationStep<'_> {
             iterations += 1;
             let mut change = IterationChange::default();
             for node in 0..3 {
-                let at =
-                    if uses_attitude { attitudes.at(&state.attitude, node, self.h) } else { state.attitude };
+                let at = if uses_attitude {
+                    attitudes.at(&state.mean_attitude, node, self.h)
+                } else {
+                    state.mean_attitude
+                };
                 let found = self.stage(node, state, (stages, &at), (modes, optional), &mut change);
                 change.rotor_momentum = change.rotor_momentum.max(optional.rotors.set_rates(node, self.h));
                 change.add(&stages[node], &found);
                 stages[node] = found;
             }
             if uses_attitude {
-                attitudes.compute(&state.attitude, &mean_rates(stages), self.h);
+                attitudes.compute(&state.mean_attitude, &mean_rates(stages), self.h);
             }
             if self.has_converged(&change, momentum_scale, modal_rate_scale, previous) {
                 break;
@@ -89,7 +96,7 @@ impl IntegrationStep<'_> {
             previous = change.largest(self.h, momentum_scale, modal_rate_scale);
         }
         if !uses_attitude {
-            attitudes.compute(&state.attitude, &mean_rates(stages), self.h);
+            attitudes.compute(&state.mean_attitude, &mean_rates(stages), self.h);
         }
         iterations
     }
@@ -105,7 +112,7 @@ impl IntegrationStep<'_> {
     ) -> StageValues {
         let deformation = self.deformation(node, modes, optional);
         let [a, b, c] = weights(&MATRIX[node], self.h);
-        let momentum = state.momentum
+        let momentum = state.mean_momentum
             + stages[0].momentum_rate * a
             + stages[1].momentum_rate * b
             + stages[2].momentum_rate * c;
@@ -164,32 +171,36 @@ impl IntegrationStep<'_> {
         let model = self.model;
         let hub_to_mean = SmallRotation::new(deformation.elastic_rotation);
         let (rotors, change) = &self.rotors;
-        let mut free = hub_to_mean.to_hub_axes(momentum) - (rotors + change * t);
+        let mut body_momentum = hub_to_mean.to_hub_axes(momentum) - (rotors + change * t);
         if let Some(gimbal_momentum) = &self.gimbal_momentum {
-            free -= gimbal_momentum.stage(stage);
+            body_momentum -= gimbal_momentum.stage(stage);
         }
         let mut stuck_inertia = None;
         if let Some(bearings) = &self.bearings {
-            free -= bearings.stored(optional.rotors.at.iter().map(|at| at.x));
+            body_momentum -= bearings.stored(optional.rotors.at.iter().map(|at| at.x));
             stuck_inertia = bearings.sticks().then(|| bearings.stuck_inertia());
         }
         let (mut arm_torque, mut inertia) =
             (deformation.arm_torque, model.inertia + deformation.inertia_change);
         let (rigid_momentum, rigid_rate, rate) = if let Some((appendages, _)) = self.appendages {
-            let motion =
-                appendages.stage_rates(stage, &free, self.com_acceleration, &mut optional.appendages);
+            let motion = appendages.stage_rates(
+                stage,
+                &body_momentum,
+                self.com_acceleration,
+                &mut optional.appendages,
+            );
             (arm_torque, inertia) = (motion.arm_torque, motion.inertia);
-            (free, motion.rate - motion.elastic_rate, motion.rate)
+            (body_momentum, motion.rate - motion.elastic_rate, motion.rate)
         } else if model.changes_inertia || stuck_inertia.is_some() {
             let inertia_change = stuck_inertia.map_or(deformation.inertia_change, |stuck_inertia| {
                 deformation.inertia_change + stuck_inertia
             });
             let (rigid_momentum, rate) =
-                model.momentum_and_rate(&free, &deformation.elastic_rate, &inertia_change);
+                model.momentum_and_rate(&body_momentum, &deformation.elastic_rate, &inertia_change);
             (rigid_momentum, model.inverse * rigid_momentum, rate)
         } else {
-            let rigid_rate = model.inverse * free;
-            (free, rigid_rate, rigid_rate + deformation.elastic_rate + model.bending * free)
+            let rigid_rate = model.inverse * body_momentum;
+            (body_momentum, rigid_rate, rigid_rate + deformation.elastic_rate + model.bending * body_momentum)
         };
         let (mut torque, mut tide) = (self.torque, None);
         if !self.force_arms.is_empty() || self.appendages.is_some() {

@@ -4,6 +4,9 @@
 //! (J^-1 Gt + (1 - Gr) phi q'), which contains the elastic rate only in products with th. The stages are found by
 //! fixed-point iteration; the modes need only Gt (three numbers) and, if present, s of a stage. The attitude follows
 //! from the rates of the mean axes afterwards; it takes part in the iteration only if the environment depends on it.
+//!
+//! The nodes of a step are its three Gauss-Legendre instants, 0 to 2. A stage is the evaluation of the motion at the start
+//! of the step, stage 0, or at a node, stage node + 1.
 
 mod attitude_nodes;
 mod convergence;
@@ -67,7 +70,7 @@ pub struct IntegrationStep<'a> {
     pub appendages: Option<(&'a ArticulatedMotion, f64)>,
 }
 
-/// Working memory of a step for rotors in bearings and driven appendages.
+/// Working memory of a step for rotors in bearings and articulated appendages.
 #[derive(Clone, Debug, Default)]
 pub struct OptionalStages {
     pub rotors: RotorStage,
@@ -85,7 +88,7 @@ pub struct ModeMemory {
     /// Rate g = phi' Gt and varying force s at the nodes; the fourth entries are unused.
     pub g: [f64; 4],
     pub s: [f64; 4],
-    /// P at the nodes; q' once g has been added.
+    /// Canonical rates P at the nodes (m sqrt(kg)/s); the update of the modal forces adds g where forces depend on q'.
     pub rate: [f64; 4],
 }
 
@@ -135,7 +138,7 @@ impl IntegrationStep<'_> {
         let modal_rate_scale = largest_rate.max(self.h * *largest_force);
         let mut attitudes = NodeAttitudes::default();
         if self.surroundings.is_some() {
-            attitudes.compute(&state.attitude, &nodes.mean_rates(), self.h);
+            attitudes.compute(&state.mean_attitude, &nodes.mean_rates(), self.h);
         }
         let iterations = if scalar {
             let mut stages = nodes.stages();
@@ -180,8 +183,13 @@ impl IntegrationStep<'_> {
             arm_torque,
         };
         if self.only_rigid_forcing() {
-            let (stage, forcing) =
-                self.stage_motion((0, 0.0), &deformation, &state.momentum, &state.attitude, optional);
+            let (stage, forcing) = self.stage_motion(
+                (0, 0.0),
+                &deformation,
+                &state.mean_momentum,
+                &state.mean_attitude,
+                optional,
+            );
             let centrifugal = self.model.changes_inertia.then(|| centrifugal_terms(&forcing.rate));
             let (groups_of_four, states) = (&self.model.groups_of_four[..], &state.modes[..]);
             return (
@@ -207,7 +215,7 @@ impl IntegrationStep<'_> {
             rates.resize(at.len(), Vector::zeros());
         }
         let (stage, forcing) =
-            self.stage_motion((0, 0.0), &deformation, &state.momentum, &state.attitude, optional);
+            self.stage_motion((0, 0.0), &deformation, &state.mean_momentum, &state.mean_attitude, optional);
         if self.bearings.is_some() {
             let RotorStage { node_rates, rates, .. } = &mut optional.rotors;
             node_rates.clear();
@@ -234,7 +242,7 @@ impl IntegrationStep<'_> {
         if self.com_acceleration.is_some() {
             for (index, (weight, node)) in WEIGHTS.into_iter().zip(NODES).enumerate() {
                 let com_acceleration = inertial(
-                    &attitudes.at(&state.attitude, index, self.h),
+                    &attitudes.at(&state.mean_attitude, index, self.h),
                     &vector(&nodes.com_acceleration, index),
                 );
                 *velocity += com_acceleration * (weight * self.h);
@@ -257,7 +265,13 @@ impl IntegrationStep<'_> {
         let attitude_change =
             attitudes.derivatives[0] * a + attitudes.derivatives[1] * b + attitudes.derivatives[2] * c;
         let IntegratorState {
-            attitude, momentum, rigid_angle, rounding, modes: states, rotor_states, ..
+            mean_attitude: attitude,
+            mean_momentum: momentum,
+            rigid_angle,
+            rounding,
+            modes: states,
+            rotor_states,
+            ..
         } = state;
         if self.bearings.is_some() {
             for (rotor, rates) in rotor_states.iter_mut().zip(&rotors.node_rates) {
@@ -299,14 +313,20 @@ impl IntegrationStep<'_> {
         let gimbal_momentum =
             self.gimbal_momentum.as_ref().map_or(0.0, |gimbal_momentum| length(&gimbal_momentum.start.0));
         let rotors = length(&self.rotors.0) + gimbal_momentum;
-        length(&state.momentum) + self.h * length(&self.torque) + ROTORS * rotors
+        length(&state.mean_momentum) + self.h * length(&self.torque) + ROTORS * rotors
     }
 
-    /// Stores q and P of a mode for the appendage terms of bodies with drives.
+    /// Stores q and P of a mode for the terms of articulated appendages.
     #[inline]
-    pub(super) fn store_mode(&self, index: usize, q: f64, p: f64, optional: &mut OptionalStages) {
+    pub(super) fn store_mode(
+        &self,
+        index: usize,
+        q: f64,
+        canonical_rate: f64,
+        optional: &mut OptionalStages,
+    ) {
         if self.appendages.is_some() {
-            (optional.appendages.q[index], optional.appendages.p[index]) = (q, p);
+            (optional.appendages.q[index], optional.appendages.p[index]) = (q, canonical_rate);
         }
     }
 }

@@ -50,7 +50,7 @@ impl SimdTask for Predictor<'_> {
         let rigid_acceleration = step.model.inverse * rigid_momentum_rate;
         let none = Vectors::splat(kind, &Vector::zeros());
         let more = none.add_scaled(&rigid_acceleration, times);
-        let momentum = Vectors::splat(kind, &state.momentum);
+        let momentum = Vectors::splat(kind, &state.mean_momentum);
         (Vectors::splat(kind, &start.rigid_rate) + more).store(&mut nodes.rigid_rate);
         (Vectors::splat(kind, &start.mean_rate) + more).store(&mut nodes.mean_rate);
         Vectors::splat(kind, &start.rigid_momentum)

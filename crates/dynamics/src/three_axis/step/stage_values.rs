@@ -5,7 +5,7 @@ use nalgebra::Matrix3;
 
 use crate::three_axis::vectors::{StoredVectors, vector};
 
-/// Values at one Gauss-Legendre stage.
+/// Motion of the body at one stage of a step.
 #[derive(Copy, Clone, Debug)]
 pub struct StageValues {
     /// Rate H_m' of the total momentum in mean axes (N m).
@@ -47,8 +47,8 @@ pub struct NodeValues {
 }
 
 impl NodeValues {
-    /// Returns the stage at a node.
-    pub fn stage(&self, node: usize) -> StageValues {
+    /// Returns the values at a node (0 to 2).
+    pub fn at_node(&self, node: usize) -> StageValues {
         StageValues {
             momentum_rate: vector(&self.momentum_rate, node),
             mean_rate: vector(&self.mean_rate, node),
@@ -60,7 +60,7 @@ impl NodeValues {
 
     /// Returns the stages at all three nodes.
     pub fn stages(&self) -> [StageValues; 3] {
-        [self.stage(0), self.stage(1), self.stage(2)]
+        [self.at_node(0), self.at_node(1), self.at_node(2)]
     }
 
     /// Overwrites the values with stages that were computed node by node.
