@@ -33,10 +33,10 @@ pub fn shortest_plan(planner: &ManoeuvrePlanner, limit: f64) -> Result<Plan, Con
         Ok(plan.peak_torque(planner.body).value / limit - 1.0)
     };
     let excess = |time: f64| peak(time).unwrap_or(f64::INFINITY);
-    if !low.is_finite() || low <= 0.0 {
+    let fastest = planner.body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
+    if !low.is_finite() || low <= 0.0 && fastest == 0.0 {
         return Err(impossible(limit));
     }
-    let fastest = planner.body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);
     let periods = low * fastest / TAU;
     if periods > MOST_PERIODS {
         return Err(ConfigError::new(
