@@ -1,7 +1,7 @@
 """Relays about three axes of a flexible body at small angles, in 40 digits with mpmath.
 
-For tests/small_angles.rs: prints `time, axis` of every switching within 400 s, with a continuous sensor, and then a line
-`end` with the rotation, the rates and the displacements of the modes at 400 s.
+For tests/small_angles.rs: prints `time, axis` of every switching within 120 s, with a continuous sensor, and then a line
+`end` with the rotation, the rates and the displacements of the modes at 120 s.
 
 theta'' = J^-1 M and q'' + 2 zeta w q' + w² q = phi . M under constant torques M; relay i reads theta_i + sum phi_i q.
 Crossings are bracketed on a grid of 0.01 s, with Newton's method between, and not by bounds.
@@ -26,7 +26,7 @@ DISTURBANCE = ["0", "2e-5", "0"]
 RELAYS = [("8e-3", "2e-4"), ("5e-3", "1e-4"), ("4e-3", "1e-4")]
 # Numbers of a scenario file are doubles.
 ZONE, BACK, K_T = mpf(5e-4), mpf(5e-4 - 1e-4), mpf(0.33)
-STEP, END = mpf("0.01"), mpf(400)
+STEP, END = mpf("0.01"), mpf(120)
 
 
 def number(text):
