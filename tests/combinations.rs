@@ -167,6 +167,7 @@ fn parts_combine_as_the_documents_say() {
     let all = LAWS.len() * SENSORS.len() * ESTIMATORS.len() * ACTUATORS.len();
     let turning =
         SPACECRAFT.replace("plate =", "drive = { about = [0, 1, 0], rate = 0.02 }\nplate =") + HINGED;
+    let small = SPACECRAFT.replace("points =", "small_angles = {}\npoints =");
     let [lateral, whole] = [10.0 * 2.0, 200.0 + 10.0];
     let bodies = [
         Body {
@@ -200,6 +201,14 @@ fn parts_combine_as_the_documents_say() {
             centre: [5.0 * 1.5 / (whole + 5.0), lateral / (whole + 5.0), 0.0],
             driven: [0.0, 1.0 * 0.02, 0.0],
             tolerance: 1e-3,
+        },
+        Body {
+            name: "A spacecraft from parts at small angles",
+            text: &small,
+            least: 1000,
+            centre: [0.0, lateral / whole, 0.0],
+            driven: [0.0; 3],
+            tolerance: 3e-3,
         },
     ];
     let all_tables: Vec<_> = std::thread::scope(|scope| {

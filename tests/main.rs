@@ -30,6 +30,7 @@ mod linear_poles;
 mod model;
 mod outside;
 mod rotation;
+mod small_angles;
 mod spacecraft;
 mod spatial;
 mod structure;

@@ -11,7 +11,7 @@ use crate::study::pairs;
 use crate::util::SCENARIOS;
 
 /// Shipped scenarios of every kind of motion, law, sensor and actuator, and their simulated times (s).
-const FLOWN: [(&str, f64); 14] = [
+const FLOWN: [(&str, f64); 15] = [
     ("attitude-hold", 60.0),
     ("canted-jets", 60.0),
     ("detumble-and-point", 300.0),
@@ -22,6 +22,7 @@ const FLOWN: [(&str, f64); 14] = [
     ("relay-adaptive", 2500.0),
     ("relay-sampled", 400.0),
     ("relay-wheel", 400.0),
+    ("relays-three-axes", 300.0),
     ("rotation-nonlinear", 20.0),
     ("rotation-thrusters", 20.0),
     ("wheel-ekf", 30.0),

@@ -47,6 +47,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "relay-quiet",
     "relay-sampled",
     "relay-wheel",
+    "relays-three-axes",
     "rotation-cosine",
     "rotation-kinematic",
     "rotation-nonlinear",

@@ -40,6 +40,8 @@ pub struct BodyOffers {
     pub is_spacecraft: bool,
     /// True if the elastic modes of a three-axis body act back on its rotation.
     pub is_two_way: bool,
+    /// True if a three-axis body rotates by small angles, in closed form.
+    pub has_small_angles: bool,
     /// Number of elastic modes.
     pub modes: usize,
     /// Key and damping ratio of the first mode at or above critical damping.

@@ -6,6 +6,7 @@
 use flexsc_numerics::time::Span;
 
 use super::AngleObservation;
+use super::guard::Guard;
 
 /// Guard that tripped, with the instant and the observation there.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -50,6 +51,40 @@ pub trait BoundedMotion {
         sensed: Self::Observation,
         time: f64,
     ) -> bool;
+}
+
+/// Upper bounds of |x''| (rad/s²) and |x'''| (rad/s³) of an angle x on a segment.
+#[derive(Copy, Clone, Debug, Default)]
+pub struct DerivativeBounds {
+    /// Upper bound of |x''| (rad/s²).
+    pub curvature: f64,
+    /// Upper bound of |x'''| (rad/s³).
+    pub jerk: f64,
+}
+
+impl DerivativeBounds {
+    /// Returns a time (s) for which the guard cannot trip, given the present motion.
+    ///
+    /// With the bounds M of |x''| and J of |x'''| the gap left after t is at least gap - speed t - M t²/2, and at least
+    /// gap - speed t - a t²/2 - J t³/6 with the acceleration a now. Let q be the first root of gap - speed t - a t²/2.
+    /// Up to q, J t³/6 is at most (J q/3) t²/2, so that the first root with the acceleration a + J q/3, which is not
+    /// after q, is certain too. The lesser of the two accelerations gives the longer stride.
+    #[inline]
+    pub fn safe_stride(self, guard: Guard, now: AngleObservation) -> f64 {
+        let towards = guard.side.sign();
+        let (gap, speed, acceleration) =
+            (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
+        let q = first_root(gap, speed, acceleration);
+        // Without modes an infinite q makes J q a NaN, and the minimum selects M.
+        first_root(gap, speed, self.curvature.min(acceleration + self.jerk * q / 3.0))
+    }
+
+    /// Returns true if the guard cannot trip within `time` (s), given the present motion.
+    #[inline]
+    pub fn has_no_crossing(self, guard: Guard, now: AngleObservation, time: f64) -> bool {
+        let speed = guard.side.sign() * now.rate;
+        guard.gap(now.angle) > time * (speed + 0.5 * self.curvature * time)
+    }
 }
 
 /// Number of strides between two calls of `poll` (cancellation check).

@@ -1,5 +1,7 @@
 //! Guards: thresholds of the measured angle.
 
+use flexsc_numerics::time::Instant;
+
 /// Direction of a guard.
 #[derive(Copy, Clone, Debug, PartialEq, Eq)]
 pub enum GuardDirection {
@@ -50,4 +52,18 @@ impl Guard {
     pub fn holds(self, angle: f64) -> bool {
         self.gap(angle) <= 0.0
     }
+}
+
+/// Guards about each axis; those of a one-axis body are about the first.
+pub type AxisGuards<'a> = [&'a [Guard]; 3];
+
+/// Guard that trips, with its instant.
+#[derive(Copy, Clone, Debug, PartialEq, Eq)]
+pub struct GuardCrossing {
+    /// Instant of the trip.
+    pub at: Instant,
+    /// Axis of the guard: 0, or 0 to 2 for roll, pitch and yaw.
+    pub axis: usize,
+    /// Index of the guard among those about its axis.
+    pub guard: usize,
 }

@@ -1,6 +1,6 @@
 //! Run-time state of the laws of a run, one about each axis, with their current outputs.
 
-use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::guard::{AxisGuards, Guard};
 use flexsc_numerics::time::Instant;
 use flexsc_record::Report;
 
@@ -47,8 +47,13 @@ struct ControllerState {
 pub enum Event {
     /// Start of the run.
     Start,
-    /// Trip of a guard on the angle of a one-axis body.
-    Guard(usize),
+    /// Trip of a guard on the angle about an axis.
+    Guard {
+        /// Axis of the guard: 0, or 0 to 2 for roll, pitch and yaw.
+        axis: usize,
+        /// Index of the guard among those of the law about that axis.
+        guard: usize,
+    },
     /// Sample, or time of the next decision.
     Due {
         /// True if a sample was taken, at which guards are tested.
@@ -92,12 +97,12 @@ impl Controllers {
             let timeout = held.hold.until.filter(|until| *until == now).map(|_| DecisionCause::Timeout);
             let cause = match event {
                 Event::Start => Some(DecisionCause::Start),
-                Event::Guard(guard) => Some(DecisionCause::Guard(guard)),
+                Event::Guard { axis: tripped, guard } if tripped == axis => Some(DecisionCause::Guard(guard)),
                 Event::Due { sampled: true } => {
                     let holds = |guard: &Guard| guard.holds(state_estimate.angle);
                     held.hold.guards.iter().position(holds).map(DecisionCause::Guard).or(timeout)
                 }
-                Event::Due { sampled: false } => timeout,
+                Event::Guard { .. } | Event::Due { sampled: false } => timeout,
             };
             if let Some(cause) = cause {
                 held.hold = held.law.decide(now, cause, &goal(axis, &*held.law), state_estimate);
@@ -131,9 +136,13 @@ impl Controllers {
         self.until
     }
 
-    /// Returns the guards of the first axis.
-    pub fn guards(&self) -> &[Guard] {
-        &self.axes[0].hold.guards
+    /// Returns the guards of the law about each axis.
+    pub fn guards(&self) -> AxisGuards<'_> {
+        let mut guards: AxisGuards<'_> = [&[]; 3];
+        for (own, held) in guards.iter_mut().zip(&self.axes) {
+            *own = &held.hold.guards;
+        }
+        guards
     }
 
     /// Returns the command about each axis.

@@ -116,9 +116,10 @@ impl LawSpec for Relay {
         let (body, is_continuous) = (&offers.body, offers.sample_period.is_none());
         needs.require(
             Rule::Law,
-            body.axes == 1 || !offers.sensors.is_continuous,
+            body.axes == 1 || body.has_small_angles || !offers.sensors.is_continuous,
             "",
-            "finds its crossings in closed form, which three axes do not have: give it a `[sensor.sampled]`",
+            "finds its crossings in closed form, which three axes have only as `small_angles` of the body: give it those, or a \
+             `[sensor.sampled]`",
         );
         needs.require(
             Rule::Crossings,

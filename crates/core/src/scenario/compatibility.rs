@@ -55,6 +55,7 @@ impl ScenarioSpec {
             kind: self.body_kind(),
             is_spacecraft: self.spacecraft.is_some(),
             is_two_way: model.flexible().is_some(),
+            has_small_angles: model.spatial().is_some_and(|body| body.small_angles.is_some()),
             modes: model.mode_count(),
             overdamped: self.overdamped_mode(model),
             is_chain: model.chain().is_some(),
@@ -108,12 +109,13 @@ impl ScenarioSpec {
         offers: &Offers,
         unmet: &Requirements,
     ) -> Result<(), ConfigError> {
-        let checks: [&dyn Fn() -> Option<ConfigError>; 16] = [
+        let checks: [&dyn Fn() -> Option<ConfigError>; 17] = [
             &|| unmet.first_of(Rule::AxisLaws..=Rule::MomentAxes),
             &|| self.validate_one_axis_tables(),
             &|| unmet.first_of(Rule::SensorPoint..=Rule::OneNumber),
             &|| self.validate_one_axis_disturbances(),
             &|| self.validate_three_axis_tables(),
+            &|| self.validate_small_angles(model),
             &|| unmet.first(Rule::BackEmf),
             &|| self.validate_assignments(),
             &|| unmet.first_of(Rule::Repetition..=Rule::Phase),

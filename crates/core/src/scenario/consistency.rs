@@ -7,8 +7,8 @@ use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
-use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::body::craft::RateLimit;
+use flexsc_spacecraft::body::{BodyAxes, Spatial};
 use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::epoch::nanoseconds_since_1970;
@@ -55,7 +55,7 @@ impl Scenario {
         // The compatibility of three-axis parts was checked before.
         let parts = match self.model.axes() {
             BodyAxes::One(body) => self.planar_inconsistency(body, offers, unmet),
-            BodyAxes::Three(_) => self.spatial_inconsistency(offers, unmet),
+            BodyAxes::Three(body) => self.spatial_inconsistency(body, offers, unmet),
         };
         parts.or_else(|| {
             if self.uncertain.is_empty() && self.correlated.is_empty() {
@@ -97,8 +97,14 @@ impl Scenario {
         })
     }
 
-    fn spatial_inconsistency(&self, offers: &Offers, unmet: &Requirements) -> Option<ConfigError> {
-        self.validate_drives(offers, unmet)
+    fn spatial_inconsistency(
+        &self,
+        body: &Spatial,
+        offers: &Offers,
+        unmet: &Requirements,
+    ) -> Option<ConfigError> {
+        self.validate_small_start(body, &self.study)
+            .or_else(|| self.validate_drives(offers, unmet))
             .or_else(|| unmet.first(Rule::GainSchedule))
             .or_else(|| self.timing_inconsistency(unmet))
             .or_else(|| self.rate_inconsistency())

@@ -4,6 +4,7 @@
 use flexsc_control::actuator::{ActuatorTask, Failure, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::AttitudeTarget;
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::three_axis::{Bearing, IMBALANCE_PHASE, Surroundings};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::vector;
@@ -266,8 +267,10 @@ impl Scenario {
         // Crossings are predicted or searched, and exact panels integrated, by steps that are a part of a vibration.
         let is_coupled = self.drift.is_some() || self.actuator.flywheel().is_some();
         let is_sampled = self.study.sample_period.is_some();
-        let search =
-            if is_sampled { 0.0 } else { self.law.relay().map_or(0.0, |law| law.search_steps(is_coupled)) };
+        let axes = self.closed_form_axes();
+        let about_axis =
+            |axis: usize| self.law.about(axis).relay().map_or(0.0, |law| law.search_steps(is_coupled));
+        let search = if is_sampled { 0.0 } else { (0..axes.len()).map(about_axis).fold(0.0, f64::max) };
         let strides = if self.model.chain().is_some() {
             20.0
         } else if search > 0.0 {
@@ -278,20 +281,22 @@ impl Scenario {
         } else {
             0.0
         };
-        let modes = self.model.planar().into_iter().flat_map(|body| &body.modes);
+        let modes = axes.iter().flat_map(|body| &body.modes);
         let fastest = modes.map(|mode| mode.frequency.get()).fold(0.0, f64::max);
         if strides * fastest > 0.0 {
             steps.push(("duration".to_owned(), strides * duration * fastest));
         }
-        let body = self.model.planar().filter(|_| !is_sampled);
-        if let (Some(body), Some(law)) = (body, self.law.relay()) {
-            let mean = law.switching_interval(body.commanded_inertia());
-            // The first window of chatter ends the run.
+        // The first window of chatter ends the run.
+        let switchings = |(axis, body): (usize, &AxisModel)| {
+            let mean = self.law.about(axis).relay()?.switching_interval(body.commanded_inertia());
             let chatters = mean * SWITCHINGS as f64 <= shortest_window(fastest);
-            let switchings = if chatters { SWITCHINGS as f64 } else { duration / mean };
-            steps.push((SWITCHES.to_owned(), switchings));
+            Some(if chatters { SWITCHINGS as f64 } else { duration / mean })
+        };
+        let switchings: Vec<f64> = axes.iter().enumerate().filter_map(switchings).collect();
+        if !(is_sampled || switchings.is_empty()) {
+            steps.push((SWITCHES.to_owned(), switchings.iter().sum()));
         }
-        if let Some(body) = self.model.spatial() {
+        if let Some(body) = self.model.spatial().filter(|body| body.small_angles.is_none()) {
             let rate = self.largest_expected_rate(body);
             let turn = LONGEST_TURN / rate;
             let step = self.model.flexible().map_or(turn, |flexible| flexible.step(rate));
@@ -308,6 +313,12 @@ impl Scenario {
             }
         }
         steps
+    }
+
+    /// Returns the body about each axis about which its motion has a closed form, as if that axis were alone.
+    fn closed_form_axes(&self) -> &[AxisModel] {
+        let has_closed_form = self.model.spatial().is_none_or(|body| body.small_angles.is_some());
+        if has_closed_form { &self.study.axes } else { &[] }
     }
 
     /// Returns true if a three-axis body of this rate (rad/s) holds its attitude in surroundings, and its steps need not resolve

@@ -24,6 +24,7 @@ mod reference_values;
 mod remarks;
 mod resolved;
 mod sensor_checks;
+mod small_angle_checks;
 mod spec;
 
 use std::ops::Deref;

@@ -5,6 +5,7 @@ use flexsc_control::estimator::ObjectiveWindow;
 use flexsc_control::law::{Command, Controllers, DecisionCause, Event, Law, Phase};
 use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::state_estimate::{DampingStatus, StateEstimate};
+use flexsc_dynamics::guard::GuardCrossing;
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Record, RecordError, Report};
@@ -19,8 +20,8 @@ use crate::scenario::Scenario;
 #[derive(Clone, Debug)]
 pub struct ControlLaws {
     laws: Controllers,
-    /// Instant and index of the next guard crossing, as long as the inputs do not change before.
-    crossing: Option<(Instant, usize)>,
+    /// Next guard crossing, as long as the inputs do not change before.
+    crossing: Option<GuardCrossing>,
     /// Event at the current instant to which the laws have not responded yet, because the run was stopped before.
     pub pending_event: Option<Event>,
     /// True if there are external commands that the actuator does not have yet.
@@ -61,7 +62,7 @@ impl ControlLaws {
     /// Returns the next instant at which a law decides by itself, a guard trips, or a window of the objective closes.
     #[inline]
     pub fn next_event(&self) -> Option<Instant> {
-        let crossing = self.crossing.map(|(at, _)| at);
+        let crossing = self.crossing.map(|crossing| crossing.at);
         [crossing, self.laws.next_timeout(), self.objective.closes()].into_iter().flatten().min()
     }
 
@@ -70,7 +71,7 @@ impl ControlLaws {
     pub fn event(&self, now: Instant, sample_is_due: bool) -> Event {
         match self.crossing {
             _ if sample_is_due => Event::Due { sampled: true },
-            Some((at, guard)) if at == now => Event::Guard(guard),
+            Some(GuardCrossing { at, axis, guard }) if at == now => Event::Guard { axis, guard },
             _ => Event::Due { sampled: false },
         }
     }
@@ -79,7 +80,7 @@ impl ControlLaws {
     #[inline]
     pub fn must_decide(&self, now: Instant, event: Event, estimates: &[StateEstimate]) -> bool {
         let sampled = event == Event::Due { sampled: true };
-        matches!(event, Event::Guard(_)) || self.laws.must_decide(now, sampled, estimates)
+        matches!(event, Event::Guard { .. }) || self.laws.must_decide(now, sampled, estimates)
     }
 
     /// Lets the laws that an event concerns decide, without a count of switchings; returns the cause of the first decision.
@@ -132,9 +133,10 @@ impl ControlLaws {
         plant: &mut Plant,
         record: &mut dyn Record,
     ) -> Result<(), RecordError> {
-        if !self.laws.guards().is_empty() {
+        let guards = self.laws.guards();
+        if guards.iter().any(|guards| !guards.is_empty()) {
             let end = self.laws.next_timeout().into_iter().fold(end, Instant::min);
-            self.crossing = plant.crossing(self.laws.guards(), end.since(now), record)?;
+            self.crossing = plant.crossing(guards, end.since(now), record)?;
         }
         Ok(())
     }

@@ -14,6 +14,21 @@ pub enum SimulationError {
         /// Instant of the state.
         at: Instant,
     },
+    /// The rotation of a three-axis body is no longer small.
+    #[error(
+        "the rotation about {axis} is no longer small at t = {at} s: it leaves `small_angles.{key} = {limit}`; give a larger \
+         limit, or leave out `small_angles` for any rotation"
+    )]
+    SmallAngles {
+        /// Instant at which the motion reached the limit.
+        at: Instant,
+        /// Axis: `roll`, `pitch` or `yaw`.
+        axis: &'static str,
+        /// Key of the limit: `angle` or `rate`.
+        key: &'static str,
+        /// Limit (rad or rad/s).
+        limit: f64,
+    },
     /// The law switches endlessly at one instant.
     #[error("chatter: the law decided {count} times at t = {at} s")]
     Chatter {

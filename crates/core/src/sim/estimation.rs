@@ -131,8 +131,7 @@ impl Estimation {
     /// state.
     pub fn predict(&mut self, now: Instant, plant: &Plant, sensors: &Sensors) {
         if sensors.is_continuous() {
-            let truth = plant.truth();
-            let angles = truth.orientation.rotated_by(truth.sensor_angles()).error_from(&self.origin);
+            let (truth, angles) = (plant.truth(), plant.sensed_angles(&self.origin));
             for (axis, estimate) in self.estimates.iter_mut().enumerate() {
                 (estimate.angle, estimate.rate) = (angles[axis], truth.rate[axis]);
             }

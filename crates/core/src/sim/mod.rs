@@ -213,7 +213,7 @@ impl Simulation {
         self.clock.count_decision()?;
         self.estimation.predict(now, &self.plant, &self.sensors);
         let decision = self.laws.decide(now, event, &self.guidance, &mut self.estimation.estimates);
-        if decision.is_switching() {
+        if decision.is_switching() || matches!(event, Event::Guard { axis: 1.., .. }) {
             self.clock.count_switching()?;
         }
         self.command_actuator();

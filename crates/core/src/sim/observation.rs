@@ -140,7 +140,7 @@ impl RunView<'_> {
         }
         let axes = self.estimation.axis_count();
         if self.sensors.is_continuous() {
-            let error = truth.orientation.rotated_by(truth.sensor_angles()).error_from(&origin);
+            let error = self.plant.sensed_angles(&origin);
             for _ in 0..2 {
                 row.write(&error[..axes]);
                 row.write(&truth.rate[..axes]);

@@ -7,7 +7,7 @@ use flexsc_control::law::Command;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, PieceDemand, Record, RecordError, Sample, Trigger};
 
-use super::plant::{AppliedTorque, Flow};
+use super::plant::AppliedTorque;
 use super::{Simulation, SimulationError};
 use crate::relay_setup::{
     CyclePhase, FoundCrossing, LaneHandover, LaneHost, LaneState, RunSetup, SWITCHINGS, apply_crossing,
@@ -162,7 +162,7 @@ impl LaneHost for SingleRunHost<'_> {
         let horizon = instant(self.setup.end).since(instant(from.time));
         let guards = guards(&self.setup, place, from.side);
         let Some(flow) = self.run.plant.one_axis() else { return false };
-        match flow.crossing(&guards, horizon, &mut self.record) {
+        match flow.first_trip(&guards, horizon, &mut self.record) {
             Ok(Some((at, guard))) => {
                 flow.view(at);
                 apply_crossing(found, at.since(instant(from.time)), guard == 0, flow.state());

@@ -155,6 +155,7 @@ __all__ = [
     "Sine",
     "SineCommand",
     "Sinusoid",
+    "SmallAngles",
     "SolarPressure",
     "Spacecraft",
     "Spatial",
@@ -2149,6 +2150,18 @@ class Sinusoid(Part):
 
 
 @dataclass(frozen=True, kw_only=True)
+class SmallAngles(Part):
+    """Linear rotation about a fixed target, in closed form, within bounds. The rotation of the mean axes
+    about each body axis must stay within both bounds: a run that leaves them ends with an error.
+    """
+
+    angle: float | None = None
+    """Largest rotation from the target about each axis (rad). Default: 0.1."""
+    rate: float | None = None
+    """Largest rate about each axis (rad/s). Default: 0.01."""
+
+
+@dataclass(frozen=True, kw_only=True)
 class SolarPressure(Part):
     """Pressure of sunlight: one `force` at a point, or `plates`."""
 
@@ -2188,6 +2201,8 @@ class Spacecraft(Part):
     """Rates of the whole spacecraft at the start (rad/s), in the body's axes; without vibration they are
     the rates of the hub.
     """
+    small_angles: SmallAngles | None = None
+    """Small rotations about a fixed target, in closed form, in place of any rotation."""
     whole_damping: bool | None = None
     """Whether the full damping matrix of the free modes is kept even if its off-diagonal terms are
     negligible.
@@ -2210,6 +2225,8 @@ class Spatial(Part):
     """
     rate: Vector | None = None
     """Rates at the start (rad/s), in the body's axes."""
+    small_angles: SmallAngles | None = None
+    """Small rotations about a fixed target, in closed form, in place of any rotation."""
     points: Sequence[NamedPoint] | None = None
     """Named points of the structure, at which jets and sensors are mounted."""
     modes: Sequence[SpatialMode] | str | None = None

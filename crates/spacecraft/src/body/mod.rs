@@ -12,6 +12,7 @@ mod one_axis;
 mod output;
 mod panels;
 mod reduction;
+mod small_angles;
 pub mod spatial;
 mod structure_matrices;
 
@@ -34,6 +35,7 @@ pub use model::{BodyAxes, BodyModel};
 pub use one_axis::{Drive, Planar};
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
+pub use small_angles::SmallAngles;
 pub use spatial::Spatial;
 pub use structure_matrices::{MatrixBody, WeightedSum};
 

@@ -5,6 +5,7 @@
 //! - [`CoupledFlow`]: modes coupled by a wheel, a damping matrix or a drift ([`DriftingFlow`]), in closed form or as Taylor
 //!   series;
 //! - [`ChainMotion`]: the exact chain of rigid sections;
+//! - [`SmallAngleSegment`]: small rotations about three axes in closed form, with the same bounds;
 //! - [`RigidBody`] and [`ElasticModes`] (or [`DriftingModes`]): three axes, with rotation and modes computed separately.
 //!
 //! The two-way coupled motion about three axes is in `flexsc_dynamics::three_axis`.
@@ -21,6 +22,7 @@ mod mode;
 mod modes_simd;
 mod rigid;
 mod segment;
+mod small_angles;
 mod taylor_series;
 mod three_axis_state;
 mod waveform_response;
@@ -34,6 +36,7 @@ pub use elastic::ElasticModes;
 pub use mode::ModeFlow;
 pub use rigid::{LONGEST_TURN, RigidBody, RigidState};
 pub use segment::UncoupledSegment;
+pub use small_angles::{SmallAngleGuard, SmallAngleSegment, SmallAngleState};
 pub use taylor_series::{DriftingEquations, RatioSeries};
 pub use three_axis_state::ThreeAxisState;
 pub use waveform_response::{ActiveWaveform, SegmentInput};

@@ -3,7 +3,7 @@
 mod predicted_crossing;
 
 use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
-use flexsc_dynamics::crossing::{BoundedMotion, first_root};
+use flexsc_dynamics::crossing::{BoundedMotion, DerivativeBounds, first_root};
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::polynomial_piece::{REACH, SeriesExpansion};
 use flexsc_dynamics::{AngleObservation, AxisState, ModeState};
@@ -245,26 +245,20 @@ impl UncoupledSegment {
     }
 
     /// Returns a time (s) for which the guard cannot trip, given the present motion at the sensor.
-    ///
-    /// With the bounds M of |x''| and J of |x'''| the gap left after t is at least gap - speed t - M t²/2, and at least
-    /// gap - speed t - a t²/2 - J t³/6 with the acceleration a now. Let q be the first root of gap - speed t - a t²/2.
-    /// Up to q, J t³/6 is at most (J q/3) t²/2, so that the first root with the acceleration a + J q/3, which is not
-    /// after q, is certain too. The lesser of the two accelerations gives the longer stride.
     #[inline]
     pub fn safe_stride(&self, guard: Guard, now: AngleObservation) -> f64 {
-        let towards = guard.side.sign();
-        let (gap, speed, acceleration) =
-            (guard.gap(now.angle), towards * now.rate, towards * now.acceleration);
-        let q = first_root(gap, speed, acceleration);
-        // Without modes an infinite q makes J q a NaN, and the minimum selects M.
-        first_root(gap, speed, self.curvature.min(acceleration + self.jerk * q / 3.0))
+        self.bounds().safe_stride(guard, now)
     }
 
     /// Returns true if the guard cannot trip within `time` (s), given the present motion at the sensor.
     #[inline]
     pub fn has_no_crossing(&self, guard: Guard, now: AngleObservation, time: f64) -> bool {
-        let speed = guard.side.sign() * now.rate;
-        guard.gap(now.angle) > time * (speed + 0.5 * self.curvature * time)
+        self.bounds().has_no_crossing(guard, now, time)
+    }
+
+    #[inline]
+    fn bounds(&self) -> DerivativeBounds {
+        DerivativeBounds { curvature: self.curvature, jerk: self.jerk }
     }
 
     /// Propagates a small deviation of the state over `h` seconds. Its components are the rigid angle and rate, then

@@ -7,13 +7,15 @@ use std::fmt;
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::AxisState;
-use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
+use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
 use flexsc_spacecraft::wrench::Wrench;
 
 use super::one_axis_body::OneAxisQuantities;
 use super::three_axis_body::ThreeAxisQuantities;
+use crate::sim::SimulationError;
 
 /// Exact or integrated motion of a body under constant loads and waveforms.
 pub trait Flow: Any + fmt::Debug + Send + Sync {
@@ -28,15 +30,26 @@ pub trait Flow: Any + fmt::Debug + Send + Sync {
     /// advanced to `now`: its state is that of the last advance.
     fn evaluate(&mut self, now: Instant, truth: &mut Truth) -> bool;
 
-    /// Returns the instant and index of the first guard crossing of this segment within `horizon`; `None` also for
-    /// motions without a closed form, on which no law with guards acts.
+    /// Returns the limit of the motion's model that the motion has passed at the current instant; `None` if it is within
+    /// all limits.
+    fn exceeded_limit(&self) -> Option<ExceededLimit> {
+        None
+    }
+
+    /// Returns the first guard crossing of this segment within `horizon`; `None` also for motions without a closed form,
+    /// on which no law with guards acts.
     fn crossing(
         &mut self,
-        _guards: &[Guard],
+        _guards: AxisGuards<'_>,
         _horizon: Span,
         _record: &mut dyn Record,
-    ) -> Result<Option<(Instant, usize)>, RecordError> {
+    ) -> Result<Option<GuardCrossing>, RecordError> {
         Ok(None)
+    }
+
+    /// Returns the angles (rad) of a continuous sensor, counted from `origin`, at the true state.
+    fn sensed_angles(&self, truth: &Truth, origin: &Orientation) -> [f64; 3] {
+        truth.orientation.rotated_by(truth.sensor_angles()).error_from(origin)
     }
 
     /// Returns the motion about an axis as if that axis were alone; for three axes, with angles counted from `target`.
@@ -66,6 +79,26 @@ pub trait Flow: Any + fmt::Debug + Send + Sync {
 impl Clone for Box<dyn Flow> {
     fn clone(&self) -> Self {
         self.copy()
+    }
+}
+
+/// Limit of a motion's model that the motion has passed.
+#[derive(Copy, Clone, Debug, PartialEq)]
+pub struct ExceededLimit {
+    /// Instant at which the motion reached the limit.
+    pub at: Instant,
+    /// Axis: 0 to 2 for roll, pitch and yaw.
+    pub axis: usize,
+    /// True if the rate reached its limit, false if the angle did.
+    pub is_rate: bool,
+    /// Limit (rad or rad/s).
+    pub limit: f64,
+}
+
+impl From<ExceededLimit> for SimulationError {
+    fn from(exceeded: ExceededLimit) -> Self {
+        let ExceededLimit { at, axis, is_rate, limit } = exceeded;
+        Self::SmallAngles { at, axis: AXES[axis], key: if is_rate { "rate" } else { "angle" }, limit }
     }
 }
 

@@ -6,6 +6,7 @@ mod flow;
 mod one_axis;
 mod one_axis_body;
 mod one_way;
+mod small_angles;
 mod three_axis_body;
 mod three_axis_rows;
 mod two_way;
@@ -15,7 +16,7 @@ use std::borrow::Cow;
 
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
-use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
 use flexsc_dynamics::three_axis::{FlexibleBody, RotorObservation, SlipDirection};
 use flexsc_dynamics::{AxisState, MotionPiece};
 use flexsc_numerics::attitude::Vector;
@@ -33,6 +34,7 @@ use crate::scenario::{ResolvedScenario, Scenario};
 use coupled::CoupledSegment;
 use external::ExternalFlow;
 use one_way::OneWayFlow;
+use small_angles::SmallAnglesFlow;
 use two_way::TwoWayFlow;
 
 pub use coupled::AccelerometerMount;
@@ -78,6 +80,9 @@ impl Plant {
         drift: Option<&Drift>,
         study: &ResolvedScenario,
     ) -> Self {
+        if let Some(limits) = body.small_angles {
+            return Self::with_flow(SmallAnglesFlow::new(body, limits, flexible, study));
+        }
         match flexible {
             Some(flexible) => Self::with_flow(TwoWayFlow::new(body, flexible, study)),
             None => Self::with_flow(OneWayFlow::new(body, study).with_drift(body, drift)),
@@ -101,7 +106,7 @@ impl Plant {
         if self.flow.evaluate(now, &mut self.truth) {
             Ok(&self.truth)
         } else {
-            Err(SimulationError::NonFinite { at: now })
+            Err(self.flow.exceeded_limit().map_or(SimulationError::NonFinite { at: now }, Into::into))
         }
     }
 
@@ -119,6 +124,15 @@ impl Plant {
         }
     }
 
+    /// Returns the angles (rad) of a continuous sensor, counted from `origin`.
+    #[inline]
+    pub fn sensed_angles(&self, origin: &Orientation) -> [f64; 3] {
+        match self.truth.orientation {
+            at @ Orientation::Angle(_) => at.rotated_by(self.truth.sensor_angles()).error_from(origin),
+            Orientation::Attitude(_) => self.flow.sensed_angles(&self.truth, origin),
+        }
+    }
+
     /// Returns an upper bound on the frequencies in a three-axis motion at the current instant (rad/s); 0 for one axis.
     pub fn fastest_frequency(&self) -> f64 {
         self.quantities().three_axis().map_or(0.0, ThreeAxisQuantities::fastest_frequency)
@@ -130,15 +144,14 @@ impl Plant {
         self.flow.begin_segment(wrench);
     }
 
-    /// Returns the instant and index of the first guard crossing within `horizon`; `None` also for motions without a
-    /// closed form.
+    /// Returns the first guard crossing within `horizon`; `None` also for motions without a closed form.
     #[inline]
     pub fn crossing(
         &mut self,
-        guards: &[Guard],
+        guards: AxisGuards<'_>,
         horizon: Span,
         record: &mut dyn Record,
-    ) -> Result<Option<(Instant, usize)>, RecordError> {
+    ) -> Result<Option<GuardCrossing>, RecordError> {
         self.flow.crossing(guards, horizon, record)
     }
 

@@ -8,7 +8,7 @@ use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::crossing::first_crossing;
-use flexsc_dynamics::guard::Guard;
+use flexsc_dynamics::guard::{AxisGuards, Guard, GuardCrossing};
 use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
@@ -126,6 +126,34 @@ impl OneAxisFlow {
         self.next_crossing.2 = Instant::START;
     }
 
+    /// Returns the instant and index of the first guard that trips within `horizon` in this segment.
+    pub fn first_trip(
+        &mut self,
+        guards: &[Guard],
+        horizon: Span,
+        record: &mut dyn Record,
+    ) -> Result<Option<(Instant, usize)>, RecordError> {
+        let departed = self.departed;
+        let arc = match &mut self.motion {
+            OneAxisMotion::Uncoupled(arc) => arc,
+            OneAxisMotion::Coupled(coupling) => {
+                let trip = coupling.trip(guards, horizon, || record.poll())?;
+                return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
+            }
+            // No law with guards acts on this body.
+            OneAxisMotion::Chain(_) => return Ok(None),
+        };
+        let trip = match arc.predict_crossing(guards, horizon, &mut self.next_crossing.0) {
+            Some(trip) => trip,
+            None => first_crossing(arc, guards, horizon, &mut self.next_crossing.0, || record.poll())?,
+        };
+        Ok(trip.map(|trip| {
+            let at = departed + trip.after;
+            (self.next_crossing.1, self.next_crossing.2) = (trip.observation, at);
+            (at, trip.guard)
+        }))
+    }
+
     fn begin(&mut self, input: &SegmentInput) {
         let now = self.body.evaluated_at;
         match &mut self.motion {
@@ -166,29 +194,12 @@ impl Flow for OneAxisFlow {
 
     fn crossing(
         &mut self,
-        guards: &[Guard],
+        [guards, ..]: AxisGuards<'_>,
         horizon: Span,
         record: &mut dyn Record,
-    ) -> Result<Option<(Instant, usize)>, RecordError> {
-        let departed = self.departed;
-        let arc = match &mut self.motion {
-            OneAxisMotion::Uncoupled(arc) => arc,
-            OneAxisMotion::Coupled(coupling) => {
-                let trip = coupling.trip(guards, horizon, || record.poll())?;
-                return Ok(trip.map(|trip| (departed + trip.after, trip.guard)));
-            }
-            // No law with guards acts on this body.
-            OneAxisMotion::Chain(_) => return Ok(None),
-        };
-        let trip = match arc.predict_crossing(guards, horizon, &mut self.next_crossing.0) {
-            Some(trip) => trip,
-            None => first_crossing(arc, guards, horizon, &mut self.next_crossing.0, || record.poll())?,
-        };
-        Ok(trip.map(|trip| {
-            let at = departed + trip.after;
-            (self.next_crossing.1, self.next_crossing.2) = (trip.observation, at);
-            (at, trip.guard)
-        }))
+    ) -> Result<Option<GuardCrossing>, RecordError> {
+        let found = self.first_trip(guards, horizon, record)?;
+        Ok(found.map(|(at, guard)| GuardCrossing { at, axis: 0, guard }))
     }
 
     fn about_axis(&self, _axis: usize, _target: &Orientation) -> Cow<'_, AxisState> {

@@ -99,6 +99,7 @@ impl AssembledSpacecraft {
                 inertia: rows(&held.inertia)?,
                 attitude: spacecraft.attitude,
                 rate: spacecraft.rate,
+                small_angles: spacecraft.small_angles,
                 points: points(&places, &whole.centre)?,
                 modes: modes(appendages, &held, &free, &damping, &places, &whole.centre)?.into(),
                 disturbance: None,

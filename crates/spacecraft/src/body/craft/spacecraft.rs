@@ -6,6 +6,7 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::mass::MassProperties;
+use crate::body::SmallAngles;
 use crate::body::spatial::NamedPoint;
 
 /// A spacecraft: the rigid hub, to which appendages are clamped.
@@ -28,6 +29,9 @@ pub struct Spacecraft {
     /// hub.
     #[serde(default)]
     pub rate: [Finite; 3],
+    /// Small rotations about a fixed target, in closed form, in place of any rotation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub small_angles: Option<SmallAngles>,
     /// Whether the full damping matrix of the free modes is kept even if its off-diagonal terms are negligible.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub whole_damping: bool,

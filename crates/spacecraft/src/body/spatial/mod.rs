@@ -19,6 +19,8 @@ use nalgebra::Matrix3;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::SmallAngles;
+
 pub use disturbance::PeriodicTorque;
 pub use modes::ThreeAxisModes;
 
@@ -34,6 +36,9 @@ pub struct Spatial {
     /// Rates at the start (rad/s), in the body's axes.
     #[serde(default)]
     pub rate: [Finite; 3],
+    /// Small rotations about a fixed target, in closed form, in place of any rotation.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub small_angles: Option<SmallAngles>,
     /// Named points of the structure, at which jets and sensors are mounted.
     #[serde(default)]
     pub points: Vec<NamedPoint>,
