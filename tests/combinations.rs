@@ -144,7 +144,10 @@ fn run(scenario: &Scenario, body: &Body, law: &str, actuator: &str) -> Result<()
     if let Some(of) = scenario.model.spatial() {
         let jets = jet_torques(body.centre);
         let start = of.inertia_tensor() * vector(&of.rate) + Vector::from(body.driven);
-        if let Some(external) = external(actuator, law, &jets) {
+        // Without samples and a period of the law, pulses of jets begin between the rows of cycles.
+        let has_cycles = scenario.study.law_period.or(scenario.study.sample_period).is_some();
+        let external = external(actuator, law, &jets);
+        if let Some(external) = external.filter(|of| has_cycles || !matches!(of, External::Pulses(_))) {
             torque_changes_the_momentum(&whole, start, external, body.tolerance)?;
         }
         if body.driven == [0.0; 3] {
