@@ -54,7 +54,7 @@ metrics! {
         "Mean of the total envelope over each whole window of the observer";
     ENVELOPE_MEAN = "envelope_mean_rad", "rad", "Mean of the total envelope over all whole windows";
     ENVELOPE_LATE = "envelope_late_mean_rad", "rad",
-        "Mean of the total envelope over the windows that begin in the second half of the run";
+        "Mean of the total envelope over the windows that begin in the second half of the run; null if there is none";
     ENVELOPE_FINAL = "envelope_final_rad", "rad", "Mean of the total envelope over the last whole window";
     REDUCTION = "envelope_reduction", "",
         "Ratio of reference.envelope, or of the mean of the first window, to envelope_final_rad";
@@ -116,7 +116,7 @@ metrics! {
         "Whether the run meets its goal: met if the angle stays within goal_band_rad of it for at least the last tenth of the time since the goal began, else missed; none without a goal or a band";
     GOAL_BAND = "goal_band_rad", "rad",
         "Half width of the band about the goal: reference.band, or the one specified by the law or the manoeuvre; null without one";
-    TIME_OUTSIDE = "time_outside_s", "s", "Time outside goal_band_rad since the start of the goal";
+    TIME_OUTSIDE = "time_outside_s", "s", "Time outside goal_band_rad since the start of the goal; null without a band";
     RATE_END = "rate_end_rad_s", "rad/s",
         "Rigid rate of a body with magnetorquers at the end of the run";
     MOMENTUM_PEAK = "wheel_momentum_peak_nm_s", "N m s", "Largest total momentum of the wheels, at the control cycles";
@@ -200,7 +200,7 @@ metrics! {
     INFLUENCE_ERRORS = "influence_estimate_errors", "",
         "Relative errors of influence_estimates";
     TRACKING_ERROR = "elastic_rate_error_rms_rad_s", "rad/s",
-        "Root mean square error of the estimated elastic rates (norm over three axes), over the cycles of the run";
+        "Root mean square error of the estimated elastic rates (norm over three axes), over the cycles of the run; null if there are none";
     DAMPING_CYCLES = "damping_cycles", "", "Number of cycles in which active damping commands a pulse on any axis";
     DAMPING_PAUSES = "damping_pauses", "", "Number of times the watchdog paused active damping";
 }
