@@ -81,7 +81,7 @@ impl SmallAnglesFlow {
         let sensed = segment.at(0.0, &mut state.clone());
         let hub_modes = flexible.map_or(&[][..], |flexible| &flexible.modes);
         let inertia = spec.inertia_tensor();
-        let motion = SmallAngleMotion { sensed, state };
+        let motion = SmallAngleMotion { state, sensed };
         let mut flow = Self {
             limits,
             target,
