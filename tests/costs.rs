@@ -358,6 +358,7 @@ fn estimates_follow_the_keys() {
     let cases = [
         ("relay-fixed", "hysteresis = 1e-4", "hysteresis = 1e-15", [50.0, 220.0]),
         ("relay-fixed", "duration = 20000.0", "duration = 1e6", [0.02, 0.09]),
+        ("relay-fixed", "strong = 4e-5", "strong = 10.0", [1.0, 6.5]),
         ("relay-one-sided", "duration = 20000.0", "duration = 1e6", [0.1, 0.4]),
         ("detumble-and-point", "rate = [0.035, -0.03, 0.025]", "rate = [100, 0, 0]", [50.0, 230.0]),
         ("wheel-unstable-band", "duration = 1500.0", "duration = 145000.0", [0.3, 1.2]),

@@ -79,6 +79,7 @@ fn runs_of_minutes_are_announced() {
     let dir = Dir::with(&["relay-fixed", "detumble-and-point"]);
     for (name, key, what) in [
         ("relay-fixed", "law.relay.hysteresis=1e-15", "note: `law.relay.hysteresis` makes 1."),
+        ("relay-fixed", "law.relay.strong=1e3", "note: `law.relay.hysteresis` makes 1."),
         ("detumble-and-point", "spacecraft.rate=[100,0,0]", "note: `duration` makes 2."),
     ] {
         let running = dir.start(&format!("simulate {name}.toml --log none --set {key}"));

@@ -374,3 +374,16 @@ fn filters_that_cannot_work_are_refused() {
         assert!(error.contains(key) && error.contains(why), "{error}");
     }
 }
+
+/// After the window of the study the filter is overconfident, as the scenario's comment says.
+#[test]
+fn the_study_says_what_happens_after_its_window() {
+    let dir = Dir::with(&["wheel-ekf"]);
+    let comment = dir.text("wheel-ekf.toml");
+    for (window, said) in [("[200,400]", 2.8), ("[400,600]", 5.2)] {
+        let set = format!("--set estimator.extended_kalman.assess={window}");
+        let found = dir.run(&format!("simulate wheel-ekf.toml --log none --json {set}")).exits(0).json();
+        let mean = found["metrics"]["nees_mean"].as_f64().expect("a number");
+        assert!((mean - said).abs() < 0.06 && comment.contains(&said.to_string()), "{window}: {mean}");
+    }
+}

@@ -321,3 +321,15 @@ fn pipes_and_devices_are_no_logs() {
     dir.write("a.mcap", &MAGIC[..]);
     refused(dir.run("export a.mcap"), &["the log is torn"]);
 }
+
+/// Topics of other programs do not reach the terminal as they are.
+#[test]
+fn control_characters_of_topics_are_escaped() {
+    let of = schema(&[message("M", &[field("x", 1, DOUBLE, "", false)])]);
+    let mut bytes = log("a.M", &of, &[Vec::new()]);
+    let topic = text("/a");
+    let at = bytes.windows(topic.len()).position(|window| window == topic).expect("the topic");
+    bytes[at + topic.len() - 1] = 0x1b;
+    let dir = Dir::holding("a.mcap", bytes);
+    assert_eq!(dir.run("export a.mcap").exits(0).out, "/\\u{1b}\n");
+}

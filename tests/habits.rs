@@ -167,3 +167,21 @@ fn metrics_are_exported_as_a_table_for_people() {
     assert_eq!(lines.lines().count(), rows.len());
     assert!(lines.starts_with("{\"name\":\"switchings\",\"value\":"), "{lines}");
 }
+
+/// Verbs that write a file can replace one, and those that print quantities print them in SI units too.
+#[test]
+fn force_and_units_are_in_every_verb_that_can_have_them() {
+    let command = flexsc_cli::command();
+    let has =
+        |verb: &clap::Command, name: &str| verb.get_arguments().any(|option| option.get_long() == Some(name));
+    for verb in command.get_subcommands().flat_map(|verb| std::iter::once(verb).chain(verb.get_subcommands()))
+    {
+        if has(verb, "out") && verb.get_name() != "reproduce" {
+            assert!(has(verb, "force"), "{}", verb.get_name());
+        }
+    }
+    let with: BTreeSet<&str> =
+        command.get_subcommands().filter(|verb| has(verb, "units")).map(clap::Command::get_name).collect();
+    let all = ["cycle", "damping", "map", "modes", "plan", "simulate", "sweep", "tune"];
+    assert_eq!(with, BTreeSet::from(all));
+}

@@ -1,8 +1,10 @@
 //! Limits of wheels and jets in the metrics, and warnings of runs that end in saturation or in an oscillation.
 
 use flexsc_core::metrics::{MetricValue, Metrics, MetricsCollector};
+use flexsc_core::record::Detail;
 use flexsc_core::{Scenario, Simulation};
 
+use crate::traces::{flown, within};
 use crate::util::Dir;
 
 /// A rigid body that its wheels hold at rest; tests append to it.
@@ -98,4 +100,50 @@ fn slews_have_errors_of_their_own() {
         ["slew_error_peak_rad", "slew_error_rms_rad"].map(|name| of.number(name).expect("a metric"));
     assert!(peak > rms && rms > 0.0 && peak < 1e-3, "{peak} {rms}");
     assert!(metrics(&body(0.2, "")).get("slew_error_peak_rad").is_none());
+}
+
+/// The share of cycles at the largest moment is that of the logged moments.
+#[test]
+fn magnetorquers_at_their_limit_are_counted() {
+    let text = "duration = 3000.0\nsensor = { magnetometer = { period = 1.0 } }\n\
+        law = { b_dot = { period = 1.0, gain = 4e5 } }\nactuator = { magnetorquers = { moment = 0.3 } }\n\
+        log = { period = 1.0 }\n[spacecraft]\nmass = 20.0\n\
+        inertia = [[0.4, 0.01, 0], [0.01, 0.45, 0], [0, 0, 0.3]]\nrate = [0.02, -0.03, 0.025]\n\
+        [environment]\norbit = { semi_major_axis = 6.928e6, inclination = 1.7 }\nmagnetic_field = {}\n";
+    let (metrics, trace) = flown(&Scenario::parse("tumble.toml", text).expect("valid"), 0, Detail::Full);
+    let moments = within(&trace, "/magnetorquers", "axes", "moment_am2");
+    let at_limit = |axes: &[f64]| axes.iter().any(|moment| moment.abs() >= 0.3 * (1.0 - 1e-9));
+    let limited = moments.chunks(3).filter(|axes| at_limit(axes)).count();
+    let share = metrics.number("moment_limit_share").expect("a share");
+    let logged = limited as f64 / (moments.len() / 3) as f64;
+    assert!(limited > 300 && (share - logged).abs() < 1e-9, "{share} {limited}");
+}
+
+/// A wheel that nothing unloads is full; the summary says so.
+#[test]
+fn wheels_that_are_full_are_counted() {
+    let dir = Dir::with(&["momentum-unloading"]);
+    let text = dir.text("momentum-unloading.toml");
+    let (before, rest) = text.split_once("[actuator.wheels.unloading]").expect("the table");
+    let (_, after) = rest.split_once("[reference]").expect("the band");
+    dir.write("full.toml", format!("{before}[reference]{after}"));
+    let reported = dir.run("simulate full.toml --log none").exits(0).err;
+    assert!(reported.contains("at the limit of momentum or speed 28.6"), "{reported}");
+    assert!(
+        reported.contains("a wheel is at its limit of momentum or speed in 29 % of the run"),
+        "{reported}"
+    );
+}
+
+/// A communications satellite as a user wrote it, with wings from a finite-element solver, whose loop is too fast for
+/// its modes: the summary says so.
+#[test]
+fn the_loop_of_a_communications_satellite_is_reported() {
+    let dir = Dir::holding("comsat.toml", include_str!("golden/comsat/comsat.toml"));
+    dir.write("wing.inp", include_str!("golden/comsat/wing.inp"));
+    dir.write("wing.frd", include_str!("golden/comsat/wing.frd"));
+    dir.write("panel.inp", include_str!("golden/fe/panel.inp"));
+    dir.write("panel.frd", include_str!("golden/fe/panel.frd"));
+    let says = ["does not decay", "41 % of the last 300 s", "may be unstable"];
+    dir.run("simulate comsat.toml --log none").exits(0).says(&says);
 }

@@ -181,6 +181,14 @@ fn what_is_probably_a_mistake_is_remarked() {
     dir.run("check d.toml").exits(0).says(&["remark: `appendage[0].modes[0].damping`", "\"5 %\""]);
     let json = dir.run("check d.toml --json").exits(0).out;
     assert!(json.contains("\"key\":\"appendage[0].modes[0].damping\""), "{json}");
+    let remark = "note: `appendage[0].modes[0].damping`";
+    for command in
+        ["simulate d.toml --log none --set duration=1", "sweep d.toml --set duration=1 --vary seed=1,2"]
+    {
+        dir.run(command).exits(0).says(&[remark, "\"5 %\""]);
+    }
+    let quiet = dir.run("simulate earth-observer.toml --log none --set duration=1").exits(0);
+    assert!(!quiet.err.contains("note:"), "{}", quiet.err);
     assert!(text.contains("latency = "), "{text}");
     let late =
         text.split("latency = ").nth(1).and_then(|rest| rest.split([',', ' ']).next()).unwrap_or_default();

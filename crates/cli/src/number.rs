@@ -26,7 +26,10 @@ pub fn short(number: f64) -> String {
     } else if number == 0.0 {
         "0".to_owned()
     } else if (1e-3..1e6).contains(&number.abs()) {
-        let digits = if number.abs() >= 1e3 { 1 } else { 4 };
+        // Four significant digits, and one decimal of large numbers.
+        let scientific = format!("{number:.3e}");
+        let exponent = scientific.split_once('e').and_then(|(_, exponent)| exponent.parse::<i32>().ok());
+        let digits = usize::try_from(3 - exponent.unwrap_or(0)).unwrap_or(1).max(1);
         format!("{number:.digits$}")
     } else {
         format!("{number:.3e}")

@@ -147,6 +147,9 @@ pub fn run(args: &SimulateArgs) -> Result<(), CliError> {
         .map(|(scenario, origin)| {
             let design = args.design(!scenario.uncertain.is_empty())?;
             let campaign = Campaign::from_design(scenario, &origin, design)?;
+            for remark in campaign.scenario().remarks() {
+                say!("note: {remark}");
+            }
             args.consent.check(&args.cost(&campaign)?)?;
             Ok(Arc::new(campaign))
         })

@@ -15,6 +15,9 @@ use flexsc_core::metrics::{MetricValue, Metrics};
 use crate::human::{Units, digits};
 use crate::say;
 
+/// Share of a run with a wheel at its largest momentum or speed above which a warning says so.
+const FULL: f64 = 0.05;
+
 /// Data of a summary and its units.
 struct Summary<'a> {
     scenario: &'a Scenario,
@@ -49,6 +52,12 @@ pub fn print_summary(scenario: &Scenario, metrics: &Metrics, took: f64, units: U
 /// Returns warnings about a run.
 pub fn warnings(scenario: &Scenario, metrics: &Metrics) -> Vec<String> {
     let mut warnings = Vec::new();
+    if let Some(share) = metrics.number("wheel_momentum_limit_share").filter(|share| *share > FULL) {
+        warnings.push(format!(
+            "a wheel is at its limit of momentum or speed in {:.0} % of the run, where it gives no torque one way",
+            100.0 * share
+        ));
+    }
     if let (Some(MetricValue::Word(word)), Some(share)) =
         (metrics.get("actuator_end"), metrics.number("actuator_limit_late_share"))
     {

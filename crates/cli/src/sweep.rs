@@ -16,7 +16,7 @@ use crate::campaign::logs::{self, LogDetail};
 use crate::campaign::{CampaignOptions, TableFormat};
 use crate::confirm_cost::CostConfirmation;
 use crate::error::CliError;
-use crate::human::Units;
+use crate::human::UnitsArgs;
 use crate::simulate::{RunRange, runs};
 use crate::{campaign, files, say, scenario};
 
@@ -61,6 +61,8 @@ pub struct SweepArgs {
     /// Write a log per run, NAME-RUN.mcap in DIR, with this detail [default: none]
     #[arg(long, value_name = "DETAIL")]
     log: Option<LogDetail>,
+    #[command(flatten)]
+    units: UnitsArgs,
     #[command(flatten)]
     options: CampaignOptions,
     #[command(flatten)]
@@ -178,6 +180,9 @@ impl SweepArgs {
 pub fn run(args: &SweepArgs) -> Result<(), CliError> {
     let (kind, is_file) = args.place()?;
     let scenario = scenario::load(&args.scenario, &args.set, args.seed)?;
+    for remark in scenario.remarks() {
+        say!("note: {remark}");
+    }
     if args.uncertain && scenario.uncertain.is_empty() {
         let path = args.scenario.display();
         return Err(CliError::Arguments(format!("--uncertain: {path} has no [uncertain] keys")));
@@ -204,7 +209,7 @@ pub fn run(args: &SweepArgs) -> Result<(), CliError> {
         force: args.force,
         jobs: args.jobs,
         json: args.json,
-        units: Units::default(),
+        units: args.units.units,
         scheduler: args.options.scheduler(detail.is_some(), args.json)?,
         plain: detail.is_none(),
     };

@@ -283,8 +283,10 @@ impl Scenario {
         };
         let modes = axes.iter().flat_map(|body| &body.modes);
         let fastest = modes.map(|mode| mode.frequency.get()).fold(0.0, f64::max);
+        // Each step of the search computes the angles about all axes.
+        let width = axes.len() as f64;
         if strides * fastest > 0.0 {
-            steps.push(("duration".to_owned(), strides * duration * fastest));
+            steps.push(("duration".to_owned(), width * strides * duration * fastest));
         }
         // The first window of chatter ends the run.
         let switchings = |(axis, body): (usize, &AxisModel)| {
@@ -294,7 +296,7 @@ impl Scenario {
         };
         let switchings: Vec<f64> = axes.iter().enumerate().filter_map(switchings).collect();
         if !(is_sampled || switchings.is_empty()) {
-            steps.push((SWITCHES.to_owned(), switchings.iter().sum()));
+            steps.push((SWITCHES.to_owned(), width * switchings.iter().sum::<f64>()));
         }
         if let Some(body) = self.model.spatial().filter(|body| body.small_angles.is_none()) {
             let rate = self.largest_expected_rate(body);

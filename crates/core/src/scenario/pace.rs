@@ -20,9 +20,10 @@ pub const STEP: Pace = (3e-7, 4e-8);
 const CHAIN: Pace = (6e-7, 1e-7);
 /// A search for a crossing of a relay law whose modes a wheel or a drift couples.
 const COUPLED_RELAY: Pace = (8e-6, 1.5e-6);
-/// Number of steps that the search for one switching of a relay law takes: 0.8 in a cycle as long as the modes' periods, 2 in one that
-/// is much shorter.
+/// Number of steps that the search for one switching of a relay law takes in a cycle as long as the modes' periods, and
+/// (`SHORT_SEARCH`) in one that is much shorter.
 const SEARCH: f64 = 1.5;
+const SHORT_SEARCH: f64 = 3.4;
 /// A sample or a decision of a law about one axis, and one of a wheel's law that no sensor samples.
 const ONE_AXIS: Pace = (6e-7, 3e-7);
 const UNSAMPLED_WHEEL: Pace = (1.2e-6, 6e-7);
@@ -85,7 +86,9 @@ impl Scenario {
             events * takes(STEP)
         } else if self.law.offers().finds_crossings {
             let strides = turns * takes(if coupled { COUPLED_RELAY } else { STEP });
-            strides.max(switchings * SEARCH * takes(STEP))
+            let fastest = self.model.frequencies().fold(0.0, f64::max);
+            let is_short = switchings > fastest * self.duration.seconds();
+            strides.max(switchings * if is_short { SHORT_SEARCH } else { SEARCH } * takes(STEP))
         } else if self.actuator.flywheel().is_some() && !is_sampled {
             events * takes(UNSAMPLED_WHEEL) + (turns - events).max(0.0) * takes(COUPLED_RADIAN)
         } else {
