@@ -227,7 +227,7 @@ class Accelerometer(Part):
     latency: float | None = None
     """Time from a sample to its output (s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Intervals in which it fails."""
+    """Intervals in which the accelerometer fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -240,7 +240,7 @@ class ActiveDamping(Part):
     change by two whole cycles of firing.
     """
     release: float | None = None
-    """Fraction of the threshold at which they stop. Default: 0.5."""
+    """Fraction of the threshold at which the pulses of active damping stop. Default: 0.5."""
     pulse_width: bool | None = None
     """Whether a pulse is only as long as it takes to stop the elastic motion; otherwise it fills the cycle.
     Default: true.
@@ -867,7 +867,7 @@ class ElasticStates(Part):
     frequencies: Vector | None = None
     """Natural frequencies in the filter's model (rad/s); default: the body's own."""
     factor: float | None = None
-    """Factor on these frequencies: the error of the filter's model. Default: 1.0."""
+    """Factor on the frequencies: the error of the filter's model. Default: 1.0."""
     frequency_deviation: float | None = None
     """Relative standard deviation of the frequencies at the start, which the filter then identifies;
     default: it takes them as known.
@@ -1103,7 +1103,7 @@ class Gyro(Part):
     the other axes; the diagonal is 0.
     """
     faults: Sequence[Fault] | None = None
-    """Intervals in which it fails; the attitude is still known."""
+    """Intervals in which the gyro fails; star trackers still give the attitude."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1151,7 +1151,7 @@ class Hold(Part):
     phase: float | None = None
     """Time of the first period (s); default: 0."""
     faults: Sequence[Failure] | None = None
-    """Intervals in which it fails."""
+    """Intervals in which the actuator fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1161,7 +1161,7 @@ class Ideal(Part):
     _tag: ClassVar[str | None] = "ideal"
 
     faults: Sequence[Failure] | None = None
-    """Intervals in which it fails."""
+    """Intervals in which the actuator fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1250,7 +1250,7 @@ class Jets(Part):
     groups: Groups | None = None
     """For `groups`: the thrusters that act together."""
     faults: Sequence[Failure] | None = None
-    """Intervals in which they fail."""
+    """Intervals in which the jets fail."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1414,7 +1414,7 @@ class Magnetometer(Part):
     latency: float | None = None
     """Time from a sample to its output (s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Intervals in which it fails."""
+    """Intervals in which the magnetometer fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1426,7 +1426,7 @@ class Magnetorquers(Part):
     moment: float | Vector
     """Largest magnetic moment along each axis (A m²): one number for all axes, or a list of three."""
     faults: Sequence[Failure] | None = None
-    """Intervals in which they fail."""
+    """Intervals in which the magnetorquers fail."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -1711,7 +1711,7 @@ class PhasePlane(Part):
     they begin at a smaller one.
     """
     switch_off: float
-    """Rate error below which they stop (rad/s); it is also the smallest return rate."""
+    """Rate error below which the jets stop (rad/s); it is also the smallest return rate."""
     slope: float | None = None
     """Largest return rate per unit of the angle beyond the dead zone (1/s). Default: 0.05."""
     braking: float | None = None
@@ -1919,7 +1919,9 @@ class RelativeNormal(Part):
 
 @dataclass(frozen=True)
 class RelativeUniform(Part):
-    """The scenario's own value times a factor that is uniform between 1 - this and 1 + this."""
+    """The scenario's own value times a factor that is uniform between 1 - x and 1 + x, where x is this
+    number.
+    """
 
     _tag: ClassVar[str | None] = "relative_uniform"
     _holds_one: ClassVar[bool] = True
@@ -2290,29 +2292,28 @@ class StarTracker(Part):
     _tag: ClassVar[str | None] = "star_tracker"
 
     period: float
-    """Period of its exposures (s)."""
+    """Period of the exposures (s)."""
     point: str | None = None
-    """Point of the structure at which it is mounted; default: the first of the body's points."""
+    """Point of the structure at which the star tracker is mounted; default: the first of the body's points.
+    """
     noise: Vector | None = None
-    """Standard deviation of the white noise about each of its axes (rad): x and y across the boresight, z
-    about it.
+    """Standard deviation of the white noise about the star tracker's axes (rad): x and y across the
+    boresight, z about it.
     """
     axes: Vector | None = None
-    """Orientation of its axes in the body, a unit quaternion [w, x, y, z] that turns vectors of its axes
-    into the body's; default: its axes are the body's.
+    """Orientation of the star tracker's axes in the body: a unit quaternion [w, x, y, z] that transforms
+    vectors from its axes to the body's; default: the identity.
     """
     latency: float | None = None
     """Time from the middle of an exposure to its output (s). Default: 0.0."""
     exposure: float | None = None
-    """Time over which it gathers light (s): a reading is the mean attitude over it; 0 for that of the
+    """Exposure time (s): a reading is the mean attitude over the exposure; 0 for the attitude at an
     instant.
     """
     blackout_rate: float | None = None
-    """Rate of the body at the tracker at and above which it gives no measurement (rad/s); default: no
-    limit.
-    """
+    """Rate at the star tracker from which on it gives no measurement (rad/s); default: no limit."""
     faults: Sequence[Fault] | None = None
-    """Intervals in which it fails."""
+    """Intervals in which the star tracker fails."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2426,7 +2427,7 @@ class SunSensor(Part):
     latency: float | None = None
     """Time from a sample to its output (s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Intervals in which it fails."""
+    """Intervals in which the Sun sensor fails."""
 
 
 @dataclass(frozen=True)
@@ -2454,7 +2455,7 @@ class Tachometer(Part):
     noise: float | None = None
     """Standard deviation of the white noise of each reading (rad/s). Default: 0.0."""
     faults: Sequence[Fault] | None = None
-    """Intervals in which they fail; the drives then keep the last reading."""
+    """Intervals in which the tachometers fail; the drives then keep the last reading."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2514,7 +2515,7 @@ class Thrusters(Part):
     quantum: float | None = None
     """Quantum of a pulse's length (s); 0 for none. Default: 0.0."""
     faults: Sequence[Failure] | None = None
-    """Intervals in which they fail."""
+    """Intervals in which the thrusters fail."""
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -2573,7 +2574,7 @@ class Unloading(Part):
     above: float
     """Total momentum of the wheels above which unloading begins (N m s)."""
     below: float
-    """Total momentum below which it ends (N m s)."""
+    """Total momentum below which unloading ends (N m s)."""
     torque: float | None = None
     """Largest mean torque of the jets about each axis over a cycle (N m), which the wheels counteract."""
     jets: Jets | None = None
@@ -2595,7 +2596,7 @@ class Unloads(Part):
     above: float
     """Total momentum of the wheels above which unloading begins (N m s)."""
     below: float
-    """Total momentum below which it ends (N m s)."""
+    """Total momentum below which unloading ends (N m s)."""
     torque: float | None = None
     """For jets: the largest mean torque about each axis over a cycle (N m), which the wheels counteract."""
     gain: float | None = None
