@@ -153,7 +153,7 @@ def test_names_and_paths_may_have_any_characters(name: str, command: Command, tm
 
 
 @pytest.mark.parametrize(
-    "name", ["", "..", ".hidden", "-o", "con", "NUL.x", "lpt1", "a/b", "a\nb", "a\u202eb", "a\ufeff"]
+    "name", ["..", ".hidden", "-o", "con", "NUL.x", "lpt1", "a/b", "a\nb", "a\u202eb", "a\ufeff"]
 )
 def test_names_that_are_traps_for_files_are_refused(name: str) -> None:
     with pytest.raises(flexsc.ScenarioError, match="`name` is used for file names: "):
