@@ -87,7 +87,12 @@ impl<'a> ManoeuvrePlanner<'a> {
         let mut first = f64::INFINITY;
         for side in [1.0, -1.0] {
             let half = 2.0 * side * mean / a;
-            let product = (4.0 * side * a * self.angle + gained * gained) / (a * a);
+            let square = a * a;
+            let product = if square.is_finite() {
+                (4.0 * side * a * self.angle + gained * gained) / square
+            } else {
+                4.0 * side * self.angle / a
+            };
             let discriminant = half * half + product;
             if discriminant < 0.0 {
                 continue;
