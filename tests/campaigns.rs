@@ -390,15 +390,3 @@ fn a_campaign_counts_what_meets_its_goal() {
         " %, 95 % interval ",
     ]);
 }
-
-/// A dated satellite as a user wrote it: magnetorquers, wheels, the Sun of the date, uncertain panels.
-#[test]
-fn a_dated_satellite_flies_a_campaign() {
-    let dir = Dir::holding("cube12u.toml", include_str!("golden/cube12u.toml"));
-    dir.run("simulate cube12u.toml --set duration=200 --runs 4 --table csv -o mc").exits(0).says(&["4 runs"]);
-    let rows = table(&dir, "mc/runs.csv");
-    assert_eq!(rows.len(), 4);
-    for row in rows {
-        assert!(row["rate_end_rad_s"].parse::<f64>().is_ok_and(f64::is_finite), "{row:?}");
-    }
-}

@@ -5,6 +5,7 @@ use flexsc_core::{Scenario, ScenarioError};
 
 use crate::study::pairs;
 use crate::traces::{column, traced, within};
+use crate::util::{Dir, table};
 
 /// All parts of the environment together.
 const AROUND: &str = "[environment]\ntorque = [2e-4, 0.0, -1e-4]\n\
@@ -214,5 +215,17 @@ fn the_sun_of_the_date_is_a_direction() {
     ] {
         let error = Scenario::parse("sun.toml", &text(sun, "")).expect_err(sun).to_string();
         assert!(error.contains(words), "{error}");
+    }
+}
+
+/// A dated satellite as a user wrote it: magnetorquers, wheels, the Sun of the date, uncertain panels.
+#[test]
+fn a_dated_satellite_flies_a_campaign() {
+    let dir = Dir::holding("cube12u.toml", include_str!("golden/cube12u.toml"));
+    dir.run("simulate cube12u.toml --set duration=200 --runs 4 --table csv -o mc").exits(0).says(&["4 runs"]);
+    let rows = table(&dir, "mc/runs.csv");
+    assert_eq!(rows.len(), 4);
+    for row in rows {
+        assert!(row["rate_end_rad_s"].parse::<f64>().is_ok_and(f64::is_finite), "{row:?}");
     }
 }
