@@ -1,10 +1,11 @@
 """Relays about three axes of a flexible body at small angles, in 40 digits with mpmath.
 
-For tests/small_angles.rs: prints `time, axis` of every switching within 120 s, with a continuous sensor, and then a line
-`end` with the rotation, the rates and the displacements of the modes at 120 s.
+For tests/small_angles.rs: prints `time, axis` of every switching within 120 s, with a continuous sensor, and
+then a line `end` with the rotation, the rates and the displacements of the modes at 120 s.
 
-theta'' = J^-1 M and q'' + 2 zeta w q' + w² q = phi . M under constant torques M; relay i reads theta_i + sum phi_i q.
-Crossings are bracketed on a grid of 0.01 s, with Newton's method between, and not by bounds.
+theta'' = J^-1 M and q'' + 2 zeta w q' + w² q = phi . M under constant torques M; relay i reads
+theta_i + sum phi_i q. Crossings are bracketed on a grid of 0.01 s, with Newton's method between, and not by
+bounds.
 
     python3 small_angles_oracle.py > small_angles.csv
 """
@@ -46,7 +47,7 @@ class Segment:
         angles = self.angles + self.rates * h + self.acceleration * (h * h / 2)
         rates = self.rates + self.acceleration * h
         modes = []
-        for (w, zeta, _, phi), (q, v) in zip(PARAMETERS, self.modes):
+        for (w, zeta, _, phi), (q, v) in zip(PARAMETERS, self.modes, strict=True):
             rest = sum(phi[i] * self.torque[i] for i in range(3)) / w**2
             d, x = zeta * w, q - rest
             f = sqrt(w * w - d * d)
@@ -57,7 +58,11 @@ class Segment:
 
     def angle(self, axis, t):
         angles, _, modes = self.at(t)
-        return angles[axis] + sum(p[3][axis] * q for p, (q, _) in zip(PARAMETERS, modes))
+        return angles[axis] + sum(p[3][axis] * q for p, (q, _) in zip(PARAMETERS, modes, strict=True))
+
+    def gap(self, axis, level):
+        """The angle about an axis less a level, as a function of time."""
+        return lambda t: self.angle(axis, t) - level
 
 
 class Relay:
@@ -97,7 +102,7 @@ def main():
     state = (matrix([0, 0, 0]), matrix([number(r) for r in RATES]), [(p[2], mpf(0)) for p in PARAMETERS])
     now = mpf(0)
     while True:
-        torque = matrix([relay.torque + number(d) for relay, d in zip(relays, DISTURBANCE)])
+        torque = matrix([relay.torque + number(d) for relay, d in zip(relays, DISTURBANCE, strict=True)])
         segment = Segment(now, state, torque, inverse)
         timeouts = [(relay.until, axis, 0) for axis, relay in enumerate(relays) if relay.until]
         first = min(timeouts, default=(END, None, 0))
@@ -108,7 +113,7 @@ def main():
             for axis, relay in enumerate(relays):
                 for level, direction in relay.guards():
                     if direction * (segment.angle(axis, here) - level) >= 0:
-                        gap = lambda x, axis=axis, level=level: segment.angle(axis, x) - level
+                        gap = segment.gap(axis, level)
                         root = findroot(gap, (t, here), solver="anderson", tol=1e-60)
                         found.append((root, axis, direction))
             t = here

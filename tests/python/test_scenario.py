@@ -329,6 +329,7 @@ def test_an_example_that_does_not_exist_suggests_one() -> None:
     with pytest.raises(KeyError, match="did you mean 'relay-fixed'"):
         flexsc.Scenario.example("relay-fixd")
 
+
 def test_a_path_that_is_nearly_a_key_is_suggested() -> None:
     with pytest.raises(ScenarioError, match=r"did you mean `law\.attitude\.bandwidth`"):
         shipped("earth-observer").with_("law.atitude.bandwidth", 0.2)
