@@ -15,7 +15,7 @@
 //! does not change the motion.
 //!
 //! A prime at a state (q', P', H', th', h') is a time derivative; at a factor in front of another (phi' Gt, w' J1 w) it
-//! is a transpose. `x` is the cross product and [v] its matrix, [v] u = v x u; [c_i] is the vector of the values c_i of
+//! is a transpose. `x` is the cross product and \[v\] its matrix, \[v\] u = v x u; \[c_i\] is the vector of the values c_i of
 //! all modes; `o` is the product of quaternions.
 //!
 //! | symbol | name in the code | unit |
