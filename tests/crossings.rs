@@ -4,12 +4,12 @@
 use std::cell::Cell;
 use std::convert::Infallible;
 
+use flexsc_core::dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_core::dynamics::crossing::{Crossing, first_crossing};
 use flexsc_core::dynamics::guard::Guard;
 use flexsc_core::dynamics::{AxisState, ModeState};
 use flexsc_core::numerics::quantity::{Finite, Frequency, NonNegative};
 use flexsc_core::numerics::time::Span;
-use flexsc_core::spacecraft::body::{Mode, Planar};
 use flexsc_core::spacecraft::flow::{SegmentInput, UncoupledSegment};
 use proptest::array::uniform4;
 use proptest::collection::vec;
@@ -21,13 +21,13 @@ use crate::properties::{between, holds};
 type Drawn = (f64, f64, f64, f64, f64);
 
 /// Returns a body, and a state of it.
-fn body(modes: &[Drawn], angle: f64, rate: f64) -> (Planar, AxisState) {
+fn body(modes: &[Drawn], angle: f64, rate: f64) -> (AxisModel, AxisState) {
     let mode = |(frequency, gain, damping, ..): &Drawn| {
         let gain = Finite::new(*gain).expect("finite");
         let damping = NonNegative::new(*damping).expect("in range");
-        Mode::at_rest(Frequency::new(*frequency).expect("in range"), gain, damping)
+        AxisMode::at_rest(Frequency::new(*frequency).expect("in range"), gain, damping)
     };
-    let body = Planar { modes: modes.iter().map(mode).collect(), ..Planar::default() };
+    let body = AxisModel { modes: modes.iter().map(mode).collect(), ..AxisModel::default() };
     let mut state = body.initial_state();
     (state.rigid_angle, state.rigid_rate) = (angle, rate);
     let phase = |(.., displacement, quadrature): &Drawn| ModeState {

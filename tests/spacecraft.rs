@@ -4,7 +4,7 @@
 
 #![expect(clippy::unreadable_literal, reason = "the digits of references are compared as they stand")]
 
-use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::spacecraft::manoeuvre::{Plan, PlanReport};
 use flexsc_core::{Document, Scenario, ScenarioError};
 
@@ -86,7 +86,7 @@ pub fn with(text: &str, set: &[(&str, String)]) -> Result<Scenario, ScenarioErro
 }
 
 /// The planar body of a scenario.
-pub fn body(scenario: &Scenario) -> &Planar {
+pub fn body(scenario: &Scenario) -> &AxisModel {
     scenario.one_angle().expect("one angle")
 }
 

@@ -10,7 +10,7 @@ use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::spacecraft_modes::SpacecraftModes;
 use flexsc_core::formats::count::counted;
 use flexsc_core::numerics::attitude::AXES;
-use flexsc_core::spacecraft::body::{BodyAxes, CommandedQuantity};
+use flexsc_core::spacecraft::body::{BodyAxes, Drive};
 use serde_json::{Value as Json, json};
 
 use crate::error::CliError;
@@ -148,14 +148,14 @@ impl Results for Planar {
     fn print(&self) -> Result<(), CliError> {
         let Self { name, modal, style } = self;
         let hub = match modal.drive {
-            CommandedQuantity::Torque => "free",
-            CommandedQuantity::Motion => "held",
+            Drive::Torque => "free",
+            Drive::Motion => "held",
         };
         say!("{name}   {}, hub {hub}", counted(modal.gains.len(), "mode"));
         let strongest = modal.excitabilities_s2.iter().fold(0.0, |most: f64, e| most.max(e.abs()));
         let other = match modal.drive {
-            CommandedQuantity::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
-            CommandedQuantity::Motion => ("hub free", &modal.free_frequencies_rad_s),
+            Drive::Torque => ("hub held", &modal.clamped_frequencies_rad_s),
+            Drive::Motion => ("hub free", &modal.free_frequencies_rad_s),
         };
         let (factor, unit) = style.units.frequency();
         let mut rows = vec![

@@ -24,6 +24,7 @@ use std::time::Instant as WallInstant;
 
 use flexsc_formats::document::{Document, ScenarioError, key};
 use flexsc_record::{Detail, OutputName, Provenance, Record};
+use flexsc_spacecraft::body::Planar;
 use thiserror::Error;
 use toml::{Table, Value};
 
@@ -204,7 +205,8 @@ impl Campaign {
         if self.plans_first() {
             let written = self.scenario_with(&keys[..self.design.keys().len()])?;
             // A body contains nothing that TOML cannot express.
-            let model = Value::try_from(written.one_angle()?).unwrap_or_else(|_| Value::Table(Table::new()));
+            let model = Value::try_from(Planar::from(written.one_angle()?))
+                .unwrap_or_else(|_| Value::Table(Table::new()));
             keys.push(("manoeuvre.model", model));
         }
         // The body of a plan is more than numbers.

@@ -1,14 +1,16 @@
 //! Runs of the relay law in the relay kernel: which scenarios it supports, their initial setup, and conversions of its
 //! state.
 
+use std::borrow::Cow;
+
 use flexsc_control::estimator::{EnvelopeMethod, EstimatorKind};
 use flexsc_control::law::{Guards, Phase, Relay, RelaySides};
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
 use flexsc_dynamics::damping::Damped;
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{self, AxisState};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_numerics::trig::FARTHEST;
-use flexsc_spacecraft::body::{CommandedQuantity, Mode, Planar};
 
 use crate::scenario::Scenario;
 
@@ -18,26 +20,31 @@ pub use flexsc_relay_kernel::{
 };
 
 /// Returns the body and the law of a scenario that the relay kernel can run; `None` otherwise.
-pub fn is_supported(scenario: &Scenario) -> Option<(&Planar, &Relay)> {
+pub fn is_supported(scenario: &Scenario) -> Option<(&AxisModel, &Relay)> {
     let (Some(body), Some(law)) = (scenario.model.planar(), scenario.law.relay()) else { return None };
     suits(scenario, body, law).then_some((body, law))
 }
 
 /// Returns the modes of the envelope's model; empty without an envelope estimator.
-pub fn envelope_modes(scenario: &Scenario) -> &[Mode] {
-    let envelope = scenario.estimator.as_ref().and_then(EstimatorKind::envelope);
-    envelope.map_or(&[], |envelope| envelope.modes.as_deref().unwrap_or_else(|| body_modes(scenario)))
+pub fn envelope_modes(scenario: &Scenario) -> Cow<'_, [AxisMode]> {
+    let Some(envelope) = scenario.estimator.as_ref().and_then(EstimatorKind::envelope) else {
+        return Cow::default();
+    };
+    envelope.modes.as_ref().map_or_else(
+        || Cow::Borrowed(body_modes(scenario)),
+        |modes| modes.iter().map(AxisMode::from).collect(),
+    )
 }
 
 /// Returns the modes of the one-axis body.
-fn body_modes(scenario: &Scenario) -> &[Mode] {
+fn body_modes(scenario: &Scenario) -> &[AxisMode] {
     scenario.model.planar().map_or(&[], |body| &body.modes)
 }
 
 /// Returns true if the relay law alone moves the body, all modes are below critical damping, and nothing but the
 /// envelope is estimated. Motions at or above critical damping are no rotations of a phasor, and rare: such runs go
 /// through the loop one by one.
-fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
+fn suits(scenario: &Scenario, model: &AxisModel, law: &Relay) -> bool {
     let observes = scenario.estimator.as_ref().is_none_or(|estimator| {
         estimator.envelope().is_some_and(|envelope| envelope.form == EnvelopeMethod::Dynamic)
     });
@@ -48,7 +55,7 @@ fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
     let are_exact = model
         .modes
         .iter()
-        .chain(envelope_modes(scenario))
+        .chain(&*envelope_modes(scenario))
         .all(|mode| mode.damping.get() < 1.0 && mode.frequency.get() * duration < FARTHEST);
     let begins = model.initial_state().angle().abs() < law.dead_zone.get();
     let has_band = scenario.expected_band().band(f64::NAN) > 0.0;
@@ -67,27 +74,28 @@ fn suits(scenario: &Scenario, model: &Planar, law: &Relay) -> bool {
 pub fn single(scenario: &Scenario) -> Option<RunSetup> {
     let (model, law) = is_supported(scenario)?;
     // A mode that nothing excites may leave the kernel's mirrored coordinates with zeros of the other sign.
-    let mut modes = model.modes.iter().chain(envelope_modes(scenario));
+    let tracks = envelope_modes(scenario);
+    let mut modes = model.modes.iter().chain(&*tracks);
     modes.all(|mode| mode.gain.get() != 0.0).then(|| lane_setup(scenario, model, law))
 }
 
 /// Returns the numbers of modes and the presence of damping, which all runs of a batch share.
 pub fn lane_shape(scenario: &Scenario) -> LaneShape {
     let (modes, tracks) = (body_modes(scenario), envelope_modes(scenario));
-    let is_damped = modes.iter().chain(tracks).any(|mode| mode.damping.get() > 0.0);
+    let is_damped = modes.iter().chain(&*tracks).any(|mode| mode.damping.get() > 0.0);
     LaneShape { modes: modes.len(), tracks: tracks.len(), is_damped }
 }
 
 /// Returns the initial setup of a run.
-pub fn lane_setup(scenario: &Scenario, model: &Planar, law: &Relay) -> RunSetup {
+pub fn lane_setup(scenario: &Scenario, model: &AxisModel, law: &Relay) -> RunSetup {
     let mobility = 1.0 / model.commanded_inertia();
-    let lane_mode = |mode: &Mode| {
+    let lane_mode = |mode: &AxisMode| {
         let phase = mode.start();
         let ratio = mode.damping.get();
         [mode.frequency.get(), mode.excitability(), phase.displacement, phase.quadrature, ratio]
     };
     // In the form of the envelope's phasor: the imaginary part in place of the quadrature.
-    let track = |mode: &Mode| {
+    let track = |mode: &AxisMode| {
         let [frequency, k, displacement, _, ratio] = lane_mode(mode);
         let damped = Damped::new(frequency, ratio);
         let imaginary = (mode.rate.get() + damped.decay * displacement) / damped.frequency;

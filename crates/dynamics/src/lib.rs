@@ -2,12 +2,13 @@
 //!
 //! This crate is independent of laws, sensors and scenarios: `flexsc-core` combines them.
 //!
-//! - [`AxisState`], [`MotionPiece`], [`crossing`]: modes in closed form, and the certified search for crossings;
+//! - [`axis_model`]: model of a body about one axis; [`AxisState`], [`MotionPiece`], [`crossing`]: modes in closed form, and the certified search for crossings;
 //! - [`linear`]: coupled linear motion by poles and residues; [`three_axis`]: three-axis bodies;
 //! - [`guard`], [`waveform`]: conditions of events, commands as functions of time.
 //!
 //! Names in brackets, such as \[Likins70\], are sources: `docs/references.md` lists them.
 
+pub mod axis_model;
 pub mod crossing;
 pub mod damping;
 pub mod guard;

@@ -30,10 +30,11 @@ use flexsc_core::analysis::mode_influence::ModeInfluences;
 use flexsc_core::analysis::one_axis_modes::OneAxisModes;
 use flexsc_core::analysis::rigid_cycle::{cycles, resonances};
 use flexsc_core::campaign::{Campaign, CampaignRun};
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::metrics;
 use flexsc_core::numerics::quantity::{Fraction, Positive};
 use flexsc_core::record::{self, Detail, Trace};
-use flexsc_core::spacecraft::body::{BodyAxes, Planar};
+use flexsc_core::spacecraft::body::BodyAxes;
 use flexsc_core::spacecraft::manoeuvre::{
     CommandCost, ComparisonBasis, Manoeuvre, Plan, PlanReport, compare,
 };
@@ -281,7 +282,7 @@ fn rigid_cycles_json(scenario: &Scenario) -> PyResult<String> {
 }
 
 /// The manoeuvre of a scenario, its plan and its body.
-fn planned(scenario: &Scenario) -> PyResult<(&Manoeuvre, &Plan, &Planar)> {
+fn planned(scenario: &Scenario) -> PyResult<(&Manoeuvre, &Plan, &AxisModel)> {
     let body = scenario.inner.one_angle().map_err(scenario_error)?;
     match (&scenario.inner.manoeuvre, &scenario.inner.plan) {
         (Some(manoeuvre), Some(plan)) => Ok((manoeuvre, plan, body)),
@@ -318,7 +319,7 @@ fn rivals_json(py: Python<'_>, scenario: &Scenario, band: f64, peak_torque: Opti
     let none = |peak| PyValueError::new_err(format!("peak_torque must be a positive number, got {peak}"));
     let limit = peak_torque.map(|peak| Positive::new(peak).ok_or_else(|| none(peak))).transpose()?;
     let common = ComparisonBasis::from_manoeuvre(manoeuvre, limit, plan);
-    let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).clone());
+    let (manoeuvre, body) = (manoeuvre.clone(), manoeuvre.planned_for(body).into_owned());
     let rows = aside(py, move |_| compare(&manoeuvre, common, &body, band))?;
     Ok(serde_json::Value::from(rows.iter().map(CommandCost::to_json).collect::<Vec<_>>()).to_string())
 }

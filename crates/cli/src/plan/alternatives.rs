@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::spacecraft::manoeuvre::{CommandCost, ComparisonBasis};
 use serde_json::Value as Json;
 
@@ -20,7 +20,7 @@ pub struct AlternativesResults {
     /// Name of the scenario.
     pub name: String,
     /// Body of the scenario.
-    pub body: Planar,
+    pub body: AxisModel,
     /// Relative uncertainty of the frequencies.
     pub band: f64,
     /// Index of the coordinate in the table: the hub's angle or an output.

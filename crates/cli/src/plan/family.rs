@@ -3,8 +3,8 @@
 
 use std::borrow::Cow;
 
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::numerics::time::Span;
-use flexsc_core::spacecraft::body::Planar;
 use flexsc_core::spacecraft::manoeuvre::{BangBang, Manoeuvre, ManoeuvreCommand, Plan, Suppression};
 use flexsc_figure::{RGBColor, colour};
 
@@ -19,7 +19,7 @@ pub struct CommandFamily<'a> {
     /// Name of the scenario.
     pub name: &'a str,
     /// Body of the scenario.
-    pub body: &'a Planar,
+    pub body: &'a AxisModel,
     /// Planned command.
     pub plan: &'a Plan,
     /// Index of the coordinate that is shown: the hub's angle or an output.
@@ -43,10 +43,10 @@ impl<'a> CommandFamily<'a> {
     /// Commands without a feasible plan are left out.
     pub fn new(
         name: &'a str,
-        body: &'a Planar,
+        body: &'a AxisModel,
         plan: &'a Plan,
         manoeuvre: &Manoeuvre,
-        planned_for: &Planar,
+        planned_for: &AxisModel,
         shown: usize,
     ) -> Self {
         let time = Some(Span::from_seconds(plan.time));

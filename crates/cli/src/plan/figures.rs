@@ -1,7 +1,7 @@
 //! Figures of a plan: torque, hub angle and an output over time, and the residual vibration over the frequency error
 //! (\[Rotation\], figures 3 to 8 and beyond).
 
-use flexsc_core::spacecraft::body::CommandedQuantity;
+use flexsc_core::dynamics::axis_model::CommandedQuantity;
 use flexsc_core::spacecraft::manoeuvre::Plan;
 use flexsc_figure::{Figure, FigureAxis, Layer, LayerShape, Named, Panel, Point, colour, name_and_unit};
 

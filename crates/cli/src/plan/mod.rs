@@ -8,9 +8,9 @@ mod trajectory;
 
 use std::path::PathBuf;
 
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::formats::document::ConfigError;
 use flexsc_core::numerics::quantity::{Fraction, Positive};
-use flexsc_core::spacecraft::body::Planar;
 use flexsc_core::spacecraft::manoeuvre::{ComparisonBasis, Manoeuvre, PlanReport, compare};
 use flexsc_core::{Scenario, ScenarioError};
 
@@ -66,7 +66,7 @@ impl PlanArgs {
         }
         let limit = self.limit()?;
         let shown = chosen(self.coordinate.as_deref(), &body)?;
-        let model = manoeuvre.planned_for(&body).clone();
+        let model = manoeuvre.planned_for(&body).into_owned();
         let name = scenario.written.name;
         let units = self.units.units;
         if self.compare {
@@ -119,7 +119,7 @@ fn percent(band: f64) -> f64 {
 }
 
 /// Returns the index of the shown coordinate: the chosen one, else the last output, else the hub's angle.
-fn chosen(coordinate: Option<&str>, body: &Planar) -> Result<usize, CliError> {
+fn chosen(coordinate: Option<&str>, body: &AxisModel) -> Result<usize, CliError> {
     let names: Vec<&str> =
         std::iter::once("angle").chain(body.outputs.iter().map(|output| output.name.as_str())).collect();
     let Some(chosen) = coordinate else { return Ok(names.len() - 1) };

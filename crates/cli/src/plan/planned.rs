@@ -2,7 +2,7 @@
 
 use std::io::Write;
 
-use flexsc_core::spacecraft::body::Planar;
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::spacecraft::manoeuvre::{Manoeuvre, Plan, PlanReport};
 use flexsc_figure::Named;
 use serde_json::{Value as Json, json};
@@ -20,9 +20,9 @@ pub struct PlanResults {
     /// Name of the scenario.
     pub name: String,
     /// Body of the scenario.
-    pub body: Planar,
+    pub body: AxisModel,
     /// Body that the manoeuvre is planned for.
-    pub model: Planar,
+    pub model: AxisModel,
     pub manoeuvre: Manoeuvre,
     pub plan: Plan,
     pub report: PlanReport,

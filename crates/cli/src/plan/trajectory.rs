@@ -3,8 +3,8 @@
 use std::f64::consts::TAU;
 use std::sync::Arc as Shared;
 
+use flexsc_core::dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_core::dynamics::{AngleObservation, AxisState};
-use flexsc_core::spacecraft::body::{CommandedQuantity, Planar};
 use flexsc_core::spacecraft::flow::{ActiveWaveform, SegmentInput, UncoupledSegment};
 use flexsc_core::spacecraft::manoeuvre::Plan;
 
@@ -24,7 +24,7 @@ pub struct PlannedMotion {
 
 impl PlannedMotion {
     /// Creates the motion of a body under a plan, from the body's initial state.
-    pub fn new(body: &Planar, plan: &Plan) -> Self {
+    pub fn new(body: &AxisModel, plan: &Plan) -> Self {
         let mut segment = UncoupledSegment::new(body);
         let state = body.initial_state();
         let waveform = Some(ActiveWaveform::new(Shared::new(plan.waveform.clone()), 0.0));
@@ -40,21 +40,21 @@ impl PlannedMotion {
 }
 
 /// Returns the end of the shown time (s): some periods of the slowest mode after the manoeuvre.
-pub fn end(body: &Planar, plan: &Plan) -> f64 {
+pub fn end(body: &AxisModel, plan: &Plan) -> f64 {
     let slowest = frequencies(body).fold(f64::INFINITY, f64::min);
     let after = if slowest.is_finite() { PERIODS * TAU / slowest } else { 0.0 };
     plan.time + after.max(0.2 * plan.time)
 }
 
 /// Returns the spacing of points (s) on a line of duration `length` (s).
-pub fn step(body: &Planar, length: f64) -> f64 {
+pub fn step(body: &AxisModel, length: f64) -> f64 {
     let fastest = frequencies(body).fold(0.0, f64::max);
     let fine = if fastest > 0.0 { TAU / (24.0 * fastest) } else { length };
     fine.clamp(length / MOST, length / FEWEST)
 }
 
 /// Returns the trajectory as a table: command, motion of the hub, modes and outputs over time.
-pub fn table(body: &Planar, plan: &Plan) -> NumberTable {
+pub fn table(body: &AxisModel, plan: &Plan) -> NumberTable {
     let is_motion = body.drive == CommandedQuantity::Motion;
     let mut columns = ["time_s", "angle_rad", "rate_rad_s"].map(str::to_owned).to_vec();
     if is_motion {
@@ -103,7 +103,7 @@ fn column(name: &str, unit: &str) -> String {
     column
 }
 
-fn frequencies(body: &Planar) -> impl Iterator<Item = f64> {
+fn frequencies(body: &AxisModel) -> impl Iterator<Item = f64> {
     body.modes.iter().map(|mode| mode.frequency.get())
 }
 

@@ -12,16 +12,17 @@ const PANELS: usize = 6;
 pub fn figure(story: &RunEvents, motion: &MotionData) -> Figure {
     let outputs = story.scenario.model.outputs();
     let skipped = motion.outputs.len().saturating_sub(PANELS);
-    let panel = |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::spacecraft::body::Output))| {
-        let x = time(0.0..story.end);
-        let (name, unit) = name_and_unit(&output.name, &output.unit);
-        let y = FigureAxis::around(&name, unit, values.iter().copied());
-        let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
-        let line = Layer::new(&output.name, colour::BLUE, LayerShape::Line(1.2), line);
-        let x = if index + 1 == motion.outputs.len() { x } else { x.unnamed() };
-        let layers = arrival(story, &y).into_iter().chain([line]).collect();
-        Panel::new(x, y, layers)
-    };
+    let panel =
+        |(index, (values, output)): (usize, (&Vec<f64>, &flexsc_core::dynamics::axis_model::AxisOutput))| {
+            let x = time(0.0..story.end);
+            let (name, unit) = name_and_unit(&output.name, &output.unit);
+            let y = FigureAxis::around(&name, unit, values.iter().copied());
+            let line: Vec<Point> = motion.time.iter().copied().zip(values.iter().copied()).collect();
+            let line = Layer::new(&output.name, colour::BLUE, LayerShape::Line(1.2), line);
+            let x = if index + 1 == motion.outputs.len() { x } else { x.unnamed() };
+            let layers = arrival(story, &y).into_iter().chain([line]).collect();
+            Panel::new(x, y, layers)
+        };
     let panels = motion.outputs.iter().zip(outputs).enumerate().skip(skipped).map(panel).collect();
     let subject = if skipped > 0 {
         format!("observed coordinates, the first {skipped} left out")

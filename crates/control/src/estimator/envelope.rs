@@ -10,6 +10,7 @@
 use crate::offers::{BodyOffers, Offers};
 use crate::requirement::{Requirements, Rule};
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_numerics::exp_branch_free::exp;
 use flexsc_numerics::phasor::{Complex, Phasor, abs, polar};
 use flexsc_numerics::quantity::Finite;
@@ -144,21 +145,18 @@ struct ModePhasor {
 impl EnvelopeMonitor {
     /// Creates the observer of a one-axis body with modes `body_modes` and `inertia` (kg m²), by which torques are
     /// divided.
-    pub fn new(spec: &Envelope, body_modes: &[Mode], inertia: f64) -> Self {
-        let modes = spec.modes.as_deref().unwrap_or(body_modes);
-        Self {
-            form: spec.form,
-            mobility: 1.0 / inertia,
-            tracks: modes.iter().map(ModePhasor::new).collect(),
-            now: Instant::START,
-            integral: 0.0,
-        }
+    pub fn new(spec: &Envelope, body_modes: &[AxisMode], inertia: f64) -> Self {
+        let tracks = match &spec.modes {
+            Some(modes) => modes.iter().map(|mode| ModePhasor::new(&mode.into())).collect(),
+            None => body_modes.iter().map(ModePhasor::new).collect(),
+        };
+        Self { form: spec.form, mobility: 1.0 / inertia, tracks, now: Instant::START, integral: 0.0 }
     }
 
     /// Creates the observer of a three-axis body: each free mode with its rotation at the sensor.
     pub fn for_three_axes(spec: &Envelope, modes: &[(ThreeAxisMode, f64)]) -> Self {
         let track = |(mode, rotation): &(ThreeAxisMode, f64)| {
-            let start = Mode::at_rest(mode.frequency, Finite::default(), mode.damping);
+            let start = AxisMode::at_rest(mode.frequency, Finite::default(), mode.damping);
             let mut track = ModePhasor::new(&start);
             track.frame = track.phasor(rotation * mode.displacement.get(), rotation * mode.rate.get());
             track.deviation = track.frame;
@@ -267,7 +265,7 @@ impl EnvelopeMonitor {
 }
 
 impl ModePhasor {
-    fn new(mode: &Mode) -> Self {
+    fn new(mode: &AxisMode) -> Self {
         let (frequency, zeta) = (mode.frequency.get(), mode.damping.get());
         let mut track = Self {
             frequency,

@@ -1,9 +1,9 @@
 //! The envelope monitor: its observer, its windows, and the adaptation that reads their means.
 
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{self, ModeEnvelope, WindowMean};
-use flexsc_spacecraft::body::Planar;
 use flexsc_spacecraft::body::spatial::ThreeAxisMode;
 
 use super::{AdaptationRun, Envelope, EnvelopeMonitor};
@@ -33,7 +33,7 @@ pub struct EnvelopeWindow {
 
 impl WindowedEnvelope {
     /// Creates the monitor of a one-axis body, with the adaptation that reads its means.
-    pub fn new(spec: &Envelope, model: &Planar, search: Option<AdaptationRun>) -> Self {
+    pub fn new(spec: &Envelope, model: &AxisModel, search: Option<AdaptationRun>) -> Self {
         Self::with_observer(spec, EnvelopeMonitor::new(spec, &model.modes, model.inertia.get()), search)
     }
 

@@ -19,10 +19,11 @@ use std::any::Any;
 use std::borrow::Cow;
 
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::body::{Drift, Mode, Planar};
+use flexsc_spacecraft::body::{Drift, Mode};
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -96,7 +97,7 @@ pub struct EstimatorContext<'a> {
     /// Estimator that the scenario asks for, if any.
     pub estimator: Option<&'a EstimatorKind>,
     /// Single-axis models of the body, one for each of its axes.
-    pub axes: &'a [Planar],
+    pub axes: &'a [AxisModel],
     /// Back-EMF torque of a wheel per unit of rate (N m s); true if the rate is that of the elastic body, not the rigid
     /// one.
     pub back_emf: (f64, bool),

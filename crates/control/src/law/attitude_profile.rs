@@ -1,9 +1,9 @@
 //! Attitude profile from target to target: steps, slews with limits, or tables, relative to frames that may rotate.
 
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Positive;
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::Mode;
 use flexsc_spacecraft::environment::OrbitEnvironment;
 use flexsc_spacecraft::manoeuvre::{AttitudeMotion, AttitudeTable, PlannedSlew, Slew, SlewProfile};
 use nalgebra::Quaternion;
@@ -63,7 +63,7 @@ impl SegmentPath {
 impl AttitudeProfile {
     /// Creates the profile through these targets under a sky, of a body with these modes. Before the first target the
     /// attitude is inertial; a slew starts at the reference of its start time.
-    pub fn new(targets: &[AttitudeTarget], sky: &OrbitEnvironment, modes: &[Mode]) -> Self {
+    pub fn new(targets: &[AttitudeTarget], sky: &OrbitEnvironment, modes: &[AxisMode]) -> Self {
         // Targets whose slews cannot be planned were rejected before.
         Self::from_targets(targets, sky, modes).unwrap_or_default()
     }
@@ -72,7 +72,7 @@ impl AttitudeProfile {
     fn from_targets(
         targets: &[AttitudeTarget],
         sky: &OrbitEnvironment,
-        modes: &[Mode],
+        modes: &[AxisMode],
     ) -> Result<Self, ConfigError> {
         let mut profile = Self { legs: Vec::new(), sky: sky.clone() };
         for (index, target) in targets.iter().enumerate() {
@@ -180,7 +180,7 @@ impl AttitudeProfile {
     pub fn validate(
         targets: &[AttitudeTarget],
         sky: &OrbitEnvironment,
-        modes: &[Mode],
+        modes: &[AxisMode],
     ) -> Option<ConfigError> {
         for (index, target) in targets.iter().enumerate() {
             if let Some(fault) = target.validate(sky) {

@@ -1,8 +1,8 @@
 //! The slew to a target that leaves modes at rest: a command planned for them, or a slew with limits through a shaper.
 
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Positive;
-use flexsc_spacecraft::body::Mode;
 use flexsc_spacecraft::manoeuvre::{PlannedSlew, RestToRestTask, Slew, SlewProfile, convolve};
 use nalgebra::Quaternion;
 
@@ -21,7 +21,7 @@ impl AttitudeTarget {
     pub(super) fn slew(
         &self,
         attitudes: [Quaternion<f64>; 2],
-        modes: &[Mode],
+        modes: &[AxisMode],
     ) -> Result<PlannedSlew, ConfigError> {
         PlannedSlew::new(attitudes, |angle| {
             let plan = if let (Some(command), Some(duration)) = (&self.command, self.duration) {
@@ -74,10 +74,10 @@ mod tests {
     use flexsc_numerics::attitude::rotation;
     use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
-    fn modes() -> Vec<Mode> {
+    fn modes() -> Vec<AxisMode> {
         let mode = |frequency: f64, damping: f64| {
             let damping = NonNegative::new(damping).expect("a ratio");
-            Mode::at_rest(Frequency::new(frequency).expect("a frequency"), Finite::default(), damping)
+            AxisMode::at_rest(Frequency::new(frequency).expect("a frequency"), Finite::default(), damping)
         };
         vec![mode(0.9, 0.005), mode(1.7, 0.01), mode(4.0, 0.0)]
     }
@@ -88,7 +88,7 @@ mod tests {
 
     /// Returns the residual of a mode after a slew, relative to that of a pulse with the largest acceleration, by
     /// Simpson's rule over the poses of the slew, independent of waveforms.
-    fn residual_amplitude(turn: &PlannedSlew, mode: &Mode, axis: Vector) -> f64 {
+    fn residual_amplitude(turn: &PlannedSlew, mode: &AxisMode, axis: Vector) -> f64 {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
         let damped = w * f64::sqrt(1.0 - zeta * zeta);
         let end = turn.duration();

@@ -6,10 +6,10 @@
 //! before it, so its duration changes k_t times as much.
 
 use flexsc_control::law::Phase;
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::{self, AxisState};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Command, Record, RecordError, Sample, Trigger};
-use flexsc_spacecraft::body::Planar;
 use flexsc_spacecraft::flow::{SegmentInput, UncoupledSegment};
 use nalgebra::{DMatrix, RowDVector, Schur};
 
@@ -94,7 +94,7 @@ struct Switching {
 
 impl LimitCycleDetector {
     /// Creates a detector for a body whose angle is measured continuously (`smooth`) or at samples.
-    pub fn new(body: &Planar, smooth: bool) -> Self {
+    pub fn new(body: &AxisModel, smooth: bool) -> Self {
         let excitations = body.modes.len();
         Self {
             segment: UncoupledSegment::new(body),

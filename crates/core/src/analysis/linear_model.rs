@@ -4,11 +4,12 @@
 //! = J w_r, with the rate of the hub w = w_r + phi q' where modes act back on it, and the rotor momentum H
 //! (\[Likins70\]). Environment torques are left out.
 
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{AXES, Vector};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::{BodyAxes, CommandedQuantity, Drift, Planar, Spatial};
+use flexsc_spacecraft::body::{BodyAxes, Drift, Spatial};
 use flexsc_spacecraft::flow::CoupledMatrices;
 use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
@@ -65,7 +66,7 @@ impl LinearModel {
         })
     }
 
-    fn for_one_axis(scenario: &Scenario, body: &Planar, time: f64) -> Self {
+    fn for_one_axis(scenario: &Scenario, body: &AxisModel, time: f64) -> Self {
         let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, time));
         let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
         let (back_emf, total) = scenario.back_emf(body);

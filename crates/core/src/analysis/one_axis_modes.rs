@@ -1,6 +1,7 @@
 //! Modes of a one-axis body as a table: the content of `flexsc modes` and of Python's `Scenario.modes`.
 
-use flexsc_spacecraft::body::{CommandedQuantity, Mode, Planar};
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel, AxisOutput};
+use flexsc_spacecraft::body::{Drive, clamped_frequencies, free_frequencies};
 use serde::Serialize;
 
 /// Modes of a one-axis body as columns, in the order of the modes.
@@ -9,7 +10,7 @@ pub struct OneAxisModes {
     /// Moment of inertia (kg m²).
     pub inertia_kg_m2: f64,
     /// Commanded quantity: with a torque the modes are those of the free body, with a motion those of the clamped one.
-    pub drive: CommandedQuantity,
+    pub drive: Drive,
     /// Natural frequencies (rad/s).
     pub frequencies_rad_s: Vec<f64>,
     /// Periods (s).
@@ -45,10 +46,11 @@ pub struct OutputWeights {
 
 impl OneAxisModes {
     /// Returns the modes of a body.
-    pub fn from_body(body: &Planar) -> Self {
-        let column = |value: &dyn Fn(&Mode) -> f64| -> Vec<f64> { body.modes.iter().map(value).collect() };
+    pub fn from_body(body: &AxisModel) -> Self {
+        let column =
+            |value: &dyn Fn(&AxisMode) -> f64| -> Vec<f64> { body.modes.iter().map(value).collect() };
         let inertia = body.inertia.get();
-        let weighted = |output: &flexsc_spacecraft::body::Output| OutputWeights {
+        let weighted = |output: &AxisOutput| OutputWeights {
             name: output.name.clone(),
             unit: output.unit.clone(),
             rigid: output.rigid.get(),
@@ -56,15 +58,15 @@ impl OneAxisModes {
         };
         Self {
             inertia_kg_m2: inertia,
-            drive: body.drive,
+            drive: body.drive.into(),
             frequencies_rad_s: column(&|mode| mode.frequency.get()),
             periods_s: column(&|mode| 2.0 * std::f64::consts::PI / mode.frequency.get()),
             dampings: column(&|mode| mode.damping.get()),
             gains: column(&|mode| mode.gain.get()),
-            excitabilities_s2: column(&Mode::excitability),
+            excitabilities_s2: column(&AxisMode::excitability),
             effective_inertias_kg_m2: column(&|mode| inertia * mode.gain.get()),
-            free_frequencies_rad_s: body.free_frequencies(),
-            clamped_frequencies_rad_s: body.clamped_frequencies(),
+            free_frequencies_rad_s: free_frequencies(body),
+            clamped_frequencies_rad_s: clamped_frequencies(body),
             outputs: body.outputs.iter().map(weighted).collect(),
         }
     }

@@ -5,7 +5,7 @@
 //! \[Silaev\], which refers to relations published elsewhere.
 
 use flexsc_control::law::{Relay, RelaySides};
-use flexsc_spacecraft::body::{Mode, Planar};
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -129,7 +129,7 @@ impl RigidRelay {
 
 /// Returns the limit cycles of a relay law on a body without its modes at the gain `k_t`, two-sided first. A law with
 /// one side has only the one-sided cycle, which then has no left boundary to avoid.
-pub fn cycles(law: &Relay, body: &Planar, k_t: f64) -> Vec<RigidCycle> {
+pub fn cycles(law: &Relay, body: &AxisModel, k_t: f64) -> Vec<RigidCycle> {
     let rigid = RigidRelay::new(law, body.inertia.get());
     let candidates: &[RelaySides] = match law.sides {
         RelaySides::Two => &[RelaySides::Two, RelaySides::One],
@@ -143,13 +143,13 @@ const HIGHEST: u32 = 9_999;
 
 /// Returns the gains from 0.02 to 1 at which an odd harmonic of the two-sided cycle meets a mode, by mode and gain. The
 /// even harmonics vanish by symmetry.
-pub fn resonances(law: &Relay, body: &Planar) -> Vec<Resonance> {
+pub fn resonances(law: &Relay, body: &AxisModel) -> Vec<Resonance> {
     /// Number of cells of the grid of gains: the period is monotonic between neighbours.
     const GRID: u32 = 4096;
     let rigid = RigidRelay::new(law, body.inertia.get());
     let period = |k_t: f64| rigid.cycle(RelaySides::Two, k_t).map(|cycle| cycle.period_s);
     let mut found = Vec::new();
-    for (mode, w) in body.modes.iter().map(|mode: &Mode| mode.frequency.get()).enumerate() {
+    for (mode, w) in body.modes.iter().map(|mode: &AxisMode| mode.frequency.get()).enumerate() {
         let turns = |period: f64| w * period / (2.0 * std::f64::consts::PI);
         for cell in 0..GRID {
             let gain = |edge: u32| 0.02 + 0.98 * f64::from(edge) / f64::from(GRID);

@@ -6,10 +6,10 @@ mod lanes;
 
 use flexsc_control::law::{ErrorBand, Setpoint};
 use flexsc_dynamics::MotionPiece;
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_numerics::polynomial::Polynomial;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Arrival, PieceDemand, Record, RecordError, Sample};
-use flexsc_spacecraft::body::Planar;
 
 use super::goal::{self, GoalMetrics};
 use super::{
@@ -120,7 +120,7 @@ fn spectral_radius(scenario: &Scenario) -> f64 {
 
 impl ManoeuvreMetrics {
     /// Creates an empty collector for runs of a scenario.
-    pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
+    pub fn new(scenario: &Scenario, body: &AxisModel, selection: &Selection) -> Self {
         let end = scenario.duration.seconds();
         let range_of = |unit: &String| CoordinateRange {
             unit: unit.clone(),

@@ -3,9 +3,9 @@
 use flexsc_control::adaptation::Objective;
 use flexsc_control::law::{Phase, Setpoint};
 use flexsc_dynamics::MotionPiece;
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Adaptation, PieceDemand, Record, RecordError, Sample};
-use flexsc_spacecraft::body::Planar;
 
 use super::envelope::EnvelopeMetrics;
 use super::goal::{self, GoalMetrics};
@@ -71,7 +71,7 @@ const COUNTED: &[MetricDescription] = &[SWITCHINGS, PUSHES_RIGHT, PUSHES_LEFT, D
 
 impl RelayMetrics {
     /// Creates an empty collector for runs of a scenario.
-    pub fn new(scenario: &Scenario, body: &Planar, selection: &Selection) -> Self {
+    pub fn new(scenario: &Scenario, body: &AxisModel, selection: &Selection) -> Self {
         // Multipliers are defined for uncoupled modes only.
         let smooth = scenario.study.sample_period.is_none() && scenario.linear.is_none();
         Self {

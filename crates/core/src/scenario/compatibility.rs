@@ -4,9 +4,10 @@ use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget};
 use flexsc_control::offers::{AxisLaw, BodyOffers, EnvironmentOffers, Offers};
 use flexsc_control::requirement::{Requirements, Rule};
+use flexsc_dynamics::axis_model::CommandedQuantity;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::time::Span;
-use flexsc_spacecraft::body::{Body, BodyAxes, BodyModel, CommandedQuantity};
+use flexsc_spacecraft::body::{Body, BodyAxes, BodyModel};
 use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::ScenarioSpec;

@@ -3,11 +3,12 @@
 use flexsc_control::law::{AttitudeProfile, AttitudeTarget};
 use flexsc_control::offers::Offers;
 use flexsc_control::requirement::{Requirements, Rule};
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
+use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::body::craft::RateLimit;
-use flexsc_spacecraft::body::{BodyAxes, Planar};
 use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::epoch::nanoseconds_since_1970;
@@ -129,7 +130,7 @@ impl Scenario {
 
     fn planar_inconsistency(
         &self,
-        body: &Planar,
+        body: &AxisModel,
         offers: &Offers,
         unmet: &Requirements,
     ) -> Option<ConfigError> {
@@ -146,7 +147,7 @@ impl Scenario {
             .or_else(|| self.validate_adaptation(offers))
     }
 
-    fn damping_inconsistency(&self, body: &Planar, unmet: &Requirements) -> Option<ConfigError> {
+    fn damping_inconsistency(&self, body: &AxisModel, unmet: &Requirements) -> Option<ConfigError> {
         if self.manoeuvre.as_ref().is_some_and(|manoeuvre| manoeuvre.planned_for(body).is_coupled()) {
             let why = "couples modes, and a `[manoeuvre]` treats each mode on its own: give it a `model` without this matrix";
             return Some(ConfigError::new(self.damping_key(), why));

@@ -2,10 +2,10 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::linear::LinearFlow;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::TOO_FAR_APART;
-use flexsc_spacecraft::body::Planar;
 use flexsc_spacecraft::flow::{CoupledFlow, CoupledMatrices};
 
 use super::Scenario;
@@ -16,7 +16,7 @@ const MOST_COUPLED: usize = 100;
 impl Scenario {
     /// Returns the motion of a one-axis body whose modes are coupled by a wheel or by damping, or drift; `None` if its
     /// modes are uncoupled.
-    pub fn coupling(&self, body: &Planar) -> Option<CoupledFlow> {
+    pub fn coupling(&self, body: &AxisModel) -> Option<CoupledFlow> {
         let (back_emf, total) = self.back_emf(body);
         if let Some(flow) = &self.linear {
             return Some(CoupledFlow::by_poles(body, flow, back_emf, total));
@@ -26,7 +26,7 @@ impl Scenario {
     }
 
     /// Returns the damping rate by a wheel's back-EMF (1/s), and whether it acts on the rate of the elastic body.
-    pub fn back_emf(&self, body: &Planar) -> (f64, bool) {
+    pub fn back_emf(&self, body: &AxisModel) -> (f64, bool) {
         let (back_emf, total) = self.study.back_emf;
         (back_emf / body.inertia.get(), total)
     }

@@ -2,9 +2,9 @@
 
 use flexsc_control::actuator::{Failure, FailureScope};
 use flexsc_control::interval::Interval;
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::AXES;
-use flexsc_spacecraft::body::Planar;
 
 use super::{Scenario, ScenarioSpec};
 
@@ -95,7 +95,7 @@ impl Scenario {
                 "have no closed form with a wheel, whose back-EMF couples the modes: use an `[actuator.hold]`"
             }
             _ if self.drift.is_some() => "have no closed form for modes that drift",
-            _ if self.model.planar().is_some_and(Planar::is_coupled) => {
+            _ if self.model.planar().is_some_and(AxisModel::is_coupled) => {
                 "have no closed form for modes that a damping matrix couples"
             }
             law if self.sensor.period(law.period()).is_none()

@@ -31,10 +31,11 @@ use std::path::Path;
 use std::sync::{Arc, OnceLock};
 
 use flexsc_control::law::{ErrorBand, Setpoint};
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::linear::LinearFlow;
 use flexsc_formats::document::{ConfigError, Document, ScenarioError};
 use flexsc_numerics::time::{Instant, Span};
-use flexsc_spacecraft::body::{Body, BodyModel, Planar};
+use flexsc_spacecraft::body::{Body, BodyModel};
 use flexsc_spacecraft::manoeuvre::Plan;
 
 pub use appendage_drives::{AppendageDrives, DriveProfiles};
@@ -142,7 +143,7 @@ impl Scenario {
     ///
     /// # Errors
     /// Fails for a three-axis body.
-    pub fn one_angle(&self) -> Result<&Planar, ScenarioError> {
+    pub fn one_angle(&self) -> Result<&AxisModel, ScenarioError> {
         self.model.planar().ok_or_else(|| ScenarioError::Key {
             origin: self.name.clone(),
             key: self.body_key(),
@@ -168,7 +169,7 @@ impl Scenario {
             let why = format!("must be the body's rate at the start, {rate}, got {start}");
             return Err(ConfigError::new("manoeuvre.start_rate", why));
         }
-        manoeuvre.plan(body).map(Some).map_err(|fault| fault.within("manoeuvre"))
+        manoeuvre.plan(&body).map(Some).map_err(|fault| fault.within("manoeuvre"))
     }
 
     /// Returns the setpoint of a one-axis body: the end of the manoeuvre, or angle 0 from the start on.
@@ -201,7 +202,7 @@ impl Scenario {
         let mut written = self.written.clone();
         written.inline_files();
         if let (Some(Body::Matrices(_)), Some(body)) = (&written.body, self.model.planar()) {
-            written.body = Some(Body::Planar(body.clone()));
+            written.body = Some(Body::Planar(body.into()));
             let of_matrices = |key: &String| key.starts_with("body.matrices");
             written.uncertain.retain(|key, _| !of_matrices(key));
             written.correlated.retain(|group| !group.keys.iter().any(of_matrices));

@@ -8,6 +8,7 @@ use flexsc_control::actuator::{
 use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
 use flexsc_control::law::{AttitudeProfile, Authority, TorqueDistribution};
 use flexsc_control::requirement::{Requirements, Rule};
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
 use flexsc_dynamics::three_axis::{Bearing, SharedSteps};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, rotation_vector, tensor};
@@ -15,7 +16,7 @@ use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{HubRotor, Translation};
-use flexsc_spacecraft::body::{BodyAxes, BodyModel, CommandedQuantity, Mode, Planar, Spatial};
+use flexsc_spacecraft::body::{BodyAxes, BodyModel, Spatial};
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
@@ -30,7 +31,7 @@ const ROUNDING: f64 = 1e-9;
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct ResolvedScenario {
     /// One-axis model of the body about each of its axes, as if that axis were alone.
-    pub axes: Vec<Planar>,
+    pub axes: Vec<AxisModel>,
     /// Authority of the actuators about each axis.
     pub authorities: Vec<Authority>,
     /// Period of the law, if it has one.
@@ -207,18 +208,18 @@ impl ResolvedScenario {
                 let shape = seen[index];
                 let scaled = |value: Finite| Finite::new(shape * value.get()).unwrap_or_default();
                 let gain = shape * input.forces[index] / input.acceleration;
-                Mode {
+                AxisMode {
                     displacement: scaled(mode.displacement),
                     rate: scaled(mode.rate),
-                    ..Mode::at_rest(mode.frequency, Finite::new(gain).unwrap_or_default(), mode.damping)
+                    ..AxisMode::at_rest(mode.frequency, Finite::new(gain).unwrap_or_default(), mode.damping)
                 }
             };
-            self.axes.push(Planar {
+            self.axes.push(AxisModel {
                 inertia: Positive::new(body.inertia_tensor()[(axis, axis)]).unwrap_or(Positive::ONE),
                 angle: Finite::new(angles[axis]).unwrap_or_default(),
                 rate: body.rate[axis],
                 modes: body.modes.iter().enumerate().map(mode).collect(),
-                ..Planar::default()
+                ..AxisModel::default()
             });
         }
         Ok(())
@@ -268,10 +269,11 @@ impl ResolvedScenario {
     pub fn actuator(&self, scenario: &Scenario, seed: Seed) -> Box<dyn Actuator> {
         let waveform = scenario.plan.as_ref().map(|plan| std::sync::Arc::new(plan.waveform.clone()));
         let manoeuvre = scenario.manoeuvre.as_ref();
-        let setting = |(axis, model): (usize, &Planar)| AxisActuatorContext {
+        let setting = |(axis, model): (usize, &AxisModel)| AxisActuatorContext {
             axis,
             inertia: model.commanded_inertia(),
-            planned_inertia: manoeuvre.map_or(model, |of| of.planned_for(model)).commanded_inertia(),
+            planned_inertia: manoeuvre
+                .map_or_else(|| model.commanded_inertia(), |of| of.planned_for(model).commanded_inertia()),
             rate: model.rate.get(),
             cycle: scenario.law.about(axis).period(),
             waveform: waveform.clone(),
@@ -335,7 +337,7 @@ fn rotations(body: &Spatial, point: &str) -> Vec<Vector> {
 }
 
 /// Returns the measured modal rates of a one-axis body: the modes appear in the angle with weight 1, or not at all.
-fn one_axis_measurement(model: &Planar) -> adaptive::RateMeasurement {
+fn one_axis_measurement(model: &AxisModel) -> adaptive::RateMeasurement {
     let visible = if model.drive == CommandedQuantity::Torque { 1.0 } else { 0.0 };
     adaptive::RateMeasurement {
         frequencies: model.modes.iter().map(|mode| mode.frequency).collect(),

@@ -9,10 +9,9 @@
 //! with the hub torque Q_0. There is no closed form: the motion is integrated to a tolerance. The steps depend on the
 //! events of the run alone, not on the instants at which the state is read.
 
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_formats::structure::Structure;
 use nalgebra::{DMatrix, DVector};
-
-use super::{Mode, Planar};
 
 /// Equations of motion of a chain.
 #[derive(Clone, Debug, PartialEq)]
@@ -30,7 +29,7 @@ pub struct Chain {
 impl Chain {
     /// Creates a chain of sections of the given lengths (m) whose linear model is `structure`, in the coordinates \[hub
     /// angle, displacement of each node in the hub's frame\], with the modes of `model`.
-    pub fn new(lengths: &[f64], structure: &Structure, model: &Planar, tolerance: f64) -> Self {
+    pub fn new(lengths: &[f64], structure: &Structure, model: &AxisModel, tolerance: f64) -> Self {
         let (mass, stiffness) = (structure.mass(), structure.stiffness());
         let n = lengths.len() + 1;
         // v_k = sum over j <= k of l_j (psi_j - psi_0).
@@ -69,7 +68,7 @@ impl Chain {
 
 /// Computes the rows that give the rigid angle and the displacement of each mode from hub angle and node displacements:
 /// x_n = k_n/J r_n^T M q, where r_n is the shape of a mode whose hub angle is 1.
-fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &Planar) -> DMatrix<f64> {
+fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &AxisModel) -> DMatrix<f64> {
     let (n, inertia) = (lengths.len() + 1, model.inertia.get());
     let shape = |mode: usize| {
         let mut displacement = 0.0;
@@ -83,7 +82,7 @@ fn modal(lengths: &[f64], mass: &DMatrix<f64>, model: &Planar) -> DMatrix<f64> {
     };
     let rigid = mass.row(0) / inertia;
     let effective_shape =
-        |(index, mode): (usize, &Mode)| (shape(index).transpose() * mass) * (mode.gain.get() / inertia);
+        |(index, mode): (usize, &AxisMode)| (shape(index).transpose() * mass) * (mode.gain.get() / inertia);
     let rows: Vec<_> = std::iter::once(rigid.into_owned())
         .chain(model.modes.iter().enumerate().map(effective_shape))
         .collect();

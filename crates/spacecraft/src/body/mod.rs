@@ -18,6 +18,7 @@ mod structure_matrices;
 use std::path::Path;
 use std::sync::Arc;
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -27,9 +28,10 @@ pub use coordinate_weights::CoordinateWeights;
 pub use craft::AssembledSpacecraft;
 pub use damping_ratios::DampingRatios;
 pub use drift::{Drift, DriftProfile, ProfilePoint, Ramp, SERIES, Sinusoid};
+pub use free_and_clamped::{clamped_frequencies, free_frequencies};
 pub use mode::Mode;
 pub use model::{BodyAxes, BodyModel};
-pub use one_axis::{CommandedQuantity, Planar};
+pub use one_axis::{Drive, Planar};
 pub use output::Output;
 pub use panels::{Kinematics, Panels, Section};
 pub use spatial::Spatial;
@@ -99,8 +101,8 @@ impl Body {
     /// # Errors
     /// An inconsistent key within the body, and the reason.
     pub fn assemble(&self) -> Result<BodyModel, ConfigError> {
-        let body = match self {
-            Self::Planar(planar) => planar.clone(),
+        let body: AxisModel = match self {
+            Self::Planar(planar) => planar.into(),
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
             Self::Spatial(spatial) => {
@@ -108,7 +110,7 @@ impl Body {
                 return Ok(BodyModel::Spatial(Arc::new(spatial.clone())));
             }
         };
-        if let Some(fault) = body.inconsistency() {
+        if let Some(fault) = one_axis::inconsistency(&body) {
             return Err(fault);
         }
         let chain = if let Self::Panels(panels) = self { panels.chain(&body) } else { None };

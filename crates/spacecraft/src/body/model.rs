@@ -2,18 +2,19 @@
 
 use std::sync::Arc;
 
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel, AxisOutput};
 use flexsc_dynamics::three_axis::FlexibleBody;
 use flexsc_numerics::quantity::Finite;
 
-use super::{AssembledSpacecraft, Chain, Mode, Output, Planar, Spatial};
+use super::{AssembledSpacecraft, Chain, Spatial};
 
 /// Assembled model of a body.
 #[derive(Clone, Debug, PartialEq)]
 pub enum BodyModel {
     /// One-axis body with modes in closed form.
-    Planar(Arc<Planar>),
+    Planar(Arc<AxisModel>),
     /// One-axis body with panels that bend by any angles, and the modes that it has for small angles.
-    Chain(Arc<Planar>, Arc<Chain>),
+    Chain(Arc<AxisModel>, Arc<Chain>),
     /// Three-axis body whose modes do not act back on its rotation.
     Spatial(Arc<Spatial>),
     /// Three-axis spacecraft whose rotation and modes are coupled in both directions.
@@ -24,7 +25,7 @@ pub enum BodyModel {
 #[derive(Copy, Clone, Debug)]
 pub enum BodyAxes<'a> {
     /// One-axis body.
-    One(&'a Planar),
+    One(&'a AxisModel),
     /// Three-axis body.
     Three(&'a Spatial),
 }
@@ -40,7 +41,7 @@ impl BodyModel {
     }
 
     /// Returns the body in free modes, if it has one axis.
-    pub fn planar(&self) -> Option<&Planar> {
+    pub fn planar(&self) -> Option<&AxisModel> {
         if let BodyAxes::One(body) = self.axes() { Some(body) } else { None }
     }
 
@@ -73,8 +74,8 @@ impl BodyModel {
     }
 
     /// Returns the modes for which commands are planned: frequencies and damping ratios, without gains.
-    pub fn free_modes(&self) -> Vec<Mode> {
-        let free = |(frequency, damping)| Mode::at_rest(frequency, Finite::default(), damping);
+    pub fn free_modes(&self) -> Vec<AxisMode> {
+        let free = |(frequency, damping)| AxisMode::at_rest(frequency, Finite::default(), damping);
         match self.axes() {
             BodyAxes::One(body) => {
                 body.modes.iter().map(|mode| free((mode.frequency, mode.damping))).collect()
@@ -91,27 +92,27 @@ impl BodyModel {
     }
 
     /// Returns the coordinates that are observed in addition to the hub's angle.
-    pub fn outputs(&self) -> &[Output] {
+    pub fn outputs(&self) -> &[AxisOutput] {
         self.planar().map_or(&[], |body| &body.outputs)
     }
 
     /// Returns the name of the commanded quantity and its unit.
     pub fn commanded_quantity(&self) -> (&'static str, &'static str) {
-        self.planar().map_or(("torque", "N m"), Planar::commanded)
+        self.planar().map_or(("torque", "N m"), AxisModel::commanded)
     }
 
     /// Returns the unit of a torque on the body.
     pub fn torque_unit(&self) -> &'static str {
-        self.planar().map_or("N m", Planar::torque_unit)
+        self.planar().map_or("N m", AxisModel::torque_unit)
     }
 
     /// Returns true if the commanded quantity is an acceleration (rad/s²) and not a torque (N m).
     pub fn commands_acceleration(&self) -> bool {
-        self.planar().is_some_and(Planar::commands_acceleration)
+        self.planar().is_some_and(AxisModel::commands_acceleration)
     }
 
     /// Returns true if the inertia is 1, as of a one-axis body that is described without one.
     pub fn has_unit_inertia(&self) -> bool {
-        self.planar().is_some_and(Planar::has_unit_inertia)
+        self.planar().is_some_and(AxisModel::has_unit_inertia)
     }
 }

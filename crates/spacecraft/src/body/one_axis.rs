@@ -1,10 +1,6 @@
-//! The planar body: one angle, any number of elastic modes, driven by one moment.
-//!
-//! x_r'' = m, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i m, x = x_r + sum x_i, with m = torque / inertia (\[Silaev\],
-//! equation (1); hybrid coordinates, \[Likins70\]). Under a constant torque the rigid part is a parabola and every mode
-//! turns about its shifted equilibrium, so that no step size is needed.
+//! The planar body as a scenario describes it: the keys of `[body.planar]`.
 
-use flexsc_dynamics::AxisState;
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, Positive};
@@ -28,7 +24,7 @@ pub struct Planar {
     pub rate: Finite,
     /// Quantity that the actuator commands.
     #[serde(default)]
-    pub drive: CommandedQuantity,
+    pub drive: Drive,
     /// Damping that couples the modes (1/s): it adds -sum_j `damping_matrix`\[i\]\[j\] x_j' to x_i'', beside the damping ratios.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub damping_matrix: Vec<Vec<Finite>>,
@@ -43,8 +39,7 @@ pub struct Planar {
 /// Quantity that the actuator commands.
 #[derive(Copy, Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize, JsonSchema)]
 #[serde(rename_all = "snake_case")]
-#[schemars(rename = "Drive")]
-pub enum CommandedQuantity {
+pub enum Drive {
     /// A torque (N m): the modes are those of the free body and contribute to the hub's angle.
     #[default]
     Torque,
@@ -67,7 +62,7 @@ impl Default for Planar {
             inertia: unit(),
             angle: Finite::default(),
             rate: Finite::default(),
-            drive: CommandedQuantity::default(),
+            drive: Drive::default(),
             damping_matrix: Vec::new(),
             modes: Vec::new(),
             outputs: Vec::new(),
@@ -75,92 +70,93 @@ impl Default for Planar {
     }
 }
 
-impl Planar {
-    /// Returns an inconsistency between values: the key, and the reason.
-    pub fn inconsistency(&self) -> Option<ConfigError> {
-        let modes = self.modes.len();
-        self.damping_inconsistency().or_else(|| {
-            self.outputs.iter().enumerate().find_map(|(index, output)| {
-                let position =
-                    |key: &str, why: String| Some(ConfigError::new(format!("outputs[{index}].{key}"), why));
-                if output.modes.len() != modes {
-                    let found = output.modes.len();
-                    return position(
-                        "modes",
-                        format!("must have one number for each of {}, got {found}", counted(modes, "mode")),
-                    );
-                }
-                let before = self.outputs[..index].iter();
-                if before.map(|other| &other.name).any(|name| *name == output.name) {
-                    return position(
-                        "name",
-                        format!("must differ from the other names, got `{}` again", output.name),
-                    );
-                }
-                None
-            })
+/// Returns an inconsistency between the values of a model: the key, and the reason.
+pub fn inconsistency(model: &AxisModel) -> Option<ConfigError> {
+    let modes = model.modes.len();
+    damping_inconsistency(model).or_else(|| {
+        model.outputs.iter().enumerate().find_map(|(index, output)| {
+            let position =
+                |key: &str, why: String| Some(ConfigError::new(format!("outputs[{index}].{key}"), why));
+            if output.modes.len() != modes {
+                let found = output.modes.len();
+                return position(
+                    "modes",
+                    format!("must have one number for each of {}, got {found}", counted(modes, "mode")),
+                );
+            }
+            let before = model.outputs[..index].iter();
+            if before.map(|other| &other.name).any(|name| *name == output.name) {
+                return position(
+                    "name",
+                    format!("must differ from the other names, got `{}` again", output.name),
+                );
+            }
+            None
         })
-    }
+    })
+}
 
-    fn damping_inconsistency(&self) -> Option<ConfigError> {
-        let modes = self.modes.len();
-        let rows = &self.damping_matrix;
-        if rows.is_empty() {
-            return None;
-        }
-        if self.drive == CommandedQuantity::Motion {
-            return Some(ConfigError::new("damping_matrix", HUB_FREE));
-        }
-        if rows.len() != modes {
-            let why = format!("must have one row for each of {}, got {}", counted(modes, "mode"), rows.len());
-            return Some(ConfigError::new("damping_matrix", why));
-        }
-        let index = rows.iter().position(|row| row.len() != modes)?;
-        let why =
-            format!("must have one number for each of {}, got {}", counted(modes, "mode"), rows[index].len());
-        Some(ConfigError::new(format!("damping_matrix[{index}]"), why))
+fn damping_inconsistency(model: &AxisModel) -> Option<ConfigError> {
+    let modes = model.modes.len();
+    let rows = &model.damping_matrix;
+    if rows.is_empty() {
+        return None;
     }
-
-    /// Returns true if the damping matrix couples the modes.
-    pub fn is_coupled(&self) -> bool {
-        !self.damping_matrix.is_empty()
+    if model.drive == CommandedQuantity::Motion {
+        return Some(ConfigError::new("damping_matrix", HUB_FREE));
     }
+    if rows.len() != modes {
+        let why = format!("must have one row for each of {}, got {}", counted(modes, "mode"), rows.len());
+        return Some(ConfigError::new("damping_matrix", why));
+    }
+    let index = rows.iter().position(|row| row.len() != modes)?;
+    let why =
+        format!("must have one number for each of {}, got {}", counted(modes, "mode"), rows[index].len());
+    Some(ConfigError::new(format!("damping_matrix[{index}]"), why))
+}
 
-    /// Returns the ratio of the command to the rigid acceleration (kg m²): 1 if the motion itself is commanded.
-    pub fn commanded_inertia(&self) -> f64 {
-        match self.drive {
-            CommandedQuantity::Torque => self.inertia.get(),
-            CommandedQuantity::Motion => 1.0,
+impl From<Drive> for CommandedQuantity {
+    fn from(drive: Drive) -> Self {
+        match drive {
+            Drive::Torque => Self::Torque,
+            Drive::Motion => Self::Motion,
         }
     }
+}
 
-    /// Returns true if the inertia is 1, as of a body that is described without one.
-    pub fn has_unit_inertia(&self) -> bool {
-        self.inertia == Positive::ONE
+impl From<CommandedQuantity> for Drive {
+    fn from(commanded: CommandedQuantity) -> Self {
+        match commanded {
+            CommandedQuantity::Torque => Self::Torque,
+            CommandedQuantity::Motion => Self::Motion,
+        }
     }
+}
 
-    /// Returns true if the command is an acceleration (rad/s²) and not a torque (N m): the motion of the hub, or the
-    /// reduced moment of a body without inertia.
-    pub fn commands_acceleration(&self) -> bool {
-        self.drive == CommandedQuantity::Motion || self.has_unit_inertia()
+impl From<&Planar> for AxisModel {
+    fn from(body: &Planar) -> Self {
+        Self {
+            inertia: body.inertia,
+            angle: body.angle,
+            rate: body.rate,
+            drive: body.drive.into(),
+            damping_matrix: body.damping_matrix.clone(),
+            modes: body.modes.iter().map(Into::into).collect(),
+            outputs: body.outputs.iter().map(Into::into).collect(),
+        }
     }
+}
 
-    /// Returns the unit of a torque on the body.
-    pub fn torque_unit(&self) -> &'static str {
-        if self.has_unit_inertia() { "rad/s²" } else { "N m" }
-    }
-
-    /// Returns the name of the commanded quantity and its unit.
-    pub fn commanded(&self) -> (&'static str, &'static str) {
-        if self.commands_acceleration() { ("acceleration", "rad/s²") } else { ("torque", "N m") }
-    }
-
-    /// Returns the state at the start of a run.
-    pub fn initial_state(&self) -> AxisState {
-        AxisState {
-            rigid_angle: self.angle.get(),
-            rigid_rate: self.rate.get(),
-            modes: self.modes.iter().map(Mode::start).collect(),
+impl From<&AxisModel> for Planar {
+    fn from(model: &AxisModel) -> Self {
+        Self {
+            inertia: model.inertia,
+            angle: model.angle,
+            rate: model.rate,
+            drive: model.drive.into(),
+            damping_matrix: model.damping_matrix.clone(),
+            modes: model.modes.iter().map(Into::into).collect(),
+            outputs: model.outputs.iter().map(Into::into).collect(),
         }
     }
 }

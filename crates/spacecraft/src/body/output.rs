@@ -1,6 +1,6 @@
 //! Observed coordinates: the effect of the modes at a place of the structure.
 
-use flexsc_dynamics::AxisState;
+use flexsc_dynamics::axis_model::AxisOutput;
 use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -25,18 +25,16 @@ pub(super) fn radians() -> String {
     "rad".to_owned()
 }
 
-impl Output {
-    /// Returns the coordinate in a state.
-    pub fn evaluate(&self, state: &AxisState) -> f64 {
-        let modes = self.modes.iter().zip(&state.modes);
-        modes.fold(self.rigid.get() * state.rigid_angle, |sum, (w, mode)| sum + w.get() * mode.displacement)
+impl From<&Output> for AxisOutput {
+    fn from(output: &Output) -> Self {
+        let Output { name, unit, rigid, modes } = output.clone();
+        Self { name, unit, rigid, modes }
     }
+}
 
-    /// Returns the rate of the coordinate in a state, for modes of the given frequencies (rad/s).
-    pub fn rate_of(&self, state: &AxisState, frequencies: &[f64]) -> f64 {
-        let modes = self.modes.iter().zip(&state.modes).zip(frequencies);
-        modes.fold(self.rigid.get() * state.rigid_rate, |sum, ((weight, mode), w)| {
-            sum + weight.get() * w * mode.quadrature
-        })
+impl From<&AxisOutput> for Output {
+    fn from(output: &AxisOutput) -> Self {
+        let AxisOutput { name, unit, rigid, modes } = output.clone();
+        Self { name, unit, rigid, modes }
     }
 }

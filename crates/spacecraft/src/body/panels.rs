@@ -9,6 +9,7 @@
 //!
 //! and the potential energy 1/2 sum c_k (phi_(k+1) - phi_k)² with the sections' angles phi_k = (v_k - v_(k-1))/l_k.
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::Structure;
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Tolerance};
@@ -18,7 +19,7 @@ use serde::{Deserialize, Serialize};
 
 use super::output::radians;
 use super::reduction::{ModalReduction, ObservedCoordinate};
-use super::{Chain, CommandedQuantity, DampingRatios, Planar};
+use super::{Chain, DampingRatios, Drive};
 
 /// Largest number of sections of a panel.
 const MOST_SECTIONS: usize = 99;
@@ -44,7 +45,7 @@ pub struct Panels {
     pub tolerance: Tolerance,
     /// Quantity that the actuator commands.
     #[serde(default)]
-    pub drive: CommandedQuantity,
+    pub drive: Drive,
     /// Damping ratio of all modes, or a list with one for each mode that is kept.
     #[serde(default)]
     pub damping: DampingRatios,
@@ -148,7 +149,7 @@ impl Panels {
     }
 
     /// Returns the exact chain, if the sections turn by any angles.
-    pub fn chain(&self, model: &Planar) -> Option<Chain> {
+    pub fn chain(&self, model: &AxisModel) -> Option<Chain> {
         let structure = self.structure().ok().filter(|_| self.kinematics == Kinematics::Exact)?;
         let lengths: Vec<f64> = self.sections.iter().map(|section| section.length.get()).collect();
         Some(Chain::new(&lengths, &structure, model, self.tolerance.get()))
@@ -156,7 +157,7 @@ impl Panels {
 
     /// Computes the planar body with the modes of the structure. Its outputs are the angles phi_k of the sections
     /// relative to the hub (rad): `section_1`, `section_2` and so on.
-    pub fn solve(&self) -> Result<Planar, ConfigError> {
+    pub fn solve(&self) -> Result<AxisModel, ConfigError> {
         let structure = self.structure()?;
         let observed = |(index, section): (usize, &Section)| {
             let mut weights = vec![0.0; self.sections.len() + 1];
@@ -169,7 +170,7 @@ impl Panels {
         let outputs = self.sections.iter().enumerate().map(observed).collect();
         let Self { drive, damping, keep, angle, rate, .. } = self;
         let reduction = ModalReduction {
-            drive: *drive,
+            drive: (*drive).into(),
             damping,
             damping_matrix: None,
             keep: *keep,

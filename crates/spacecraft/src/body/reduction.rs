@@ -4,13 +4,14 @@
 //! x_n. Modes of the clamped structure do not: x_n = -(m_n/J) f_n with the gain m_n²/J, and the torque that moves the
 //! hub as commanded is J (u - sum x_n'').
 
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel, AxisOutput, CommandedQuantity};
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::{HubState, Structure, TOO_FAR_APART, eigenvalues};
 use flexsc_numerics::quantity::{Finite, Frequency, Positive};
 use nalgebra::DMatrix;
 
+use super::DampingRatios;
 use super::one_axis::HUB_FREE;
-use super::{CommandedQuantity, DampingRatios, Mode, Output, Planar};
 
 /// Settings of a modal reduction: damping, number of modes to keep, initial state and outputs.
 pub struct ModalReduction<'a> {
@@ -32,7 +33,7 @@ pub struct ObservedCoordinate {
 
 impl ModalReduction<'_> {
     /// Computes the planar body with the modes to keep.
-    pub fn planar(&self, structure: &Structure) -> Result<Planar, ConfigError> {
+    pub fn planar(&self, structure: &Structure) -> Result<AxisModel, ConfigError> {
         let mut weights: Vec<_> = self.outputs.iter().map(|output| output.weights.clone()).collect();
         if let Some(damping) = &self.damping_matrix {
             if self.drive == CommandedQuantity::Motion {
@@ -73,14 +74,14 @@ impl ModalReduction<'_> {
                 ConfigError::new("stiffness", why)
             })?;
             let gain = finite(inertia * scale(n) * scale(n))?;
-            modes.push(Mode::at_rest(frequency, gain, damping));
+            modes.push(AxisMode::at_rest(frequency, gain, damping));
         }
         let output = |(observed, (rigid, shape)): (&ObservedCoordinate, (&f64, &Vec<f64>))| {
             let weight = |n: usize| {
                 // A mode that the hub cannot excite stays at rest.
                 if modes[n].gain.get() == 0.0 { Ok(Finite::default()) } else { finite(shape[n] / scale(n)) }
             };
-            Ok(Output {
+            Ok(AxisOutput {
                 name: observed.name.clone(),
                 unit: observed.unit.clone(),
                 rigid: finite(*rigid)?,
@@ -95,7 +96,7 @@ impl ModalReduction<'_> {
             None => Vec::new(),
         };
         let inertia = Positive::new(inertia).ok_or_else(too_large)?;
-        Ok(Planar {
+        Ok(AxisModel {
             inertia,
             angle: self.angle,
             rate: self.rate,

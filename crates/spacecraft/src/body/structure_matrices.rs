@@ -1,5 +1,6 @@
 //! A body given by the mass and the stiffness matrix of its structure.
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::{Matrix, Structure};
 use flexsc_numerics::quantity::Finite;
@@ -9,7 +10,7 @@ use serde::{Deserialize, Serialize};
 
 use super::output::radians;
 use super::reduction::{ModalReduction, ObservedCoordinate};
-use super::{CommandedQuantity, CoordinateWeights, DampingRatios, Planar};
+use super::{CoordinateWeights, DampingRatios, Drive};
 
 /// A body given by its matrices: M q'' + C q' + K q = Q, where one coordinate is the hub's angle.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -32,7 +33,7 @@ pub struct MatrixBody {
     pub rotation: Option<Vec<Finite>>,
     /// Quantity that the actuator commands.
     #[serde(default)]
-    pub drive: CommandedQuantity,
+    pub drive: Drive,
     /// Damping ratio of all modes, or a list with one for each mode that is kept.
     #[serde(default)]
     pub damping: DampingRatios,
@@ -78,7 +79,7 @@ impl MatrixBody {
     }
 
     /// Returns the planar body with the modes of the structure.
-    pub fn solve(&self) -> Result<Planar, ConfigError> {
+    pub fn solve(&self) -> Result<AxisModel, ConfigError> {
         let structure = self.structure()?;
         let names = self.names(structure.mass().nrows())?;
         let observed = |(index, sum): (usize, &WeightedSum)| {
@@ -93,7 +94,7 @@ impl MatrixBody {
         let damping_matrix = damping_matrix.map(|matrix| structure.damping(read("damping_matrix", matrix)?));
         let damping_matrix = damping_matrix.transpose()?;
         ModalReduction {
-            drive: *drive,
+            drive: (*drive).into(),
             damping,
             damping_matrix,
             keep: *keep,

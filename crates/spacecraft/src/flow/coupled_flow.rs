@@ -6,6 +6,7 @@
 
 use std::sync::Arc as Shared;
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::crossing::{Crossing, first_crossing};
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::linear::{LinearFlow, LinearOutput, LinearSegment, ModalState, OutputGuard};
@@ -16,7 +17,7 @@ use flexsc_numerics::time::Span;
 use nalgebra::{DMatrix, DVector, RowDVector};
 
 use super::{CoupledMatrices, DriftingFlow};
-use crate::body::{Drift, Planar};
+use crate::body::Drift;
 
 /// Number of cached transitions, the newest last: a run has few different periods.
 const KEPT: usize = 8;
@@ -102,7 +103,7 @@ pub struct TransitionFlow {
 impl CoupledFlow {
     /// Creates the motion of a body from its initial state, under no input, by the poles of its flow. A wheel's
     /// back-EMF a (1/s) acts on the total rate if `total` is true, else on the rigid rate.
-    pub fn by_poles(body: &Planar, flow: &Shared<LinearFlow>, back_emf: f64, total: bool) -> Self {
+    pub fn by_poles(body: &AxisModel, flow: &Shared<LinearFlow>, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let start = body.initial_state().to_vector(&frequencies);
         let (segment, here) = (LinearSegment::new(Shared::clone(flow)), flow.to_modal(&start));
@@ -126,7 +127,7 @@ impl CoupledFlow {
 
     /// Creates the motion of a body from its initial state, under no input. A wheel's back-EMF a (1/s) acts on the
     /// total rate if `total` is true, else on the rigid rate.
-    pub fn new(body: &Planar, drift: Option<&Drift>, back_emf: f64, total: bool) -> Self {
+    pub fn new(body: &AxisModel, drift: Option<&Drift>, back_emf: f64, total: bool) -> Self {
         let frequencies: Vec<f64> = body.modes.iter().map(|mode| mode.frequency.get()).collect();
         let here = body.initial_state().to_vector(&frequencies);
         let flow = drift.map_or_else(

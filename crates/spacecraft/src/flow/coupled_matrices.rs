@@ -3,11 +3,10 @@
 //! z = (x_r, x_r', x_1, x_1', x_2, x_2', ...); x_r'' = m - a r z, x_i'' + 2 zeta_i w_i x_i' + w_i² x_i = k_i (m - a r
 //! z), where r picks the rate that acts on the wheel (\[Wheel11, Sukhanov\], equations (4) and (6), corrected).
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::linear::{LinearFlow, LinearPlant};
 use flexsc_numerics::exponential::{exponential, exponentials};
 use nalgebra::{DMatrix, DVector, RowDVector};
-
-use crate::body::Planar;
 
 /// System matrices of a body at constant frequencies.
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +24,7 @@ pub struct CoupledMatrices {
 impl CoupledMatrices {
     /// Creates the system of a body whose wheel has the back-EMF a (1/s), proportional to the total rate if `total` is
     /// true, else to the rigid rate. Each natural frequency is multiplied by a ratio.
-    pub fn new(body: &Planar, back_emf: f64, total: bool, ratios: &[f64]) -> Self {
+    pub fn new(body: &AxisModel, back_emf: f64, total: bool, ratios: &[f64]) -> Self {
         let order = 2 + 2 * body.modes.len();
         let every = |first: usize| RowDVector::from_fn(order, |_, j| if j % 2 == first { 1.0 } else { 0.0 });
         let (angle, rate) = (every(0), every(1));
@@ -96,13 +95,14 @@ fn apart(whole: &DMatrix<f64>) -> (DMatrix<f64>, DVector<f64>) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::body::Planar;
 
     #[test]
     fn the_discrete_system_of_the_third_paper() {
         let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165 }, { frequency = 2.0, gain = 0.72 }]";
-        let body = flexsc_formats::document::from_text(text).expect("valid");
-        let (ad, bd) = CoupledMatrices::new(&body, 1e-4, true, &[1.0; 4]).discrete(0.3);
+        let body: Planar = flexsc_formats::document::from_text(text).expect("valid");
+        let (ad, bd) = CoupledMatrices::new(&AxisModel::from(&body), 1e-4, true, &[1.0; 4]).discrete(0.3);
         // Reference: SciPy's expm of the same system.
         let close = |value: f64, exact: f64| assert!((value / exact - 1.0).abs() < 1e-12, "{value} {exact}");
         close(5e-4 * bd[0], 2.249_920_797_089e-05);

@@ -2,11 +2,12 @@
 //! rounding.
 
 use flexsc_dynamics::ModeState;
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_numerics::quantity::Finite;
 
 use super::DriftingFlow;
+use crate::body::Drift;
 use crate::body::spatial::{Spatial, ThreeAxisMode};
-use crate::body::{Drift, Mode, Planar};
 
 /// Motion of the drifting modes under modal forces that are constant for a while.
 #[derive(Clone, Debug)]
@@ -27,12 +28,12 @@ impl DriftingModes {
                 Drift::Common(profile) => Drift::Common(profile.clone()),
                 Drift::Each(profiles) => Drift::Each(profiles.get(index).cloned().into_iter().collect()),
             };
-            let start = Mode {
+            let start = AxisMode {
                 displacement: mode.displacement,
                 rate: mode.rate,
-                ..Mode::at_rest(mode.frequency, gain, mode.damping)
+                ..AxisMode::at_rest(mode.frequency, gain, mode.damping)
             };
-            DriftingFlow::new(&Planar { modes: vec![start], ..Planar::default() }, &own, 0.0, false)
+            DriftingFlow::new(&AxisModel { modes: vec![start], ..AxisModel::default() }, &own, 0.0, false)
         };
         Self {
             modes: body.modes.iter().enumerate().map(alone).collect(),

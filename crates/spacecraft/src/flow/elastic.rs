@@ -1,11 +1,11 @@
 //! Elastic modes of a spatial body: exact flow under constant modal forces, energy, and rates at a point.
 
 use flexsc_dynamics::ModeState;
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Finite;
 
 use super::ModeFlow;
-use crate::body::Mode;
 use crate::body::spatial::{Spatial, ThreeAxisMode};
 
 /// Flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
@@ -26,7 +26,7 @@ impl ElasticModes {
     /// Creates the flows of a body's modes, which are often advanced by `cycle` seconds.
     pub fn new(body: &Spatial, cycle: f64) -> Self {
         let flow = |mode: &ThreeAxisMode| {
-            ModeFlow::new(&Mode::at_rest(mode.frequency, Finite::default(), mode.damping))
+            ModeFlow::new(&AxisMode::at_rest(mode.frequency, Finite::default(), mode.damping))
         };
         Self {
             flows: body.modes.iter().map(flow).collect(),

@@ -2,25 +2,25 @@
 //! `tests/crossings.rs` has motions of all kinds.
 
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::Guard;
 use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 use flexsc_numerics::time::Span;
 
 use super::{SegmentInput, UncoupledSegment};
-use crate::body::{Mode, Planar};
 
 /// Eps, gamma and the strong and weak torque of the relay study.
 const LAW: [f64; 4] = [5e-4, 1e-4, 4e-5, 1e-6];
 
 /// Creates a body with modes of given frequency, gain and damping ratio.
-fn body(modes: &[(f64, f64, f64)]) -> Planar {
+fn body(modes: &[(f64, f64, f64)]) -> AxisModel {
     let mode = |&(frequency, gain, ratio): &(f64, f64, f64)| {
         let gain = Finite::new(gain).expect("finite");
         let ratio = NonNegative::new(ratio).expect("in range");
-        Mode::at_rest(Frequency::new(frequency).expect("in range"), gain, ratio)
+        AxisMode::at_rest(Frequency::new(frequency).expect("in range"), gain, ratio)
     };
-    Planar { modes: modes.iter().map(mode).collect(), ..Planar::default() }
+    AxisModel { modes: modes.iter().map(mode).collect(), ..AxisModel::default() }
 }
 
 /// Statistics of the trips that both methods found.

@@ -1,12 +1,11 @@
 //! Exact flow of one elastic mode, for any damping: three regimes, each in closed form.
 
 use flexsc_dynamics::AngleObservation;
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_dynamics::damping::Damped;
 use flexsc_numerics::exp_branch_free::exp;
 use flexsc_numerics::phasor::Phasor;
 use flexsc_numerics::trig::sincos_any;
-
-use crate::body::Mode;
 
 /// Constants of a mode's flow.
 #[derive(Copy, Clone, Debug)]
@@ -36,7 +35,7 @@ enum DampingRegime {
 
 impl ModeFlow {
     /// Creates the flow of a mode.
-    pub fn new(mode: &Mode) -> Self {
+    pub fn new(mode: &AxisMode) -> Self {
         let (w, zeta) = (mode.frequency.get(), mode.damping.get());
         let regime = if zeta == 0.0 {
             DampingRegime::Undamped
@@ -152,8 +151,8 @@ mod tests {
     use super::*;
     use flexsc_numerics::quantity::{Finite, Frequency, NonNegative};
 
-    fn mode(frequency: f64, damping: f64) -> Mode {
-        Mode {
+    fn mode(frequency: f64, damping: f64) -> AxisMode {
+        AxisMode {
             frequency: Frequency::new(frequency).expect("in range"),
             gain: Finite::default(),
             damping: NonNegative::new(damping).expect("in range"),

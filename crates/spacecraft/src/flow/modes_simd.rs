@@ -4,11 +4,10 @@
 #![allow(clippy::needless_range_loop, reason = "adaptors of iterators lack the processor's instructions")]
 
 use flexsc_dynamics::ModeState;
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_dynamics::damping::{DampingRule, Undamped};
 use flexsc_numerics::lanes::{LaneFloat, SimdTask, SimdWidth4};
 use flexsc_numerics::trig::FARTHEST;
-
-use crate::body::Mode;
 
 /// Number of modes in a group.
 const SIDE: usize = SimdWidth4::LANES;
@@ -32,7 +31,7 @@ struct ModeGroup {
 impl ModesSimd {
     /// Creates the groups of a body's modes; `None` for fewer than two modes, for damped ones, and without vector
     /// instructions.
-    pub fn new(modes: &[Mode]) -> Option<Self> {
+    pub fn new(modes: &[AxisMode]) -> Option<Self> {
         if modes.len() < 2 || modes.iter().any(|mode| mode.damping.get() > 0.0) {
             return None;
         }
@@ -95,14 +94,17 @@ impl SimdTask for Rotate<'_> {
 mod tests {
     use super::super::mode::ModeFlow;
     use super::*;
+    use crate::body::Mode;
 
     #[test]
     fn modes_side_by_side_are_to_the_bit_where_each_is_alone() {
-        let mode = |frequency: f64| -> Mode {
-            serde_json::from_str(&format!(r#"{{"frequency":{frequency},"gain":0.01}}"#)).expect("a mode")
+        let mode = |frequency: f64| -> AxisMode {
+            let mode: Mode =
+                serde_json::from_str(&format!(r#"{{"frequency":{frequency},"gain":0.01}}"#)).expect("a mode");
+            AxisMode::from(&mode)
         };
         for count in [2, 3, 4, 5, 9] {
-            let modes: Vec<Mode> = (0..count).map(|i| mode(0.44 + 0.31 * f64::from(i))).collect();
+            let modes: Vec<AxisMode> = (0..count).map(|i| mode(0.44 + 0.31 * f64::from(i))).collect();
             let Some(mut abreast) = ModesSimd::new(&modes) else { return };
             let phase =
                 |i: usize| ModeState { displacement: 1e-5 - 3e-6 * i as f64, quadrature: 2e-6 * i as f64 };

@@ -2,6 +2,7 @@
 
 mod predicted_crossing;
 
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_dynamics::crossing::{BoundedMotion, first_root};
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::polynomial_piece::{REACH, SeriesExpansion};
@@ -13,7 +14,6 @@ use nalgebra::DVector;
 use super::mode::ModeFlow;
 use super::modes_simd::ModesSimd;
 use super::waveform_response::{ActiveWaveform, ForcedResponse, SegmentInput};
-use crate::body::{CommandedQuantity, Planar};
 use predicted_crossing::CrossingPredictor;
 
 /// Motion under one input, from the state in which it began.
@@ -50,7 +50,7 @@ struct ModeSegment {
 
 impl UncoupledSegment {
     /// Creates the segment of a body, before its departure.
-    pub fn new(body: &Planar) -> Self {
+    pub fn new(body: &AxisModel) -> Self {
         let swing =
             |mode| ModeSegment { flow: ModeFlow::new(mode), equilibrium: 0.0, from: ModeState::default() };
         let visible = body.drive == CommandedQuantity::Torque;

@@ -4,9 +4,10 @@
 //! series themselves: each coefficient follows from the previous ones. The series have order 20, and the step keeps
 //! their truncation error at the last bit of the largest coordinate (Jorba and Zou, Experimental Mathematics 14, 2005).
 
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_numerics::lanes::LaneFloat;
 
-use crate::body::{Drift, Mode, Planar, SERIES};
+use crate::body::{Drift, SERIES};
 
 /// Ratio e² of the radius of convergence to the step at which a series of this order truncates the last bit of a
 /// double.
@@ -80,9 +81,9 @@ impl RatioSeries<f64> {
 impl DriftingEquations<f64> {
     /// Creates the equations of a body. A wheel's back-EMF a (1/s) acts on the total rate if `total` is true, else on
     /// the rigid rate.
-    pub fn new(body: &Planar, back_emf: f64, total: bool) -> Self {
+    pub fn new(body: &AxisModel, back_emf: f64, total: bool) -> Self {
         let frequencies = || body.modes.iter().map(|mode| mode.frequency.get());
-        let with = |rigid: f64, of: &dyn Fn(&Mode) -> f64| {
+        let with = |rigid: f64, of: &dyn Fn(&AxisMode) -> f64| {
             std::iter::once(rigid).chain(body.modes.iter().map(of)).collect::<Vec<f64>>()
         };
         let drag = with(0.0, &|mode| 2.0 * mode.damping.get() * mode.frequency.get());

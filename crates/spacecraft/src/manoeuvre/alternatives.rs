@@ -1,5 +1,6 @@
 //! Alternatives: the commands that a planned manoeuvre is compared with, on the same body.
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, Fraction, Positive};
 use flexsc_numerics::time::Span;
@@ -14,7 +15,6 @@ use super::residual::{FinalResidual, residuals};
 use super::shaper::{ExtraInsensitive, ShapedModes, Shaper};
 use super::suppression::{SuppressedMode, Suppression};
 use super::{Manoeuvre, Plan};
-use crate::body::Planar;
 
 /// Largest number of modes that an alternative suppresses.
 const MOST: usize = 8;
@@ -71,7 +71,7 @@ impl ComparisonBasis {
 }
 
 /// Returns the alternative commands that a body's modes allow.
-pub fn alternatives(body: &Planar) -> Vec<Alternative> {
+pub fn alternatives(body: &AxisModel) -> Vec<Alternative> {
     // Indices of the modes, by frequency.
     let mut order: Vec<usize> = (0..body.modes.len()).collect();
     order.sort_by(|a, b| body.modes[*a].frequency.get().total_cmp(&body.modes[*b].frequency.get()));
@@ -193,7 +193,12 @@ fn shapers(modes: &[usize]) -> Vec<(&'static str, Shaper)> {
 }
 
 /// Computes the results of all alternatives on a body: the manoeuvre with each command in turn.
-pub fn compare(manoeuvre: &Manoeuvre, common: ComparisonBasis, body: &Planar, band: f64) -> Vec<CommandCost> {
+pub fn compare(
+    manoeuvre: &Manoeuvre,
+    common: ComparisonBasis,
+    body: &AxisModel,
+    band: f64,
+) -> Vec<CommandCost> {
     let (time, peak_torque) = match common {
         ComparisonBasis::Time(time) => (Some(time), None),
         ComparisonBasis::PeakTorque(peak) => (None, Some(peak)),

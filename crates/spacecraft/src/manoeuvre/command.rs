@@ -1,5 +1,6 @@
 //! Kinds of command that turn a body.
 
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
@@ -9,7 +10,6 @@ use super::series::{self, SeriesCoefficients, SeriesFamily};
 use super::suppression::{self, Suppression, Zero};
 use super::task::RestToRestTask;
 use super::{bang_bang, minimum_energy, minimum_peak, polynomial};
-use crate::body::Mode;
 
 /// The kinds of command.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -67,7 +67,7 @@ impl ManoeuvreCommand {
     }
 
     /// Returns the zeros of the command for a body's modes, or an error in its parameters.
-    pub fn zeros(&self, modes: &[Mode]) -> Result<Vec<Zero>, ConfigError> {
+    pub fn zeros(&self, modes: &[AxisMode]) -> Result<Vec<Zero>, ConfigError> {
         let place = format!("command.{}", self.kind());
         match self {
             Self::Sine(own) | Self::Cosine(own) | Self::MinimumEnergy(own) => own.zeros(modes, &place),

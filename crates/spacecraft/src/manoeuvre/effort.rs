@@ -1,12 +1,12 @@
 //! Effort of a manoeuvre: peak, root mean square, and integral of the square.
 
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_numerics::quadrature::integral;
 
 use super::Plan;
 use super::modal_response::{ModalResponse, torque};
 use super::peak_search::PeakValue;
 use super::plan::fastest;
-use crate::body::{CommandedQuantity, Planar};
 
 /// Effort of a command or a torque, in its unit.
 #[derive(Copy, Clone, Debug, PartialEq)]
@@ -31,7 +31,7 @@ impl PlanEffort {
     }
 
     /// Computes the effort of the torque on the hub (N m).
-    pub fn from_torque(plan: &Plan, body: &Planar) -> Self {
+    pub fn from_torque(plan: &Plan, body: &AxisModel) -> Self {
         match body.drive {
             CommandedQuantity::Torque => Self::from_command(plan),
             CommandedQuantity::Motion => {

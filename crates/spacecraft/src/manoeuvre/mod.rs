@@ -23,13 +23,14 @@ mod suppression;
 mod task;
 mod timing;
 
+use std::borrow::Cow;
+
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::time::Span;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::body::Planar;
 
 pub use alternatives::{
     Alternative, AlternativeOutcome, CommandCost, ComparisonBasis, alternatives, compare,
@@ -48,6 +49,7 @@ pub use slew::{AttitudeMotion, Slew, SlewProfile};
 pub use suppression::{SuppressedMode, Suppression};
 pub use task::RestToRestTask;
 
+use crate::body::Planar;
 use planner::ManoeuvrePlanner;
 
 /// A manoeuvre. The modes of the body are at rest at its start.
@@ -81,12 +83,12 @@ pub struct Manoeuvre {
 
 impl Manoeuvre {
     /// Returns the body for which the manoeuvre is planned: `model` if given, else `body`.
-    pub fn planned_for<'a>(&'a self, body: &'a Planar) -> &'a Planar {
-        self.model.as_ref().unwrap_or(body)
+    pub fn planned_for<'a>(&self, body: &'a AxisModel) -> Cow<'a, AxisModel> {
+        self.model.as_ref().map_or(Cow::Borrowed(body), |model| Cow::Owned(model.into()))
     }
 
     /// Plans the manoeuvre for a body.
-    pub fn plan(&self, body: &Planar) -> Result<Plan, ConfigError> {
+    pub fn plan(&self, body: &AxisModel) -> Result<Plan, ConfigError> {
         if let Some(index) = body.modes.iter().position(|mode| mode.damping.get() >= 1.0) {
             let damping = body.modes[index].damping.get();
             let why = format!("needs modes that oscillate, and the damping of mode {index} is {damping}");

@@ -1,10 +1,10 @@
 //! Exact response of a body's modes to a planned command.
 
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_numerics::phasor::Phasor;
 
 use super::suppression::Zero;
-use crate::body::{CommandedQuantity, Planar};
 
 /// Response of modes that are at rest at the start of a command.
 pub struct ModalResponse<'a> {
@@ -27,7 +27,7 @@ pub type ModeMotion = [f64; 3];
 
 impl<'a> ModalResponse<'a> {
     /// Creates the response of a body's modes, with all frequencies multiplied by `factor`.
-    pub fn new(body: &Planar, command: &'a Waveform, factor: f64) -> Self {
+    pub fn new(body: &AxisModel, command: &'a Waveform, factor: f64) -> Self {
         let inertia = body.commanded_inertia();
         let driven = |mode| {
             let own = Zero::at_mode(mode);
@@ -67,7 +67,7 @@ impl<'a> ModalResponse<'a> {
 
 /// Returns the torque on the hub (N m) at a time: the command itself, or the torque that gives the hub its commanded
 /// motion.
-pub fn torque(body: &Planar, history: &ModalResponse, middle: f64, t: f64) -> f64 {
+pub fn torque(body: &AxisModel, history: &ModalResponse, middle: f64, t: f64) -> f64 {
     let command = history.command.value_on_piece(middle, t);
     match body.drive {
         CommandedQuantity::Torque => command,

@@ -1,12 +1,12 @@
 //! A planned manoeuvre: the command, and its nominal result.
 
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_dynamics::waveform::Waveform;
 
 use super::modal_response::{ModalResponse, torque};
 use super::peak_search::{self, PeakValue};
 use super::residual;
 use super::series::SeriesCoefficients;
-use crate::body::{CommandedQuantity, Planar};
 
 /// Largest part of the peak by which a command differs on both sides of a break without a jump.
 const CONTINUOUS: f64 = 1e-9;
@@ -56,7 +56,7 @@ impl Plan {
 
     /// Returns the largest torque on the hub (N m), with its time: that of the command, or if the hub's motion is
     /// commanded, the torque that produces it against the modes (\[Rotation\], equation (17)).
-    pub fn peak_torque(&self, body: &Planar) -> PeakValue {
+    pub fn peak_torque(&self, body: &AxisModel) -> PeakValue {
         match body.drive {
             CommandedQuantity::Torque => self.peak(),
             CommandedQuantity::Motion => {
@@ -71,7 +71,7 @@ impl Plan {
 
     /// Returns the torque on the hub (N m) over the manoeuvre: times (s) and values at most `step` seconds apart, with
     /// both limits where it jumps.
-    pub fn torque(&self, body: &Planar, step: f64) -> Vec<(f64, f64)> {
+    pub fn torque(&self, body: &AxisModel, step: f64) -> Vec<(f64, f64)> {
         let history = ModalResponse::new(body, &self.waveform, 1.0);
         let mut line = Vec::new();
         for piece in self.waveform.breaks().windows(2) {
@@ -86,7 +86,7 @@ impl Plan {
 
     /// Returns samples of the command from its start to a time `end` (s), which may be after the manoeuvre: at most
     /// `step` seconds apart, and two at one time where the command jumps.
-    pub fn samples(&self, body: &Planar, step: f64, end: f64) -> Vec<CommandSample> {
+    pub fn samples(&self, body: &AxisModel, step: f64, end: f64) -> Vec<CommandSample> {
         let history = ModalResponse::new(body, &self.waveform, 1.0);
         let breaks = self.waveform.breaks();
         let within = breaks.into_iter().filter(|time| 0.0 < *time && *time < end);
@@ -114,12 +114,12 @@ impl Plan {
 
     /// Returns the residual in the hub's angle and in each output, as in a [`FinalResidual`](super::FinalResidual), for
     /// a body with all frequencies multiplied by `factor` and unchanged gains and weights.
-    pub fn residual_at(&self, body: &Planar, factor: f64) -> Vec<f64> {
+    pub fn residual_at(&self, body: &AxisModel, factor: f64) -> Vec<f64> {
         residual::residual_amplitudes(self, body, &residual::coordinates(body), factor)
     }
 }
 
 /// Returns the highest frequency of a command and a body (rad/s).
-pub fn fastest(body: &Planar, command: &Waveform) -> f64 {
+pub fn fastest(body: &AxisModel, command: &Waveform) -> f64 {
     body.modes.iter().map(|mode| mode.frequency.get()).fold(command.fastest(), f64::max)
 }

@@ -1,5 +1,6 @@
 //! Planner of a manoeuvre for a given time.
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::ConfigError;
 
 use super::Manoeuvre;
@@ -8,12 +9,11 @@ use super::plan::Plan;
 use super::shaper::{ShaperImpulse, convolve};
 use super::suppression::Zero;
 use super::task::RestToRestTask;
-use crate::body::Planar;
 
 /// Validated manoeuvre of a body, to be planned for any time.
 pub struct ManoeuvrePlanner<'a> {
     /// Body that the manoeuvre turns.
-    pub body: &'a Planar,
+    pub body: &'a AxisModel,
     command: &'a ManoeuvreCommand,
     zeros: Vec<Zero>,
     impulses: Vec<ShaperImpulse>,
@@ -25,7 +25,7 @@ pub struct ManoeuvrePlanner<'a> {
 
 impl<'a> ManoeuvrePlanner<'a> {
     /// Creates a planner, or returns the fault if the manoeuvre does not fit the body.
-    pub fn new(manoeuvre: &'a Manoeuvre, body: &'a Planar) -> Result<Self, ConfigError> {
+    pub fn new(manoeuvre: &'a Manoeuvre, body: &'a AxisModel) -> Result<Self, ConfigError> {
         let (angle, start_rate, end_rate) =
             (manoeuvre.angle.get(), manoeuvre.start_rate.get(), manoeuvre.end_rate.get());
         if angle == 0.0 && start_rate == end_rate {

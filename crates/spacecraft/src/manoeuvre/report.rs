@@ -1,5 +1,6 @@
 //! Report of a plan on its body.
 
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_dynamics::waveform::TermShape;
 use serde_json::{Value, json};
 
@@ -10,7 +11,6 @@ use super::peak_search::{self, PeakValue};
 use super::plan::fastest;
 use super::residual::{FinalResidual, coordinates, residuals};
 use super::timing::{self, SingleHarmonicTime};
-use crate::body::{CommandedQuantity, Planar};
 
 /// Number of modes of the lowest frequencies for which tuned times are reported.
 const TUNED: usize = 3;
@@ -51,7 +51,7 @@ pub struct RestTimes {
 
 impl PlanReport {
     /// Computes the report of a plan on a body whose frequencies have a relative uncertainty of `band`.
-    pub fn new(plan: &Plan, body: &Planar, band: f64) -> Self {
+    pub fn new(plan: &Plan, body: &AxisModel, band: f64) -> Self {
         let command = &plan.waveform;
         let history = ModalResponse::new(body, command, 1.0);
         let end = history.at(plan.time, plan.time);
@@ -89,7 +89,7 @@ impl PlanReport {
     }
 
     /// Returns the report as one JSON object whose keys end with their units.
-    pub fn to_json(&self, plan: &Plan, body: &Planar) -> Value {
+    pub fn to_json(&self, plan: &Plan, body: &AxisModel) -> Value {
         let motion = body.drive == CommandedQuantity::Motion;
         let unit = if motion { "rad_s2" } else { "nm" };
         let mut object = json!({
@@ -158,7 +158,7 @@ fn harmonics(plan: &Plan) -> Vec<Value> {
     plan.waveform.terms.iter().filter_map(|term| harmonic(&term.shape)).collect()
 }
 
-fn tuned_times(plan: &Plan, body: &Planar) -> Vec<RestTimes> {
+fn tuned_times(plan: &Plan, body: &AxisModel) -> Vec<RestTimes> {
     let mut order: Vec<usize> = (0..body.modes.len()).collect();
     order.sort_by(|a, b| body.modes[*a].frequency.get().total_cmp(&body.modes[*b].frequency.get()));
     order.truncate(TUNED);

@@ -1,8 +1,9 @@
 //! Residual vibration after a manoeuvre, as planned and with other frequencies.
 
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
+
 use super::modal_response::ModalResponse;
 use super::{Plan, peak_search};
-use crate::body::{CommandedQuantity, Planar};
 
 /// Relative uncertainty of the frequencies for which the residual is always reported.
 pub const NEAR: f64 = 0.05;
@@ -30,7 +31,7 @@ pub struct ResidualCoordinate {
 }
 
 /// Returns the coordinates of a body: the hub's angle, then its outputs.
-pub fn coordinates(body: &Planar) -> Vec<ResidualCoordinate> {
+pub fn coordinates(body: &AxisModel) -> Vec<ResidualCoordinate> {
     let own = match body.drive {
         CommandedQuantity::Torque => 1.0,
         CommandedQuantity::Motion => 0.0,
@@ -52,7 +53,7 @@ pub fn coordinates(body: &Planar) -> Vec<ResidualCoordinate> {
 /// `factor`.
 pub fn residual_amplitudes(
     plan: &Plan,
-    body: &Planar,
+    body: &AxisModel,
     coordinates: &[ResidualCoordinate],
     factor: f64,
 ) -> Vec<f64> {
@@ -65,7 +66,7 @@ pub fn residual_amplitudes(
 /// factor.
 /// || As a function of that factor, an amplitude varies as fast as the fastest mode turns within the manoeuvre's time:
 /// the largest one is found from samples that resolve every peak, and refined to rounding.
-pub fn residuals(plan: &Plan, body: &Planar, band: f64) -> Vec<FinalResidual> {
+pub fn residuals(plan: &Plan, body: &AxisModel, band: f64) -> Vec<FinalResidual> {
     let coordinates = coordinates(body);
     let sums = |factor: f64| residual_amplitudes(plan, body, &coordinates, factor);
     let fastest = body.modes.iter().map(|mode| mode.frequency.get()).fold(0.0, f64::max);

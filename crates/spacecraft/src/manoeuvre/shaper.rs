@@ -1,5 +1,6 @@
 //! Input shapers: a command is convolved with a few impulses, which suppresses modes (\[SingerSeering90\]).
 
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_dynamics::waveform::Waveform;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Fraction;
@@ -7,7 +8,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use super::suppression::{Zero, index_error};
-use crate::body::Mode;
 
 /// The kinds of shaper.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize, JsonSchema)]
@@ -66,7 +66,7 @@ pub struct ShaperImpulse {
 impl Shaper {
     /// Returns the impulses for the shaper's modes of a body: one sequence for each mode, convolved. Those of a
     /// sequence are half a damped period apart.
-    pub fn impulses(&self, modes: &[Mode]) -> Result<Vec<ShaperImpulse>, ConfigError> {
+    pub fn impulses(&self, modes: &[AxisMode]) -> Result<Vec<ShaperImpulse>, ConfigError> {
         let (name, indices, areas) = match self {
             Self::Zv(shaped) => ("zv", &shaped.modes, vec![1.0, 1.0]),
             Self::Zvd(shaped) => ("zvd", &shaped.modes, vec![1.0, 2.0, 1.0]),

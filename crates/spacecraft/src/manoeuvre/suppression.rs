@@ -1,12 +1,11 @@
 //! Selection of the modes that a command leaves at rest.
 
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::phasor::Phasor;
 use flexsc_numerics::quantity::Finite;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
-
-use crate::body::Mode;
 
 /// Largest number of zeros of a command.
 const MOST: usize = 40;
@@ -59,14 +58,14 @@ impl Zero {
     }
 
     /// Returns the zero at a mode.
-    pub fn at_mode(mode: &Mode) -> Self {
+    pub fn at_mode(mode: &AxisMode) -> Self {
         Self { frequency: mode.frequency.get(), damping: mode.damping.get() }
     }
 }
 
 impl Suppression {
     /// Returns the zeros, by frequency. `place` is the key of the table, for faults.
-    pub fn zeros(&self, modes: &[Mode], place: &str) -> Result<Vec<Zero>, ConfigError> {
+    pub fn zeros(&self, modes: &[AxisMode], place: &str) -> Result<Vec<Zero>, ConfigError> {
         let mut zeros = lowest(self.suppress, modes, place)?;
         let extra_zeros: usize = self.zeros.iter().map(|target| target.times as usize).sum();
         if zeros.len() + extra_zeros > MOST {
@@ -99,7 +98,7 @@ impl Suppression {
 
 /// Returns the zeros at the `count` modes of the lowest frequencies. `place` is the key of the table that has the
 /// number.
-pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, ConfigError> {
+pub fn lowest(count: usize, modes: &[AxisMode], place: &str) -> Result<Vec<Zero>, ConfigError> {
     let key = || format!("{place}.suppress");
     if count > modes.len() {
         let why = format!("must be at most the number of the body's modes, {}, got {count}", modes.len());
@@ -115,7 +114,7 @@ pub fn lowest(count: usize, modes: &[Mode], place: &str) -> Result<Vec<Zero>, Co
 }
 
 /// Returns the message about an index that belongs to no mode.
-pub fn index_error(index: usize, modes: &[Mode]) -> String {
+pub fn index_error(index: usize, modes: &[AxisMode]) -> String {
     match modes.len() {
         0 => format!("must be the index of a mode, and the body has none, got {index}"),
         count => format!("must be the index of a mode, 0 to {}, got {index}", count - 1),

@@ -19,9 +19,9 @@ const MOST_PERIODS: f64 = 2e4;
 pub fn shortest_plan(planner: &ManoeuvrePlanner, limit: f64) -> Result<Plan, ConfigError> {
     let bound = planner.rigid_bound(limit);
     let mut low = match planner.body.drive {
-        crate::body::CommandedQuantity::Torque => bound,
+        flexsc_dynamics::axis_model::CommandedQuantity::Torque => bound,
         // Flexible modes can make the hub's torque less than that of the rigid body.
-        crate::body::CommandedQuantity::Motion => 0.5 * bound,
+        flexsc_dynamics::axis_model::CommandedQuantity::Motion => 0.5 * bound,
     }
     .max(planner.shaper() * (1.0 + 1e-9));
     // The bound may be the time itself, so its rounding is tolerated.

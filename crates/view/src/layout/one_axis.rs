@@ -2,7 +2,7 @@
 
 use flexsc_core::Scenario;
 use flexsc_core::control::estimator::EstimatorKind;
-use flexsc_core::spacecraft::body::{Output, Planar};
+use flexsc_core::dynamics::axis_model::{AxisModel, AxisOutput};
 
 use super::Tab;
 use super::panel::{LayoutPanel, MOST_LINES, PlotLine, line};
@@ -20,7 +20,7 @@ pub fn feeds_back(scenario: &Scenario) -> bool {
 }
 
 /// Returns the tabs of a scenario.
-pub fn tabs(scenario: &Scenario, body: &Planar) -> Vec<Tab> {
+pub fn tabs(scenario: &Scenario, body: &AxisModel) -> Vec<Tab> {
     let log = vec![LayoutPanel::log(), LayoutPanel::message("arrival", "End of the manoeuvre", "/arrival")];
     vec![
         Tab { title: "Motion", panels: motion(scenario, body) },
@@ -29,7 +29,7 @@ pub fn tabs(scenario: &Scenario, body: &Planar) -> Vec<Tab> {
     ]
 }
 
-fn motion(scenario: &Scenario, body: &Planar) -> Vec<LayoutPanel> {
+fn motion(scenario: &Scenario, body: &AxisModel) -> Vec<LayoutPanel> {
     let relay = scenario.law.is_switching();
     let mut panels = vec![LayoutPanel::scene(Extent::from_scenario(scenario))];
     if relay {
@@ -73,7 +73,7 @@ fn angles(scenario: &Scenario) -> Vec<PlotLine> {
     lines
 }
 
-fn modes(body: &Planar) -> Vec<PlotLine> {
+fn modes(body: &AxisModel) -> Vec<PlotLine> {
     let count = body.modes.len();
     let each = (0..count.min(MOST_LINES))
         .map(|mode| line(format!("/modes.modes[{mode}].displacement_rad"), format!("mode {mode}")));
@@ -81,9 +81,9 @@ fn modes(body: &Planar) -> Vec<PlotLine> {
     sum.into_iter().chain(each).collect()
 }
 
-fn outputs(body: &Planar) -> Vec<PlotLine> {
+fn outputs(body: &AxisModel) -> Vec<PlotLine> {
     let outputs = body.outputs.iter().enumerate().take(MOST_LINES);
-    let of = |(index, output): (usize, &Output)| {
+    let of = |(index, output): (usize, &AxisOutput)| {
         line(format!("/outputs.outputs[{index}].value"), format!("{} ({})", output.name, output.unit))
     };
     outputs.map(of).collect()
@@ -105,13 +105,13 @@ fn torques(scenario: &Scenario) -> Vec<PlotLine> {
 }
 
 /// Returns the title of the torque plot: the commanded quantity and its unit.
-fn torque_title(body: &Planar) -> String {
+fn torque_title(body: &AxisModel) -> String {
     let (name, unit) = body.commanded();
     let (first, rest) = name.split_at(1);
     format!("{}{rest} ({unit})", first.to_uppercase())
 }
 
-fn estimator(scenario: &Scenario, body: &Planar) -> Vec<LayoutPanel> {
+fn estimator(scenario: &Scenario, body: &AxisModel) -> Vec<LayoutPanel> {
     let mut panels = vec![LayoutPanel::plot(
         "envelope",
         "Envelope of the elastic modes (rad)",
@@ -175,7 +175,7 @@ pub fn adaptation(scenario: &Scenario) -> Vec<LayoutPanel> {
 }
 
 /// Returns the lines of the dominant mode: as the law reads it, and the true one.
-fn dominant(scenario: &Scenario, body: &Planar) -> Vec<PlotLine> {
+fn dominant(scenario: &Scenario, body: &AxisModel) -> Vec<PlotLine> {
     let mut lines = vec![line("/estimator.displacement_rad", "as the law reads it")];
     let excitability = |mode: usize| body.modes[mode].excitability().abs();
     let modes = 0..body.modes.len();

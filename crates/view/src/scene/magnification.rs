@@ -6,12 +6,13 @@
 use flexsc_core::Scenario;
 use flexsc_core::control::actuator::AssignedMember;
 use flexsc_core::control::law::{Frame, TorqueConditions};
+use flexsc_core::dynamics::axis_model::{AxisMode, AxisModel};
 use flexsc_core::dynamics::three_axis::HarmonicLine;
 use flexsc_core::numerics::attitude::{Vector, from_yaw_pitch_roll};
 use flexsc_core::numerics::quantity::{Finite, Positive};
 use flexsc_core::numerics::time::Instant;
+use flexsc_core::spacecraft::body::Spatial;
 use flexsc_core::spacecraft::body::spatial::ThreeAxisMode;
-use flexsc_core::spacecraft::body::{Mode, Planar, Spatial};
 use flexsc_core::spacecraft::disturbance::Disturbance;
 
 /// Bending and rotation (rad) that the estimated motion has as drawn.
@@ -56,14 +57,14 @@ pub fn slow_down_factor(step: f64) -> f64 {
 }
 
 /// Returns the estimated rotation of a one-axis body (rad).
-pub fn expected_angle(scenario: &Scenario, body: &Planar) -> f64 {
+pub fn expected_angle(scenario: &Scenario, body: &AxisModel) -> f64 {
     let start = body.angle.get();
     let zone = scenario.law.dead_zone();
     start.abs().max(scenario.goal().angle.abs()).max(zone)
 }
 
 /// Returns the estimated largest rate of a one-axis body (rad/s).
-pub fn expected_rate(scenario: &Scenario, body: &Planar) -> f64 {
+pub fn expected_rate(scenario: &Scenario, body: &AxisModel) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| 2.0 * scenario.goal().angle.abs() / plan.time);
     // Rate of the free oscillation in which the proportional gain is the spring.
     let by_law = scenario.actuator.flywheel().map_or(0.0, |(wheel, _)| {
@@ -91,12 +92,12 @@ pub fn expected_attitude_angle(scenario: &Scenario, body: &Spatial) -> f64 {
 /// Returns the estimated displacement of each mode (rad): twice the equilibrium under the largest torque, or once if a
 /// wheel under a PD law reduces its torque as the body rotates, but at most the displacement without a spring, or the
 /// initial amplitude if it is larger.
-pub fn expected_displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
+pub fn expected_displacements(scenario: &Scenario, body: &AxisModel) -> Vec<f64> {
     let travel = expected_angle(scenario, body);
     let moment = largest_torque(scenario, body) / body.commanded_inertia();
     let lets_go = scenario.actuator.flywheel().is_some() && !scenario.law.is_switching();
     let times = if lets_go { 1.0 } else { 2.0 };
-    let of = |mode: &Mode| {
+    let of = |mode: &AxisMode| {
         let start = mode.start();
         // A mode without an oscillation keeps its initial displacement.
         let swing = mode.amplitude(start);
@@ -107,7 +108,7 @@ pub fn expected_displacements(scenario: &Scenario, body: &Planar) -> Vec<f64> {
 }
 
 /// Returns the estimated largest torque (N m; rad/s² if the motion is commanded).
-pub fn largest_torque(scenario: &Scenario, body: &Planar) -> f64 {
+pub fn largest_torque(scenario: &Scenario, body: &AxisModel) -> f64 {
     let planned = scenario.plan.as_ref().map_or(0.0, |plan| plan.peak().value.abs());
     // A law that does not switch follows the plan, and hardly adds to its torque.
     let by_law = if scenario.plan.is_none() || scenario.law.is_switching() {

@@ -1,13 +1,13 @@
 //! Scene of a one-axis body: a hub that rotates about z, with panels of sections that bend in the plane.
 
 use flexsc_core::Scenario;
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::quantity::Positive;
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::OneAxisPose;
 use flexsc_core::record::foxglove::{FrameTransform, FrameTransforms, Plumes, SceneEntity, SceneUpdate};
 use flexsc_core::record::row::LogDate;
-use flexsc_core::spacecraft::body::Planar;
 
 use super::Extent;
 use super::magnification::{bending, expected_angle, largest_torque, turning};
@@ -42,7 +42,7 @@ pub struct OneAxisScene {
 
 impl OneAxisScene {
     /// Creates the scene of a scenario.
-    pub fn new(scenario: &Scenario, body: &Planar) -> Self {
+    pub fn new(scenario: &Scenario, body: &AxisModel) -> Self {
         let spec = &scenario.log.scene;
         let panels = ScenePanels::from_scenario(scenario, body);
         let period = spec.period(scenario.log_period());

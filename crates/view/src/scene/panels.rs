@@ -1,8 +1,9 @@
 //! Panels of a one-axis body: places of their sections, and their bending.
 
 use flexsc_core::Scenario;
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::record::OneAxisPose;
-use flexsc_core::spacecraft::body::{Body, Planar};
+use flexsc_core::spacecraft::body::Body;
 
 use super::magnification::expected_displacements;
 
@@ -40,7 +41,7 @@ pub struct ScenePanels {
 
 impl ScenePanels {
     /// Returns the panels of a scenario's body.
-    pub fn from_scenario(scenario: &Scenario, body: &Planar) -> Self {
+    pub fn from_scenario(scenario: &Scenario, body: &AxisModel) -> Self {
         let reached = expected_displacements(scenario, body);
         if let Some(Body::Panels(panels)) = &scenario.body {
             let bent = body.outputs.iter().map(|output| {

@@ -1,12 +1,12 @@
 //! Wheel of a one-axis body: a disc that rotates by its momentum.
 
 use flexsc_core::Scenario;
+use flexsc_core::dynamics::axis_model::AxisModel;
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::Span;
 use flexsc_core::record::OneAxisPose;
 use flexsc_core::record::foxglove::SceneEntity;
 use flexsc_core::record::row::LogDate;
-use flexsc_core::spacecraft::body::Planar;
 
 use super::magnification::{expected_rate, slow_down_factor};
 use super::primitives::{MARK, WHEEL, cone, cube, entity};
@@ -27,7 +27,7 @@ pub struct SceneWheel {
 
 impl SceneWheel {
     /// Returns the wheel of a scenario for frames with a period; `None` without a wheel.
-    pub fn from_scenario(scenario: &Scenario, body: &Planar, period: Span) -> Option<Self> {
+    pub fn from_scenario(scenario: &Scenario, body: &AxisModel, period: Span) -> Option<Self> {
         let (wheel, _) = scenario.actuator.flywheel()?;
         let (speed, inertia) = match &wheel.rotor {
             Some(rotor) => (rotor.speed.get(), rotor.inertia.get()),

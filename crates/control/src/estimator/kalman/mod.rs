@@ -12,9 +12,10 @@ mod steady_state;
 #[cfg(test)]
 mod tests;
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_numerics::quantity::{NonNegative, Positive};
 use flexsc_numerics::random::Stream;
-use flexsc_spacecraft::body::{Mode, Planar};
+use flexsc_spacecraft::body::Mode;
 use flexsc_spacecraft::flow::CoupledMatrices;
 use nalgebra::DVector;
 use schemars::JsonSchema;
@@ -182,7 +183,7 @@ impl Ratios {
 #[derive(Clone, Debug)]
 pub struct FilterContext<'a> {
     /// Single-axis model of the body.
-    pub body: &'a Planar,
+    pub body: &'a AxisModel,
     /// Back-EMF of the wheel per unit of inertia (1/s); true if it opposes the total rate, not the rigid one.
     pub back_emf: (f64, bool),
     /// Period of the samples (s).
@@ -258,14 +259,18 @@ impl FrequencyTracking {
 }
 
 /// Returns the body with the modes of the filter's model.
-fn filter_body(body: &Planar, modes: Option<&[Mode]>) -> Planar {
-    Planar { modes: modes.unwrap_or(&body.modes).to_vec(), ..body.clone() }
+fn filter_body(body: &AxisModel, modes: Option<&[Mode]>) -> AxisModel {
+    let mut model = body.clone();
+    if let Some(modes) = modes {
+        model.modes = modes.iter().map(Into::into).collect();
+    }
+    model
 }
 
 /// Returns mean and standard deviations at the start; each of `ratios` has its mean, its deviation, and that of its
 /// rate.
 fn start(
-    body: &Planar,
+    body: &AxisModel,
     model: &FilterModel,
     initial: FilterInitialDeviations,
     ratios: &[[f64; 3]],

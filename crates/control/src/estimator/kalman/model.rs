@@ -4,7 +4,7 @@
 //! (Strang): each half is exact, whatever the damping of the modes, and so is the derivative of the split flow. The
 //! ratios change linearly, and each substep has those of its middle.
 
-use flexsc_spacecraft::body::Mode;
+use flexsc_dynamics::axis_model::AxisMode;
 use flexsc_spacecraft::flow::ModeFlow;
 use nalgebra::DMatrix;
 
@@ -41,13 +41,13 @@ impl FilterModel {
     /// Creates the model of a body with these modes. `back_emf` (1/s) opposes the total rate if true, else the rigid
     /// rate alone.
     pub fn new(
-        modes: &[Mode],
+        modes: &[AxisMode],
         ratios: usize,
         back_emf: (f64, bool),
         substeps: u32,
         bounds: [f64; 2],
     ) -> Self {
-        let kalman_mode = |mode: &Mode| KalmanMode {
+        let kalman_mode = |mode: &AxisMode| KalmanMode {
             flow: ModeFlow::new(mode),
             frequency: mode.frequency.get(),
             gain: mode.gain.get(),
@@ -249,17 +249,19 @@ fn mix_columns(matrix: &mut DMatrix<f64>, first: usize, [a, b, c, d]: [f64; 4]) 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use flexsc_dynamics::axis_model::AxisModel;
     use flexsc_spacecraft::body::Planar;
     use flexsc_spacecraft::flow::CoupledMatrices;
 
     const WIDE: [f64; 2] = [0.1, 3.0];
 
     /// Returns a body with four modes: the third is damped, the last overdamped.
-    fn body() -> Planar {
+    fn body() -> AxisModel {
         let text = "modes = [{ frequency = 0.3, gain = 1.44 }, \
                     { frequency = 0.8, gain = 0.21 }, { frequency = 1.0, gain = 0.165, damping = 0.02 }, \
                     { frequency = 2.0, gain = 0.72, damping = 1.5 }]";
-        flexsc_formats::document::from_text(text).expect("valid")
+        let body: Planar = flexsc_formats::document::from_text(text).expect("valid");
+        AxisModel::from(&body)
     }
 
     const STATE: [f64; 10] = [0.06, -1e-3, 4e-3, 2e-3, -1e-3, 3e-4, 2e-4, -5e-4, 1e-4, 7e-4];

@@ -1,7 +1,9 @@
 //! Tests of the Kalman filters against each other, and with invalid measurements.
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_formats::document::from_text;
 use flexsc_numerics::random::Seed;
+use flexsc_spacecraft::body::Planar;
 
 use super::*;
 
@@ -16,7 +18,8 @@ fn filter(estimator: &str, rate_noise: Option<f64>) -> KalmanFilter {
 /// Returns a filter with a prior drawn with its own seed.
 fn drawn(estimator: &str, rate_noise: Option<f64>, scenario_seed: u64) -> KalmanFilter {
     use crate::estimator::EstimatorKind;
-    let body = &from_text(BODY).unwrap_or_else(|error| panic!("{error}"));
+    let body: Planar = from_text(BODY).unwrap_or_else(|error| panic!("{error}"));
+    let body = &AxisModel::from(&body);
     let estimator: EstimatorKind =
         from_text(&format!("[{estimator}")).unwrap_or_else(|error| panic!("{error}"));
     let setting = FilterContext { body, back_emf: (1e-4, true), period: 0.3, angle_noise: 1e-5, rate_noise };

@@ -2,9 +2,9 @@
 
 use flexsc_control::actuator::{ActuatorKind, LinearDrive, Wheel};
 use flexsc_control::law::Pd;
+use flexsc_dynamics::axis_model::CommandedQuantity;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::quantity::Positive;
-use flexsc_spacecraft::body::CommandedQuantity;
 
 use super::{CommandPath, SampledLoop, SettlingWindow};
 use crate::Scenario;

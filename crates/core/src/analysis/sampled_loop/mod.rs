@@ -16,7 +16,7 @@ mod spectrum;
 
 use flexsc_control::actuator::Wheel;
 use flexsc_control::law::Differentiation;
-use flexsc_spacecraft::body::{Mode, Planar};
+use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
 
 pub use closed::ClosedLoop;
 pub use discrete_plant::DiscretePlant;
@@ -30,7 +30,7 @@ pub use spectrum::SlowestMode;
 #[derive(Clone, Debug, PartialEq)]
 pub struct SampledLoop {
     /// Body with its natural frequencies, which each point of an analysis multiplies by ratios.
-    pub body: Planar,
+    pub body: AxisModel,
     /// Back-EMF a, k'_omega of the papers (1/s); 0 without a wheel.
     pub back_emf: f64,
     /// True if the back-EMF opposes the total rate, elastic part included; false if it opposes the rigid rate alone.
@@ -73,8 +73,8 @@ impl CommandPath {
 impl SampledLoop {
     /// Returns the index of the mode with the greatest static response to a moment, |k|/w²: the papers' criterion of
     /// dominance.
-    pub fn dominant_mode(modes: &[Mode]) -> usize {
-        let pull = |mode: &Mode| mode.excitability().abs();
+    pub fn dominant_mode(modes: &[AxisMode]) -> usize {
+        let pull = |mode: &AxisMode| mode.excitability().abs();
         (1..modes.len()).fold(0, |best, i| if pull(&modes[i]) > pull(&modes[best]) { i } else { best })
     }
 

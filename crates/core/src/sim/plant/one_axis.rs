@@ -6,12 +6,12 @@ use std::borrow::Cow;
 
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::body::Planar;
 use flexsc_spacecraft::flow::{ChainMotion, CoupledFlow, ExternalMotion, SegmentInput, UncoupledSegment};
 use flexsc_spacecraft::wrench::Wrench;
 
@@ -55,7 +55,7 @@ pub struct AppliedTorque {
 
 impl OneAxisFlow {
     /// Creates the flow of a scenario at the start, without input.
-    pub fn new(scenario: &Scenario, body: &Planar) -> Self {
+    pub fn new(scenario: &Scenario, body: &AxisModel) -> Self {
         let state = body.initial_state();
         let mut arc = UncoupledSegment::new(body);
         arc.depart(&state, &SegmentInput::default());

@@ -1,11 +1,11 @@
 //! One-axis body at the current instant, and the quantities that each of its motions gives to the record.
 
 use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::axis_model::{AxisModel, AxisOutput};
 use flexsc_dynamics::{AngleObservation, AxisState, MotionPiece, is_bounded};
 use flexsc_numerics::polynomial::Polynomial;
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Attitude, ModeMotion, Modes, OutputMotion, Outputs, Rate, Record, RecordError};
-use flexsc_spacecraft::body::{Output, Planar};
 
 use super::AppliedTorque;
 
@@ -19,7 +19,7 @@ pub struct OneAxisBody {
     /// Natural frequencies of the modes (rad/s).
     pub frequencies: Vec<f64>,
     /// Observed coordinates.
-    pub outputs: Vec<Output>,
+    pub outputs: Vec<AxisOutput>,
 }
 
 /// Quantities of a one-axis motion for the record.
@@ -60,7 +60,7 @@ pub fn output_row(outputs: impl Iterator<Item = (f64, f64)>) -> Option<Outputs> 
 
 impl OneAxisBody {
     /// Creates the body at the start, with what its sensor measures there.
-    pub fn new(body: &Planar, state: AxisState, sensed: AngleObservation) -> Self {
+    pub fn new(body: &AxisModel, state: AxisState, sensed: AngleObservation) -> Self {
         Self {
             state,
             sensed,

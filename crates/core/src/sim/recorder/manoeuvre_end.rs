@@ -3,9 +3,9 @@
 use flexsc_control::law::Setpoint;
 use flexsc_control::sensor::Truth;
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{self, Residual};
-use flexsc_spacecraft::body::{CommandedQuantity, Planar};
 
 use crate::scenario::Scenario;
 
@@ -15,7 +15,7 @@ pub struct ManoeuvreEnd {
     /// Instant of the end.
     pub at: Instant,
     goal: Setpoint,
-    body: Planar,
+    body: AxisModel,
 }
 
 impl ManoeuvreEnd {

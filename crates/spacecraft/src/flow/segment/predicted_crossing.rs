@@ -1,5 +1,6 @@
 //! Prediction of the first trip of a guard on a segment: predicted, refined and certified without a search.
 
+use flexsc_dynamics::axis_model::AxisModel;
 use flexsc_dynamics::crossing::Crossing;
 use flexsc_dynamics::damping::{Damped, DampingRule, Undamped};
 use flexsc_dynamics::guard::Guard;
@@ -10,7 +11,6 @@ use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::time::Span;
 
 use super::UncoupledSegment;
-use crate::body::Planar;
 
 /// Predictor of crossings: the highest frequency (rad/s), and work space for the modes.
 #[derive(Clone, Debug)]
@@ -27,7 +27,7 @@ enum PredictorModes {
 
 impl CrossingPredictor {
     /// Creates the predictor of a body's modes; `None` if one is critically damped or overdamped.
-    pub fn new(body: &Planar) -> Option<Self> {
+    pub fn new(body: &AxisModel) -> Option<Self> {
         let mode = |(frequency, _): (f64, f64)| oscillator(frequency, Undamped);
         let damped = |(frequency, ratio): (f64, f64)| oscillator(frequency, Damped::new(frequency, ratio));
         let all = || body.modes.iter().map(|mode| (mode.frequency.get(), mode.damping.get()));

@@ -1,12 +1,12 @@
 //! One-axis motion as records receive it: piece by piece, in series that are exact to rounding.
 
+use flexsc_dynamics::axis_model::AxisOutput;
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{AxisState, MotionPiece, SeriesExpansion};
 use flexsc_numerics::polynomial::{Polynomial, Series, TERMS};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Outputs, PieceDemand, Record, RecordError};
-use flexsc_spacecraft::body::Output;
 use flexsc_spacecraft::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
 
 use super::super::one_axis_body::{OneAxisBody, OneAxisQuantities, output_row};
@@ -155,7 +155,7 @@ impl OneAxisFlow {
                 applied[n] -= back_emf * (n + 1) as f64 * sensed[n + 1];
             }
         }
-        let output = |index: usize, output: &Output| {
+        let output = |index: usize, output: &AxisOutput| {
             let mut sum = [0.0; TERMS];
             if let OneAxisMotion::Chain(_) = &self.motion {
                 // The outputs of a chain are the angles of its sections relative to the hub.
