@@ -7,7 +7,7 @@
 //! - [`ChainMotion`]: the exact chain of rigid sections;
 //! - [`RigidBody`] and [`ElasticModes`] (or [`DriftingModes`]): three axes, with rotation and modes computed separately.
 //!
-//! The coupled motion about three axes is in `motion::turning`.
+//! The coupled motion about three axes is in [`crate::three_axis`].
 
 mod chain;
 mod coupled_flow;
