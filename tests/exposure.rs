@@ -44,7 +44,7 @@ impl Looked {
         };
         let body = scenario.model.spatial().expect("three axes");
         // Modes that act back turn the hub too, and the attitude is that of the hub.
-        let hub = body.shapes(if scenario.model.flexible().is_some() { &body.points[0].name } else { "" });
+        let hub = body.shapes(if scenario.model.is_two_way() { &body.points[0].name } else { "" });
         let beyond = |(there, hub): (&(Vector, Vector), &(Vector, Vector))| there.1 - hub.1;
         Self {
             turns: body.shapes(point).iter().zip(&hub).map(beyond).collect(),

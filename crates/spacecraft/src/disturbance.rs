@@ -1,5 +1,6 @@
 //! Disturbances from one time to another: torques, constant and random, and forces at a point, steady or in pulses.
 
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Time};
@@ -9,7 +10,6 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 use crate::axes::Axis;
-use crate::body::Spatial;
 use crate::sine::Sine;
 use crate::wrench::{ForceEffect, Wrench};
 
@@ -66,7 +66,7 @@ impl Disturbance {
     }
 
     /// Returns the effect of the force on a body; `None` for a torque.
-    pub fn force_effect(&self, body: &Spatial) -> Option<ForceEffect> {
+    pub fn force_effect(&self, body: &ThreeAxisModel) -> Option<ForceEffect> {
         let force = vector(self.force.as_ref()?);
         let first = body.points.first().map_or("", |point| &point.name);
         let mut push = ForceEffect::default();
@@ -155,7 +155,7 @@ pub struct DisturbanceState {
 
 impl DisturbanceState {
     /// Creates a disturbance before its start, with a random stream of its own; `body` is given if it has three axes.
-    pub fn new(disturbance: &Disturbance, body: Option<&Spatial>, draws: Stream) -> Self {
+    pub fn new(disturbance: &Disturbance, body: Option<&ThreeAxisModel>, draws: Stream) -> Self {
         let noisy = disturbance.noise.get() > 0.0 && disturbance.period.is_some();
         Self {
             next: noisy.then(|| at(disturbance.from)),

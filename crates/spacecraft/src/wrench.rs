@@ -3,9 +3,9 @@
 use std::ops::AddAssign;
 
 use flexsc_dynamics::three_axis::{Gimbal, Rotor};
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::attitude::Vector;
 
-use crate::body::Spatial;
 use crate::flow::ActiveWaveform;
 use crate::sine::Sine;
 
@@ -95,7 +95,7 @@ impl AddAssign<&Self> for ForceEffect {
 
 impl ForceEffect {
     /// Adds the effect of a force (N) that acts at an offset (m) from a named point.
-    pub fn add(&mut self, body: &Spatial, point: &str, offset: &Vector, force: &Vector) {
+    pub fn add(&mut self, body: &ThreeAxisModel, point: &str, offset: &Vector, force: &Vector) {
         let moment = offset.cross(force);
         self.torque += body.point(point).unwrap_or_default().cross(force) + moment;
         self.force += force;

@@ -117,7 +117,7 @@ impl Scenario {
     fn rate_inconsistency(&self) -> Option<ConfigError> {
         let craft = self.model.craft()?;
         let RateLimit { rate: limit, why } = craft.rate_limit()?;
-        let start = vector(&craft.spatial.rate).norm();
+        let start = vector(&craft.model.rate).norm();
         if start > limit {
             let why = format!("must be below {limit:.3e} rad/s together, {why}, got {start:.3e}");
             return Some(ConfigError::new("spacecraft.rate", why));

@@ -10,13 +10,14 @@ use flexsc_control::law::{AttitudeProfile, Authority, TorqueDistribution};
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
 use flexsc_dynamics::three_axis::{Bearing, SharedSteps};
+use flexsc_dynamics::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{Vector, rotation_vector, tensor};
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::craft::{HubRotor, Translation};
-use flexsc_spacecraft::body::{BodyAxes, BodyModel, Spatial};
+use flexsc_spacecraft::body::{BodyAxes, BodyModel};
 use flexsc_spacecraft::environment::SurroundingsState;
 use nalgebra::{Cholesky, Matrix3};
 
@@ -148,7 +149,7 @@ impl ResolvedScenario {
         &mut self,
         written: &ScenarioSpec,
         model: &BodyModel,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         unmet: &Requirements,
     ) -> Result<(), ConfigError> {
         let first = body.points.first().map_or(String::new(), |point| point.name.clone());
@@ -182,8 +183,8 @@ impl ResolvedScenario {
                 return Err(fault);
             }
             let is_observed = wheels.bearing_key().is_some() || written.sensor.tachometer().is_some();
-            if let Some(flexible) = model.flexible().filter(|_| is_observed) {
-                let bearings = wheels.bearings((body, flexible));
+            if model.is_two_way() && is_observed {
+                let bearings = wheels.bearings(body);
                 self.bearings = bearings.map_err(|fault| fault.within(&of))?;
             }
         }
@@ -204,7 +205,7 @@ impl ResolvedScenario {
         let measured = self.measured_rates(body);
         let angles = rotation_vector(&self.profile.target(Instant::START), &body.attitude.get());
         for (axis, (input, seen)) in measured.inputs.iter().zip(&measured.visibilities).enumerate() {
-            let mode = |(index, mode): (usize, &flexsc_spacecraft::body::spatial::ThreeAxisMode)| {
+            let mode = |(index, mode): (usize, &ThreeAxisMode)| {
                 let shape = seen[index];
                 let scaled = |value: Finite| Finite::new(shape * value.get()).unwrap_or_default();
                 let gain = shape * input.forces[index] / input.acceleration;
@@ -215,7 +216,7 @@ impl ResolvedScenario {
                 }
             };
             self.axes.push(AxisModel {
-                inertia: Positive::new(body.inertia_tensor()[(axis, axis)]).unwrap_or(Positive::ONE),
+                inertia: Positive::new(body.inertia[(axis, axis)]).unwrap_or(Positive::ONE),
                 angle: Finite::new(angles[axis]).unwrap_or_default(),
                 rate: body.rate[axis],
                 modes: body.modes.iter().enumerate().map(mode).collect(),
@@ -226,9 +227,9 @@ impl ResolvedScenario {
     }
 
     /// Returns the measured modal rates of a three-axis body, and the effect of its actuators on them.
-    pub fn measured_rates(&self, body: &Spatial) -> adaptive::RateMeasurement {
+    pub fn measured_rates(&self, body: &ThreeAxisModel) -> adaptive::RateMeasurement {
         let (seen, hub) = (rotations(body, &self.sensor_points[0]), rotations(body, &self.torque_point));
-        let tensor = body.inertia_tensor();
+        let tensor = body.inertia;
         let input = |axis: usize| {
             let jets = self.groups.as_ref().filter(|_| self.jet_only_axes[axis]);
             let (forces, torque, acceleration) = if let Some(groups) = jets {
@@ -260,7 +261,7 @@ impl ResolvedScenario {
         match scenario.model.axes() {
             BodyAxes::One(body) => TorqueDistribution::for_one_axis(body.commanded_inertia()),
             BodyAxes::Three(body) => TorqueDistribution::for_three_axes(
-                scenario.law.inertia().map_or_else(|| body.inertia_tensor(), tensor),
+                scenario.law.inertia().map_or_else(|| body.inertia, tensor),
             ),
         }
     }
@@ -305,7 +306,7 @@ impl ResolvedScenario {
 fn surroundings(
     written: &ScenarioSpec,
     model: &BodyModel,
-    body: &Spatial,
+    body: &ThreeAxisModel,
 ) -> Result<Option<SurroundingsState>, ConfigError> {
     let bendings = model.craft().map_or(&[][..], |craft| &craft.bendings);
     let sunny =
@@ -322,17 +323,13 @@ fn surroundings(
     };
     let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
     let centre = model.craft().map_or_else(Vector::zeros, |craft| craft.centre);
-    let around = SurroundingsState::new(
-        environment,
-        written.orbit_environment(),
-        [body.inertia_tensor(), spinning],
-        &centre,
-    );
+    let around =
+        SurroundingsState::new(environment, written.orbit_environment(), [body.inertia, spinning], &centre);
     Ok(Some(around.with_thermal_bending(bendings)))
 }
 
 /// Returns the modal rotations at a point (rad/(m sqrt(kg))).
-fn rotations(body: &Spatial, point: &str) -> Vec<Vector> {
+fn rotations(body: &ThreeAxisModel, point: &str) -> Vec<Vector> {
     body.shapes(point).into_iter().map(|(_, rotation)| rotation).collect()
 }
 

@@ -7,7 +7,8 @@ use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{AXES, rotation_vector, vector};
 use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::craft::Appendage;
-use flexsc_spacecraft::body::{BodyModel, SmallAngles, Spatial};
+use flexsc_dynamics::three_axis_model::{SmallAngleBounds, ThreeAxisModel};
+use flexsc_spacecraft::body::BodyModel;
 
 use super::{ResolvedScenario, ScenarioSpec};
 
@@ -126,10 +127,10 @@ impl ScenarioSpec {
     /// Checks that a body with small rotations starts near a target that stays fixed.
     pub(super) fn validate_small_start(
         &self,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         study: &ResolvedScenario,
     ) -> Option<ConfigError> {
-        let SmallAngles { angle: largest, rate: fastest } = body.small_angles?;
+        let SmallAngleBounds { angle: largest, rate: fastest } = body.small_angles?;
         let profile = &study.profile;
         if profile.is_moving(Instant::START) || profile.next(Instant::START).is_some() {
             let own = !self.law.own_targets().is_empty();
@@ -143,8 +144,8 @@ impl ScenarioSpec {
         }
         let angles = rotation_vector(&profile.target(Instant::START), &body.attitude.get());
         let checks = [
-            ("attitude", angles, largest.get(), "angle", "rad from the target"),
-            ("rate", vector(&body.rate), fastest.get(), "rate", "rad/s"),
+            ("attitude", angles, largest, "angle", "rad from the target"),
+            ("rate", vector(&body.rate), fastest, "rate", "rad/s"),
         ];
         checks.into_iter().find_map(|(key, values, limit, of, unit)| {
             let axis = (0..3).find(|axis| values[*axis].abs() > limit)?;

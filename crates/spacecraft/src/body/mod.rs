@@ -108,8 +108,7 @@ impl Body {
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
             Self::Spatial(spatial) => {
-                spatial.check()?;
-                return Ok(BodyModel::Spatial(Arc::new(spatial.clone())));
+                return Ok(BodyModel::Spatial(Arc::new(spatial.solve()?)));
             }
         };
         if let Some(fault) = one_axis::inconsistency(&body) {

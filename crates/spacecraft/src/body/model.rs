@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, AxisOutput};
-use flexsc_dynamics::three_axis::FlexibleBody;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::quantity::Finite;
 
-use super::{AssembledSpacecraft, Chain, Spatial};
+use super::{AssembledSpacecraft, Chain};
 
 /// Assembled model of a body.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,7 +16,7 @@ pub enum BodyModel {
     /// One-axis body with panels that bend by any angles, and the modes that it has for small angles.
     Chain(Arc<AxisModel>, Arc<Chain>),
     /// Three-axis body whose modes do not act back on its rotation.
-    Spatial(Arc<Spatial>),
+    Spatial(Arc<ThreeAxisModel>),
     /// Three-axis spacecraft whose rotation and modes are coupled in both directions.
     Craft(Arc<AssembledSpacecraft>),
 }
@@ -27,7 +27,7 @@ pub enum BodyAxes<'a> {
     /// One-axis body.
     One(&'a AxisModel),
     /// Three-axis body.
-    Three(&'a Spatial),
+    Three(&'a ThreeAxisModel),
 }
 
 impl BodyModel {
@@ -36,7 +36,7 @@ impl BodyModel {
         match self {
             Self::Planar(body) | Self::Chain(body, _) => BodyAxes::One(body),
             Self::Spatial(body) => BodyAxes::Three(body),
-            Self::Craft(craft) => BodyAxes::Three(&craft.spatial),
+            Self::Craft(craft) => BodyAxes::Three(&craft.model),
         }
     }
 
@@ -46,7 +46,7 @@ impl BodyModel {
     }
 
     /// Returns the body in free modes, if it has three axes.
-    pub fn spatial(&self) -> Option<&Spatial> {
+    pub fn spatial(&self) -> Option<&ThreeAxisModel> {
         if let BodyAxes::Three(body) = self.axes() { Some(body) } else { None }
     }
 
@@ -60,9 +60,9 @@ impl BodyModel {
         if let Self::Craft(craft) = self { Some(craft) } else { None }
     }
 
-    /// Returns the two-way coupling of rotation and modes, which only a spacecraft has.
-    pub fn flexible(&self) -> Option<&FlexibleBody> {
-        self.craft().map(|craft| &craft.flexible)
+    /// Returns true if the modes act back on the rotation, as only those of a spacecraft do.
+    pub fn is_two_way(&self) -> bool {
+        self.spatial().is_some_and(|body| body.coupling.is_some())
     }
 
     /// Returns the number of elastic modes.

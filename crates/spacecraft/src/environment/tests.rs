@@ -48,7 +48,7 @@ impl One {
         let rows = (0..3).map(|row| format!("{:?}", inertia.row(row).iter().collect::<Vec<_>>()));
         let text = format!("inertia = [{}]", rows.collect::<Vec<_>>().join(", "));
         let body: Spatial = flexsc_formats::document::from_text(&text).expect("a body");
-        let rigid = RigidBody::new(&body);
+        let rigid = RigidBody::new(&body.solve().expect("valid"));
         Self { turn: rigid.start(attitude, rate), rigid, surroundings, t: 0.0 }
     }
 

@@ -3,11 +3,11 @@
 
 use flexsc_dynamics::ModeState;
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel};
+use flexsc_dynamics::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 use flexsc_numerics::quantity::Finite;
 
 use super::DriftingFlow;
 use crate::body::Drift;
-use crate::body::spatial::{Spatial, ThreeAxisMode};
 
 /// Motion of the drifting modes under modal forces that are constant for a while.
 #[derive(Clone, Debug)]
@@ -21,7 +21,7 @@ pub struct DriftingModes {
 
 impl DriftingModes {
     /// Creates the modes in their initial state, under no force.
-    pub fn new(body: &Spatial, drift: &Drift) -> Self {
+    pub fn new(body: &ThreeAxisModel, drift: &Drift) -> Self {
         let gain = Finite::new(1.0).unwrap_or_default();
         let alone = |(index, mode): (usize, &ThreeAxisMode)| {
             let own = match drift {

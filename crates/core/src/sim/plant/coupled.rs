@@ -4,13 +4,14 @@ use std::sync::Arc;
 
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::ModeState;
+use flexsc_dynamics::periodic_torque::PeriodicTorque;
 use flexsc_dynamics::three_axis::{
     ArticulatedMotion, Bearing, DriveAngles, FlexibleBody, RotorObservation, SegmentLoads, SharedSteps,
     SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
 };
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::attitude::{Vector, rotation, vector};
 use flexsc_spacecraft::body::craft::Translation;
-use flexsc_spacecraft::body::spatial::{PeriodicTorque, Spatial};
 use flexsc_spacecraft::environment::SurroundingsState;
 use flexsc_spacecraft::flow::{ElasticModes, RigidBody, ThreeAxisState};
 use flexsc_spacecraft::sine::Sine;
@@ -53,7 +54,7 @@ pub struct AccelerometerMount {
 
 impl AccelerometerMount {
     /// Creates the mount at a point of a body with total mass `mass` (kg).
-    pub fn new(body: &Spatial, mass: f64, point: &str) -> Self {
+    pub fn new(body: &ThreeAxisModel, mass: f64, point: &str) -> Self {
         let first = body.points.first().map_or("", |point| &point.name);
         let (here, hub) = (body.shapes(point), body.shapes(first));
         Self {
@@ -131,7 +132,7 @@ impl CoupledMotion {
     /// Creates the motion at the start, under the environment alone, with the modal rotations at the first sensor and
     /// where torques act, the bearings of the rotors, if any, and the steps that it shares with other runs.
     pub fn new(
-        body: &Spatial,
+        body: &ThreeAxisModel,
         flexible: &FlexibleBody,
         around: Option<SurroundingsState>,
         moving: Option<Translation>,
