@@ -4,11 +4,12 @@ use flexsc_control::law::{AttitudeProfile, AttitudeTarget};
 use flexsc_control::offers::Offers;
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::document::key;
 use flexsc_numerics::attitude::vector;
+use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::body::craft::RateLimit;
-use flexsc_spacecraft::body::{BodyAxes, Spatial};
 use flexsc_spacecraft::disturbance::Disturbance;
 
 use super::epoch::nanoseconds_since_1970;
@@ -99,7 +100,7 @@ impl Scenario {
 
     fn spatial_inconsistency(
         &self,
-        body: &Spatial,
+        body: &ThreeAxisModel,
         offers: &Offers,
         unmet: &Requirements,
     ) -> Option<ConfigError> {

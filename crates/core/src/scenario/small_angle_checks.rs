@@ -3,12 +3,12 @@
 
 use flexsc_control::actuator::ActuatorTask;
 use flexsc_control::sensor::SensorKind;
-use flexsc_formats::document::ConfigError;
-use flexsc_numerics::attitude::{AXES, rotation_vector, vector};
-use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::craft::Appendage;
 use flexsc_dynamics::three_axis_model::{SmallAngleBounds, ThreeAxisModel};
+use flexsc_formats::document::ConfigError;
+use flexsc_numerics::attitude::{AXES, Vector, rotation_vector, vector};
+use flexsc_numerics::time::Instant;
 use flexsc_spacecraft::body::BodyModel;
+use flexsc_spacecraft::body::craft::Appendage;
 
 use super::{ResolvedScenario, ScenarioSpec};
 
@@ -46,7 +46,8 @@ impl ScenarioSpec {
                 "changes the modes or pushes them during the run, and those of small rotations are constant";
             return Some((format!("appendage[{index}].{key}"), why));
         }
-        let damping = model.flexible().and_then(|flexible| flexible.damping.as_ref());
+        let coupling = model.spatial().and_then(|body| body.coupling.as_ref());
+        let damping = coupling.and_then(|coupling| coupling.damping.as_ref());
         let is_asked = self.spacecraft.as_ref().is_some_and(|craft| craft.whole_damping);
         let key = if is_asked { "spacecraft.whole_damping" } else { "spacecraft.small_angles" };
         damping.map(|_| (key.to_owned(), "needs uncoupled free modes, and the damping matrix couples them"))
@@ -55,7 +56,7 @@ impl ScenarioSpec {
     /// Returns the key of a torque that depends on attitude or time, with the reason.
     fn torque_beyond_small_angles(&self, model: &BodyModel) -> Option<(String, &'static str)> {
         let own = model.spatial().and_then(|body| body.disturbance.as_ref());
-        if own.is_some_and(|own| own.amplitude.iter().any(|amplitude| amplitude.get() != 0.0)) {
+        if own.is_some_and(|own| own.amplitude != Vector::zeros()) {
             let why = "is periodic, and torques on small rotations are constant for a while";
             return Some(("body.spatial.disturbance.amplitude".to_owned(), why));
         }

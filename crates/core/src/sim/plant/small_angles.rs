@@ -11,8 +11,8 @@ use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::crossing::first_crossing;
 use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
 use flexsc_dynamics::three_axis::{FlexibleBody, Rotor};
-use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_dynamics::three_axis_model::{SmallAngleBounds, ThreeAxisModel};
+use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector, vector};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
@@ -89,7 +89,7 @@ impl SmallAnglesFlow {
             hub_rotations: hub_modes.iter().map(|mode| mode.rotation).collect(),
             // A validated body has an inverse.
             inverse_inertia: inertia.try_inverse().unwrap_or_else(Matrix3::identity),
-            disturbance: spec.disturbance.as_ref().map(|of| vector(&of.constant)),
+            disturbance: spec.disturbance.as_ref().map(|of| of.constant),
             surroundings: study.surroundings.clone(),
             segment,
             segment_start: Instant::START,
