@@ -4,8 +4,8 @@
 
 use std::fmt::Write as _;
 
+use flexsc_core::dynamics::flow::RigidBody;
 use flexsc_core::numerics::time::{Instant, Span};
-use flexsc_core::spacecraft::flow::RigidBody;
 use flexsc_core::{Scenario, Simulation};
 
 use crate::plants::golden;

@@ -2,10 +2,10 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, SciPy and mpmath.
 
+use flexsc_core::dynamics::flow::{ElasticModes, RigidBody, RigidState, ThreeAxisState};
 use flexsc_core::dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::record::Detail;
-use flexsc_core::spacecraft::flow::{ElasticModes, RigidBody, RigidState, ThreeAxisState};
 use flexsc_core::{Document, Scenario};
 
 use crate::study::{close, scenario};

@@ -2,10 +2,10 @@
 //!
 //! Golden numbers: tests/golden/station_oracle.py, a loop of its own by Runge-Kutta steps.
 
+use flexsc_core::dynamics::flow::ElasticModes;
 use flexsc_core::metrics::MetricsCollector;
 use flexsc_core::numerics::time::{Instant, Span};
 use flexsc_core::record::{Column, Columns, Detail, Trace};
-use flexsc_core::spacecraft::flow::ElasticModes;
 use flexsc_core::{Scenario, Simulation};
 
 use crate::spatial::{body, free};

@@ -1,11 +1,11 @@
 //! Jets: thrusters at points of a three-axis body, fired in groups about the axes or individually.
 
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::ForceEffect;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{AXES, vector};
 use flexsc_numerics::quantity::{Finite, NonNegative, Positive, Time};
 use flexsc_numerics::time::Span;
-use flexsc_spacecraft::wrench::ForceEffect;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

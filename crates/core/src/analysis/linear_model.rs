@@ -5,13 +5,14 @@
 //! (\[Likins70\]). Environment torques are left out.
 
 use flexsc_dynamics::axis_model::{AxisModel, CommandedQuantity};
+use flexsc_dynamics::flow::CoupledMatrices;
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_formats::document::ConfigError;
 use flexsc_numerics::attitude::{AXES, Vector};
 use flexsc_numerics::random::Seed;
 use flexsc_numerics::time::Instant;
-use flexsc_spacecraft::body::{BodyAxes, Drift};
-use flexsc_spacecraft::flow::CoupledMatrices;
+use flexsc_spacecraft::body::BodyAxes;
 use nalgebra::{DMatrix, Matrix3};
 use serde::Serialize;
 
@@ -68,7 +69,9 @@ impl LinearModel {
     }
 
     fn for_one_axis(scenario: &Scenario, body: &AxisModel, time: f64) -> Self {
-        let ratio = |mode| scenario.drift.as_ref().map_or(1.0, |drift: &Drift| drift.ratio(mode, time));
+        let ratio = |mode| {
+            scenario.study.drift.as_ref().map_or(1.0, |drift: &FrequencyDrift| drift.ratio(mode, time))
+        };
         let ratios: Vec<f64> = (0..body.modes.len()).map(ratio).collect();
         let (back_emf, total) = scenario.back_emf(body);
         let coupled = CoupledMatrices::new(body, back_emf, total, &ratios);

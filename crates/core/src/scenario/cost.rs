@@ -5,6 +5,7 @@ use flexsc_control::actuator::{ActuatorTask, Failure, UnloadingTask};
 use flexsc_control::estimator::EstimatorKind;
 use flexsc_control::law::AttitudeTarget;
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::flow::LONGEST_TURN;
 use flexsc_dynamics::periodic_torque::PeriodicTorque;
 use flexsc_dynamics::three_axis::{Bearing, IMBALANCE_PHASE, Surroundings};
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
@@ -14,7 +15,6 @@ use flexsc_numerics::quantity::NonNegative;
 use flexsc_numerics::time::Span;
 use flexsc_record::Detail;
 use flexsc_relay_kernel::{SWITCHINGS, shortest_window};
-use flexsc_spacecraft::flow::LONGEST_TURN;
 
 use super::Scenario;
 use super::pace::{STEP, SWITCHES, TURNS};

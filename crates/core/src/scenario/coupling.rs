@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use flexsc_dynamics::axis_model::AxisModel;
+use flexsc_dynamics::flow::{CoupledFlow, CoupledMatrices};
 use flexsc_dynamics::linear::LinearFlow;
 use flexsc_formats::document::ConfigError;
 use flexsc_formats::structure::TOO_FAR_APART;
-use flexsc_spacecraft::flow::{CoupledFlow, CoupledMatrices};
 
 use super::Scenario;
 
@@ -21,8 +21,8 @@ impl Scenario {
         if let Some(flow) = &self.linear {
             return Some(CoupledFlow::by_poles(body, flow, back_emf, total));
         }
-        (self.actuator.flywheel().is_some() || self.drift.is_some())
-            .then(|| CoupledFlow::new(body, self.drift.as_ref(), back_emf, total))
+        (self.actuator.flywheel().is_some() || self.study.drift.is_some())
+            .then(|| CoupledFlow::new(body, self.study.drift.as_ref(), back_emf, total))
     }
 
     /// Returns the damping rate by a wheel's back-EMF (1/s), and whether it acts on the rate of the elastic body.

@@ -9,6 +9,7 @@ use flexsc_control::estimator::{EstimatorKind, adaptive, attitude};
 use flexsc_control::law::{AttitudeProfile, Authority, TorqueDistribution};
 use flexsc_control::requirement::{Requirements, Rule};
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, CommandedQuantity};
+use flexsc_dynamics::frequency_drift::FrequencyDrift;
 use flexsc_dynamics::three_axis::{Bearing, SharedSteps};
 use flexsc_dynamics::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 use flexsc_formats::document::ConfigError;
@@ -33,6 +34,8 @@ const ROUNDING: f64 = 1e-9;
 pub struct ResolvedScenario {
     /// One-axis model of the body about each of its axes, as if that axis were alone.
     pub axes: Vec<AxisModel>,
+    /// Drift of the natural frequencies.
+    pub drift: Option<FrequencyDrift>,
     /// Authority of the actuators about each axis.
     pub authorities: Vec<Authority>,
     /// Period of the law, if it has one.
@@ -94,6 +97,7 @@ impl ResolvedScenario {
         let cycle = written.law.period();
         let mut study = Self {
             law_period: cycle,
+            drift: written.drift.as_ref().map(Into::into),
             sample_period: written.sample_period(),
             profile: AttitudeProfile::new(
                 written.targets(),

@@ -2,9 +2,9 @@
 //! as a vector, and its parameters.
 
 use flexsc_dynamics::AxisState;
+use flexsc_dynamics::flow::ThreeAxisState;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
-use flexsc_spacecraft::flow::ThreeAxisState;
 
 use super::{ObservationField, Simulation, SimulationError};
 use crate::scenario::Scenario;

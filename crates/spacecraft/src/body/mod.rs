@@ -1,6 +1,5 @@
 //! The controlled body, and the ways to describe it.
 
-mod chain;
 mod coordinate_weights;
 pub mod craft;
 mod damping_ratios;
@@ -24,11 +23,10 @@ use flexsc_formats::document::ConfigError;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-pub use chain::Chain;
 pub use coordinate_weights::CoordinateWeights;
 pub use craft::AssembledSpacecraft;
 pub use damping_ratios::DampingRatios;
-pub use drift::{Drift, DriftProfile, ProfilePoint, Ramp, SERIES, Sinusoid};
+pub use drift::{Drift, DriftProfile, ProfilePoint, Ramp, Sinusoid};
 pub use free_and_clamped::{clamped_frequencies, free_frequencies};
 pub use mode::Mode;
 pub use model::{BodyAxes, BodyModel};

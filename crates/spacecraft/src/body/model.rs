@@ -3,10 +3,11 @@
 use std::sync::Arc;
 
 use flexsc_dynamics::axis_model::{AxisMode, AxisModel, AxisOutput};
+use flexsc_dynamics::chain_model::Chain;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::quantity::Finite;
 
-use super::{AssembledSpacecraft, Chain};
+use super::AssembledSpacecraft;
 
 /// Assembled model of a body.
 #[derive(Clone, Debug, PartialEq)]

@@ -3,6 +3,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use flexsc_dynamics::flow::{RigidBody, RigidState};
 use flexsc_dynamics::three_axis::{
     FlexibleBody, FreeMode, Rotor, SegmentLoads, Surroundings, ThreeAxisMotion,
 };
@@ -12,7 +13,6 @@ use nalgebra::{Matrix3, Quaternion};
 
 use super::{Environment, OrbitEnvironment, SurroundingsState};
 use crate::body::Spatial;
-use crate::flow::{RigidBody, RigidState};
 
 type Never = std::convert::Infallible;
 

@@ -4,18 +4,18 @@ use std::sync::Arc;
 
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::ModeState;
+use flexsc_dynamics::flow::{ElasticModes, RigidBody, ThreeAxisState};
 use flexsc_dynamics::periodic_torque::PeriodicTorque;
+use flexsc_dynamics::sine::SineTorque;
 use flexsc_dynamics::three_axis::{
     ArticulatedMotion, Bearing, DriveAngles, FlexibleBody, RotorObservation, SegmentLoads, SharedSteps,
     SlipDirection, Surroundings, ThermalForces, ThreeAxisMotion,
 };
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::{Vector, rotation, vector};
 use flexsc_spacecraft::body::craft::Translation;
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::flow::{ElasticModes, RigidBody, ThreeAxisState};
-use flexsc_spacecraft::sine::Sine;
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::scenario::{AppendageDrives, DriveProfiles};
@@ -74,7 +74,7 @@ struct ExternalTorques {
     /// Environment.
     around: Option<SurroundingsState>,
     /// Sinusoidal torques of actuators and disturbances, each with its axis.
-    sines: Vec<(Vector, Sine)>,
+    sines: Vec<(Vector, SineTorque)>,
 }
 
 impl ExternalTorques {
@@ -109,13 +109,13 @@ impl Surroundings for ExternalTorques {
 
     fn bound(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, PeriodicTorque::bound);
-        let sines: f64 = self.sines.iter().map(|(_, sine)| sine.amplitude.get().abs()).sum();
+        let sines: f64 = self.sines.iter().map(|(_, sine)| sine.amplitude.abs()).sum();
         own + self.around.as_ref().map_or(0.0, Surroundings::bound) + sines
     }
 
     fn frequency(&self) -> f64 {
         let own = self.own.as_ref().map_or(0.0, PeriodicTorque::frequency);
-        let fastest = self.sines.iter().map(|(_, sine)| sine.frequency.get()).fold(0.0, f64::max);
+        let fastest = self.sines.iter().map(|(_, sine)| sine.frequency).fold(0.0, f64::max);
         own + self.around.as_ref().map_or(0.0, Surroundings::frequency) + fastest
     }
 }

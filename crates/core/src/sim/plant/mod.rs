@@ -16,18 +16,18 @@ use std::borrow::Cow;
 
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
+use flexsc_dynamics::flow::ExternalMotion;
 use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
 use flexsc_dynamics::three_axis::{RotorObservation, SlipDirection};
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_dynamics::{AxisState, MotionPiece};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::polynomial::Polynomial;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
-use flexsc_spacecraft::body::{BodyAxes, Drift};
+use flexsc_spacecraft::body::BodyAxes;
 use flexsc_spacecraft::environment::EnvironmentObservation;
-use flexsc_spacecraft::flow::ExternalMotion;
-use flexsc_spacecraft::wrench::Wrench;
 
 use super::SimulationError;
 use crate::scenario::{ResolvedScenario, Scenario};
@@ -67,19 +67,19 @@ impl Plant {
     pub fn new(scenario: &Scenario) -> Self {
         match scenario.model.axes() {
             BodyAxes::One(body) => Self::with_flow(OneAxisFlow::new(scenario, body)),
-            BodyAxes::Three(body) => Self::with_three_axes(body, scenario.drift.as_ref(), &scenario.study),
+            BodyAxes::Three(body) => Self::with_three_axes(body, &scenario.study),
         }
     }
 
     /// Creates the plant of a three-axis body.
-    fn with_three_axes(body: &ThreeAxisModel, drift: Option<&Drift>, study: &ResolvedScenario) -> Self {
+    fn with_three_axes(body: &ThreeAxisModel, study: &ResolvedScenario) -> Self {
         let flexible = body.flexible();
         if let Some(limits) = body.small_angles {
             return Self::with_flow(SmallAnglesFlow::new(body, limits, flexible.as_ref(), study));
         }
         match flexible {
             Some(flexible) => Self::with_flow(TwoWayFlow::new(body, &flexible, study)),
-            None => Self::with_flow(OneWayFlow::new(body, study).with_drift(body, drift)),
+            None => Self::with_flow(OneWayFlow::new(body, study).with_drift(body, study.drift.as_ref())),
         }
     }
 

@@ -9,16 +9,16 @@ use std::borrow::Cow;
 use flexsc_control::estimator::WindowedEnvelope;
 use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::flow::{SmallAngleGuard, SmallAngleSegment, SmallAngleState};
 use flexsc_dynamics::guard::{AxisGuards, GuardCrossing};
 use flexsc_dynamics::three_axis::{FlexibleBody, Rotor};
 use flexsc_dynamics::three_axis_model::{SmallAngleBounds, ThreeAxisModel};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_dynamics::{AngleObservation, AxisState};
 use flexsc_numerics::attitude::{Vector, rotation, rotation_vector, vector};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::flow::{SmallAngleGuard, SmallAngleSegment, SmallAngleState};
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{Matrix3, Quaternion};
 
 use super::flow::{ExceededLimit, Flow, FlowQuantities};

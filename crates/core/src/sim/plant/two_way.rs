@@ -7,11 +7,11 @@ use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::AxisState;
 use flexsc_dynamics::three_axis::FlexibleBody;
 use flexsc_dynamics::three_axis_model::ThreeAxisModel;
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::{Record, RecordError};
 use flexsc_spacecraft::environment::SurroundingsState;
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::Quaternion;
 
 use super::coupled::{CoupledMotion, CoupledSegment};

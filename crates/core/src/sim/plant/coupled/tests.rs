@@ -4,11 +4,11 @@ use flexsc_control::sensor::{Orientation, Truth};
 use flexsc_dynamics::ModeState;
 use flexsc_dynamics::three_axis::Rotor;
 use flexsc_dynamics::three_axis_model::{ModalCoupling, ThreeAxisModel};
+use flexsc_dynamics::wrench::Wrench;
 use flexsc_numerics::attitude::{Vector, rotation};
 use flexsc_numerics::gauss_legendre::{NODES, WEIGHTS};
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_spacecraft::body::Spatial;
-use flexsc_spacecraft::wrench::Wrench;
 use nalgebra::{Matrix3, Quaternion};
 
 use crate::scenario::ResolvedScenario;
@@ -85,8 +85,8 @@ fn wheel(momentum: f64, torque: f64) -> Vec<Rotor> {
 #[test]
 fn without_coupling_both_are_one() {
     let body = body(true, false);
-    let mut one_way = Plant::with_three_axes(&body, None, &study("bench"));
-    let mut two_way = Plant::with_three_axes(&two_way(&body), None, &study("bench"));
+    let mut one_way = Plant::with_three_axes(&body, &study("bench"));
+    let mut two_way = Plant::with_three_axes(&two_way(&body), &study("bench"));
     let mut momentum = 20.0;
     for leg in 0..4 {
         let began = 25.0 * f64::from(leg);
@@ -125,7 +125,7 @@ fn torques_on_modes_and_on_the_hub_are_separate() {
     let wrenches =
         [Wrench { hub: torque.into(), ..Wrench::default() }, Wrench { torque, forces, ..Wrench::default() }];
     let [first, second] = wrenches.map(|wrench| {
-        let mut plant = Plant::with_three_axes(&body, None, &study("bench"));
+        let mut plant = Plant::with_three_axes(&body, &study("bench"));
         plant.begin_segment(&wrench);
         let truth = seen(&mut plant, 10.0);
         (three_axes(&plant).body().state.clone(), truth)
@@ -143,7 +143,7 @@ fn torques_on_modes_and_on_the_hub_are_separate() {
 fn the_angle_of_a_gyro_is_the_integral_of_its_rate() {
     let body = body(true, true);
     for body in [two_way(&body), body] {
-        let mut plant = Plant::with_three_axes(&body, None, &study("bench"));
+        let mut plant = Plant::with_three_axes(&body, &study("bench"));
         plant.begin_segment(&Wrench { hub: [0.5, 0.0, -1.0], rotors: wheel(3.0, 0.1), ..Wrench::default() });
         let h = 1.0 / 16.0;
         let mut integral = Vector::zeros();
@@ -166,7 +166,7 @@ fn a_bench_is_seen_beside_the_hub() {
     let body = body(true, true);
     let body = two_way(&body);
     let run = |looks: &[f64], point: &str| {
-        let mut plant = Plant::with_three_axes(&body, None, &study(point));
+        let mut plant = Plant::with_three_axes(&body, &study(point));
         plant.begin_segment(&Wrench { hub: [0.5, 0.0, -1.0], ..Wrench::default() });
         for t in looks {
             seen(&mut plant, *t);

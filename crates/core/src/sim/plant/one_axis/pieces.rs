@@ -2,12 +2,12 @@
 
 use flexsc_dynamics::axis_model::AxisOutput;
 use flexsc_dynamics::crossing::first_crossing;
+use flexsc_dynamics::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
 use flexsc_dynamics::guard::Guard;
 use flexsc_dynamics::{AxisState, MotionPiece, SeriesExpansion};
 use flexsc_numerics::polynomial::{Polynomial, Series, TERMS};
 use flexsc_numerics::time::Instant;
 use flexsc_record::{Outputs, PieceDemand, Record, RecordError};
-use flexsc_spacecraft::flow::{ChainExpansion, CoupledExpansion, UncoupledSegment};
 
 use super::super::one_axis_body::{OneAxisBody, OneAxisQuantities, output_row};
 use super::{AppliedTorque, OneAxisFlow, OneAxisMotion};

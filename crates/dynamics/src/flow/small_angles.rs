@@ -7,11 +7,11 @@
 
 use std::array::from_fn;
 
-use flexsc_dynamics::axis_model::AxisMode;
-use flexsc_dynamics::crossing::{BoundedMotion, DerivativeBounds, first_root};
-use flexsc_dynamics::guard::Guard;
-use flexsc_dynamics::three_axis_model::{SmallAngleBounds, ThreeAxisMode, ThreeAxisModel};
-use flexsc_dynamics::{AngleObservation, ModeState};
+use crate::axis_model::AxisMode;
+use crate::crossing::{BoundedMotion, DerivativeBounds, first_root};
+use crate::guard::Guard;
+use crate::three_axis_model::{SmallAngleBounds, ThreeAxisMode, ThreeAxisModel};
+use crate::{AngleObservation, ModeState};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Finite;
 use flexsc_numerics::time::Span;

@@ -1,12 +1,12 @@
 //! Elastic modes of a spatial body: exact flow under constant modal forces, energy, and rates at a point.
 
-use flexsc_dynamics::ModeState;
-use flexsc_dynamics::axis_model::AxisMode;
-use flexsc_dynamics::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 use flexsc_numerics::attitude::Vector;
 use flexsc_numerics::quantity::Finite;
 
 use super::ModeFlow;
+use crate::ModeState;
+use crate::axis_model::AxisMode;
+use crate::three_axis_model::{ThreeAxisMode, ThreeAxisModel};
 
 /// Flows of all modes. A phase holds the displacement q (m sqrt(kg)) and q'/w.
 #[derive(Clone, Debug)]

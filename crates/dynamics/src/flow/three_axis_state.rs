@@ -1,10 +1,10 @@
 //! State of a spatial body.
 
-use flexsc_dynamics::ModeState;
-use flexsc_dynamics::three_axis_model::ThreeAxisModel;
 use flexsc_numerics::attitude::vector;
 
 use super::{ElasticModes, RigidBody, RigidState};
+use crate::ModeState;
+use crate::three_axis_model::ThreeAxisModel;
 
 /// State of a three-axis body: rigid motion and modes.
 #[derive(Clone, Debug, PartialEq)]
