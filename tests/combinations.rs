@@ -141,7 +141,7 @@ fn run(scenario: &Scenario, body: &Body, law: &str, actuator: &str) -> Result<()
     let whole = Flown::new(scenario, &[]);
     pieces_give_the_whole(scenario, &whole)?;
     metrics_are_numbers(&whole)?;
-    if let Some(of) = scenario.model.spatial() {
+    if let Some(of) = scenario.model.three_axis() {
         let jets = jet_torques(body.centre);
         let start = of.inertia * vector(&of.rate) + Vector::from(body.driven);
         // Without samples and a period of the law, pulses of jets begin between the rows of cycles.

@@ -47,7 +47,7 @@ pub fn reference(set: &[(&str, &str)]) -> Result<Scenario, ScenarioError> {
 }
 
 pub fn craft(scenario: &Scenario) -> &AssembledSpacecraft {
-    scenario.model.craft().expect("a spacecraft")
+    scenario.model.spacecraft().expect("a spacecraft")
 }
 
 /// The four wheels of the oracle, a pyramid of 35 degrees.

@@ -49,7 +49,7 @@ fn craft(imbalance: &str) -> (FlexibleBody, Vec<Bearing>, Vec<Vector>) {
         "{CRAFT}\n[actuator.wheels]\narrangement = \"pyramid\"\ncant = 0.6108652381980153\ninertia = {INERTIA}\n"
     );
     let scenario = Scenario::parse("craft", &text).expect("valid");
-    let craft = scenario.model.craft().expect("valid");
+    let craft = scenario.model.spacecraft().expect("valid");
     let mut model = craft.model.clone();
     let coupling = model.coupling.as_mut().expect("two-way");
     let rows = rows(MODES);
@@ -212,7 +212,7 @@ fn steady_at(
 #[test]
 fn what_does_not_fit_is_refused_with_its_key() {
     let scenario = Scenario::parse("craft", CRAFT).expect("valid");
-    let model = &scenario.model.craft().expect("valid").model;
+    let model = &scenario.model.spacecraft().expect("valid").model;
     let found = wheels("static = 1e-6, point = \"nowhere\"").bearings(model).expect_err("refused");
     assert_eq!(found.key, "imbalance.point");
     for (keys, key) in [

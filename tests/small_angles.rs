@@ -242,7 +242,7 @@ from = 5.0
 to = 25.0
 ";
     let scenario = Scenario::parse("balance.toml", text).expect("valid");
-    let body = scenario.model.spatial().expect("three axes");
+    let body = scenario.model.three_axis().expect("three axes");
     let mut run = Simulation::new(&scenario, 0);
     run.run_until(Instant::END, &mut ()).expect("a run");
     let row = observed(&scenario, &mut run);

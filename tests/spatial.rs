@@ -92,7 +92,7 @@ fn pointing_errors_are_rotation_vectors() {
 
 /// Returns the body of a scenario.
 pub fn body(scenario: &Scenario) -> &ThreeAxisModel {
-    scenario.model.spatial().expect("three axes")
+    scenario.model.three_axis().expect("three axes")
 }
 
 /// Callback that never stops these motions.

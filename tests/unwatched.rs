@@ -65,7 +65,7 @@ fn runs() -> Vec<(&'static str, Scenario)> {
 type Reached = (Option<AxisState>, Option<ThreeAxisState>);
 
 fn reached(simulation: &Simulation) -> Reached {
-    (simulation.state().cloned(), simulation.spatial_state().cloned())
+    (simulation.state().cloned(), simulation.three_axis_state().cloned())
 }
 
 fn end(mut simulation: Simulation, record: &mut impl Record) -> Reached {

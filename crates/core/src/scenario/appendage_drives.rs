@@ -208,7 +208,7 @@ impl ScenarioSpec {
 
     /// Returns all drives of the run; `None` if no appendage rotates.
     pub(super) fn drives(&self, model: &BodyModel) -> Result<Option<AppendageDrives>, ConfigError> {
-        let Some(driven) = model.spatial().and_then(|body| body.articulation.clone()) else {
+        let Some(driven) = model.three_axis().and_then(|body| body.articulation.clone()) else {
             return Ok(None);
         };
         let (mut each, mut fastest, mut edges) = (Vec::new(), 0.0_f64, vec![Instant::START]);

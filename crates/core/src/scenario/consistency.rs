@@ -55,8 +55,8 @@ impl Scenario {
         }
         // The compatibility of three-axis parts was checked before.
         let parts = match self.model.axes() {
-            BodyAxes::One(body) => self.planar_inconsistency(body, offers, unmet),
-            BodyAxes::Three(body) => self.spatial_inconsistency(body, offers, unmet),
+            BodyAxes::One(body) => self.one_axis_inconsistency(body, offers, unmet),
+            BodyAxes::Three(body) => self.three_axis_inconsistency(body, offers, unmet),
         };
         parts.or_else(|| {
             if self.uncertain.is_empty() && self.correlated.is_empty() {
@@ -98,7 +98,7 @@ impl Scenario {
         })
     }
 
-    fn spatial_inconsistency(
+    fn three_axis_inconsistency(
         &self,
         body: &ThreeAxisModel,
         offers: &Offers,
@@ -116,7 +116,7 @@ impl Scenario {
 
     /// Checks that a spacecraft does not rotate faster than the limit of its modal model.
     fn rate_inconsistency(&self) -> Option<ConfigError> {
-        let craft = self.model.craft()?;
+        let craft = self.model.spacecraft()?;
         let RateLimit { rate: limit, why } = craft.rate_limit()?;
         let start = vector(&craft.model.rate).norm();
         if start > limit {
@@ -135,7 +135,7 @@ impl Scenario {
         self.targets().iter().enumerate().find_map(fast)
     }
 
-    fn planar_inconsistency(
+    fn one_axis_inconsistency(
         &self,
         body: &AxisModel,
         offers: &Offers,

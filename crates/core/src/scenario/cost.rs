@@ -298,7 +298,7 @@ impl Scenario {
         if !(is_sampled || switchings.is_empty()) {
             steps.push((SWITCHES.to_owned(), width * switchings.iter().sum::<f64>()));
         }
-        if let Some(body) = self.model.spatial().filter(|body| body.small_angles.is_none()) {
+        if let Some(body) = self.model.three_axis().filter(|body| body.small_angles.is_none()) {
             let rate = self.largest_expected_rate(body);
             let turn = LONGEST_TURN / rate;
             let step = body.flexible().map_or(turn, |flexible| flexible.step(rate));
@@ -319,7 +319,7 @@ impl Scenario {
 
     /// Returns the body about each axis about which its motion has a closed form, as if that axis were alone.
     fn closed_form_axes(&self) -> &[AxisModel] {
-        let has_closed_form = self.model.spatial().is_none_or(|body| body.small_angles.is_some());
+        let has_closed_form = self.model.three_axis().is_none_or(|body| body.small_angles.is_some());
         if has_closed_form { &self.study.axes } else { &[] }
     }
 

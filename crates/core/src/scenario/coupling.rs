@@ -34,7 +34,7 @@ impl Scenario {
     /// Computes the flow by poles of a body with a damping matrix, or with a wheel under a law that switches at
     /// crossings.
     pub(super) fn linear_flow(&self) -> Result<Option<Arc<LinearFlow>>, ConfigError> {
-        let Some(body) = self.model.planar() else { return Ok(None) };
+        let Some(body) = self.model.one_axis() else { return Ok(None) };
         let wheel = self.actuator.flywheel().map(|(_, key)| key);
         let crosses = self.law.is_switching() && self.study.sample_period.is_none();
         let damped = body.is_coupled();

@@ -133,7 +133,7 @@ impl ResolvedScenario {
         }
         if let Some(spec) = written.estimator.as_ref().and_then(EstimatorKind::attitude) {
             let jets = study.groups.is_some();
-            let mounted = model.spatial().map(|body| (body, &study.sensor_points[..], jets));
+            let mounted = model.three_axis().map(|body| (body, &study.sensor_points[..], jets));
             let setting = spec.setup(&written.sensor, cycle, mounted);
             study.attitude = Some(setting.map_err(|fault| fault.within("estimator.attitude"))?);
         }
@@ -144,7 +144,7 @@ impl ResolvedScenario {
             study.authorities[axis].threshold = study.damping_threshold(written, axis)?;
         }
         study.expected_bands =
-            (0..study.axes.len()).map(|axis| study.error_band(written, model.spatial(), axis)).collect();
+            (0..study.axes.len()).map(|axis| study.error_band(written, model.three_axis(), axis)).collect();
         Ok(study)
     }
 
@@ -204,7 +204,7 @@ impl ResolvedScenario {
             named(&format!("disturbance[{index}].point"), disturbance.point.as_deref())?;
         }
         let pushed = self.fires() || written.disturbance.iter().any(|of| of.force.is_some());
-        let craft = model.craft().filter(|_| pushed);
+        let craft = model.spacecraft().filter(|_| pushed);
         self.translation = craft.map(|craft| Translation::new(body, craft.mass));
         let measured = self.measured_rates(body);
         let angles = rotation_vector(&self.profile.target(Instant::START), &body.attitude.get());
@@ -312,7 +312,7 @@ fn surroundings(
     model: &BodyModel,
     body: &ThreeAxisModel,
 ) -> Result<Option<SurroundingsState>, ConfigError> {
-    let bendings = model.craft().map_or(&[][..], |craft| &craft.bendings);
+    let bendings = model.spacecraft().map_or(&[][..], |craft| &craft.bendings);
     let sunny =
         written.environment.as_ref().is_some_and(|around| around.orbit.is_some() && around.sun.is_some());
     if !bendings.is_empty() && !sunny {
@@ -326,7 +326,7 @@ fn surroundings(
         None => Vec::new(),
     };
     let spinning: Matrix3<f64> = rotors.iter().map(HubRotor::axial_inertia).sum();
-    let centre = model.craft().map_or_else(Vector::zeros, |craft| craft.centre);
+    let centre = model.spacecraft().map_or_else(Vector::zeros, |craft| craft.centre);
     let around =
         SurroundingsState::new(environment, written.orbit_environment(), [body.inertia, spinning], &centre);
     Ok(Some(around.with_thermal_bending(bendings)))

@@ -15,7 +15,7 @@ use super::{ResolvedScenario, ScenarioSpec};
 impl ScenarioSpec {
     /// Checks that the parts of a body with small rotations leave its motion linear.
     pub(super) fn validate_small_angles(&self, model: &BodyModel) -> Option<ConfigError> {
-        model.spatial()?.small_angles?;
+        model.three_axis()?.small_angles?;
         let checks: [&dyn Fn() -> Option<(String, &'static str)>; 5] = [
             &|| self.body_beyond_small_angles(model),
             &|| self.torque_beyond_small_angles(model),
@@ -46,7 +46,7 @@ impl ScenarioSpec {
                 "changes the modes or pushes them during the run, and those of small rotations are constant";
             return Some((format!("appendage[{index}].{key}"), why));
         }
-        let coupling = model.spatial().and_then(|body| body.coupling.as_ref());
+        let coupling = model.three_axis().and_then(|body| body.coupling.as_ref());
         let damping = coupling.and_then(|coupling| coupling.damping.as_ref());
         let is_asked = self.spacecraft.as_ref().is_some_and(|craft| craft.whole_damping);
         let key = if is_asked { "spacecraft.whole_damping" } else { "spacecraft.small_angles" };
@@ -55,7 +55,7 @@ impl ScenarioSpec {
 
     /// Returns the key of a torque that depends on attitude or time, with the reason.
     fn torque_beyond_small_angles(&self, model: &BodyModel) -> Option<(String, &'static str)> {
-        let own = model.spatial().and_then(|body| body.disturbance.as_ref());
+        let own = model.three_axis().and_then(|body| body.disturbance.as_ref());
         if own.is_some_and(|own| own.amplitude != Vector::zeros()) {
             let why = "is periodic, and torques on small rotations are constant for a while";
             return Some(("body.spatial.disturbance.amplitude".to_owned(), why));

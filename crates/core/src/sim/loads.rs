@@ -53,7 +53,7 @@ impl Loads {
             actuator: scenario.study.actuator(scenario, seed),
             distribution: scenario.study.distribution(scenario),
             disturbances: disturbances
-                .map(|(index, of)| DisturbanceState::new(of, scenario.model.spatial(), stream(index)))
+                .map(|(index, of)| DisturbanceState::new(of, scenario.model.three_axis(), stream(index)))
                 .collect(),
             scheduled_changes: edges,
             next_change: None,

@@ -57,7 +57,7 @@ impl Simulation {
     }
 
     /// Returns the state of a three-axis body at the current instant.
-    pub fn spatial_state(&self) -> Option<&ThreeAxisState> {
+    pub fn three_axis_state(&self) -> Option<&ThreeAxisState> {
         self.plant.quantities().three_axis().map(|motion| &motion.body().state)
     }
 

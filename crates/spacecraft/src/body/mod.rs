@@ -106,7 +106,7 @@ impl Body {
             Self::Matrices(matrices) => matrices.solve()?,
             Self::Panels(panels) => panels.solve()?,
             Self::Spatial(spatial) => {
-                return Ok(BodyModel::Spatial(Arc::new(spatial.solve()?)));
+                return Ok(BodyModel::ThreeAxis(Arc::new(spatial.solve()?)));
             }
         };
         if let Some(fault) = one_axis::inconsistency(&body) {
@@ -114,6 +114,6 @@ impl Body {
         }
         let chain = if let Self::Panels(panels) = self { panels.chain(&body) } else { None };
         let body = Arc::new(body);
-        Ok(chain.map_or(BodyModel::Planar(body.clone()), |chain| BodyModel::Chain(body, Arc::new(chain))))
+        Ok(chain.map_or(BodyModel::OneAxis(body.clone()), |chain| BodyModel::Chain(body, Arc::new(chain))))
     }
 }

@@ -179,7 +179,7 @@ impl Panels {
             rate: *rate,
             outputs,
         };
-        reduction.planar(&structure).map_err(|fault| match fault.key.as_str() {
+        reduction.axis_model(&structure).map_err(|fault| match fault.key.as_str() {
             "damping" | "keep" => fault,
             _ => exceeds_precision(&fault.why),
         })

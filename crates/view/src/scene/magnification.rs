@@ -128,7 +128,7 @@ pub fn largest_torque(scenario: &Scenario, body: &AxisModel) -> f64 {
 }
 
 /// Returns the estimated largest torque (N m) about an axis of a three-axis body, for actuators other than jets.
-fn spatial_torque(scenario: &Scenario, body: &ThreeAxisModel, axis: usize) -> f64 {
+fn axis_torque(scenario: &Scenario, body: &ThreeAxisModel, axis: usize) -> f64 {
     let members = scenario.actuator.members();
     let serving = members.iter().find(|member| member.share(axis) > 0.0);
     let study = &scenario.study;
@@ -155,13 +155,13 @@ fn spatial_torque(scenario: &Scenario, body: &ThreeAxisModel, axis: usize) -> f6
 /// Returns the estimated displacements of the modes of a three-axis body (m sqrt(kg)), under the jets, the torque of
 /// any axis, or a force.
 pub fn expected_modal_displacements(scenario: &Scenario, body: &ThreeAxisModel) -> Vec<f64> {
-    let torques = [0, 1, 2].map(|axis| spatial_torque(scenario, body, axis));
+    let torques = [0, 1, 2].map(|axis| axis_torque(scenario, body, axis));
     let hub = body.shapes(&scenario.study.torque_point);
     // Pulses may repeat with the period of a mode, and add up.
     let times = |of: &Disturbance| if of.pulse.is_some() { 2.0 } else { 1.0 };
     let pushes: Vec<_> =
         scenario.disturbance.iter().filter_map(|of| Some((of.force_effect(body)?, times(of)))).collect();
-    let warmed = scenario.model.craft().map_or(&[][..], |craft| &craft.bendings);
+    let warmed = scenario.model.spacecraft().map_or(&[][..], |craft| &craft.bendings);
     let mode = |(index, mode): (usize, &ThreeAxisMode)| {
         let w = mode.frequency.get();
         let fired = scenario.study.groups.iter().flatten().flatten().map(|group| group.push.forces[index]);

@@ -14,7 +14,7 @@ use super::{AppliedTorque, OneAxisFlow, OneAxisMotion};
 
 /// Motion segment that is expanded in series from its start on.
 enum SegmentExpansion<'a> {
-    Planar(&'a UncoupledSegment, AxisState),
+    Uncoupled(&'a UncoupledSegment, AxisState),
     Chain(ChainExpansion<'a>),
     Coupled(CoupledExpansion<'a>),
 }
@@ -102,7 +102,7 @@ impl OneAxisFlow {
     ) -> Result<(), RecordError> {
         let span = until.since(self.departed).seconds();
         let mut unfolded = match &self.motion {
-            OneAxisMotion::Uncoupled(arc) => SegmentExpansion::Planar(arc, self.body.state.clone()),
+            OneAxisMotion::Uncoupled(arc) => SegmentExpansion::Uncoupled(arc, self.body.state.clone()),
             OneAxisMotion::Chain(flight) => SegmentExpansion::Chain(flight.expansion()),
             OneAxisMotion::Coupled(coupling) => SegmentExpansion::Coupled(coupling.expansion()),
         };
@@ -114,7 +114,7 @@ impl OneAxisFlow {
         let mut h = 0.0;
         while h < span {
             let reach = match &mut unfolded {
-                SegmentExpansion::Planar(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
+                SegmentExpansion::Uncoupled(arc, state) => arc.expand(h, 0.5 * span, state, &mut series),
                 SegmentExpansion::Chain(flown) => flown.expand(h, 0.5 * span, &mut series),
                 SegmentExpansion::Coupled(unfolding) => unfolding.expand(h, span, &mut series),
             };
