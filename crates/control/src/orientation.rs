@@ -13,6 +13,20 @@ pub enum Orientation {
 }
 
 impl Orientation {
+    /// Angle 0 of a one-axis body.
+    pub const ZERO_ANGLE: Self = Self::Angle(0.0);
+
+    /// Returns the attitude; `None` for an angle.
+    pub fn attitude(&self) -> Option<Quaternion<f64>> {
+        if let Self::Attitude(q) = self { Some(*q) } else { None }
+    }
+
+    /// Returns the origin of a first difference: angle 0, or the attitude itself.
+    #[must_use]
+    pub fn difference_origin(&self) -> Self {
+        self.attitude().map_or(Self::ZERO_ANGLE, Self::Attitude)
+    }
+
     /// Returns the rotation vector from another orientation to this one (rad); for one angle, the difference about the first axis.
     #[inline]
     pub fn error_from(&self, other: &Self) -> [f64; 3] {

@@ -39,7 +39,7 @@ impl Scenario {
         };
         let point = self.study.sensor_points.first().map_or("", String::as_str);
         let rotations = body.shapes(point).into_iter().map(|(_, rotation)| rotation.norm());
-        let modes: Vec<_> = body.modes.iter().cloned().zip(rotations).collect();
+        let modes: Vec<_> = body.modes.iter().copied().zip(rotations).collect();
         Some(WindowedEnvelope::for_three_axes(envelope, &modes, search))
     }
 

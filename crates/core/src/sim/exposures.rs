@@ -4,7 +4,7 @@
 //! Loads change at segment starts that are not known in advance, so a segment is averaged when it is over. The plant of
 //! the run itself is never moved back.
 
-use flexsc_control::sensor::{ExposureMean, Orientation};
+use flexsc_control::sensor::ExposureMean;
 use flexsc_numerics::quadrature;
 use flexsc_numerics::time::{Instant, Span};
 use flexsc_record::Record;
@@ -136,7 +136,7 @@ impl Exposures {
             copy.evaluate(at)?;
             for shutter in shutters.iter_mut().filter(|shutter| shutter.is_open) {
                 let truth = copy.truth_at_sensor(shutter.sensor);
-                if let Orientation::Attitude(attitude) = truth.orientation.rotated_by(truth.sensor_angles()) {
+                if let Some(attitude) = truth.orientation.rotated_by(truth.sensor_angles()).attitude() {
                     shutter.exposure.add(attitude, lasts);
                 }
             }

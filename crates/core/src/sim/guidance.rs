@@ -84,10 +84,8 @@ impl Guidance {
 
     /// Returns the origin of the angles: the current reference attitude of three axes, or angle 0.
     pub fn origin(&self, now: Instant) -> Orientation {
-        match &self.profile {
-            None => Orientation::Angle(0.0),
-            Some(way) => Orientation::Attitude(way.at(now).attitude),
-        }
+        let attitude = self.profile.as_ref().map(|way| way.at(now).attitude);
+        attitude.map_or(Orientation::ZERO_ANGLE, Orientation::Attitude)
     }
 
     /// Returns true if the target of three axes moves from one attitude to another.
@@ -97,10 +95,8 @@ impl Guidance {
 
     /// Returns the target attitude towards which a three-axis body turns; angle 0 for one axis.
     pub fn target(&self, now: Instant) -> Orientation {
-        match &self.profile {
-            None => Orientation::Angle(0.0),
-            Some(way) => Orientation::Attitude(way.target(now)),
-        }
+        let attitude = self.profile.as_ref().map(|way| way.target(now));
+        attitude.map_or(Orientation::ZERO_ANGLE, Orientation::Attitude)
     }
 
     /// Returns the current target as written in the scenario: its reference frame and the attitude in it; `None` for

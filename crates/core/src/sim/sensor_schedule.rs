@@ -1,6 +1,6 @@
 //! Sampling schedule of one sensor, with its last readings.
 
-use flexsc_control::sensor::{ExposureMean, Orientation, Reading, Sensor, Truth};
+use flexsc_control::sensor::{ExposureMean, Reading, Sensor, Truth};
 use flexsc_numerics::time::{Instant, Span};
 
 /// Sensor with its sampling schedule.
@@ -33,11 +33,7 @@ impl SensorSchedule {
         }
         let (Some(period), true) = (self.period, now > Instant::START) else { return Some(truth.rate) };
         // Without a previous reading, differences count from angle 0, or from the attitude itself.
-        let nowhere = match reading.at {
-            Orientation::Angle(_) => Orientation::Angle(0.0),
-            attitude @ Orientation::Attitude(_) => attitude,
-        };
-        let last = self.last.map_or(nowhere, |last| last.at);
+        let last = self.last.map_or_else(|| reading.at.difference_origin(), |last| last.at);
         Some(reading.at.error_from(&last).map(|difference| difference / period.seconds()))
     }
 }

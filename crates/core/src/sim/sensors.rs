@@ -180,10 +180,7 @@ impl Sensors {
     /// measures it; `None` without a field.
     pub fn magnetic_field(&self, truth: &Truth) -> Option<Vector> {
         let measured = self.field.map(|(_, field)| field);
-        measured.or_else(|| match (truth.orientation, truth.sky.field) {
-            (Orientation::Attitude(attitude), Some(field)) => Some(to_body(&attitude, &field)),
-            _ => None,
-        })
+        measured.or_else(|| Some(to_body(&truth.orientation.attitude()?, &truth.sky.field?)))
     }
 }
 

@@ -53,7 +53,7 @@ impl RigidBody {
         let inverse = inertia.try_inverse().unwrap_or_else(Matrix3::identity);
         // Symmetric to the last bit, so that the energy is a quadratic form.
         let inverse = (inverse + inverse.transpose()) * 0.5;
-        Self { inertia, inverse, mobility: inverse.norm(), disturbance: body.disturbance.clone() }
+        Self { inertia, inverse, mobility: inverse.norm(), disturbance: body.disturbance }
     }
 
     /// Returns the inertia tensor (kg m²).

@@ -158,7 +158,7 @@ impl CoupledMotion {
             motion,
             sensor_offsets: beyond(sensed),
             torque_offsets: beyond(acts),
-            outside: ExternalTorques { own: body.disturbance.clone(), around, sines: Vec::new() },
+            outside: ExternalTorques { own: body.disturbance, around, sines: Vec::new() },
             acting: SegmentLoads::default(),
             frequencies,
             hub,

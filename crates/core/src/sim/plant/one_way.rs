@@ -49,7 +49,7 @@ impl OneWayFlow {
         let body = ThreeAxisBody::new(spec, study);
         Self {
             surroundings: study.surroundings.clone(),
-            disturbance: spec.disturbance.clone(),
+            disturbance: spec.disturbance,
             drifting: None,
             segment_start: Instant::START,
             origin: body.state.clone(),
