@@ -1,6 +1,6 @@
 //! Report: the rows of all parts at one instant, and the values that only metrics and figures read.
 
-use std::any::Any;
+use std::any::{Any, TypeId};
 use std::fmt;
 
 use super::columns::Columns;
@@ -77,22 +77,38 @@ impl Clone for Box<dyn ReportValue> {
 #[derive(Clone, Debug, Default)]
 pub struct Report {
     /// Rows for the log, in the order in which they are written.
-    rows: Vec<ReportedRow>,
+    rows: Vec<RowSlot>,
     /// Values that are not logged.
-    values: Vec<Box<dyn ReportValue>>,
-    /// Boxes of earlier rows and values, for the next ones of their types.
-    spare_rows: Vec<Box<dyn LogRow>>,
-    spare_values: Vec<Box<dyn ReportValue>>,
+    values: Vec<ValueSlot>,
 }
 
-/// Row for the log.
+/// Memory of a row for the log.
 #[derive(Clone, Debug)]
-struct ReportedRow {
+struct RowSlot {
+    /// Type of the row: it is compared more often than the row is read.
+    kind: TypeId,
     row: Box<dyn LogRow>,
+    /// True if the report contains the row; otherwise the memory is free for another row of its type.
+    is_set: bool,
     /// Revision of a row that is logged only when the revision changes.
     revision: Option<u64>,
     /// True if a row of the same revision is already in the log.
     is_repeated: bool,
+}
+
+/// Memory of a value that is not logged.
+#[derive(Clone, Debug)]
+struct ValueSlot {
+    kind: TypeId,
+    value: Box<dyn ReportValue>,
+    /// True if the report contains the value; otherwise the memory is free for another value of its type.
+    is_set: bool,
+}
+
+impl ValueSlot {
+    fn is_free_for<T: ReportValue>(&self) -> bool {
+        !self.is_set && self.kind == TypeId::of::<T>()
+    }
 }
 
 impl Report {
@@ -103,15 +119,15 @@ impl Report {
 
     /// Creates a report of one row.
     pub fn from_row(row: &dyn LogRow) -> Self {
-        let mut report = Self::new();
-        report.insert(ReportedRow { row: row.copy(), revision: None, is_repeated: false });
-        report
+        let kind = (row as &dyn Any).type_id();
+        let slot = RowSlot { kind, row: row.copy(), is_set: true, revision: None, is_repeated: false };
+        Self { rows: vec![slot], values: Vec::new() }
     }
 
     /// Removes all rows and values. Their memory is kept, so that a report of the same rows allocates none.
     pub fn clear(&mut self) {
-        self.spare_rows.extend(self.rows.drain(..).map(|reported| reported.row));
-        self.spare_values.append(&mut self.values);
+        self.rows.iter_mut().for_each(|slot| slot.is_set = false);
+        self.values.iter_mut().for_each(|slot| slot.is_set = false);
     }
 
     /// Adds a row for the log.
@@ -124,47 +140,59 @@ impl Report {
         self.add_reported(row, Some(revision));
     }
 
+    /// Adds a row after those of topics that are written before its own.
     fn add_reported<R: LogRow>(&mut self, row: R, revision: Option<u64>) {
-        let spare = self.spare_rows.iter().position(|spare| (&**spare as &dyn Any).is::<R>());
-        let row = match spare.map(|index| self.spare_rows.swap_remove(index)) {
-            Some(mut known) => {
-                if let Some(place) = (&mut *known as &mut dyn Any).downcast_mut() {
-                    *place = row;
-                }
-                known
+        let kind = TypeId::of::<R>();
+        if let Some(slot) = self.rows.iter_mut().find(|slot| slot.kind == kind && !slot.is_set) {
+            if let Some(place) = (&mut *slot.row as &mut dyn Any).downcast_mut() {
+                *place = row;
             }
-            None => Box::new(row),
-        };
-        self.insert(ReportedRow { row, revision, is_repeated: false });
+            (slot.is_set, slot.revision, slot.is_repeated) = (true, revision, false);
+            return;
+        }
+        let rank = |row: &dyn LogRow| report_rank(row.topic().declared_index());
+        let own = rank(&row);
+        let place = self.rows.partition_point(|other| rank(&*other.row) <= own);
+        let slot = RowSlot { kind, row: Box::new(row), is_set: true, revision, is_repeated: false };
+        self.rows.insert(place, slot);
     }
 
     /// Adds a value that metrics and figures read, and that is not logged.
     pub fn add_value<T: ReportValue>(&mut self, value: T) {
-        let spare = self.spare_values.iter().position(|spare| (&**spare as &dyn Any).is::<T>());
-        let value = match spare.map(|index| self.spare_values.swap_remove(index)) {
-            Some(mut known) => {
-                if let Some(place) = (&mut *known as &mut dyn Any).downcast_mut() {
-                    *place = value;
-                }
-                known
-            }
-            None => Box::new(value),
-        };
-        self.values.push(value);
+        match self.free_value() {
+            Some(place) => *place = value,
+            None => self.push_value(value, true),
+        }
     }
 
-    /// Inserts a row after those of topics that are written before its own.
-    fn insert(&mut self, reported: ReportedRow) {
-        let rank = |row: &dyn LogRow| report_rank(row.topic().declared_index());
-        let own = rank(&*reported.row);
-        let place = self.rows.partition_point(|other| rank(&*other.row) <= own);
-        self.rows.insert(place, reported);
+    /// Adds a value that metrics and figures read, and returns it to be overwritten: the default, or an earlier value
+    /// whose memory is used again.
+    pub fn value_mut<T: ReportValue + Default>(&mut self) -> &mut T {
+        if !self.values.iter().any(|slot| slot.is_free_for::<T>()) {
+            self.push_value(T::default(), false);
+        }
+        self.free_value().expect("a value of this type is free")
+    }
+
+    /// Returns the first free value of a type, which belongs to the report from now on.
+    fn free_value<T: ReportValue>(&mut self) -> Option<&mut T> {
+        let slot = self.values.iter_mut().find(|slot| slot.is_free_for::<T>())?;
+        slot.is_set = true;
+        (&mut *slot.value as &mut dyn Any).downcast_mut()
+    }
+
+    fn push_value<T: ReportValue>(&mut self, value: T, is_set: bool) {
+        self.values.push(ValueSlot { kind: TypeId::of::<T>(), value: Box::new(value), is_set });
     }
 
     /// Returns the first row or value of this type.
     pub fn get<T: Any>(&self) -> Option<&T> {
-        let row = self.rows.iter().find_map(|reported| reported.row.downcast());
-        row.or_else(|| self.values.iter().find_map(|value| (&**value as &dyn Any).downcast_ref()))
+        let kind = TypeId::of::<T>();
+        if let Some(slot) = self.rows.iter().find(|slot| slot.kind == kind && slot.is_set) {
+            return slot.row.downcast();
+        }
+        let slot = self.values.iter().find(|slot| slot.kind == kind && slot.is_set)?;
+        (&*slot.value as &dyn Any).downcast_ref()
     }
 
     /// Returns the first row for the log of this type.
@@ -174,20 +202,20 @@ impl Report {
 
     /// Iterates over the rows for the log, in the order in which they are written.
     pub fn rows(&self) -> impl Iterator<Item = &dyn LogRow> {
-        self.rows.iter().filter(|reported| !reported.is_repeated).map(|reported| &*reported.row)
+        self.rows.iter().filter(|slot| slot.is_set && !slot.is_repeated).map(|slot| &*slot.row)
     }
 
     /// Returns true if there is neither a row nor a value.
     pub fn is_empty(&self) -> bool {
-        self.rows.is_empty() && self.values.is_empty()
+        !self.rows.iter().any(|slot| slot.is_set) && !self.values.iter().any(|slot| slot.is_set)
     }
 
     /// Marks the rows whose revision is already in the log, and stores the revisions of the others.
     pub fn skip_repeated(&mut self, logged: &mut LoggedRevisions) {
-        for reported in &mut self.rows {
-            let topic = reported.row.topic().declared_index();
-            let (Some(revision), Some(topic)) = (reported.revision, topic) else { continue };
-            reported.is_repeated = std::mem::replace(&mut logged.0[topic], revision) == revision;
+        for slot in self.rows.iter_mut().filter(|slot| slot.is_set) {
+            let topic = slot.row.topic().declared_index();
+            let (Some(revision), Some(topic)) = (slot.revision, topic) else { continue };
+            slot.is_repeated = std::mem::replace(&mut logged.0[topic], revision) == revision;
         }
     }
 }

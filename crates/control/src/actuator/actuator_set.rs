@@ -205,8 +205,11 @@ impl MomentumStorage for ActuatorSet {
 
 /// The pulses of all jets; those executed are known only from the held torques.
 impl PulsedActuator for ActuatorSet {
-    fn cycle(&self) -> JetCycle {
-        self.pulsed().next().map_or_else(JetCycle::default, PulsedActuator::cycle)
+    fn write_cycle(&self, cycle: &mut JetCycle) {
+        match self.pulsed().next() {
+            Some(jets) => jets.write_cycle(cycle),
+            None => *cycle = JetCycle::default(),
+        }
     }
 
     fn pending_pulses(&self) -> Vec<Pulse> {

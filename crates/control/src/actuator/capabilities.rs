@@ -50,7 +50,14 @@ pub trait MomentumStorage {
 /// Actuator that acts by pulses of jets.
 pub trait PulsedActuator {
     /// Returns the current cycle of pulses.
-    fn cycle(&self) -> JetCycle;
+    fn cycle(&self) -> JetCycle {
+        let mut cycle = JetCycle::default();
+        self.write_cycle(&mut cycle);
+        cycle
+    }
+
+    /// Writes the activity of the current cycle over that of another one, whose memory is used again.
+    fn write_cycle(&self, cycle: &mut JetCycle);
 
     /// Returns the pulses of the current cycle; `None` if they are known only from the held torques.
     fn executed_pulses(&self) -> Option<Vec<Pulse>> {
@@ -95,15 +102,15 @@ pub struct JetCycle {
 }
 
 impl JetCycle {
-    /// Adds the rows of the cycle, which are logged if pulses have begun since the last ones, and the cycle itself.
-    pub fn report(self, report: &mut Report) {
-        let [roll_on_s, pitch_on_s, yaw_on_s] = self.on;
-        let row = flexsc_record::Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg: self.fuel };
-        report.add_revision(self.pulses, row);
-        if !self.each.is_empty() {
-            let thrusters = self.each.iter().map(|on_s| ThrusterPulse { on_s: *on_s }).collect();
-            report.add_revision(self.pulses, Thrusters { thrusters });
+    /// Adds the current cycle of jets, and its rows, which are logged if pulses have begun since the last ones.
+    pub fn report(jets: &dyn PulsedActuator, report: &mut Report) {
+        let cycle: &mut Self = report.value_mut();
+        jets.write_cycle(cycle);
+        let ([roll_on_s, pitch_on_s, yaw_on_s], fuel_kg, pulses) = (cycle.on, cycle.fuel, cycle.pulses);
+        let thrusters: Vec<_> = cycle.each.iter().map(|on_s| ThrusterPulse { on_s: *on_s }).collect();
+        report.add_revision(pulses, flexsc_record::Jets { roll_on_s, pitch_on_s, yaw_on_s, fuel_kg });
+        if !thrusters.is_empty() {
+            report.add_revision(pulses, Thrusters { thrusters });
         }
-        report.add_value(self);
     }
 }

@@ -188,13 +188,13 @@ impl Part for AllocatedJets {
 
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         if at.occasion == Occasion::Cycle {
-            self.cycle().report(report);
+            JetCycle::report(self, report);
         }
     }
 }
 
 impl PulsedActuator for AllocatedJets {
-    fn cycle(&self) -> JetCycle {
+    fn write_cycle(&self, cycle: &mut JetCycle) {
         let turned = self.cycle_impulse();
         let on = [0, 1, 2].map(|axis| match self.largest[axis][usize::from(turned[axis] < 0.0)] {
             0.0 => 0.0,
@@ -202,15 +202,13 @@ impl PulsedActuator for AllocatedJets {
         });
         let since = self.valves.last_change();
         let left = |index: usize| self.ends[index].map_or(0.0, |end| end.since(since).seconds());
-        JetCycle {
-            on,
-            fuel: self.valves.propellant(left),
-            fuels: self.valves.fuels(left),
-            pulses: self.pulses,
-            burning: [0.0; 3],
-            each: self.executed.clone(),
-            open: self.valves.open_fractions(),
-        }
+        cycle.on = on;
+        cycle.fuel = self.valves.propellant(left);
+        cycle.fuels = self.valves.fuels(left);
+        cycle.pulses = self.pulses;
+        cycle.burning = [0.0; 3];
+        cycle.each.clone_from(&self.executed);
+        cycle.open = self.valves.open_fractions();
     }
 
     fn cycle_impulse(&self) -> Vector {

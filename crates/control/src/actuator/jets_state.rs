@@ -46,6 +46,8 @@ pub struct JetsState {
     next: Option<Instant>,
     /// Demands of the laws about the axes.
     demands: [Demand; 3],
+    /// Demanded torques about the axes (N m).
+    torques: [f64; 3],
     /// Signed on-times commanded in the last cycle, to be executed in the next (s).
     waiting: [f64; 3],
     /// Signed on-times of the current cycle (s).
@@ -78,6 +80,7 @@ impl JetsState {
             period: jets.period.unwrap_or(period),
             next: jets.period.map(|_| super::first(jets.phase)),
             demands: [Demand::Torque(0.0); 3],
+            torques: [0.0; 3],
             waiting: [0.0; 3],
             executed: [0.0; 3],
             ends: [None; 3],
@@ -131,15 +134,20 @@ impl JetsState {
         valves.set_open(now, |index| members[index].iter().filter(burns).count() as f64);
     }
 
-    /// Propellant until the end of the pulses (kg), of all jets and of each group or thruster.
-    fn fuel(&self) -> (f64, Vec<f64>) {
-        let Some((valves, members)) = &self.valves else { return (self.fuel, self.fuels.to_vec()) };
+    /// Writes the propellant of each group or thruster until the end of the pulses (kg), and returns that of all.
+    fn write_fuels(&self, fuels: &mut Vec<f64>) -> f64 {
+        let Some((valves, members)) = &self.valves else {
+            fuels.clear();
+            fuels.extend_from_slice(&self.fuels);
+            return self.fuel;
+        };
         let remaining = |[axis, side]: &[usize; 2]| {
             let own = usize::from(self.executed[*axis] < 0.0) == *side;
             self.ends[*axis].filter(|_| own).map_or(0.0, |end| end.since(valves.last_change()).seconds())
         };
         let remaining = |index: usize| members[index].iter().map(remaining).fold(0.0, f64::max);
-        (valves.propellant(remaining), valves.fuels(remaining))
+        *fuels = valves.fuels(remaining);
+        valves.propellant(remaining)
     }
 
     /// Returns the torque demanded about an axis (N m).
@@ -182,24 +190,20 @@ impl Part for JetsState {
 
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         if at.occasion == Occasion::Cycle {
-            self.cycle().report(report);
+            JetCycle::report(self, report);
         }
     }
 }
 
 impl PulsedActuator for JetsState {
-    fn cycle(&self) -> JetCycle {
+    fn write_cycle(&self, cycle: &mut JetCycle) {
         let sign = |axis: usize| if self.ends[axis].is_some() { self.executed[axis].signum() } else { 0.0 };
-        let (fuel, fuels) = self.fuel();
-        JetCycle {
-            on: self.executed,
-            fuel,
-            fuels,
-            pulses: self.pulses,
-            burning: [0, 1, 2].map(sign),
-            each: Vec::new(),
-            open: self.valves.as_ref().map_or_else(Vec::new, |(valves, _)| valves.open_fractions()),
-        }
+        cycle.on = self.executed;
+        cycle.fuel = self.write_fuels(&mut cycle.fuels);
+        cycle.pulses = self.pulses;
+        cycle.burning = [0, 1, 2].map(sign);
+        cycle.each.clear();
+        cycle.open = self.valves.as_ref().map_or_else(Vec::new, |(valves, _)| valves.open_fractions());
     }
 
     fn executed_pulses(&self) -> Option<Vec<Pulse>> {
@@ -227,6 +231,7 @@ impl Actuator for JetsState {
         for (own, demand) in self.demands.iter_mut().zip(demands) {
             *own = *demand;
         }
+        self.torques = [0, 1, 2].map(|axis| self.demanded_torque(axis));
         if self.next.is_none() {
             self.begin(now);
         }
@@ -256,7 +261,7 @@ impl Actuator for JetsState {
         let on = self.executed[axis];
         let fires = self.ends[axis].is_some();
         AxisEffort {
-            demanded: self.demanded_torque(axis),
+            demanded: self.torques[axis],
             held: self.held_torque(axis),
             firing: 0.0,
             reduced_moment: if fires { on.signum() * self.group(axis, on).acceleration } else { 0.0 },

@@ -177,7 +177,11 @@ impl Controllers {
     }
 
     /// Returns the status of active damping in the last cycle about each axis; the default for laws without it.
-    pub fn damping_status(&self) -> Vec<DampingStatus> {
-        self.axes.iter().map(|held| held.law.state().damping.copied().unwrap_or_default()).collect()
+    pub fn damping_status(&self) -> [DampingStatus; 3] {
+        let mut status = [DampingStatus::default(); 3];
+        for (held, status) in self.axes.iter().zip(&mut status) {
+            *status = held.law.state().damping.copied().unwrap_or_default();
+        }
+        status
     }
 }

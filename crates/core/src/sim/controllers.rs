@@ -208,7 +208,7 @@ impl ControlLaws {
     }
 
     /// Returns the status of active damping in the last cycle about each axis.
-    pub fn damping_status(&self) -> Vec<DampingStatus> {
+    pub fn damping_status(&self) -> [DampingStatus; 3] {
         self.laws.damping_status()
     }
 }

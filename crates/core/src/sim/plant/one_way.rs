@@ -222,13 +222,18 @@ impl ThreeAxisQuantities for OneWayFlow {
         (self.body.rigid.energy(turn), whole.norm())
     }
 
-    fn modal_energies(&self, take: &mut dyn FnMut(f64)) {
+    fn modal_energies(&self) -> Vec<f64> {
         let ThreeAxisBody { elastic, state, evaluated_at, .. } = &self.body;
         match &self.drifting {
-            Some(drifting) => {
-                drifting.energies(evaluated_at.seconds(), &state.modes).into_iter().for_each(take);
-            }
-            None => elastic.energies(&state.modes).for_each(take),
+            Some(drifting) => drifting.energies(evaluated_at.seconds(), &state.modes),
+            None => elastic.energies(&state.modes).collect(),
+        }
+    }
+
+    fn elastic_energies(&self) -> (f64, f64) {
+        match &self.drifting {
+            Some(_) => self.body.sum_energies(self.modal_energies().into_iter()),
+            None => self.body.sum_energies(self.body.elastic.energies(&self.body.state.modes)),
         }
     }
 

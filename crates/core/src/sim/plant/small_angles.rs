@@ -264,8 +264,12 @@ impl ThreeAxisQuantities for SmallAnglesFlow {
         (0.5 * momentum.dot(rates), (momentum + self.stored()).norm())
     }
 
-    fn modal_energies(&self, take: &mut dyn FnMut(f64)) {
-        self.body.elastic.energies(&self.body.state.modes).for_each(take);
+    fn modal_energies(&self) -> Vec<f64> {
+        self.body.elastic.energies(&self.body.state.modes).collect()
+    }
+
+    fn elastic_energies(&self) -> (f64, f64) {
+        self.body.sum_energies(self.body.elastic.energies(&self.body.state.modes))
     }
 
     fn fastest_frequency(&self) -> f64 {

@@ -56,8 +56,12 @@ pub trait ThreeAxisQuantities {
     /// Returns the energy of the rotation (J), and the angular momentum including rotors (N m s).
     fn rotational_energy(&self) -> (f64, f64);
 
-    /// Passes the energy of each mode (J) to `take`.
-    fn modal_energies(&self, take: &mut dyn FnMut(f64));
+    /// Returns the energy of each mode (J).
+    fn modal_energies(&self) -> Vec<f64>;
+
+    /// Returns the elastic energy (J) at the current instant: total, and of the modes visible to the first sensor. Slow
+    /// modes with little rotation there are excluded, because no law can damp them.
+    fn elastic_energies(&self) -> (f64, f64);
 
     /// Returns an upper bound on the frequencies in the motion (rad/s): the sum of the fastest mode and of all rates that
     /// rotate or drive the body, so that their products are included.
@@ -153,8 +157,10 @@ impl ThreeAxisBody {
         self.elastic.rates(&self.state.modes)
     }
 
-    /// Returns true if a mode is visible to the first sensor.
-    pub fn is_visible(&self, mode: usize) -> bool {
-        self.visible.get(mode).is_some_and(|visible| *visible)
+    /// Returns the sum of the energies of the modes (J), and that of the modes visible to the first sensor.
+    pub fn sum_energies(&self, energies: impl Iterator<Item = f64>) -> (f64, f64) {
+        energies.zip(&self.visible).fold((-0.0, -0.0), |(all, visible), (energy, is_visible)| {
+            (all + energy, if *is_visible { visible + energy } else { visible })
+        })
     }
 }

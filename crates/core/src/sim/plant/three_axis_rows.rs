@@ -25,20 +25,6 @@ impl dyn ThreeAxisQuantities + '_ {
         self.external_torque().map(|all| all - self.magnetic_torque())
     }
 
-    /// Returns the elastic energy (J) at the current instant: total, and of the modes visible to the first sensor. Slow
-    /// modes with little rotation there are excluded, because no law can damp them.
-    pub fn elastic_energies(&self) -> (f64, f64) {
-        let (mut all, mut visible, mut mode) = (-0.0, -0.0, 0);
-        self.modal_energies(&mut |energy| {
-            all += energy;
-            if self.body().is_visible(mode) {
-                visible += energy;
-            }
-            mode += 1;
-        });
-        (all, visible)
-    }
-
     /// Returns the heat of the wheels' friction since the start (J); NaN without bearings.
     pub fn friction_heat(&self) -> f64 {
         self.coupled().and_then(|segment| segment.motion.friction_heat()).unwrap_or(f64::NAN)
@@ -130,9 +116,7 @@ impl dyn ThreeAxisQuantities + '_ {
     /// Returns the row of the modes.
     pub fn vibrations(&self) -> Vibrations {
         let modes = &self.body().state.modes;
-        let mut energies = Vec::with_capacity(modes.len());
-        self.modal_energies(&mut |energy| energies.push(energy));
-        let rates = self.body().elastic.rates(modes).zip(energies);
+        let rates = self.body().elastic.rates(modes).zip(self.modal_energies());
         let of = |(phase, (rate, energy_j)): (&ModeState, (f64, f64))| Vibration {
             displacement: phase.displacement,
             rate,

@@ -141,11 +141,19 @@ impl ThreeAxisQuantities for TwoWayFlow {
         self.motion.energy()
     }
 
-    fn modal_energies(&self, take: &mut dyn FnMut(f64)) {
+    fn modal_energies(&self) -> Vec<f64> {
         if self.motion.modes().is_some() {
-            self.motion.modal_energies().for_each(take);
+            self.motion.modal_energies().collect()
         } else {
-            self.body.elastic.energies(&self.body.state.modes).for_each(take);
+            self.body.elastic.energies(&self.body.state.modes).collect()
+        }
+    }
+
+    fn elastic_energies(&self) -> (f64, f64) {
+        if self.motion.modes().is_some() {
+            self.body.sum_energies(self.motion.modal_energies())
+        } else {
+            self.body.sum_energies(self.body.elastic.energies(&self.body.state.modes))
         }
     }
 
