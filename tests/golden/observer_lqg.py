@@ -1,9 +1,10 @@
-"""LQG law of scenarios/earth-observer-lqg.toml, by NumPy and SciPy: this program prints its `[law.state_space]`.
+"""LQG law of scenarios/earth-observer-lqg.toml, by NumPy and SciPy.
 
-The plant is the linear model of scenarios/earth-observer.toml with its rigid motion and the mode of 2.07 rad/s,
-which torques excite most, sampled with the law's period. Its inputs are the accelerations that the engine multiplies by the inertia; its
-outputs are the estimated angles and rates. The regulator is LQR, the observer a steady Kalman filter that uses
-the sample of the instant.
+The program prints its `[law.state_space]`. The plant is the linear model of scenarios/earth-observer.toml
+with its rigid motion and the mode of 2.07 rad/s, which torques excite most, sampled with the law's
+period. Its inputs are the accelerations that the engine multiplies by the inertia; its outputs are the
+estimated angles and rates. The regulator is LQR, the observer a steady Kalman filter that uses the sample
+of the instant.
 
     python tests/golden/observer_lqg.py
 """
@@ -40,7 +41,7 @@ def compensator(model):
     """Return A, B, C and D from the errors of angles and rates to accelerations."""
     a, b, c = plant(model)
     a, b = sampled(a, b)
-    # Bryson's rule: 1e-4 rad, 1e-5 rad/s of rigid motion and 1e-4 rad of vibration cost as much as 1e-6 rad/s².
+    # Bryson's rule: 1e-4 rad and 1e-5 rad/s, of rigid motion or of vibration, cost as much as 1e-6 rad/s².
     seen = c.copy()
     seen[:, :6] = 0.0
     cost = np.diag([1e4**2] * 3 + [1e5**2] * 3 + [0.0, 0.0])
