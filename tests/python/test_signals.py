@@ -110,16 +110,6 @@ def test_a_law_about_each_axis_says_which() -> None:
     assert 0.0 < last[0] < last[1] < last[2]
 
 
-def test_sensors_of_a_list_have_their_place() -> None:
-    text = PLANAR.replace("[sensor.sampled]\nperiod = 0.25", "").replace(
-        "duration", 'sensor = ["continuous", "continuous"]\nduration'
-    )
-    scenario = flexsc.Scenario.parse(text, "own")
-    scenario = scenario.with_parts(law=Law(), sensor={0: Sensor(), 1: Sensor()})
-    run = scenario.simulate(log="full")
-    assert {"own_sensor", "own_sensor1"} <= set(run)
-
-
 @pytest.mark.parametrize(
     ("changes", "error", "why"),
     [

@@ -54,8 +54,8 @@ def law_of(
         if inputs is not None or outputs is not None:
             raise ValueError("inputs and outputs are those of one controller about three axes together")
         if set(controller) != set(_AXES):
-            found = ", ".join(map(str, controller))
-            raise ValueError(f"controllers must be given for {', '.join(_AXES)}, got {found}")
+            names = ", ".join(map(str, controller))
+            raise ValueError(f"controllers must be given for {', '.join(_AXES)}, got {names}")
         return {"per_axis": {axis: law_of(controller[axis], settings, None, None) for axis in _AXES}}
     found = _controller(controller)
     if settings.method not in ("held", "tustin"):
