@@ -73,8 +73,8 @@ def law_of(
     if settings.track:
         keys["track"] = True
     if found.d.shape[0] != 1 or inputs is not None or outputs is not None:
-        keys["inputs"] = _inputs(found, inputs)
         keys["outputs"] = _outputs(found, outputs, settings.command)
+        keys["inputs"] = _inputs(found, inputs)
     return {"state_space": keys}
 
 

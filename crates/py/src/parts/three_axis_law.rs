@@ -44,31 +44,37 @@ impl ThreeAxisEvent {
 
 #[pymethods]
 impl ThreeAxisEvent {
+    /// When: `event.now - earlier` is the time between (s), without rounding before the difference.
     #[getter]
     fn now(&self) -> Instant {
         Instant(self.now)
     }
 
+    /// Time of the event (s).
     #[getter]
     fn time(&self) -> f64 {
         self.now.seconds()
     }
 
+    /// The start of the run, or the time of the last hold.
     #[getter]
     fn cause(&self) -> &'static str {
         self.cause
     }
 
+    /// Rotation vector from the target to the estimated attitude (rad), in body axes.
     #[getter]
     fn angles(&self) -> Three {
         self.each(|estimate| estimate.angle)
     }
 
+    /// Estimated rates (rad/s), in body axes.
     #[getter]
     fn rates(&self) -> Three {
         self.each(|estimate| estimate.rate)
     }
 
+    /// Quaternion (w, x, y, z) of the rotation from the target.
     #[getter]
     fn quaternion(&self) -> Four {
         let (x, y, z) = self.angles();
@@ -77,26 +83,31 @@ impl ThreeAxisEvent {
         ((0.5 * angle).cos(), share * x, share * y, share * z)
     }
 
+    /// Goal of the angles (rad).
     #[getter]
     fn goal_angles(&self) -> Three {
         self.setpoints.map(|setpoint| setpoint.at(self.now).0).into()
     }
 
+    /// Goal of the rates (rad/s).
     #[getter]
     fn goal_rates(&self) -> Three {
         self.setpoints.map(|setpoint| setpoint.rate).into()
     }
 
+    /// Goal of the accelerations (rad/s²), for a target with a reference motion.
     #[getter]
     fn goal_accelerations(&self) -> Three {
         self.setpoints.map(|setpoint| setpoint.acceleration).into()
     }
 
+    /// Rates of change of the magnetic field along the body axes (T/s).
     #[getter]
     fn field_rates(&self) -> Three {
         self.each(|estimate| estimate.field_rate)
     }
 
+    /// Speeds of the reaction wheels (rad/s), as available to their drives.
     #[getter]
     fn wheel_speeds(&self) -> Vec<f64> {
         self.wheel_speeds.clone()
@@ -110,6 +121,13 @@ impl ThreeAxisEvent {
 }
 
 /// Commands about three axes from now on, and the time of the next call of the law.
+///
+/// `ThreeAxisHold(torques)` holds torques (N m) of shape (3,); `accelerations` (rad/s²) and magnetic `moments` (A m²) take
+/// their place. The law is asked again `after` this time (s), or at the instant `until`; without a time after its `period`.
+///
+/// >>> import flexsc
+/// >>> flexsc.ThreeAxisHold([0.01, 0.0, -0.02], after=0.5).torques
+/// (0.01, 0.0, -0.02)
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
 pub struct ThreeAxisHold {
