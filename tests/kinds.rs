@@ -3,7 +3,7 @@
 /// Kind of a part: its name, its letter in the table, and its text.
 pub type Kind = (&'static str, &'static str, &'static str);
 
-pub const LAWS: [Kind; 10] = [
+pub const LAWS: [Kind; 11] = [
     ("relay", "", "relay = { dead_zone = 5e-4, hysteresis = 1e-4, strong = 4e-3, weak = 1e-4, k_t = 0.3 }"),
     ("pd", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2 }"),
     ("pd with an extra loop", "", "pd = { k_p = 0.4, k_d = 6.0, period = 0.2, extra = { gain = 0.1 } }"),
@@ -12,6 +12,11 @@ pub const LAWS: [Kind; 10] = [
         "state_space",
         "",
         "state_space = { period = 0.2, a = [[0.5]], b = [[-3.0, 0.0]], c = [[1.0]], d = [[0.4, 6.0]] }",
+    ),
+    (
+        "state_space about three axes",
+        "",
+        "state_space = { period = 0.2, inputs = [\"roll\", \"pitch\", \"yaw\", \"roll_rate\", \"pitch_rate\", \"yaw_rate\"], a = [[0.5]], b = [[-3.0, 0.1, 0.0, 0.0, 0.2, 0.0]], c = [[1.0], [0.1], [0.0]], d = [[0.4, 0.01, 0.0, 6.0, 0.1, 0.0], [0.0, 0.4, 0.02, 0.0, 6.0, 0.2], [0.01, 0.0, 0.4, 0.1, 0.0, 6.0]] }",
     ),
     ("open", "", "open = {}"),
     (

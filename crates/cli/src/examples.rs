@@ -26,6 +26,7 @@ pub const EXAMPLES: &[(&str, &str)] = shipped![
     "canted-jets",
     "detumble-and-point",
     "earth-observer",
+    "earth-observer-lqg",
     "flexible-boom",
     "four-clamped-modes",
     "four-clamped-modes-faults",

@@ -100,6 +100,8 @@ pub struct LawOffers {
     pub commands_moments: bool,
     /// True if the law has states between which it switches.
     pub has_states: bool,
+    /// True if the law acts about three axes together.
+    pub is_three_axis: bool,
 }
 
 impl LawOffers {
@@ -114,6 +116,7 @@ impl LawOffers {
             plans_pulses: false,
             commands_moments: false,
             has_states: false,
+            is_three_axis: false,
         }
     }
 
@@ -203,6 +206,8 @@ pub struct ActuatorOffers {
     pub turns_with_gimbals: bool,
     /// True if there are reaction wheels about axes of their own.
     pub has_reaction_wheels: bool,
+    /// Number of reaction wheels about axes of their own.
+    pub wheels: usize,
     /// True if the speeds of wheels are known.
     pub has_wheel_speeds: bool,
     /// True if thrusters at points of the body push it.

@@ -80,7 +80,7 @@ mod _native {
     #[pymodule_export]
     use super::parts::{
         Authority, Demanded, Draws, Effort, Event, Hold, Instant, Known, Reading, Setting, Stream, Taken,
-        Truth, beside_parts, parts_of, text_beside_parts, with_parts,
+        ThreeAxisEvent, ThreeAxisHold, Truth, beside_parts, parts_of, text_beside_parts, with_parts,
     };
     #[pymodule_export]
     use super::sampled::{gain_regions_json, robust_gains_json, stability_map_json};

@@ -194,6 +194,10 @@ impl MomentumStorage for ActuatorSet {
         stored.reduce(|sum, next| sum + next).unwrap_or_default().into()
     }
 
+    fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {
+        self.each().flat_map(|actuator| actuator.capabilities().wheel_speeds(now, rate)).collect()
+    }
+
     fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
         self.each().flat_map(|actuator| actuator.capabilities().wheels(now, rate)).collect()
     }

@@ -25,6 +25,12 @@ impl Capabilities<'_> {
         self.momentum.map_or([0.0; 3], |storage| storage.stored_momentum(now))
     }
 
+    /// Returns the speeds of reaction wheels relative to a body with this rate (rad/s), as available to the drives; empty
+    /// without any.
+    pub fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {
+        self.momentum.map_or_else(Vec::new, |storage| storage.wheel_speeds(now, rate))
+    }
+
     /// Returns the log rows of wheels about their own axes, of a body with this rate (rad/s); empty without any.
     pub fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
         self.momentum.map_or_else(Vec::new, |storage| storage.wheels(now, rate))
@@ -38,6 +44,11 @@ pub trait MomentumStorage {
 
     /// Returns the log rows of wheels about their own axes, of a body with this rate (rad/s).
     fn wheels(&self, _now: Instant, _rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
+        Vec::new()
+    }
+
+    /// Returns the speeds of reaction wheels relative to a body with this rate (rad/s), as available to the drives.
+    fn wheel_speeds(&self, _now: Instant, _rate: [f64; 3]) -> Vec<f64> {
         Vec::new()
     }
 

@@ -113,6 +113,7 @@ impl Wheels {
         ActuatorOffers {
             limits: [limit; 3],
             has_reaction_wheels: true,
+            wheels: self.directions().map_or(0, |axes| axes.len()),
             has_wheel_speeds: true,
             ..ActuatorOffers::default()
         }

@@ -1,18 +1,24 @@
-//! Run-time state of the laws of a run, one about each axis, with their current outputs.
+//! Run-time state of the laws of a run, one about each axis or one about three axes together, with their current outputs.
 
 use flexsc_dynamics::guard::{AxisGuards, Guard};
 use flexsc_numerics::time::Instant;
 use flexsc_record::Report;
 
-use super::{Authority, Command, ControlOutput, DampingStatus, DecisionCause, Law, LawKind, Phase, Setpoint};
+use super::{
+    Authority, Command, ControlOutput, DampingStatus, DecisionCause, Law, LawKind, LawState, Phase,
+    ReferenceNeeds, Setpoint, ThreeAxisInput, ThreeAxisLaw, ThreeAxisOutput,
+};
 use crate::custom::PartError;
 use crate::part::{Part, ReportContext};
 use crate::state_estimate::StateEstimate;
 
 /// Run-time state of the laws of all axes.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub struct Controllers {
+    /// Law about each axis; empty if one law acts about three axes together.
     axes: Vec<ControllerState>,
+    /// Law about three axes together, with its current output.
+    three_axis: Option<(Box<dyn ThreeAxisLaw>, ThreeAxisOutput)>,
     /// Earliest time of the laws' next decision.
     until: Option<Instant>,
     /// Commands set from outside, which replace the laws' outputs.
@@ -26,10 +32,12 @@ impl Part for Controllers {
 
     fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
         self.axes.iter().for_each(|held| held.law.report(at, report));
+        self.three_axis.iter().for_each(|(law, _)| law.report(at, report));
     }
 
     fn failure(&self) -> Option<PartError> {
-        self.axes.iter().find_map(|held| held.law.failure())
+        let three_axis = self.three_axis.iter().find_map(|(law, _)| law.failure());
+        three_axis.or_else(|| self.axes.iter().find_map(|held| held.law.failure()))
     }
 }
 
@@ -68,7 +76,10 @@ impl Controllers {
             let place = if let LawKind::PerAxis(laws) = law { laws.key_prefix(axis) } else { String::new() };
             ControllerState { law: law.about(axis).start(authority), hold: ControlOutput::NONE, place }
         };
-        Self { axes: authorities.iter().enumerate().map(axis).collect(), until: None, steered: None }
+        match law.start_three_axis(authorities) {
+            Some(law) => Self { three_axis: Some((law, ThreeAxisOutput::NONE)), ..Self::default() },
+            None => Self { axes: authorities.iter().enumerate().map(axis).collect(), ..Self::default() },
+        }
     }
 
     /// Sets commands that replace the laws' outputs from now on; the laws no longer decide.
@@ -76,6 +87,7 @@ impl Controllers {
         if self.steered.replace(commands).is_none() {
             self.until = None;
             self.axes.iter_mut().for_each(|held| held.hold = ControlOutput::NONE);
+            self.three_axis.iter_mut().for_each(|(_, output)| *output = ThreeAxisOutput::NONE);
         }
     }
 
@@ -84,14 +96,29 @@ impl Controllers {
         self.steered.is_some()
     }
 
-    /// Lets the laws that an event concerns decide. Returns the cause of the first decision, if any.
+    /// Lets the laws that an event concerns decide, on the setpoint about each axis, the state estimates, and the speeds of
+    /// wheels (rad/s). Returns the cause of the first decision, if any.
     pub fn decide(
         &mut self,
         now: Instant,
         event: Event,
-        goal: impl Fn(usize, &dyn Law) -> Setpoint,
+        goal: impl Fn(usize, ReferenceNeeds) -> Setpoint,
         state_estimates: &[StateEstimate],
+        wheel_speeds: &dyn Fn() -> Vec<f64>,
     ) -> Option<DecisionCause> {
+        if let Some((law, output)) = &mut self.three_axis {
+            let cause = match event {
+                Event::Start => DecisionCause::Start,
+                _ if output.until == Some(now) => DecisionCause::Timeout,
+                _ => return None,
+            };
+            let needs = law.reference_needs();
+            let setpoints = [0, 1, 2].map(|axis| goal(axis, needs));
+            let input = ThreeAxisInput { setpoints, estimates: state_estimates, wheel_speeds };
+            *output = law.decide(now, cause, &input);
+            self.until = output.until;
+            return Some(cause);
+        }
         let mut first = None;
         for (axis, (held, state_estimate)) in self.axes.iter_mut().zip(state_estimates).enumerate() {
             let timeout = held.hold.until.filter(|until| *until == now).map(|_| DecisionCause::Timeout);
@@ -105,7 +132,8 @@ impl Controllers {
                 Event::Guard { .. } | Event::Due { sampled: false } => timeout,
             };
             if let Some(cause) = cause {
-                held.hold = held.law.decide(now, cause, &goal(axis, &*held.law), state_estimate);
+                held.hold =
+                    held.law.decide(now, cause, &goal(axis, held.law.reference_needs()), state_estimate);
                 first = first.or(Some(cause));
             }
         }
@@ -150,6 +178,9 @@ impl Controllers {
         if let Some(commands) = self.steered {
             return commands;
         }
+        if let Some((_, output)) = &self.three_axis {
+            return output.commands;
+        }
         let mut commands = [Command::Torque(0.0); 3];
         for (held, command) in self.axes.iter().zip(&mut commands) {
             *command = held.hold.command;
@@ -157,13 +188,17 @@ impl Controllers {
         commands
     }
 
-    /// Returns the law about an axis.
-    pub fn about(&self, axis: usize) -> &dyn Law {
-        &*self.axes[axis].law
+    /// Returns the state of the law about an axis.
+    pub fn state(&self, axis: usize) -> LawState<'_> {
+        match &self.three_axis {
+            Some((law, _)) => law.state(),
+            None => self.axes[axis].law.state(),
+        }
     }
 
     /// Sets a parameter of all laws, or of the law about one axis that the key selects.
     pub fn tune(&mut self, key: &str, value: f64) {
+        self.three_axis.iter_mut().for_each(|(law, _)| law.tune(key, value));
         for held in &mut self.axes {
             if let Some(key) = key.strip_prefix(held.place.as_str()) {
                 held.law.tune(key, value);
@@ -173,7 +208,9 @@ impl Controllers {
 
     /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).
     pub fn lead_time(&self) -> f64 {
-        self.axes.iter().map(|held| held.law.reference_needs().lead_time).fold(0.0, f64::max)
+        let one_axis = self.axes.iter().map(|held| held.law.reference_needs());
+        let three_axis = self.three_axis.iter().map(|(law, _)| law.reference_needs());
+        one_axis.chain(three_axis).map(|needs| needs.lead_time).fold(0.0, f64::max)
     }
 
     /// Returns the status of active damping in the last cycle about each axis; the default for laws without it.

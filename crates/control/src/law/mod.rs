@@ -5,6 +5,7 @@ mod attitude;
 mod attitude_profile;
 mod b_dot;
 mod controllers;
+mod discrete_matrices;
 mod distribution;
 mod error_measure;
 mod filter;
@@ -23,14 +24,18 @@ mod slew_tests;
 mod stages;
 mod state_space;
 mod switching_lines;
+mod three_axis_law;
+mod three_axis_state_space;
 mod torque_conditions;
 mod tunable;
 
 use std::any::Any;
 use std::ops::Deref;
+use std::sync::Arc;
 
 use flexsc_dynamics::guard::Guard;
 use flexsc_formats::document::ConfigError;
+use flexsc_record::CustomTopic;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -63,6 +68,7 @@ pub use relay::{Relay, RelaySides};
 pub use stages::{Stage, Stages};
 pub use state_space::{OutputQuantity, StateSpace, TimeDomain};
 pub use switching_lines::{SwitchingLines, error_band};
+pub use three_axis_law::{ThreeAxisInput, ThreeAxisLaw, ThreeAxisOutput};
 pub use torque_conditions::TorqueConditions;
 pub use tunable::{Tunable, TunedNumbers};
 
@@ -97,6 +103,17 @@ pub enum LawKind {
 pub trait LawSpec {
     /// Returns the run-time state of the law about an axis with this actuator authority.
     fn start(&self, authority: &Authority) -> Box<dyn Law>;
+
+    /// Returns the run-time state of a law about three axes together with these actuator authorities; `None` for a law
+    /// about one axis.
+    fn start_three_axis(&self, _authorities: &[Authority]) -> Option<Box<dyn ThreeAxisLaw>> {
+        None
+    }
+
+    /// Returns the topics of the rows that a law of the engine reports beyond those of the engine.
+    fn topics(&self) -> Vec<Arc<CustomTopic>> {
+        Vec::new()
+    }
 
     /// Returns the offers of the law to the other parts of a scenario; by default those of a law without a period that
     /// reads estimates of the motion.

@@ -1,6 +1,9 @@
 //! Properties of the law of a scenario that only some kinds have.
 
+use std::sync::Arc;
+
 use flexsc_numerics::quantity::Finite;
+use flexsc_record::CustomTopic;
 
 use super::{ActiveDamping, AttitudeTarget, Authority, LawKind, LawSpec, Pd, Relay, error_band};
 use crate::custom::Custom;
@@ -72,6 +75,11 @@ impl LawKind {
     /// Returns the target attitudes within the law; empty if those of the scenario apply.
     pub fn own_targets(&self) -> &[AttitudeTarget] {
         if let Self::PhasePlane(law) = self { &law.targets } else { &[] }
+    }
+
+    /// Returns the topics of the rows that the law reports beyond those of the engine.
+    pub fn custom_topics(&self) -> Vec<Arc<CustomTopic>> {
+        self.custom().map_or_else(|| self.topics(), |own| own.topics().to_vec())
     }
 
     /// Returns the law of another crate, if it is one.

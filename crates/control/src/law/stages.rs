@@ -72,6 +72,10 @@ impl Stages {
         self.0.iter().enumerate().find_map(|(index, stage)| {
             let key = format!("[{index}].law.{}", stage.law.kind());
             match &stage.law {
+                law if law.offers().is_three_axis => {
+                    let why = "acts about three axes together: a stage has a law about each axis";
+                    Some(ConfigError::new(key, why))
+                }
                 law @ (LawKind::BDot(_)
                 | LawKind::Pd(_)
                 | LawKind::Attitude(_)

@@ -1,24 +1,29 @@
 //! A compensator given by its matrices, x' = A x + B e, u = C x + D e, at samples, as design programs export it.
 //!
 //! e is the setpoint minus the estimate, of the angle and, with a second column of B and D, of the rate: a PD law is D
-//! = \[\[k_p, k_d\]\]. Matrices in continuous time are discretised exactly, with the error held over a period, or by
-//! Tustin's rule (\[FranklinPowell98\]).
+//! = \[\[k_p, k_d\]\]. With named inputs and outputs it is one compensator about three axes together.
+
+use std::sync::Arc;
 
 use flexsc_formats::count::counted;
 use flexsc_formats::document::ConfigError;
-use flexsc_numerics::exponential::exponential;
+use flexsc_numerics::attitude::AXES;
 use flexsc_numerics::quantity::{Finite, Positive};
 use flexsc_numerics::time::{Instant, Span};
+use flexsc_record::CustomTopic;
 use nalgebra::DMatrix;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
+use super::discrete_matrices::{DiscreteMatrices, matrix};
+use super::three_axis_state_space::{CompensatorInput, ThreeAxisStateSpace, states_topic};
 use super::{
     Authority, Command, ControlOutput, DecisionCause, ErrorBand, EstimateNeeds, Guards, Law, LawSpec,
-    LawState, Phase, ReferenceNeeds, Setpoint, TorqueConditions, Tunable,
+    LawState, Phase, ReferenceNeeds, Setpoint, ThreeAxisLaw, TorqueConditions, Tunable,
 };
-use crate::offers::LawOffers;
+use crate::offers::{LawOffers, LawPlace, Offers};
 use crate::part::Part;
+use crate::requirement::{Requirements, Rule};
 use crate::state_estimate::StateEstimate;
 
 /// Largest number of states.
@@ -33,15 +38,21 @@ pub struct StateSpace {
     /// Matrix A, row by row; default: there are no states.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub a: Vec<Vec<Finite>>,
-    /// Matrix B: one row per state; one column for the angle error (rad) and optionally a second for the rate error (rad/s).
+    /// Matrix B: one row per state; one column for each input, or for the angle error (rad) and optionally a second for the rate error (rad/s).
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub b: Vec<Vec<Finite>>,
-    /// Matrix C: one row.
+    /// Matrix C: one row, or one for each output.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub c: Vec<Vec<Finite>>,
-    /// Matrix D: one row; default: it is zero.
+    /// Matrix D: one row, or one for each output; default: it is zero.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub d: Vec<Vec<Finite>>,
+    /// Names of the inputs of one law about three axes together; default: a law about each axis.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub inputs: Vec<String>,
+    /// Axes of the outputs of one law about three axes together; default: roll, pitch and yaw.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub outputs: Vec<String>,
     /// Whether the matrices are in discrete or continuous time.
     #[serde(default)]
     pub of: TimeDomain,
@@ -94,31 +105,94 @@ pub enum OutputQuantity {
     Acceleration,
 }
 
-/// Matrices in discrete time.
-#[derive(Clone, Debug, PartialEq)]
-struct DiscreteMatrices {
-    a: DMatrix<f64>,
-    b: DMatrix<f64>,
-    c: DMatrix<f64>,
-    d: DMatrix<f64>,
-}
-
-/// Returns a matrix with `columns` columns, or the key of the first row with another length.
-fn matrix(key: &str, rows: &[Vec<Finite>], columns: usize) -> Result<DMatrix<f64>, ConfigError> {
-    match rows.iter().position(|row| row.len() != columns) {
-        Some(row) => Err(ConfigError::new(
-            format!("{key}[{row}]"),
-            format!(
-                "must have {columns} column{}, got {}",
-                if columns == 1 { "" } else { "s" },
-                rows[row].len()
-            ),
-        )),
-        None => Ok(DMatrix::from_fn(rows.len(), columns, |row, column| rows[row][column].get())),
-    }
+/// Returns the index of the first name that occurs earlier, as an error.
+fn first_repetition(names: &[String]) -> Option<ConfigError> {
+    let index = (1..names.len()).find(|index| names[..*index].contains(&names[*index]))?;
+    Some(ConfigError::new(format!("[{index}]"), format!("is given twice: `{}`", names[index])))
 }
 
 impl StateSpace {
+    /// Returns true if the law acts about three axes together.
+    fn is_three_axis(&self) -> bool {
+        !(self.inputs.is_empty() && self.outputs.is_empty())
+    }
+
+    /// Returns the inputs of a law about three axes together.
+    fn named_inputs(&self) -> Result<Vec<CompensatorInput>, ConfigError> {
+        if self.inputs.is_empty() {
+            let why = format!("must name the columns of B and D, each {}", CompensatorInput::ACCEPTED);
+            return Err(ConfigError::new("inputs", why));
+        }
+        let input = |(index, name): (usize, &String)| {
+            CompensatorInput::from_name(name).ok_or_else(|| {
+                let why = format!("must be {}, got `{name}`", CompensatorInput::ACCEPTED);
+                ConfigError::new(format!("inputs[{index}]"), why)
+            })
+        };
+        let inputs = self.inputs.iter().enumerate().map(input).collect::<Result<Vec<_>, _>>()?;
+        match first_repetition(&self.inputs) {
+            Some(fault) => Err(fault.within("inputs")),
+            None => Ok(inputs),
+        }
+    }
+
+    /// Returns the axes of the outputs of a law about three axes together.
+    fn named_outputs(&self) -> Result<Vec<usize>, ConfigError> {
+        if self.outputs.is_empty() {
+            return Ok(vec![0, 1, 2]);
+        }
+        let output = |(index, name): (usize, &String)| {
+            AXES.iter().position(|axis| axis == name).ok_or_else(|| {
+                let why = format!("must be `roll`, `pitch` or `yaw`, got `{name}`");
+                ConfigError::new(format!("outputs[{index}]"), why)
+            })
+        };
+        let outputs = self.outputs.iter().enumerate().map(output).collect::<Result<Vec<_>, _>>()?;
+        match first_repetition(&self.outputs) {
+            Some(fault) => Err(fault.within("outputs")),
+            None => Ok(outputs),
+        }
+    }
+
+    /// Returns the number of columns of B and D of a law about each axis.
+    fn one_axis_inputs(&self) -> Result<usize, ConfigError> {
+        let Some(inputs) = self.d.first().or(self.b.first()).map(Vec::len) else {
+            return Err(ConfigError::new("d", "must be given if there are no states"));
+        };
+        if (1..=2).contains(&inputs) {
+            return Ok(inputs);
+        }
+        let key = if self.d.is_empty() { "b[0]" } else { "d[0]" };
+        let why = format!(
+            "must have a column for the angle, or two for angle and rate, got {inputs}: a law about three axes together \
+             names its `inputs`"
+        );
+        Err(ConfigError::new(key, why))
+    }
+
+    /// Returns C or D, which has a row for each output or is left out.
+    fn output_rows(
+        &self,
+        key: &str,
+        rows: &[Vec<Finite>],
+        outputs: usize,
+        columns: usize,
+    ) -> Result<DMatrix<f64>, ConfigError> {
+        let count = rows.len();
+        if count == 0 {
+            return Ok(DMatrix::zeros(outputs, columns));
+        }
+        if count == outputs {
+            return matrix(key, rows, columns);
+        }
+        let why = if self.is_three_axis() {
+            format!("must have a row for each of {}, got {count}", counted(outputs, "output"))
+        } else {
+            format!("must be one row, got {count}: a law about three axes together names its `inputs`")
+        };
+        Err(ConfigError::new(key, why))
+    }
+
     /// Returns the matrices in discrete time.
     fn sampled(&self) -> Result<DiscreteMatrices, ConfigError> {
         let wrong = |key: &str, why: String| Err(ConfigError::new(key, why));
@@ -126,15 +200,13 @@ impl StateSpace {
         if order > MOST {
             return wrong("a", format!("must have at most {MOST} states, got {order}"));
         }
-        let Some(inputs) = self.d.first().or(self.b.first()).map(Vec::len) else {
-            return wrong("d", "must be given if there are no states".to_owned());
+        let (inputs, outputs) = if self.is_three_axis() {
+            (self.named_inputs()?.len(), self.named_outputs()?.len())
+        } else {
+            (self.one_axis_inputs()?, 1)
         };
-        if !(1..=2).contains(&inputs) {
-            let key = if self.d.is_empty() { "b[0]" } else { "d[0]" };
-            return wrong(
-                key,
-                format!("must have a column for the angle, or two for angle and rate, got {inputs}"),
-            );
+        if order == 0 && self.d.is_empty() {
+            return wrong("d", "must be given if there are no states".to_owned());
         }
         let (a, b) = (matrix("a", &self.a, order)?, matrix("b", &self.b, inputs)?);
         if b.nrows() != order {
@@ -143,15 +215,11 @@ impl StateSpace {
                 format!("must have a row for each of {}, got {}", counted(order, "state"), b.nrows()),
             );
         }
-        let row = |key: &str, rows: &[Vec<Finite>], columns: usize| match rows.len() {
-            0 => Ok(DMatrix::zeros(1, columns)),
-            1 => matrix(key, rows, columns),
-            many => Err(ConfigError::new(key, format!("must be one row, got {many}"))),
-        };
         if order > 0 && self.c.is_empty() {
             return wrong("c", format!("must be a row of {order}: without it the states have no effect"));
         }
-        let (c, d) = (row("c", &self.c, order)?, row("d", &self.d, inputs)?);
+        let c = self.output_rows("c", &self.c, outputs, order)?;
+        let d = self.output_rows("d", &self.d, outputs, inputs)?;
         let continuous = DiscreteMatrices { a, b, c, d };
         let h = self.period.seconds();
         match self.of {
@@ -179,36 +247,20 @@ impl StateSpace {
         }
     }
 
-    /// Returns the size of the first command at an angle error (rad), with the compensator's states at 0.
+    /// Returns the size of the first command at an angle error (rad), with the compensator's states at 0; of a law about
+    /// three axes together, that of its largest output.
     fn first_command(&self, angle: f64) -> f64 {
-        let direct = self.d.first().and_then(|row| row.first()).map_or(0.0, |entry| entry.get());
+        let direct = if self.is_three_axis() {
+            let inputs = self.named_inputs().unwrap_or_default();
+            let entries = self.d.iter().flat_map(|row| row.iter().zip(&inputs));
+            entries
+                .filter(|(_, input)| input.is_attitude())
+                .fold(0.0, |most, (entry, _)| f64::max(most, entry.get().abs()))
+        } else {
+            self.d.first().and_then(|row| row.first()).map_or(0.0, |entry| entry.get())
+        };
         let limit = self.limit.map_or(f64::INFINITY, Positive::get);
         (self.gain.get() * direct * angle).abs().min(limit)
-    }
-}
-
-impl DiscreteMatrices {
-    /// Discretises the matrices for samples `h` (s) apart, with the input held between them.
-    fn held(self, h: f64) -> Self {
-        let (order, inputs) = (self.a.nrows(), self.b.ncols());
-        let mut whole = DMatrix::zeros(order + inputs, order + inputs);
-        whole.view_mut((0, 0), (order, order)).copy_from(&(&self.a * h));
-        whole.view_mut((0, order), (order, inputs)).copy_from(&(&self.b * h));
-        let whole = exponential(&whole);
-        let (a, b) = (whole.view((0, 0), (order, order)), whole.view((0, order), (order, inputs)));
-        Self { a: a.into_owned(), b: b.into_owned(), ..self }
-    }
-
-    /// Discretises the matrices by s = 2/h (z - 1)/(z + 1), if possible: with L = (1 - A h/2)^-1, states (L (1 + A h/2)
-    /// x), inputs L B h, outputs C L, and D + C L B h/2.
-    fn tustin(self, h: f64) -> Option<Self> {
-        let one = DMatrix::identity(self.a.nrows(), self.a.nrows());
-        let half = &self.a * (0.5 * h);
-        let inverse = if self.a.is_empty() { one.clone() } else { (&one - &half).try_inverse()? };
-        let (a, c) = (&inverse * (one + half), &self.c * &inverse);
-        let b = inverse * &self.b * h;
-        let d = &self.d + &c * &self.b * (0.5 * h);
-        Some(Self { a, b, c, d })
     }
 }
 
@@ -243,8 +295,60 @@ impl LawSpec for StateSpace {
         })
     }
 
+    fn start_three_axis(&self, _: &[Authority]) -> Option<Box<dyn ThreeAxisLaw>> {
+        // Invalid names and matrices were rejected before.
+        let inputs = self.named_inputs().ok().filter(|_| self.is_three_axis())?;
+        let (outputs, matrices) = (self.named_outputs().ok()?, self.sampled().ok()?);
+        Some(Box::new(ThreeAxisStateSpace {
+            state: DMatrix::zeros(matrices.a.nrows(), 1),
+            inputs,
+            outputs,
+            period: self.period,
+            command: self.command,
+            gain: self.gain.get(),
+            tuned: f64::NAN,
+            limit: self.limit.map_or(f64::INFINITY, Positive::get),
+            topic: states_topic(matrices.a.nrows()),
+            matrices,
+        }))
+    }
+
     fn offers(&self) -> LawOffers {
-        LawOffers::new(Some(self.period), EstimateNeeds::Motion)
+        LawOffers {
+            is_three_axis: self.is_three_axis(),
+            ..LawOffers::new(Some(self.period), EstimateNeeds::Motion)
+        }
+    }
+
+    fn topics(&self) -> Vec<Arc<CustomTopic>> {
+        let topic = self.is_three_axis().then(|| states_topic(self.a.len()));
+        topic.flatten().into_iter().collect()
+    }
+
+    fn requires(&self, place: &LawPlace, offers: &Offers, needs: &mut Requirements) {
+        if !self.is_three_axis() {
+            return;
+        }
+        let key = if self.inputs.is_empty() { "outputs" } else { "inputs" };
+        offers.require_three_axes(needs, Rule::AxisLaws, key, ": leave them out");
+        needs.require(
+            Rule::Law,
+            !place.is_per_axis,
+            key,
+            "make one law about three axes together: use `[law.state_space]`, or leave them out",
+        );
+        let wheels: usize = offers.actuators.iter().map(|member| member.offers.wheels).sum();
+        for (index, input) in self.named_inputs().unwrap_or_default().into_iter().enumerate() {
+            if let CompensatorInput::WheelSpeed(wheel) = input {
+                needs.require_with(Rule::Law, wheel < wheels, &format!("inputs[{index}]"), || {
+                    let found = match wheels {
+                        0 => "there is no `[actuator.wheels]`".to_owned(),
+                        _ => format!("the last of {wheels} wheels is `wheel{}`", wheels - 1),
+                    };
+                    format!("is the speed of a wheel that is not there: {found}")
+                });
+            }
+        }
     }
 
     /// Returns the usual 5 % of a step.

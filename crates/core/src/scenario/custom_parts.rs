@@ -162,6 +162,37 @@ impl ScenarioSpec {
         table
     }
 
+    /// Returns the topics that the parts declare beyond those of the engine, each with the role of the part.
+    fn declared_topics(&self) -> Vec<(&'static str, Arc<CustomTopic>)> {
+        let CustomParts { sensors, estimator, adaptation, actuators, .. } = self.custom_parts();
+        let sensors = sensors.iter().flat_map(|(_, sensor)| sensor.topics().to_vec());
+        let estimator = estimator.iter().flat_map(|estimator| estimator.topics().to_vec());
+        let adaptation = adaptation.iter().flat_map(|adaptation| adaptation.topics().to_vec());
+        let actuators = actuators.iter().flat_map(|(_, actuator)| actuator.topics().to_vec());
+        let law = self.law.custom_topics().into_iter().map(|topic| ("law", topic));
+        law.chain(sensors.map(|topic| ("sensor", topic)))
+            .chain(estimator.map(|topic| ("estimator", topic)))
+            .chain(adaptation.map(|topic| ("adaptation", topic)))
+            .chain(actuators.map(|topic| ("actuator", topic)))
+            .collect()
+    }
+
+    /// Returns the topics that the parts declare beyond those of the engine, without repetitions.
+    pub fn custom_topics(&self) -> Vec<Arc<CustomTopic>> {
+        let mut topics = CustomTopics::default();
+        // Parts with topics that conflict are refused before.
+        self.declared_topics().iter().for_each(|(_, topic)| drop(topics.index(topic)));
+        topics.iter().cloned().collect()
+    }
+
+    /// Checks that the topics of the parts can be in one log; returns the role of the first part whose topics cannot.
+    pub(super) fn topic_conflict(&self) -> Option<ConfigError> {
+        let mut topics = CustomTopics::default();
+        self.declared_topics().into_iter().find_map(|(role, topic)| {
+            topics.index(&topic).err().map(|error| ConfigError::new(role, error.to_string()))
+        })
+    }
+
     /// Sets the custom parts for roles that the document leaves out, and for sensors and actuators with a placeholder.
     pub(super) fn inherit_custom_parts(&mut self, own: &CustomParts, document: &Document) {
         let CustomParts { law, sensors, estimator, adaptation, actuators } = own;
@@ -198,34 +229,5 @@ impl CustomParts {
             ("actuator", !self.actuators.is_empty()),
         ];
         all.into_iter().filter_map(|(role, is_own)| is_own.then_some(role)).collect()
-    }
-
-    /// Returns the topics that the parts declare, each with the role of the part.
-    fn declared_topics(&self) -> impl Iterator<Item = (&'static str, &Arc<CustomTopic>)> {
-        let law = self.law.iter().flat_map(Custom::topics).map(|topic| ("law", topic));
-        let sensors = self.sensors.iter().flat_map(|(_, sensor)| sensor.topics());
-        let estimator = self.estimator.iter().flat_map(Custom::topics);
-        let adaptation = self.adaptation.iter().flat_map(Custom::topics);
-        let actuators = self.actuators.iter().flat_map(|(_, actuator)| actuator.topics());
-        law.chain(sensors.map(|topic| ("sensor", topic)))
-            .chain(estimator.map(|topic| ("estimator", topic)))
-            .chain(adaptation.map(|topic| ("adaptation", topic)))
-            .chain(actuators.map(|topic| ("actuator", topic)))
-    }
-
-    /// Returns the topics that the parts declare, without repetitions.
-    pub fn topics(&self) -> Vec<Arc<CustomTopic>> {
-        let mut topics = CustomTopics::default();
-        // Parts with topics that conflict are refused before.
-        self.declared_topics().for_each(|(_, topic)| drop(topics.index(topic)));
-        topics.iter().cloned().collect()
-    }
-
-    /// Checks that the topics of the parts can be in one log; returns the role of the first part whose topics cannot.
-    pub(super) fn topic_conflict(&self) -> Option<ConfigError> {
-        let mut topics = CustomTopics::default();
-        self.declared_topics().find_map(|(role, topic)| {
-            topics.index(topic).err().map(|error| ConfigError::new(role, error.to_string()))
-        })
     }
 }

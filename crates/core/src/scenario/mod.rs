@@ -129,7 +129,7 @@ impl Scenario {
         let offers = written.offers(&model);
         let unmet = written.unmet_requirements(&offers);
         written.validate_compatibility(&model, &offers, &unmet)?;
-        if let Some(conflict) = written.custom_parts().topic_conflict() {
+        if let Some(conflict) = written.topic_conflict() {
             return Err(conflict);
         }
         let study = ResolvedScenario::resolve(&written, &model, &unmet)?;

@@ -2,7 +2,7 @@
 
 use flexsc_control::custom::PartError;
 use flexsc_control::estimator::ObjectiveWindow;
-use flexsc_control::law::{Command, Controllers, DecisionCause, Event, Law, Phase};
+use flexsc_control::law::{Command, Controllers, DecisionCause, Event, Phase, ReferenceNeeds};
 use flexsc_control::part::{Part, ReportContext};
 use flexsc_control::state_estimate::{DampingStatus, StateEstimate};
 use flexsc_dynamics::guard::GuardCrossing;
@@ -90,6 +90,7 @@ impl ControlLaws {
         event: Event,
         guidance: &Guidance,
         estimates: &mut [StateEstimate],
+        wheel_speeds: &dyn Fn() -> Vec<f64>,
     ) -> Option<DecisionCause> {
         self.external_command_pending = false;
         if self.laws.is_external() {
@@ -102,8 +103,9 @@ impl ControlLaws {
             }
         }
         let led = guidance.reference_motion(now, estimates);
-        let setpoint = |axis: usize, law: &dyn Law| guidance.setpoint_for(law, now, led.map(|led| led[axis]));
-        self.laws.decide(now, event, setpoint, estimates)
+        let setpoint =
+            |axis: usize, needs: ReferenceNeeds| guidance.setpoint_for(needs, now, led.map(|led| led[axis]));
+        self.laws.decide(now, event, setpoint, estimates, wheel_speeds)
     }
 
     /// Lets the laws decide on `event`, and counts their switchings for the objective.
@@ -113,11 +115,12 @@ impl ControlLaws {
         event: Event,
         guidance: &Guidance,
         estimates: &mut [StateEstimate],
+        wheel_speeds: &dyn Fn() -> Vec<f64>,
     ) -> LawDecision {
         let before = self.phase();
         let counted =
             if self.objective.counts_switchings() { self.phases(estimates.len()) } else { Vec::new() };
-        let cause = self.decide_uncounted(now, event, guidance, estimates);
+        let cause = self.decide_uncounted(now, event, guidance, estimates, wheel_speeds);
         if !counted.is_empty() {
             let after = self.phases(estimates.len());
             let switched = counted.iter().zip(&after).filter(|(before, after)| before != after).count();
@@ -189,17 +192,17 @@ impl ControlLaws {
 
     /// Returns the phase of the first law.
     pub fn phase(&self) -> Phase {
-        self.laws.about(0).state().phase
+        self.laws.state(0).phase
     }
 
     /// Returns the phases of the laws about the first `axes` axes.
     pub fn phases(&self, axes: usize) -> Vec<Phase> {
-        (0..axes).map(|axis| self.laws.about(axis).state().phase).collect()
+        (0..axes).map(|axis| self.laws.state(axis).phase).collect()
     }
 
     /// Returns the value of the first law's tuned parameter.
     pub fn tuned_value(&self) -> f64 {
-        self.laws.about(0).state().tuned
+        self.laws.state(0).tuned
     }
 
     /// Returns the longest lead time after a sample for which laws read predicted elastic rates (s).

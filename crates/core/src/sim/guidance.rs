@@ -2,7 +2,7 @@
 
 use std::sync::Arc;
 
-use flexsc_control::law::{AttitudeProfile, Frame, Law, Setpoint};
+use flexsc_control::law::{AttitudeProfile, Frame, ReferenceNeeds, Setpoint};
 use flexsc_control::sensor::Orientation;
 use flexsc_control::state_estimate::StateEstimate;
 use flexsc_dynamics::waveform::Waveform;
@@ -71,11 +71,11 @@ impl Guidance {
 
     /// Returns the setpoint of a law about an axis: `led`, if the three-axis reference moves; for laws that track, the state
     /// of the manoeuvre, until its end; otherwise the setpoint after the manoeuvre.
-    pub fn setpoint_for(&self, law: &dyn Law, now: Instant, led: Option<Setpoint>) -> Setpoint {
+    pub fn setpoint_for(&self, needs: ReferenceNeeds, now: Instant, led: Option<Setpoint>) -> Setpoint {
         if let Some(goal) = led {
             return goal;
         }
-        if now < self.setpoint.from && law.reference_needs().tracks_manoeuvre {
+        if now < self.setpoint.from && needs.tracks_manoeuvre {
             let (angle, rate) = self.manoeuvre_state(now);
             return Setpoint { from: now, angle, rate, acceleration: 0.0 };
         }

@@ -98,6 +98,11 @@ impl Loads {
         self.find_next_change();
     }
 
+    /// Returns the speeds of reaction wheels relative to a body with this rate (rad/s), as available to the drives.
+    pub fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {
+        self.actuator.capabilities().wheel_speeds(now, rate)
+    }
+
     /// Sets the magnetic field in body axes (T) in the actuator, if there is one.
     pub fn set_magnetic_field(&mut self, now: Instant, field: Option<Vector>) {
         if let Some(field) = field {

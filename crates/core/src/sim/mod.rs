@@ -212,7 +212,8 @@ impl Simulation {
         let now = self.clock.now();
         self.clock.count_decision()?;
         self.estimation.predict(now, &self.plant, &self.sensors);
-        let decision = self.laws.decide(now, event, &self.guidance, &mut self.estimation.estimates);
+        let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid);
+        let decision = self.laws.decide(now, event, &self.guidance, &mut self.estimation.estimates, &speeds);
         if decision.is_switching() || matches!(event, Event::Guard { axis: 1.., .. }) {
             self.clock.count_switching()?;
         }

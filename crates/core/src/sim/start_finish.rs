@@ -10,7 +10,9 @@ impl Simulation {
     pub(super) fn begin(&mut self, record: &mut dyn Record) -> Result<(), SimulationError> {
         let now = self.clock.now();
         self.plant.evaluate(now)?;
-        self.laws.decide_uncounted(now, Event::Start, &self.guidance, &mut self.estimation.estimates);
+        let speeds = || self.loads.wheel_speeds(now, self.plant.truth().rigid);
+        let estimates = &mut self.estimation.estimates;
+        self.laws.decide_uncounted(now, Event::Start, &self.guidance, estimates, &speeds);
         self.command_actuator();
         self.loads.apply_due_changes(now, self.plant.truth().rigid);
         self.begin_segment(record)?;

@@ -42,7 +42,19 @@ from flexsc._table import Table
 from flexsc._topic import Topic
 from flexsc._units import Metrics
 from flexsc._values import checked as _checked
-from flexsc.parts import Actuator, Adaptation, CompiledLaw, Effort, Estimator, Hold, Law, Reading, Sensor
+from flexsc.parts import (
+    Actuator,
+    Adaptation,
+    CompiledLaw,
+    Effort,
+    Estimator,
+    Hold,
+    Law,
+    Reading,
+    Sensor,
+    ThreeAxisHold,
+    ThreeAxisLaw,
+)
 
 if TYPE_CHECKING:
     from flexsc import parts, plot, scenario, structure
@@ -89,6 +101,8 @@ __all__ = [
     "StateSpace",
     "Structure",
     "Table",
+    "ThreeAxisHold",
+    "ThreeAxisLaw",
     "Topic",
     "__version__",
     "appendage_from_matrices",

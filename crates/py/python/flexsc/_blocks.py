@@ -67,7 +67,7 @@ def refused(name: str, why: str) -> ValueError:
 
 @dataclass
 class LinearLaw:
-    """A law about one axis, from angle and rate to its command."""
+    """A law about one axis or about three, from angles and rates, axis by axis, to its commands."""
 
     period: float
     block: Block
@@ -103,7 +103,37 @@ def law_about(
         block = Block(a, b, np.array([[k_d]]), -np.array([[k_p + k_d, 0.0]]), before)
         return LinearLaw(period, block, False, None)
     is_acceleration = own.get("command", "torque") == "acceleration"
-    return LinearLaw(period, _state_space(own, period, prefix), is_acceleration, None)
+    return LinearLaw(period, _state_space(own, period, prefix, 1, 2), is_acceleration, None)
+
+
+def law_about_three_axes(name: str, keys: Mapping[str, Any]) -> LinearLaw | None:
+    """Return the law about three axes together, if the scenario has one."""
+    import numpy as np
+
+    kind, own = kind_of(keys["law"])
+    if kind != "state_space" or not own.get("inputs"):
+        return None
+    inputs, outputs = own["inputs"], own.get("outputs") or list(AXES)
+    # What an angle or a rate is in the inputs.
+    read = np.zeros((len(inputs), 6))
+    for row, each in enumerate(inputs):
+        if each.startswith("wheel"):
+            why = f"the input `{each}` of the law is no state of the body: a linear loop has angles and rates"
+            raise refused(name, why)
+        if each.startswith("quaternion_"):
+            # The vector part is half the angle.
+            read[row, 2 * "xyz".index(each[-1])] = 0.5
+        else:
+            axis, _, of_rate = each.partition("_")
+            read[row, 2 * AXES.index(axis) + bool(of_rate)] = 1.0
+    period = float(own["period"])
+    block = _state_space(own, period, "", len(outputs), len(inputs))
+    written = np.zeros((3, len(outputs)))
+    for column, axis in enumerate(outputs):
+        written[AXES.index(axis), column] = 1.0
+    block.b, block.d = block.b @ read, written @ block.d @ read
+    block.c = written @ block.c
+    return LinearLaw(period, block, own.get("command", "torque") == "acceleration", None)
 
 
 def _attitude(own: Mapping[str, Any], period: float, filters: Sequence[Any], prefix: str) -> Block:
@@ -124,19 +154,20 @@ def _attitude(own: Mapping[str, Any], period: float, filters: Sequence[Any], pre
     return block
 
 
-def _state_space(own: Mapping[str, Any], period: float, prefix: str) -> Block:
-    """The law `state_space`, from angle and rate."""
+def _state_space(own: Mapping[str, Any], period: float, prefix: str, outputs: int, inputs: int) -> Block:
+    """The law `state_space`, from its inputs; from angle and rate about one axis."""
     import numpy as np
 
     order = len(own.get("a", []))
     count = len((own.get("b") or own["d"])[0])
     b = np.array(own.get("b", []), dtype=np.float64).reshape(order, count)
-    d = np.array(own.get("d") or [[0.0] * count], dtype=np.float64)
+    d = np.array(own.get("d") or [[0.0] * count] * outputs, dtype=np.float64)
     a = np.array(own.get("a", []), dtype=np.float64).reshape(order, order)
-    c = np.array(own.get("c", []), dtype=np.float64).reshape(1, order)
+    c = np.array(own.get("c") or [[]] * outputs, dtype=np.float64).reshape(outputs, order)
     a, b, c, d = _at_samples(a, b, c, d, period, own.get("of", "samples"))
+    c, d = float(own.get("gain", 1.0)) * c, float(own.get("gain", 1.0)) * d
     # e is what is wanted less what is believed; one input is the angle alone.
-    wide = np.zeros((order, 2)), np.zeros((1, 2))
+    wide = np.zeros((order, inputs)), np.zeros((outputs, inputs))
     wide[0][:, :count], wide[1][:, :count] = -b, -d
     return Block(a, wide[0], c, wide[1], [Signal(f"{prefix}law{k}", "") for k in range(order)])
 

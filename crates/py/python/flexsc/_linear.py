@@ -211,6 +211,44 @@ class Linear:
             self.period,
         )
 
+    def compensator(
+        self, gain: npt.ArrayLike, observer: npt.ArrayLike, outputs: Sequence[str] | None = None
+    ) -> Linear:
+        """Return the compensator of a regulator and an observer that were designed for this model.
+
+        Its inputs are the errors of the measured outputs, its outputs are the commands u = -K x of the
+        estimated state: x' = A x + B u + L (y - C x - D u). `Scenario.with_law` makes it a law.
+
+        Args:
+            gain: K of shape (inputs, states), as `control.lqr` or `control.dlqr` returns it.
+            observer: L of shape (states, outputs), as `control.lqe` or `control.dlqe` returns it.
+            outputs: The measured outputs; None for all.
+
+        >>> body = {"planar": {"inertia": 2.0}}
+        >>> scenario = flexsc.Scenario({"duration": 60.0, "body": body, "law": {"open": {}}})
+        >>> model = scenario.linearise().select(outputs=["angle"])
+        >>> law = model.compensator([[2.0, 4.0]], [[2.0], [1.0]])
+        >>> scenario.with_law(law, period=0.1).linearise(loop="command").closed().spectral_radius() < 1.0
+        True
+
+        Raises:
+            KeyError: There is no output of this name.
+            ValueError: A matrix has another shape.
+        """
+        import numpy as np
+
+        model = self.select(outputs=outputs)
+        order, inputs = model.b.shape
+        k, into = (np.array(matrix, dtype=np.float64, ndmin=2) for matrix in (gain, observer))
+        for name, matrix, shape in (("gain", k, (inputs, order)), ("observer", into, (order, len(model.c)))):
+            if matrix.shape != shape:
+                raise ValueError(f"{name} must have the shape {shape}, got {matrix.shape}")
+        # With the sign of the error, the state is minus the estimate.
+        a = model.a - model.b @ k - into @ (model.c - model.d @ k)
+        d = np.zeros((inputs, len(model.c)))
+        states = tuple(Signal(f"expected_{state.name}", state.unit) for state in model.states)
+        return Linear(a, into, k, d, states, model.outputs, model.inputs, model.period)
+
     def margins(self, inputs: Sequence[str] | None = None) -> Margins:
         """Return the margins of a loop that `linearise(loop=...)` opened: how far its commands may be off.
 

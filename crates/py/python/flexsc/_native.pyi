@@ -289,6 +289,79 @@ class Hold:
     def __deepcopy__(self, _memo: object) -> Hold: ...
 
 @final
+class ThreeAxisEvent:
+    """The input of a law about three axes at a call. Angles are relative to the target."""
+
+    @property
+    def now(self) -> Instant:
+        """The instant: `event.now - earlier` is the time between (s), without rounding before the
+        difference."""
+    @property
+    def time(self) -> float:
+        """The instant in seconds."""
+    @property
+    def cause(self) -> Literal["start", "timeout"]:
+        """The start of the run, or the time given by the last hold."""
+    @property
+    def angles(self) -> _Three:
+        """Rotation vector from the target to the estimated attitude (rad), in body axes."""
+    @property
+    def quaternion(self) -> tuple[float, float, float, float]:
+        """Quaternion (w, x, y, z) of the same rotation."""
+    @property
+    def rates(self) -> _Three:
+        """Estimated rates (rad/s), in body axes."""
+    @property
+    def goal_angles(self) -> _Three:
+        """The goal of the angles (rad): 0, unless a target drifts."""
+    @property
+    def goal_rates(self) -> _Three:
+        """The goal of the rates (rad/s)."""
+    @property
+    def goal_accelerations(self) -> _Three:
+        """The goal of the accelerations (rad/s²), for a target with a reference motion."""
+    @property
+    def field_rates(self) -> _Three:
+        """Rates of change of the magnetic field along the body axes (T/s)."""
+    @property
+    def wheel_speeds(self) -> list[float]:
+        """Speeds of the reaction wheels (rad/s), as available to their drives."""
+
+@final
+class ThreeAxisHold:
+    """Commands about three axes from now on, and the time of the next call of the law.
+
+    `ThreeAxisHold(torques)` holds torques (N m) of shape (3,). Use `accelerations` (rad/s²), which are
+    multiplied by the inertia, or magnetic `moments` (A m²) instead of them. The next call follows `after` a
+    time (s) or at the instant `until`; if no time is given, after the law's `period`. `state` is the name in
+    the log.
+    """
+
+    def __new__(
+        cls,
+        torques: Sequence[float] | npt.NDArray[np.float64] | None = None,
+        *,
+        accelerations: Sequence[float] | npt.NDArray[np.float64] | None = None,
+        moments: Sequence[float] | npt.NDArray[np.float64] | None = None,
+        after: float | None = None,
+        until: Instant | None = None,
+        state: str = "PD",
+    ) -> ThreeAxisHold: ...
+    @property
+    def torques(self) -> _Three | None: ...
+    @property
+    def accelerations(self) -> _Three | None: ...
+    @property
+    def moments(self) -> _Three | None: ...
+    @property
+    def after(self) -> float | None: ...
+    @property
+    def until(self) -> Instant | None: ...
+    @property
+    def state(self) -> str: ...
+    def __deepcopy__(self, _memo: object) -> ThreeAxisHold: ...
+
+@final
 class Truth:
     """The true quantities that a sensor can measure at an instant."""
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from flexsc import _native as engine
 from flexsc._attitude_loop import attitude_loop
-from flexsc._blocks import AXES, Block, estimator, kind_of, law_about, refused
+from flexsc._blocks import AXES, Block, estimator, kind_of, law_about, law_about_three_axes, refused
 from flexsc._linear import Linear, Signal, whole_and_part
 
 if TYPE_CHECKING:
@@ -57,7 +57,12 @@ def _loop(scenario: Scenario, keys: Mapping[str, Any], body: Linear, delay: floa
     prefixes = [""] if count == 1 else [f"{axis}_" for axis in AXES]
     gain = _gain(name, keys["actuator"], count)
     parts = json.loads(engine.loop_json(scenario._native))
-    laws = [law_about(name, keys, parts["filters"][k], k, prefix) for k, prefix in enumerate(prefixes)]
+    whole_law = law_about_three_axes(name, keys)
+    laws = (
+        [whole_law]
+        if whole_law
+        else [law_about(name, keys, parts["filters"][k], k, prefix) for k, prefix in enumerate(prefixes)]
+    )
     period = laws[0].period
     if any(law.period != period for law in laws):
         raise refused(name, "the laws of the axes have different periods: a linear loop has one")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from math import inf
 from operator import index
 from typing import TYPE_CHECKING, Any, Literal, overload
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
     from flexsc._linear import Linear
     from flexsc._open_loop import Break
-    from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor
+    from flexsc.parts import Actuator, Adaptation, Estimator, Law, Sensor, ThreeAxisLaw
     from flexsc.scenario import Keys
 
 
@@ -190,7 +190,7 @@ class Scenario:
     def with_parts(
         self,
         *,
-        law: Law | None = None,
+        law: Law | ThreeAxisLaw | None = None,
         sensor: Sensor | Mapping[int, Sensor] | None = None,
         estimator: Estimator | None = None,
         adaptation: Adaptation | None = None,
@@ -205,6 +205,7 @@ class Scenario:
         repeated without the objects, and campaigns run in this process only.
 
         >>> class Off(flexsc.Law):
+        ...     period = 1.0
         ...     def decide(self, event):
         ...         return flexsc.Hold(0.0)
         >>> flexsc.Scenario.example("relay-fixed").with_parts(law=Off()).parts
@@ -219,7 +220,7 @@ class Scenario:
         sensors = sensor if isinstance(sensor, Mapping) else {} if sensor is None else {0: sensor}
         actuators = actuator if isinstance(actuator, Mapping) else {} if actuator is None else {0: actuator}
         given: list[tuple[str, type[Any], object]] = [
-            ("law", parts.Law, law),
+            ("law", parts.ThreeAxisLaw if isinstance(law, parts.ThreeAxisLaw) else parts.Law, law),
             ("estimator", parts.Estimator, estimator),
             ("adaptation", parts.Adaptation, adaptation),
             *((f"actuator {index(place)}", parts.Actuator, each) for place, each in actuators.items()),
@@ -284,34 +285,51 @@ class Scenario:
         command: Literal["torque", "acceleration"] = "torque",
         limit: float | None = None,
         track: bool = False,
+        inputs: Sequence[str] | None = None,
+        outputs: Sequence[str] | None = None,
     ) -> Scenario:
         """Return a scenario with a linear controller as its law, `[law.state_space]`.
 
         Args:
-            controller: Matrices (A, B, C, D), or an object that has them, such as those of `control.ss` and
-                `scipy.signal.StateSpace`; on three axes one for all axes, or a dict with one each for `roll`,
-                `pitch` and `yaw`. Its inputs are the error of the angle (rad) and, if it has two, the error
-                of the rate (rad/s): the goal minus the measured or estimated value. Its output is the
-                command.
+            controller: Matrices (A, B, C, D), an object that has them, such as those of `control.ss`,
+                `control.hinfsyn`, `scipy.signal.StateSpace` and `Linear.compensator`, or a gain K as
+                `control.lqr` returns it, for u = -K x. About one axis its inputs are the error of the angle
+                (rad) and, if it has two, the error of the rate (rad/s): the goal minus the measured or
+                estimated value. Its output is the command. On three axes a controller of one output acts
+                about each axis, a dict has one each for `roll`, `pitch` and `yaw`, and a controller with
+                three outputs acts about all axes together.
             period: Sampling period (s) of a continuous-time controller; a discrete-time one has its own.
             method: Discretisation of a continuous-time controller: `held`, exact for errors held over a
                 period, or `tustin`.
             command: Whether the output is a `torque` (N m) or an `acceleration` (rad/s²).
             limit: Largest command; None without a limit.
             track: Whether the law follows a manoeuvre while it lasts.
+            inputs: The inputs of a controller about three axes together, by the names of
+                `law.state_space.inputs`; None for those of the controller, or for the errors of `roll`,
+                `pitch` and `yaw`, and with six also those of their rates.
+            outputs: The axes of its outputs; None for those of the controller, or `roll`, `pitch`, `yaw`.
 
         >>> scenario = flexsc.Scenario.example("relay-fixed")
         >>> pd = scenario.with_law(([], [], [], [[0.04, 0.3]]), 0.25)
         >>> pd.to_dict()["law"]["state_space"]["d"]
         [[0.04, 0.3]]
 
+        The gain of a linear quadratic regulator about three axes:
+
+        >>> import numpy as np
+        >>> gain = np.hstack([4.0 * np.eye(3), 60.0 * np.eye(3)])
+        >>> coupled = flexsc.Scenario.example("attitude-hold").with_law(gain, 0.25)
+        >>> coupled.to_dict()["law"]["state_space"]["inputs"][2:4]
+        ['yaw', 'roll_rate']
+
         Raises:
             ScenarioError: The matrices are not accepted, or do not go with the other parts.
-            ValueError: The period is missing, or there is more than one output.
+            ValueError: The period is missing, or shapes or names do not fit.
         """
-        from flexsc._controllers import law_of
+        from flexsc._controllers import Settings, law_of
 
-        return self.with_("law", law_of(controller, period, method, command, limit, track))
+        settings = Settings(period, method, command, limit, track)
+        return self.with_("law", law_of(controller, settings, inputs, outputs))
 
     def draw(self, run: int) -> Scenario:
         """Return the scenario of one run of a campaign, with its `[uncertain]` keys drawn and set.

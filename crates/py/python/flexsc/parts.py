@@ -25,7 +25,7 @@ import ctypes
 from abc import ABC, abstractmethod
 from collections.abc import Mapping, Sequence
 from types import MappingProxyType
-from typing import Any, Literal, TypeVar
+from typing import TYPE_CHECKING, Any, Literal, TypeVar
 
 from flexsc._native import (
     Authority,
@@ -40,8 +40,14 @@ from flexsc._native import (
     Setting,
     Stream,
     Taken,
+    ThreeAxisEvent,
+    ThreeAxisHold,
     Truth,
 )
+
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 __all__ = [
     "Actuator",
@@ -62,6 +68,9 @@ __all__ = [
     "Setting",
     "Stream",
     "Taken",
+    "ThreeAxisEvent",
+    "ThreeAxisHold",
+    "ThreeAxisLaw",
     "Truth",
 ]
 
@@ -70,6 +79,21 @@ _Self = TypeVar("_Self", bound="_Part")
 
 class _Part(ABC):  # noqa: B024
     """The common base of all parts; each role adds its methods."""
+
+    signals: Mapping[str, str | tuple[str, int]] = MappingProxyType({})
+    """Attributes that a full log has as columns, each with its unit, or with (unit, size) for a sequence.
+
+    >>> class Sliding(Law):
+    ...     period = 0.25
+    ...     signals = {"s": "rad/s", "gains": ("N m s/rad", 2)}
+    ...     s, gains = 0.0, (4.0, 30.0)
+    ...     def decide(self, event):
+    ...         self.s = event.rate + 0.1 * event.angle
+    ...         return Hold(-self.gains[1] * self.s)
+    >>> scenario = flexsc.Scenario.example("attitude-hold").with_parts(law=Sliding())
+    >>> list(scenario.with_("duration", 1.0).simulate(log="full")["own_law"])
+    ['time_s', 'axis', 's', 'gains0', 'gains1']
+    """
 
     def copy(self: _Self) -> _Self:
         """Make a part in the same state that shares nothing with this one, with `copy.deepcopy`."""
@@ -108,6 +132,39 @@ class Law(_Part):
         Called at the start of the run, at the time given by the last hold, and when the angle passes one of
         its levels: at the exact instant with a continuous sensor, otherwise at the first sample beyond the
         level.
+        """
+
+    def tune(self, key: str, value: float) -> None:
+        """Accept the new value of a parameter of `tunable` that an adaptation has changed."""
+
+
+class ThreeAxisLaw(_Part):
+    """A control law about three axes together.
+
+    >>> class Coupled(ThreeAxisLaw):
+    ...     period = 0.25
+    ...     def decide(self, event):
+    ...         return [-4.0 * angle - 60.0 * rate for angle, rate in zip(event.angles, event.rates)]
+    >>> scenario = flexsc.Scenario.example("attitude-hold").with_parts(law=Coupled())
+    """
+
+    period: float | None = None
+    """Period (s) of the calls if a hold gives no time; None for a law whose holds all give one."""
+    promise: float | None = None
+    """The distance from the goal (rad) within which it keeps each angle, for the metrics; None without a
+    promise."""
+    tunable: Mapping[str, float] = MappingProxyType({})
+    """The parameters that an adaptation may tune, by name, with their initial values."""
+
+    def start(self, authorities: Sequence[Authority]) -> None:
+        """Start a run; there is one authority for each axis."""
+
+    @abstractmethod
+    def decide(self, event: ThreeAxisEvent) -> ThreeAxisHold | Sequence[float] | npt.NDArray[np.float64]:
+        """Return the torques (N m) about the body axes from now on, of shape (3,).
+
+        `ThreeAxisHold` has accelerations or magnetic moments instead, or the time of the next call. The law
+        is called at the start of the run, and at the time given by the last hold.
         """
 
     def tune(self, key: str, value: float) -> None:

@@ -6,16 +6,18 @@ use flexsc_core::control::actuator::{
     Actuator, ActuatorEvent, ActuatorSpec, AxisActuatorContext as EngineSetting, AxisEffort, Demand,
 };
 use flexsc_core::control::custom::PartError;
-use flexsc_core::control::part::Part;
+use flexsc_core::control::part::{Part, ReportContext};
 use flexsc_core::dynamics::wrench::Wrench;
 use flexsc_core::numerics::attitude::Vector;
 use flexsc_core::numerics::time::{Instant as Exact, Span};
+use flexsc_core::record::Report;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::instant::{Instant, span};
-use super::object::{Method, Object, numbers};
+use super::object::{Method, Object, numbers, shape};
 use super::reading::Three;
+use super::signals::Signals;
 
 /// Inertia, rate and period about an axis, as an actuator knows them.
 #[pyclass(frozen, module = "flexsc._native")]
@@ -134,11 +136,12 @@ impl Effort {
 pub struct PythonActuator {
     object: Object,
     limits: Vec<f64>,
+    pub signals: Option<Signals>,
 }
 
 impl PythonActuator {
-    /// Reads what an actuator says of itself.
-    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    /// Reads what an actuator says of itself; `role` has its place in a list.
+    pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
         let limit = part.getattr("limit")?;
         let limits = if limit.is_none() {
             Vec::new()
@@ -152,7 +155,8 @@ impl PythonActuator {
                 PyValueError::new_err(format!("limit must be a torque of 0 N m or more, got {limit}"))
             })?;
         }
-        Ok(Self { object: Object::new(part), limits })
+        let signals = Signals::from_python(part, role, false)?;
+        Ok(Self { object: Object::new(part), limits, signals })
     }
 }
 
@@ -176,6 +180,7 @@ impl ActuatorSpec for PythonActuator {
             demands: vec![Demand::Torque(0.0); settings.len()],
             due: None,
             field: None,
+            signals: self.signals.clone(),
         })
     }
 
@@ -198,6 +203,7 @@ struct Acting {
     demands: Vec<Demand>,
     due: Option<Exact>,
     field: Option<Vector>,
+    signals: Option<Signals>,
 }
 
 impl Acting {
@@ -211,17 +217,21 @@ impl Acting {
             method.call(py, argument, |returned| {
                 let effort = match returned.cast::<Effort>() {
                     Ok(effort) => effort.get().clone(),
-                    Err(_) => Effort { torques: numbers(returned)?, after: None },
+                    // A wrong type has no numbers.
+                    Err(_) => Effort { torques: numbers(returned).unwrap_or_default(), after: None },
                 };
                 let count = effort.torques.len();
-                if count != axes || effort.torques.iter().any(|torque| !torque.is_finite()) {
-                    let found =
-                        if count == axes { format!("{:?}", effort.torques) } else { count.to_string() };
-                    let why =
-                        format!("command must return a finite torque about each of {axes} axes, got {found}");
-                    return Err(PyValueError::new_err(why));
+                if count == axes && effort.torques.iter().all(|torque| torque.is_finite()) {
+                    return Ok(effort);
                 }
-                Ok(effort)
+                let found = match returned.cast::<Effort>() {
+                    _ if count == axes => format!("{:?}", effort.torques),
+                    Ok(_) => format!("shape ({count},)"),
+                    Err(_) => shape(returned),
+                };
+                Err(PyValueError::new_err(format!(
+                    "actuator: command must return finite torques of shape ({axes},) or a flexsc.Effort, got {found}"
+                )))
             })
         });
         let effort = reported.unwrap_or(Effort { torques: vec![0.0; axes], after: None });
@@ -231,6 +241,10 @@ impl Acting {
 }
 
 impl Part for Acting {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        Signals::report(self.signals.as_ref(), &self.method, 0, at, report);
+    }
+
     fn due(&self) -> Option<Exact> {
         self.due
     }
@@ -275,6 +289,7 @@ impl Actuator for Acting {
             method: self.method.copy("command"),
             inertias: self.inertias.clone(),
             demands: self.demands.clone(),
+            signals: self.signals.clone(),
             ..*self
         })
     }

@@ -4,15 +4,17 @@ use std::any::Any;
 
 use flexsc_core::control::adaptation::{Adaptation, AdaptationSpec, Decision, Objective, SearchStep};
 use flexsc_core::control::custom::PartError;
-use flexsc_core::control::part::Part;
+use flexsc_core::control::part::{Part, ReportContext};
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::{Instant, Span};
+use flexsc_core::record::Report;
 use pyo3::exceptions::PyValueError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
 use super::law::positive;
 use super::object::{Method, Object};
+use super::signals::Signals;
 
 /// An adaptation as a scenario has it.
 #[derive(Debug)]
@@ -21,6 +23,7 @@ pub struct PythonAdaptation {
     tunes: String,
     objective: Objective,
     window: Option<Span>,
+    pub signals: Option<Signals>,
 }
 
 impl PythonAdaptation {
@@ -37,6 +40,7 @@ impl PythonAdaptation {
             tunes: part.getattr("tunes")?.extract()?,
             objective,
             window: window.map(|window| positive(window, "window")).transpose()?,
+            signals: Signals::from_python(part, "adaptation", false)?,
         })
     }
 }
@@ -60,7 +64,7 @@ impl AdaptationSpec for PythonAdaptation {
                 Py::new(py, Draws(seed)).and_then(|draws| self.object.started_copy(py, (value, draws)));
             Method::new(started, "learn")
         });
-        Box::new(Learning { method, value, last: f64::NAN })
+        Box::new(Learning { method, value, last: f64::NAN, signals: self.signals.clone() })
     }
 
     fn any(&self) -> Option<&dyn Any> {
@@ -75,9 +79,14 @@ struct Learning {
     value: f64,
     /// The objective over the last window.
     last: f64,
+    signals: Option<Signals>,
 }
 
 impl Part for Learning {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        Signals::report(self.signals.as_ref(), &self.method, 0, at, report);
+    }
+
     fn failure(&self) -> Option<PartError> {
         self.method.halted()
     }
@@ -99,6 +108,7 @@ impl Adaptation for Learning {
     }
 
     fn copy(&self) -> Box<dyn Adaptation> {
-        Box::new(Self { method: self.method.copy("learn"), ..*self })
+        let (method, signals) = (self.method.copy("learn"), self.signals.clone());
+        Box::new(Self { method, signals, ..*self })
     }
 }

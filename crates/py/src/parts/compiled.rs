@@ -15,7 +15,7 @@ use flexsc_core::numerics::time::{Instant, Span};
 use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 
-use super::hold::PHASES;
+use super::hold::{PHASES, never};
 use super::law::positive;
 use super::object::Object;
 
@@ -39,6 +39,10 @@ impl CompiledLaw {
         let address: usize = part.getattr("address")?.extract()?;
         if address == 0 {
             return Err(PyValueError::new_err("address must be the address of a function, got 0"));
+        }
+        if part.getattr("signals")?.len()? > 0 {
+            let why = "law: a compiled law has no signals: it has no attributes during a run";
+            return Err(PyValueError::new_err(why));
         }
         let period: Option<f64> = part.getattr("period")?.extract()?;
         Ok(Self {
@@ -142,6 +146,10 @@ impl Law for Deciding {
         if !torque.is_finite() || after < 0.0 || after.is_infinite() {
             let why = format!("a compiled law gave a torque of {torque} and a time of {after} s");
             self.halted = Some(PartError::new(PyRuntimeError::new_err(why)));
+            return ControlOutput::NONE;
+        }
+        if after.is_nan() && self.period.is_none() && above.is_nan() && below.is_nan() {
+            self.halted = Some(PartError::new(never()));
             return ControlOutput::NONE;
         }
         self.phase = if state.is_nan() {

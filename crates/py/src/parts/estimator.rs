@@ -17,8 +17,9 @@ use pyo3::prelude::*;
 
 use super::draws::Draws;
 use super::instant::Instant;
-use super::object::{Method, Object, numbers, overrides};
+use super::object::{Method, Object, numbers, overrides, shape};
 use super::reading::{Four, Reading, Three, angle, attitude};
+use super::signals::Signals;
 
 /// Data of a scenario that an estimator knows before a run.
 #[pyclass(frozen, module = "flexsc._native")]
@@ -156,6 +157,7 @@ impl Taken {
 pub struct PythonEstimator {
     object: Object,
     also: Also,
+    pub signals: Option<Signals>,
 }
 
 /// The methods that its class has beside `take`.
@@ -178,7 +180,8 @@ impl PythonEstimator {
             shift: has("shift")?,
             attitude: has("attitude")?,
         };
-        Ok(Self { object: Object::new(part), also })
+        let signals = Signals::from_python(part, "estimator", false)?;
+        Ok(Self { object: Object::new(part), also, signals })
     }
 }
 
@@ -210,7 +213,7 @@ impl EstimatorSpec for PythonEstimator {
                 "take",
             )
         });
-        Box::new(Observing { method, also: self.also })
+        Box::new(Observing { method, also: self.also, signals: self.signals.clone() })
     }
 
     fn any(&self) -> Option<&dyn Any> {
@@ -223,6 +226,7 @@ impl EstimatorSpec for PythonEstimator {
 struct Observing {
     method: Method,
     also: Also,
+    signals: Option<Signals>,
 }
 
 /// Writes an estimator's state estimate about each axis.
@@ -230,20 +234,17 @@ fn write(returned: &Bound<'_, PyAny>, estimates: &mut [StateEstimate]) -> PyResu
     if returned.is_none() {
         return Ok(());
     }
-    let wrong = |found: String| {
-        let axes = estimates.len();
-        PyValueError::new_err(format!(
-            "an estimator must return angle and rate about each of {axes} axes, or with them displacement, rate and frequency of \
-             the dominant mode, or None, got {found}"
-        ))
+    let axes = estimates.len();
+    let rows = || returned.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>();
+    let is_right =
+        |rows: &Vec<Vec<f64>>| rows.len() == axes && rows.iter().all(|row| [2, 5].contains(&row.len()));
+    let Some(rows) = rows().ok().filter(is_right) else {
+        let found = shape(returned);
+        return Err(PyValueError::new_err(format!(
+            "estimator: an estimate must be of shape ({axes}, 2), angle and rate about each axis, or ({axes}, 5), with \
+             displacement, rate and frequency of the dominant mode, or None, got {found}"
+        )));
     };
-    let rows = returned.try_iter()?.map(|row| numbers(&row?)).collect::<PyResult<Vec<_>>>()?;
-    if rows.len() != estimates.len() {
-        return Err(wrong(format!("{} rows", rows.len())));
-    }
-    if let Some(row) = rows.iter().find(|row| ![2, 5].contains(&row.len())) {
-        return Err(wrong(format!("a row of {} numbers", row.len())));
-    }
     for (estimate, row) in estimates.iter_mut().zip(rows) {
         [estimate.angle, estimate.rate] = [row[0], row[1]];
         if let [_, _, displacement, rate, frequency] = row[..] {
@@ -275,6 +276,7 @@ impl Part for Observing {
                 report.add(row);
             }
         }
+        Signals::report(self.signals.as_ref(), &self.method, 0, at, report);
     }
 
     fn failure(&self) -> Option<PartError> {
@@ -342,6 +344,7 @@ impl Estimator for Observing {
     }
 
     fn copy(&self) -> Box<dyn Estimator> {
-        Box::new(Self { method: self.method.copy("take"), also: self.also })
+        let (method, signals) = (self.method.copy("take"), self.signals.clone());
+        Box::new(Self { method, signals, ..*self })
     }
 }

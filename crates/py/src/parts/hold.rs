@@ -46,7 +46,16 @@ pub const PHASES: [Phase; 12] = [
     Phase::Detumbling,
 ];
 
-fn phase(label: &str) -> PyResult<Phase> {
+/// Returns the error of a law that would never be called again.
+pub fn never() -> PyErr {
+    PyValueError::new_err(
+        "law: the law has no period and its hold gives no time: it would never be called again; give the law a `period`, \
+         or the hold `after`, `until` or a level",
+    )
+}
+
+/// Returns the state of a law by its name in the log.
+pub fn phase(label: &str) -> PyResult<Phase> {
     PHASES.into_iter().find(|phase| phase.label() == label).ok_or_else(|| {
         let all = PHASES.map(|phase| format!("'{}'", phase.label())).join(", ");
         PyValueError::new_err(format!("state must be one of {all}, got {label:?}"))
@@ -62,8 +71,12 @@ fn finite(name: &str, value: f64) -> PyResult<f64> {
 }
 
 impl Hold {
-    /// The engine's answer of a law that is asked again after a period, if it names no time.
-    pub fn engine_output(&self, now: flexsc_core::numerics::time::Instant, period: Option<Span>) -> Engine {
+    /// The engine's answer of a law that is asked again after a period, if it names no time; an error if it would never be.
+    pub fn engine_output(
+        &self,
+        now: flexsc_core::numerics::time::Instant,
+        period: Option<Span>,
+    ) -> PyResult<Engine> {
         let until = self.until.map(|until| until.0).or_else(|| Some(now + self.after.or(period)?));
         let guards = match (self.at_least, self.at_most) {
             (Some(above), Some(below)) => Guards::two(Guard::at_least(above), Guard::at_most(below)),
@@ -71,7 +84,10 @@ impl Hold {
             (None, Some(below)) => Guards::one(Guard::at_most(below)),
             (None, None) => Guards::NONE,
         };
-        Engine { command: self.command, until, guards }
+        if until.is_none() && guards.is_empty() {
+            return Err(never());
+        }
+        Ok(Engine { command: self.command, until, guards })
     }
 }
 

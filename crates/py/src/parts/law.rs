@@ -10,20 +10,22 @@ use flexsc_core::control::law::{
     Phase, ReferenceNeeds, Setpoint, Tunable,
 };
 use flexsc_core::control::offers::LawOffers;
-use flexsc_core::control::part::Part;
+use flexsc_core::control::part::{Part, ReportContext};
 use flexsc_core::control::state_estimate::{EstimateNeeds, StateEstimate};
 use flexsc_core::numerics::time::{Instant as Exact, Span};
+use flexsc_core::record::Report;
 use pyo3::exceptions::{PyTypeError, PyValueError};
 use pyo3::prelude::*;
 
 use super::hold::Hold;
 use super::instant::{Instant, span};
-use super::object::{Method, Object};
+use super::object::{Method, Object, shape};
+use super::signals::Signals;
 
 /// Capability of an actuator about an axis, as laws know it.
 #[pyclass(frozen, module = "flexsc._native")]
 #[derive(Copy, Clone, Debug)]
-pub struct Authority(EngineAuthority);
+pub struct Authority(pub EngineAuthority);
 
 #[pymethods]
 impl Authority {
@@ -169,10 +171,11 @@ pub struct PythonLaw {
     switches: bool,
     tracks: bool,
     tunable: Vec<(&'static str, f64)>,
+    pub signals: Option<Signals>,
 }
 
 /// A key for as long as the program runs: laws have few.
-fn kept(key: &str) -> &'static str {
+pub fn kept(key: &str) -> &'static str {
     static KEYS: OnceLock<Mutex<BTreeSet<&'static str>>> = OnceLock::new();
     let mut keys = KEYS.get_or_init(Mutex::default).lock().unwrap_or_else(PoisonError::into_inner);
     if let Some(known) = keys.get(key) {
@@ -211,6 +214,7 @@ impl PythonLaw {
             switches: part.getattr("switches")?.extract()?,
             tracks: part.getattr("tracks")?.extract()?,
             tunable: tunable.try_iter()?.map(number).collect::<PyResult<_>>()?,
+            signals: Signals::from_python(part, "law", true)?,
         })
     }
 }
@@ -237,6 +241,8 @@ impl LawSpec for PythonLaw {
             tuned: self.tunable.first().copied(),
             above: true,
             phase: Phase::Open,
+            axis: authority.axis,
+            signals: self.signals.clone(),
         })
     }
 
@@ -268,9 +274,15 @@ struct Deciding {
     /// Whether the first guard is one of at least an angle.
     above: bool,
     phase: Phase,
+    axis: usize,
+    signals: Option<Signals>,
 }
 
 impl Part for Deciding {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        Signals::report(self.signals.as_ref(), &self.method, self.axis, at, report);
+    }
+
     fn failure(&self) -> Option<PartError> {
         self.method.halted()
     }
@@ -291,20 +303,22 @@ impl Law for Deciding {
             DecisionCause::Guard(_) => "at_most",
         };
         let event = Event { now, cause, goal: *goal, estimate: estimate.clone() };
+        let period = self.period;
         let reported = Python::attach(|py| {
             let argument = || Ok(Bound::new(py, event)?.into_any());
             self.method.call(py, argument, |returned| {
                 if let Ok(hold) = returned.cast::<Hold>() {
-                    return Ok(*hold.get());
+                    let hold = *hold.get();
+                    return Ok((hold, hold.engine_output(now, period)?));
                 }
-                let kind = returned.get_type().name()?;
-                Err(PyTypeError::new_err(format!("decide must return a flexsc.Hold, got {kind}")))
+                let found = shape(returned);
+                Err(PyTypeError::new_err(format!("law: decide must return a flexsc.Hold, got {found}")))
             })
         });
-        let Some(hold) = reported else { return Held::NONE };
+        let Some((hold, output)) = reported else { return Held::NONE };
         self.above = hold.at_least.is_some();
         self.phase = hold.phase;
-        hold.engine_output(now, self.period)
+        output
     }
 
     fn state(&self) -> LawState<'_> {
@@ -316,7 +330,8 @@ impl Law for Deciding {
     }
 
     fn copy(&self) -> Box<dyn Law> {
-        Box::new(Self { method: self.method.copy("decide"), ..*self })
+        let (method, signals) = (self.method.copy("decide"), self.signals.clone());
+        Box::new(Self { method, signals, ..*self })
     }
 
     fn tune(&mut self, key: &str, value: f64) {

@@ -13,10 +13,13 @@ mod law;
 mod object;
 mod reading;
 mod sensor;
+mod signals;
+mod three_axis_law;
 
 use std::any::Any;
 use std::sync::Arc;
 
+use flexsc_core::control::actuator::ActuatorSpec;
 use flexsc_core::control::custom::Custom;
 use flexsc_core::scenario::CustomParts;
 use pyo3::prelude::*;
@@ -29,6 +32,9 @@ pub use hold::Hold;
 pub use instant::Instant;
 pub use law::{Authority, Event};
 pub use reading::{Reading, Truth};
+pub use three_axis_law::{ThreeAxisEvent, ThreeAxisHold};
+
+use signals::Signals;
 
 /// A part of each role by its key; sensors have their place behind it, `sensor 0`, and actuators after the first.
 pub type Named = (String, Py<PyAny>);
@@ -41,34 +47,54 @@ pub fn own_parts(py: Python<'_>, named: Vec<Named>) -> PyResult<CustomParts> {
         let part = part.bind(py).call_method0("copy")?;
         match role.split_once(' ') {
             Some(("actuator", place)) => {
-                own.actuators.push((
-                    place.parse()?,
-                    Custom::new(Arc::new(actuator::PythonActuator::from_python(&part)?)),
-                ));
+                own.actuators.push((place.parse()?, actuator(&part, place)?));
             }
             Some((_, place)) => {
-                own.sensors
-                    .push((place.parse()?, Custom::new(Arc::new(sensor::PythonSensor::from_python(&part)?))));
+                let role = if place == "0" { "sensor".to_owned() } else { format!("sensor{place}") };
+                let sensor = sensor::PythonSensor::from_python(&part, &role)?;
+                let topics = Signals::topics(sensor.signals.as_ref());
+                own.sensors.push((place.parse()?, Custom::with_topics(Arc::new(sensor), topics)));
             }
             None if role == "law" && part.hasattr("address")? => {
                 own.law = Some(Custom::new(Arc::new(compiled::CompiledLaw::from_python(&part)?)));
             }
+            None if role == "law" && is_of(&part, "ThreeAxisLaw")? => {
+                let law = three_axis_law::PythonThreeAxisLaw::from_python(&part)?;
+                let topics = Signals::topics(law.signals.as_ref());
+                own.law = Some(Custom::with_topics(Arc::new(law), topics));
+            }
             None if role == "law" => {
-                own.law = Some(Custom::new(Arc::new(law::PythonLaw::from_python(&part)?)));
+                let law = law::PythonLaw::from_python(&part)?;
+                let topics = Signals::topics(law.signals.as_ref());
+                own.law = Some(Custom::with_topics(Arc::new(law), topics));
             }
             None if role == "estimator" => {
-                own.estimator = Some(Custom::new(Arc::new(estimator::PythonEstimator::from_python(&part)?)));
+                let estimator = estimator::PythonEstimator::from_python(&part)?;
+                let topics = Signals::topics(estimator.signals.as_ref());
+                own.estimator = Some(Custom::with_topics(Arc::new(estimator), topics));
             }
             None if role == "adaptation" => {
-                own.adaptation =
-                    Some(Custom::new(Arc::new(adaptation::PythonAdaptation::from_python(&part)?)));
+                let adaptation = adaptation::PythonAdaptation::from_python(&part)?;
+                let topics = Signals::topics(adaptation.signals.as_ref());
+                own.adaptation = Some(Custom::with_topics(Arc::new(adaptation), topics));
             }
-            None => {
-                own.actuators.push((0, Custom::new(Arc::new(actuator::PythonActuator::from_python(&part)?))));
-            }
+            None => own.actuators.push((0, actuator(&part, "0")?)),
         }
     }
     Ok(own)
+}
+
+/// Returns true if a part is of a class of `flexsc.parts`.
+fn is_of(part: &Bound<'_, PyAny>, class: &str) -> PyResult<bool> {
+    part.is_instance(&part.py().import("flexsc.parts")?.getattr(class)?)
+}
+
+/// The engine's actuator of a Python object at a place in a list.
+fn actuator(part: &Bound<'_, PyAny>, place: &str) -> PyResult<Custom<dyn ActuatorSpec>> {
+    let role = if place == "0" { "actuator".to_owned() } else { format!("actuator{place}") };
+    let actuator = actuator::PythonActuator::from_python(part, &role)?;
+    let topics = Signals::topics(actuator.signals.as_ref());
+    Ok(Custom::with_topics(Arc::new(actuator), topics))
 }
 
 /// Python's objects of a scenario's parts.

@@ -5,7 +5,7 @@ use std::sync::OnceLock;
 
 use flexsc_core::control::custom::PartError;
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PySequence, PyString, PyTuple};
 
 /// An object with a role's methods.
 pub struct Object(Py<PyAny>);
@@ -109,6 +109,31 @@ impl Method {
 pub fn overrides(part: &Bound<'_, PyAny>, role: &str, method: &str) -> PyResult<bool> {
     let role = part.py().import("flexsc.parts")?.getattr(role)?;
     Ok(!part.get_type().getattr(method)?.is(role.getattr(method)?))
+}
+
+/// Returns the shape of an array or of nested sequences, `(3, 2)`, or the type of another object.
+pub fn shape(object: &Bound<'_, PyAny>) -> String {
+    fn sizes(object: &Bound<'_, PyAny>, found: &mut Vec<usize>) {
+        if let Ok(sequence) = object.cast::<PySequence>()
+            && object.cast::<PyString>().is_err()
+            && let Ok(size) = sequence.len()
+        {
+            found.push(size);
+            if let Ok(first) = sequence.get_item(0) {
+                sizes(&first, found);
+            }
+        }
+    }
+    if let Ok(shape) = object.getattr("shape") {
+        return format!("shape {shape}");
+    }
+    let mut found = Vec::new();
+    sizes(object, &mut found);
+    match &found[..] {
+        [] => object.get_type().name().map_or_else(|_| "another object".to_owned(), |name| name.to_string()),
+        [size] => format!("shape ({size},)"),
+        _ => format!("shape ({})", found.iter().map(usize::to_string).collect::<Vec<_>>().join(", ")),
+    }
 }
 
 /// Numbers of anything that can be iterated over.

@@ -3,17 +3,19 @@
 use std::any::Any;
 
 use flexsc_core::control::custom::PartError;
-use flexsc_core::control::part::Part;
+use flexsc_core::control::part::{Part, ReportContext};
 use flexsc_core::control::sensor::{Reading as EngineReading, Sensor, SensorSpec, Truth as EngineTruth};
 use flexsc_core::numerics::random::Seed;
 use flexsc_core::numerics::time::{Instant, Span};
+use flexsc_core::record::Report;
 use pyo3::exceptions::PyTypeError;
 use pyo3::prelude::*;
 
 use super::draws::Draws;
 use super::law::positive;
-use super::object::{Method, Object};
+use super::object::{Method, Object, shape};
 use super::reading::{Reading, Truth};
+use super::signals::Signals;
 
 /// A sensor as a scenario has it.
 #[derive(Debug)]
@@ -22,16 +24,18 @@ pub struct PythonSensor {
     period: Span,
     angle_noise: f64,
     rate_noise: Option<f64>,
+    pub signals: Option<Signals>,
 }
 
 impl PythonSensor {
-    /// Reads what a sensor says of itself.
-    pub fn from_python(part: &Bound<'_, PyAny>) -> PyResult<Self> {
+    /// Reads what a sensor says of itself; `role` has its place in a list.
+    pub fn from_python(part: &Bound<'_, PyAny>, role: &str) -> PyResult<Self> {
         Ok(Self {
             object: Object::new(part),
             period: positive(part.getattr("period")?.extract()?, "period")?,
             angle_noise: part.getattr("angle_noise")?.extract()?,
             rate_noise: part.getattr("rate_noise")?.extract()?,
+            signals: Signals::from_python(part, role, false)?,
         })
     }
 }
@@ -43,7 +47,7 @@ impl SensorSpec for PythonSensor {
                 Py::new(py, Draws(seed)).and_then(|draws| self.object.started_copy(py, (axes, draws)));
             Method::new(started, "read")
         });
-        Box::new(Reads(method))
+        Box::new(Reads(method, self.signals.clone()))
     }
 
     fn period(&self) -> Span {
@@ -65,9 +69,13 @@ impl SensorSpec for PythonSensor {
 
 /// Run-time state of a sensor.
 #[derive(Debug)]
-struct Reads(Method);
+struct Reads(Method, Option<Signals>);
 
 impl Part for Reads {
+    fn report(&self, at: &ReportContext<'_>, report: &mut Report) {
+        Signals::report(self.1.as_ref(), &self.0, 0, at, report);
+    }
+
     fn failure(&self) -> Option<PartError> {
         self.0.halted()
     }
@@ -87,8 +95,8 @@ impl Sensor for Reads {
                     return Ok(None);
                 }
                 let Ok(reading) = returned.cast::<Reading>() else {
-                    let kind = returned.get_type().name()?;
-                    let why = format!("read must return a flexsc.Reading or None, got {kind}");
+                    let found = shape(returned);
+                    let why = format!("sensor: read must return a flexsc.Reading or None, got {found}");
                     return Err(PyTypeError::new_err(why));
                 };
                 reading.get().within(&truth.orientation).map(Some)
@@ -98,6 +106,6 @@ impl Sensor for Reads {
     }
 
     fn copy(&self) -> Box<dyn Sensor> {
-        Box::new(Self(self.0.copy("read")))
+        Box::new(Self(self.0.copy("read"), self.1.clone()))
     }
 }

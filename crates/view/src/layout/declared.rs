@@ -24,7 +24,7 @@ const PLACED: [&str; 3] = ["/control_moment_gyros", "/hinges", "/wheels"];
 
 /// Returns the tab of the declared panels that have no place elsewhere; `None` without any.
 pub fn tab(scenario: &Scenario) -> Option<Tab> {
-    let custom = scenario.custom_parts().topics();
+    let custom = scenario.custom_topics();
     let custom = custom.iter().flat_map(|topic| custom_panels(topic));
     let own = unplaced(scenario).flat_map(|topic| panels(topic, MOST_LINES));
     let panels: Vec<LayoutPanel> = own.chain(custom).collect();
@@ -34,7 +34,7 @@ pub fn tab(scenario: &Scenario) -> Option<Tab> {
 /// Returns the topics of that tab, with the least detail of a log that has each.
 pub fn topics(scenario: &Scenario) -> Vec<(Cow<'static, str>, Detail)> {
     let own = unplaced(scenario).map(|topic| (Cow::Borrowed(topic.name), topic.logged.detail()));
-    let custom = scenario.custom_parts().topics();
+    let custom = scenario.custom_topics();
     let custom = custom.iter().map(|topic| (Cow::Owned(topic.name().to_owned()), Detail::Full));
     own.chain(custom).collect()
 }

@@ -58,6 +58,13 @@ impl MomentumStorage for WheelsState {
         wheels.fold(Vector::zeros(), |sum, (axis, wheel)| sum + axis * wheel.momentum_at(seconds)).into()
     }
 
+    fn wheel_speeds(&self, now: Instant, rate: [f64; 3]) -> Vec<f64> {
+        match &self.tachometer {
+            Some(tachometer) => tachometer.speeds().to_vec(),
+            None => self.wheels(now, rate).into_iter().map(|wheel| wheel.speed_rad_s).collect(),
+        }
+    }
+
     fn wheels(&self, now: Instant, rate: [f64; 3]) -> Vec<flexsc_record::Wheel> {
         let (seconds, rate) = (self.elapsed(now), Vector::from(rate));
         let motion = |(index, (axis, wheel)): (usize, (&Vector, &WheelState))| flexsc_record::Wheel {

@@ -1,0 +1,109 @@
+//! Signals of parts written in Python: attributes that the log has as columns of a topic of the part.
+
+use std::sync::Arc;
+
+use flexsc_core::control::part::{Occasion, ReportContext};
+use flexsc_core::record::{CustomField, CustomTopic, Report};
+use pyo3::exceptions::{PyTypeError, PyValueError};
+use pyo3::prelude::*;
+
+use super::object::{Method, shape};
+
+/// Signals of a part: the topic of their rows, and the attribute of each with its size.
+#[derive(Clone, Debug)]
+pub struct Signals {
+    role: String,
+    topic: Arc<CustomTopic>,
+    /// Name, and the count of numbers of a sequence.
+    attributes: Arc<[(String, Option<usize>)]>,
+    /// True if the first column is the axis of the part.
+    has_axis: bool,
+}
+
+impl Signals {
+    /// Reads the attribute `signals` of a part of a role, such as `law` or `sensor1`; `None` without signals.
+    pub fn from_python(part: &Bound<'_, PyAny>, role: &str, has_axis: bool) -> PyResult<Option<Self>> {
+        let declared = part.getattr("signals")?;
+        let wrong = |found: String| {
+            PyTypeError::new_err(format!(
+                "{role}: signals must map each attribute to its unit, or to (unit, size), got {found}"
+            ))
+        };
+        let items = declared.call_method0("items").map_err(|_| wrong(shape(&declared)))?;
+        let axis = CustomField::new("axis", "", "Index of the axis about which the law acts.");
+        let mut fields: Vec<CustomField> = has_axis.then_some(axis).into_iter().collect();
+        let mut attributes = Vec::new();
+        for item in items.try_iter()? {
+            let (name, value): (String, Bound<'_, PyAny>) = item?.extract()?;
+            let (unit, size) = match value.extract::<String>() {
+                Ok(unit) => (unit, None),
+                Err(_) => match value.extract::<(String, usize)>() {
+                    Ok((unit, size)) => (unit, Some(size)),
+                    Err(_) => return Err(wrong(format!("{name}: {}", value.repr()?))),
+                },
+            };
+            let doc = format!("Attribute `{name}` of the {role}.");
+            match size {
+                None => fields.push(CustomField::new(&name, unit, doc)),
+                Some(size) => {
+                    let each = |index| CustomField::new(format!("{name}{index}"), &unit, &doc);
+                    fields.extend((0..size).map(each));
+                }
+            }
+            attributes.push((name, size));
+        }
+        if attributes.is_empty() {
+            return Ok(None);
+        }
+        let doc = format!("Signals of the {role}, which is written in Python.");
+        let topic = CustomTopic::new(format!("/own_{role}"), doc, fields)
+            .map_err(|error| PyValueError::new_err(format!("{role}: signals: {error}")))?;
+        Ok(Some(Self { role: role.to_owned(), topic, attributes: attributes.into(), has_axis }))
+    }
+
+    /// Returns the topic of the signals as a list, empty without signals.
+    pub fn topics(signals: Option<&Self>) -> Vec<Arc<CustomTopic>> {
+        signals.map(|signals| Arc::clone(&signals.topic)).into_iter().collect()
+    }
+
+    /// Adds the row of the signals at a period of a full log; an error ends the run.
+    pub fn report(
+        signals: Option<&Self>,
+        method: &Method,
+        axis: usize,
+        at: &ReportContext<'_>,
+        report: &mut Report,
+    ) {
+        let Some(signals) = signals.filter(|_| at.occasion == Occasion::Period) else { return };
+        let values = Python::attach(|py| method.other(py, |part| signals.values(part, axis)));
+        let row = values.and_then(|values| signals.topic.row(values).ok());
+        row.into_iter().for_each(|row| report.add(row));
+    }
+
+    /// Returns the values of the signals.
+    fn values(&self, part: &Bound<'_, PyAny>, axis: usize) -> PyResult<Vec<f64>> {
+        let mut values: Vec<f64> = self.has_axis.then_some(axis as f64).into_iter().collect();
+        for (name, size) in &*self.attributes {
+            let value = part.getattr(name.as_str())?;
+            let wrong = || {
+                let expected = match size {
+                    None => "a number".to_owned(),
+                    Some(size) => format!("of shape ({size},)"),
+                };
+                let (role, found) = (&self.role, shape(&value));
+                PyTypeError::new_err(format!("{role}: the signal {name} must be {expected}, got {found}"))
+            };
+            match size {
+                None => values.push(value.extract().map_err(|_| wrong())?),
+                Some(size) => {
+                    let each = super::object::numbers(&value).map_err(|_| wrong())?;
+                    if each.len() != *size {
+                        return Err(wrong());
+                    }
+                    values.extend(each);
+                }
+            }
+        }
+        Ok(values)
+    }
+}
