@@ -54,7 +54,7 @@ def study() -> Scenario:
 def same(one: Table, other: Table) -> None:
     """Two tables have the same rows."""
     assert list(one) == list(other)
-    assert one.keys == other.keys
+    assert one.varied == other.varied
     for name in one:
         a, b = one[name], other[name]
         assert a.dtype == b.dtype, name
@@ -195,7 +195,7 @@ def test_another_campaign_is_not_replaced(study: Scenario, tmp_path: Path) -> No
 
 def test_some_metrics_and_designs(study: Scenario) -> None:
     table = flexsc.campaign(study, 64, metrics=["switchings", "goal"], sample="sobol")
-    assert list(table) == ["run", "seed", *table.keys, "switchings", "goal", "error"]
+    assert list(table) == ["run", "seed", *table.varied, "switchings", "goal", "error"]
     # A Sobol sequence fills each half of a range with half of the points.
     assert (table["law.relay.k_t"] < 0.31).sum() == 32
     twice = flexsc.campaign(study, 10, replicas=2)

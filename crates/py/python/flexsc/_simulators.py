@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NoReturn
 
 from flexsc import _native as engine
 from flexsc._quantities import Fields, Quantities, parse_commands
@@ -215,6 +215,13 @@ class Simulators:
         self._keep(self._native.reset(_mask(mask, len(self)), numbers))
         self._raise()
         return self.state
+
+    def __copy__(self) -> NoReturn:
+        # A shallow copy would share the engine: a step of one would advance the other.
+        raise TypeError("Simulators cannot be copied; `sims[i]` is a copy of one run, a Simulator")
+
+    def __deepcopy__(self, memo: dict[int, Any]) -> NoReturn:
+        self.__copy__()
 
     def __repr__(self) -> str:
         return f"<flexsc.Simulators of {self.scenario.name}: {len(self)} copies>"
