@@ -15,6 +15,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
+    from flexsc._one_copy import OneCopy
+
 # More copies than this are a mistake: each takes some kilobytes.
 _MOST = 10_000_000
 
@@ -43,6 +45,7 @@ class Simulators:
     """
 
     __slots__ = ("_fields", "_native", "_rows", "scenario")
+    _native: engine.Simulators | OneCopy
 
     scenario: Scenario
     """The scenario from which the runs are drawn."""
@@ -69,6 +72,19 @@ class Simulators:
         self._fields = Fields(self._native.fields)
         self._rows: npt.NDArray[np.float64] | None = None
         self._raise()
+
+    @classmethod
+    def _of_one(cls, scenario: Scenario, run: int) -> Simulators:
+        """One copy that is advanced in the calling thread, and keeps its commands."""
+        from flexsc._one_copy import OneCopy
+
+        simulators = cls.__new__(cls)
+        simulators.scenario = scenario
+        simulators._native = OneCopy(scenario, run)
+        simulators._fields = Fields(simulators._native.fields)
+        simulators._rows = None
+        simulators._raise()
+        return simulators
 
     def __len__(self) -> int:
         """The number of copies."""
